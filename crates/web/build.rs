@@ -1,4 +1,5 @@
-//! The stack of the module: the linker's default of 1 MiB is little for scenes whose parts lie deep within each other.
+//! Stack of the WebAssembly module: the linker's default of 1 MiB is too small for deeply nested
+//! scenes.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

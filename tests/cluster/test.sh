@@ -68,7 +68,7 @@ node_dies() {
   kill_node n2
   say "n2 is dead, it was at shard $task"
   wait "$submitted"
-  grep 'is there, going on' slurm-*_"$task".out || fail "shard $task did not go on"
+  grep 'is done, resuming' slurm-*_"$task".out || fail "shard $task did not go on"
   same scene.png straight.png
 }
 

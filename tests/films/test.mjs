@@ -58,14 +58,14 @@ function askFfmpeg() {
       assert.deepEqual(found, ["av1", "Main", "yuv420p", "tv", "bt709", "bt709", "iec61966-2-1", `${PACE}/1`]);
       assert.equal(Number(format.duration).toFixed(6), (FRAMES / PACE).toFixed(6));
     }
-    // Frames by number, whatever their times; in the MP4's own form, of which half the colours are no part.
+    // Frames by number, whatever their times; in the MP4's own form, of which half the colors are no part.
     const plain = "setpts=N/30/TB,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
     const graph = `[0:v]${plain}[a];[1:v]${plain}[b];[a][b]psnr`;
     const report = run("ffmpeg", "-hide_banner", "-i", file(`film.${ending}`), "-i", file("frame_%04d.png"), "-lavfi", graph, "-f", "null", "-");
     const error = report.match(/y:(\S+) u:(\S+) v:(\S+) average/).slice(1).map(Number);
-    // A GIF has 256 colours.
+    // A GIF has 256 colors.
     assert(error.every((decibels) => Number.isNaN(decibels) || decibels > (ending === "gif" ? 25 : 33)), `${ending}: ${error}`);
-    say(`ffmpeg: ${ending} of ${FRAMES} frames, PSNR ${error.map((decibels) => (Number.isNaN(decibels) ? "infinite" : decibels.toFixed(1))).join(", ")} dB (brightness, colours)`);
+    say(`ffmpeg: ${ending} of ${FRAMES} frames, PSNR ${error.map((decibels) => (Number.isNaN(decibels) ? "infinite" : decibels.toFixed(1))).join(", ")} dB (brightness, colors)`);
   }
 }
 
@@ -93,7 +93,7 @@ async function open(browser) {
       const bitmap = await createImageBitmap(await (await fetch(name)).blob());
       return window.levels(bitmap, width, height);
     };
-    /** How far two pictures are apart: at worst, on average, and on average of blocks, in which sharp colours vanish. */
+    /** How far two pictures are apart: at worst, on average, and on average of blocks, in which sharp colors vanish. */
     window.apart = (a, b, width, height) => {
       const [block, sums] = [8, new Map()];
       let [most, sum] = [0, 0];
@@ -144,9 +144,9 @@ async function plays(page) {
   assert.deepEqual(seen.size, SIZE);
   assert(Math.abs(seen.duration - FRAMES / PACE) < 1e-3, `${seen.duration} s`);
   seen.errors.forEach(({ time }, i) => assert(Math.abs(time - moments[i][0] / PACE) < 1e-3, `frame ${moments[i][0]}: ${time} s`));
-  // Half the colours are none of the file's: saturated ones beside each other lose some of theirs, in any encoder.
+  // Half the colors are none of the file's: saturated ones beside each other lose some of theirs, in any encoder.
   const worst = Math.max(...seen.errors.map(({ blocks }) => blocks));
-  assert(worst < 4.5, `colours are off: ${JSON.stringify(seen.errors)}`);
+  assert(worst < 4.5, `colors are off: ${JSON.stringify(seen.errors)}`);
   say(`Chromium plays the mp4: ${seen.duration} s, blocks of ${seen.errors.length} frames off by at most ${worst.toFixed(2)} levels`);
 }
 

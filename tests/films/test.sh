@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Films as others see them: MP4, WebP, APNG and GIF of one animation shown in a real browser and, where they are installed,
-# looked at by ffprobe and ffmpeg: lengths, sizes, jumps to a moment, colours beside those of the frames as PNG.
+# looked at by ffprobe and ffmpeg: lengths, sizes, jumps to a moment, colors beside those of the frames as PNG.
 #   tests/films/test.sh PATH/TO/juggler [FOLDER FOR THE FILMS]
 # Needs node, npm (playwright-core, by the lock file of tests/browser) and Chromium: apt-get install -y chromium nodejs npm
 set -euo pipefail

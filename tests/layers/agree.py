@@ -105,7 +105,7 @@ def camera(ours, others, next_frame):
     rows, columns = np.indices(alpha.shape)
     off = np.abs(film - np.stack([columns + 0.5, rows + 0.5], axis=-1)).max(axis=-1)
     seen = alpha > 0
-    check("positions lie in their pixels", seen.sum() > 3000 and off[seen].max() < 0.51, f"at most {off[seen].max():.3f} off their centres")
+    check("positions lie in their pixels", seen.sum() > 3000 and off[seen].max() < 0.51, f"at most {off[seen].max():.3f} off their centers")
     depth = layer(ours, "depth", "Z")[..., 0]
     z = np.concatenate([position, np.ones_like(position[..., :1])], axis=-1) @ to_camera
     plain = (alpha == 1) & (np.abs(z[..., 2] - ahead) < 1e-3 * ahead)

@@ -38,7 +38,7 @@ import numpy as np
 with warnings.catch_warnings():
     # The package warns of optional packages that nothing here needs.
     warnings.simplefilter("ignore")
-    import colour
+    import color
 
 # Source and file of each metal's table.
 METALS = {
@@ -105,9 +105,9 @@ def read_table(path):
 
 def srgb_weights():
     """Weights of each wavelength in the three channels of linear sRGB; each column adds up to 1."""
-    shape = colour.SpectralShape(WAVELENGTHS[0], WAVELENGTHS[-1], 1)
-    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape).values
-    d65 = colour.SDS_ILLUMINANTS["D65"]
+    shape = color.SpectralShape(WAVELENGTHS[0], WAVELENGTHS[-1], 1)
+    observer = color.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape).values
+    d65 = color.SDS_ILLUMINANTS["D65"]
     xyz = observer * np.interp(WAVELENGTHS, d65.wavelengths, d65.values)[:, None]
     xyz /= xyz[:, 1].sum()
     to_xyz = PRIMARIES * np.linalg.solve(PRIMARIES, xyz.sum(axis=0))

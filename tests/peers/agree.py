@@ -9,14 +9,14 @@ Pillow; PEERS_HOME as for the pack. OUT keeps every picture: a second call rende
 Each program renders each scene once for each seed. Of each pixel (and each block of 4x4 and 8x8) and channel two programs then have a
 mean and a variance over the seeds; Welch's t of their difference, turned into the normal deviate z that is as unlikely, would
 be normal if nothing but noise kept the pictures apart. Told are: the fraction of |z| beyond 2, 3 and 4 (of a normal one 4.55 %,
-0.27 %, 0.006 %), the mean of z^2 (1; the chi-squared of all blocks over their number), and the difference of the mean colours
+0.27 %, 0.006 %), the mean of z^2 (1; the chi-squared of all blocks over their number), and the difference of the mean colors
 in percent with its own deviation. Noise is not normal: where one path in many carries most of the light, a mean of few
 samples lies too low more often than too high, together with its variance. So blocks are the test and pixels the magnifying glass, and
 every program stands also against itself, one half of its seeds against the other: that is what "the same" looks like here.
 Two means count as equal where they differ by much less than FLOOR of their value, whatever their noise: rounding is none.
 
 OUT/SCENE.A.B.png shows z of the pixels, beside it of the blocks: red where A is brighter, blue where B is, black where equal,
-full colour at 5; --worst 10 prints the ten small blocks that differ most with their means.
+full color at 5; --worst 10 prints the ten small blocks that differ most with their means.
 """
 import argparse
 import os
@@ -90,8 +90,8 @@ def welch(a, b):
     return normal_of((mean[0] - mean[1]) / np.sqrt(sum_of_shares + floor), freedom)
 
 
-def colour_difference(a, b):
-    """Of the mean colours, percent, and its deviation; each channel."""
+def color_difference(a, b):
+    """Of the mean colors, percent, and its deviation; each channel."""
     a, b = a.mean((1, 2), dtype="f8"), b.mean((1, 2), dtype="f8")
     spread = np.sqrt(a.var(0, ddof=1) / len(a) + b.var(0, ddof=1) / len(b))
     return 100 * (a.mean(0) / b.mean(0) - 1), 100 * spread / b.mean(0)
@@ -104,10 +104,10 @@ def told(z):
 
 
 def compare(arguments, scene, names, a, b):
-    difference, spread = colour_difference(a, b)
-    colours = " ".join(f"{d:+.3f}({s:.3f})" for d, s in zip(difference, spread))
+    difference, spread = color_difference(a, b)
+    colors = " ".join(f"{d:+.3f}({s:.3f})" for d, s in zip(difference, spread))
     z = {edge: welch(blocks(a, edge), blocks(b, edge)) for edge in (1, *BLOCKS)}
-    print(f"{scene:15} {names[0]:>12} - {names[1]:12} colour % {colours}")
+    print(f"{scene:15} {names[0]:>12} - {names[1]:12} color % {colors}")
     for edge, of in z.items():
         print(f"{'':15} {edge:2} x {edge:2} {told(of)}", flush=True)
     if names[0] != names[1]:

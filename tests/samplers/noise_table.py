@@ -73,7 +73,7 @@ def main():
     program = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "target/release/juggler")
     folder = sys.argv[2] if len(sys.argv) > 2 else "noise"
     os.makedirs(folder, exist_ok=True)
-    print("| scene | `--noise` | relMSE | samples, mean | million rays | seconds | even samples for this error | million rays | seconds | rays saved | time saved |")
+    print("| scene | `--noise` | relMSE | mean samples | million rays | seconds | uniform samples for this error | million rays | seconds | rays saved | time saved |")
     print("|" + "---|" * 11)
     for scene, (_, level, most) in SCENES.items():
         error, rays, seconds, samples = measure(program, folder, scene, most, ["--noise", str(level)])

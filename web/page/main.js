@@ -58,11 +58,11 @@ const news = {
     $("description").textContent = now.description ?? "";
   },
 
-  frame({ status: now, error, kept, coarse, patches }) {
+  frame({ status: now, error, kept, coarse, rects }) {
     fail(error ?? "");
     if (now.outline.size.join() !== view.size.join()) view.open(now.outline);
     view.resume(now.outline);
-    if (!kept) view.coarse(coarse, patches);
+    if (!kept) view.coarse(coarse, rects);
     tell(now);
     const milliseconds = performance.now() - began;
     $("speed").textContent = `${coarse.join(" × ")} in ${milliseconds.toFixed(0)} ms`;
@@ -99,17 +99,17 @@ function tell(now) {
 }
 
 function progress() {
-  const samples = view.board.samples();
+  const samples = view.compositor.samples();
   const wanted = status.outline.samples;
   $("samples").textContent = `${samples < 10 ? samples.toFixed(1) : samples.toFixed(0)} of ${wanted}`;
   $("bar").style.width = `${Math.min(100, (100 * samples) / wanted)}%`;
   if ($("hash").textContent) return;
   $("seconds").textContent = `${((performance.now() - began) / 1000).toFixed(2)} s`;
-  if (view.board.isFinished()) $("hash").textContent = view.board.hash();
+  if (view.compositor.isFinished()) $("hash").textContent = view.compositor.hash();
 }
 
 function save() {
-  const blob = new Blob([view.board.png()], { type: "image/png" });
+  const blob = new Blob([view.compositor.png()], { type: "image/png" });
   const name = source.name.split("/").at(-1).replace(/\.json$/i, "");
   const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: `${name}.png` });
   link.click();

@@ -1,6 +1,6 @@
 // The workers: what one is told, all are told, so that all have the same scene from the same camera.
 
-import { Pace } from "./juggler.js";
+import { RenderRate } from "./juggler.js";
 
 /** Seconds that a coarse frame may take. */
 const BUDGET = 0.03;
@@ -10,7 +10,7 @@ export class Pool {
   constructor(module, count, news) {
     this.news = news;
     this.number = 0;
-    this.pace = new Pace();
+    this.rate = new RenderRate();
     /** Of the picture, as soon as there is one. */
     this.size = null;
     this.waiting = [];
@@ -21,14 +21,14 @@ export class Pool {
       const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
       worker.onmessage = ({ data }) => this.heard(index, data);
       worker.onerror = (event) => this.news("failed", event.message ?? "a worker has failed");
-      worker.postMessage({ type: "start", module, index, of: count });
+      worker.postMessage({ type: "start", module, index, count });
       return worker;
     });
   }
 
   close() {
     this.workers.forEach((worker) => worker.terminate());
-    this.pace.free();
+    this.rate.free();
     this.news = () => {};
   }
 
@@ -53,7 +53,7 @@ export class Pool {
   flush() {
     const edits = this.waiting;
     this.waiting = [];
-    const step = this.pace.coarseness(...this.size, BUDGET);
+    const step = this.rate.coarseness(...this.size, BUDGET);
     this.tell({ type: "edit", edits, coarse: this.size.map((edge) => Math.ceil(edge / step)) });
   }
 
@@ -89,8 +89,8 @@ export class Pool {
       return;
     }
     const slowest = Math.max(...answers.map(({ took }) => took));
-    if (!kept) this.pace.learn(coarse[0] * coarse[1], slowest / 1000);
-    this.news("frame", { status, error, kept, coarse, patches: answers });
+    if (!kept) this.rate.measure(coarse[0] * coarse[1], slowest / 1000);
+    this.news("frame", { status, error, kept, coarse, rects: answers });
     (kept ? [...late, ...tiles] : tiles).forEach((message) => this.news("tiles", message));
     if (this.waiting.length > 0) this.flush();
   }

@@ -1,6 +1,6 @@
 // The canvas: coarse frames stretched over it, and the picture's tiles as they come.
 
-import { Board, Patches } from "./juggler.js";
+import { Compositor, PixelRects } from "./juggler.js";
 
 export class View {
   constructor(canvas, memory) {
@@ -8,14 +8,14 @@ export class View {
     this.memory = memory;
     this.context = canvas.getContext("2d", { alpha: false, willReadFrequently: true });
     this.small = document.createElement("canvas");
-    this.board = null;
+    this.compositor = null;
   }
 
   /** For another picture; what is shown stays until the first frame. */
-  open(outline) {
-    this.board?.free();
-    this.board = new Board(JSON.stringify(outline));
-    this.size = outline.size;
+  open(info) {
+    this.compositor?.free();
+    this.compositor = new Compositor(JSON.stringify(info));
+    this.size = info.size;
   }
 
   /** Pixels of the module's memory as the browser draws them. */
@@ -31,36 +31,36 @@ export class View {
     }
   }
 
-  coarse([width, height], patches) {
-    this.board.begin(width, height);
-    for (const { places, light } of patches) this.board.putCoarse(new Patches(places, light));
+  coarse([width, height], rects) {
+    this.compositor.restart(width, height);
+    for (const { bounds, radiance } of rects) this.compositor.addCoarseRows(new PixelRects(bounds, radiance));
     this.fit();
     [this.small.width, this.small.height] = [width, height];
-    this.small.getContext("2d").putImageData(this.image(this.board.coarseRgba(), width, height), 0, 0);
+    this.small.getContext("2d").putImageData(this.image(this.compositor.coarseRgba(), width, height), 0, 0);
     this.context.imageSmoothingEnabled = true;
     this.context.drawImage(this.small, 0, 0, ...this.size);
   }
 
   tiles({ parts }) {
-    for (const { places, light } of parts) {
-      this.board.put(new Patches(places, light));
-      this.paint(places, 5);
+    for (const { bounds, radiance } of parts) {
+      this.compositor.addTiles(new PixelRects(bounds, radiance));
+      this.paint(bounds, 5);
     }
   }
 
   /** Tile by tile, as what lies between them may still be of the coarse frame. */
-  paint(places, stride) {
+  paint(bounds, stride) {
     this.fit();
-    const image = this.image(this.board.rgba(), ...this.size);
-    for (let i = 0; i < places.length; i += stride) {
-      this.context.putImageData(image, 0, 0, places[i], places[i + 1], places[i + 2], places[i + 3]);
+    const image = this.image(this.compositor.rgba(), ...this.size);
+    for (let i = 0; i < bounds.length; i += stride) {
+      this.context.putImageData(image, 0, 0, bounds[i], bounds[i + 1], bounds[i + 2], bounds[i + 3]);
     }
   }
 
   /** Another tone, more samples: the light so far stays. */
-  resume(outline) {
-    this.board.resume(JSON.stringify(outline));
-    this.paint(this.board.tiles(), 4);
+  resume(info) {
+    this.compositor.resume(JSON.stringify(info));
+    this.paint(this.compositor.tiles(), 4);
   }
 
   /** The picture's pixel under a place of the window. */

@@ -1,7 +1,7 @@
 // One of the workers: a whole renderer of its own that renders its share of the picture, in slices short enough to hear what
 // the page says between them.
 
-import init, { Painter } from "./juggler.js";
+import init, { WorkerRenderer } from "./juggler.js";
 
 /** Milliseconds of a slice. */
 const SLICE = 12;
@@ -9,7 +9,7 @@ const SLICE = 12;
 const FIRST_SHOW = 40;
 const LAST_SHOW = 400;
 
-let painter = null;
+let renderer = null;
 /** Number of the page's last wish; what is rendered belongs to it. */
 let number = 0;
 let refining = false;
@@ -22,11 +22,11 @@ let [held, due, interval] = [[], 0, FIRST_SHOW];
 const again = new MessageChannel();
 again.port1.onmessage = refine;
 
-function send(message, patches) {
-  if (!patches) return postMessage({ ...message, number });
-  const [places, light] = [patches.places(), patches.light()];
-  patches.free();
-  postMessage({ ...message, number, places, light }, [places.buffer, light.buffer]);
+function send(message, rects) {
+  if (!rects) return postMessage({ ...message, number });
+  const [bounds, radiance] = [rects.bounds(), rects.radiance()];
+  rects.free();
+  postMessage({ ...message, number, bounds, radiance }, [bounds.buffer, radiance.buffer]);
 }
 
 function start() {
@@ -38,8 +38,8 @@ function start() {
 function refine() {
   if (!refining) return;
   try {
-    hold(painter.refine(SLICE));
-    refining = !painter.isFinished();
+    hold(renderer.refine(SLICE));
+    refining = !renderer.isFinished();
     if (!refining || performance.now() >= due) show();
     if (refining) again.port2.postMessage(0);
   } catch (error) {
@@ -47,15 +47,15 @@ function refine() {
   }
 }
 
-function hold(patches) {
-  if (!patches) return;
-  held.push({ places: patches.places(), light: patches.light() });
-  patches.free();
+function hold(rects) {
+  if (!rects) return;
+  held.push({ bounds: rects.bounds(), radiance: rects.radiance() });
+  rects.free();
 }
 
 /** Sends the tiles that wait. */
 function show() {
-  if (held.length > 0) postMessage({ type: "tiles", number, parts: held }, held.flatMap(({ places, light }) => [places.buffer, light.buffer]));
+  if (held.length > 0) postMessage({ type: "tiles", number, parts: held }, held.flatMap(({ bounds, radiance }) => [bounds.buffer, radiance.buffer]));
   held = [];
   due = performance.now() + interval;
   interval = Math.min(interval * 1.5, LAST_SHOW);
@@ -70,28 +70,28 @@ function fail(error) {
 }
 
 const answers = {
-  async start({ module, index, of }) {
+  async start({ module, index, count }) {
     await init({ module_or_path: module });
-    painter = new Painter(index, of);
+    renderer = new WorkerRenderer(index, count);
     send({ type: "ready" });
   },
 
   /** Another scene: a built-in one by name, or one of the files that come along. */
   open({ name, files }) {
     [refining, fresh] = [false, true];
-    for (const { name, bytes } of files) painter.addFile(name, new Uint8Array(bytes));
-    painter.open(name);
-    send({ type: "opened", status: JSON.parse(painter.status()) });
+    for (const { name, bytes } of files) renderer.addFile(name, new Uint8Array(bytes));
+    renderer.open(name);
+    send({ type: "opened", status: JSON.parse(renderer.status()) });
   },
 
   /** Edits, and the size of the coarse frame that is to show them at once. */
   edit({ edits, coarse }) {
-    const kept = painter.edit(JSON.stringify(edits)) && !fresh;
+    const kept = renderer.edit(JSON.stringify(edits)) && !fresh;
     fresh = false;
-    const changed = { type: "edited", kept, error: painter.problem(), status: JSON.parse(painter.status()) };
+    const changed = { type: "edited", kept, error: renderer.problem(), status: JSON.parse(renderer.status()) };
     const began = performance.now();
-    const patches = kept ? null : painter.coarse(coarse[0], coarse[1]);
-    send({ ...changed, took: performance.now() - began }, patches);
+    const rects = kept ? null : renderer.coarse(coarse[0], coarse[1]);
+    send({ ...changed, took: performance.now() - began }, rects);
     start();
   },
 };

@@ -1,17 +1,20 @@
-//! Metal, polished or rough: Torrance and Sparrow's mirrors (1967) with [GGX](super::ggx) normals.
+//! Conductor, smooth or rough: microfacets of Torrance and Sparrow (1967) with [GGX](super::ggx)
+//! normals.
 //!
-//! Single scattering loses what is mirrored more than once between microfacets; [`Conductor::compensated`] gives
-//! it back as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) (Kulla and Conty 2017), which is reciprocal and makes a
-//! perfect mirror white at any roughness. Its colour m counts the absorption of every further bounce:
-//! F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)) with F Fresnel's mean and Ē that of E.
+//! Single scattering loses light that is reflected more than once between microfacets.
+//! [`Conductor::compensated`] adds it as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) (Kulla and
+//! Conty 2017), which is reciprocal and makes a perfect mirror white at any roughness. Its color m
+//! accounts for the absorption of every further bounce: F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)), with
+//! F the mean Fresnel reflectance and Ē the mean of E.
 //!
 //! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the
-//! direction that a visible normal reflects is taken with probability G2 / G1; otherwise, that is
-//! with the very probability 1 - E(μo), one is drawn in proportion to (1 - E(μi)) μi. Samples of a
-//! perfect mirror carry a weight of 1, whatever the tables of E miss: light that meets metal many
-//! times, as inside of a solid that is part metal and part glass, neither gains nor loses energy.
+//! direction that a visible normal reflects is accepted with probability G2 / G1. Otherwise, which
+//! happens with probability 1 - E(μo), a direction is sampled in proportion to (1 - E(μi)) μi.
+//! Samples of a perfect mirror have a weight of 1 whatever the error of the tables of E: light that
+//! hits metal many times, as inside a solid that is part metal and part glass, neither gains nor
+//! loses energy.
 
-use super::energy::{self, Scramble};
+use super::energy::{self, SampleRng};
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta};
 use super::{BsdfSample, Fresnel, Scatter};
@@ -19,111 +22,119 @@ use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// A metal.
+/// Conductor lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
     ggx: Ggx,
     fresnel: Fresnel,
     /// m, see above; black without compensation.
     multiple: Rgb,
-    /// m of a perfect mirror, 1 / (π (1 - Ē)): what makes (1 - E(μi)) μi a density.
+    /// m of a perfect mirror, 1 / (π (1 - Ē)), which normalizes (1 - E(μi)) μi to a density.
     normalization: f32,
 }
 
 impl Conductor {
-    /// With single scattering only. `alpha` as in [`Ggx`]: the square of a material's roughness along x and y.
+    /// Conductor with single scattering only. `alpha` as in [`Ggx`]: the square of a material's
+    /// roughness along x and y.
     #[inline]
     pub fn new(fresnel: Fresnel, alpha: Vec2) -> Self {
         Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK, normalization: 0.0 }
     }
 
-    /// With all scattering among its microfacets.
+    /// Conductor with multiple scattering between microfacets.
     pub fn compensated(fresnel: Fresnel, alpha: Vec2) -> Self {
         let mut conductor = Self::new(fresnel, alpha);
         if !conductor.ggx.is_smooth() {
-            let lost = energy::mirror_lost_average(conductor.ggx);
-            if lost > 0.0 {
-                let normalization = FRAC_1_PI / lost;
-                conductor.multiple = fresnel.average().map(|f| f * f * (1.0 - lost) / (1.0 - f * lost) * normalization);
+            let mean_loss = energy::mean_mirror_loss(conductor.ggx);
+            if mean_loss > 0.0 {
+                let normalization = FRAC_1_PI / mean_loss;
+                conductor.multiple = fresnel
+                    .mean_reflectance()
+                    .map(|f| f * f * (1.0 - mean_loss) / (1.0 - f * mean_loss) * normalization);
                 conductor.normalization = normalization;
             }
         }
         conductor
     }
 
-    /// f |cos θi| of single scattering where Fresnel's share is 1.
+    /// f |cos θi| of single scattering for a Fresnel reflectance of 1.
     #[inline]
-    pub(super) fn shape(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.ggx.mirror(wo, wi).value
+    pub(super) fn single_scattering_shape(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.ggx.eval_reflection(wo, wi).value
     }
 
-    /// Fresnel's share at normal incidence.
+    /// Fresnel reflectance at normal incidence.
     #[inline]
-    pub(super) fn color(&self) -> Rgb {
-        self.fresnel.at(1.0)
+    pub(super) fn f0(&self) -> Rgb {
+        self.fresnel.reflectance(1.0)
     }
 
-    /// Whether both alphas are the same.
+    /// Whether the microfacets are isotropic.
     #[inline]
-    pub(super) fn is_round(&self) -> bool {
-        self.ggx.is_round()
+    pub(super) fn is_isotropic(&self) -> bool {
+        self.ggx.is_isotropic()
     }
 
-    /// Whether it is a perfect mirror's delta.
+    /// Whether the lobe is a delta.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.ggx.is_smooth()
     }
 
-    /// Adds the lobe of what is scattered more than once to the value and the density of what is
-    /// scattered once.
+    /// Adds multiple scattering to the value and the density of single scattering.
     fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
-        let more = self.lost(wo) * self.lost(wi) * wi.z;
+        let more = self.energy_loss(wo) * self.energy_loss(wi) * wi.z;
         (single + self.multiple * more, density + self.normalization * more)
     }
 
-    /// 1 - E.
-    fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_lost(self.ggx, w)
+    /// 1 - E(w): fraction of light along `w` that single scattering loses.
+    fn energy_loss(&self, w: Vec3) -> f32 {
+        energy::mirror_loss(self.ggx, w)
     }
 
     fn sample_compensated(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
-        let mut random = Scramble::new(u, 0.0);
-        // Take the direction with probability G2 / G1.
-        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| random.unit() * facing.pdf < facing.value);
-        let (wi, facing, scatter) = if let Some((wi, facing)) = once {
-            (wi, facing, Scatter::Glossy)
+        let mut random = SampleRng::new(u, 0.0);
+        // Accept the direction with probability G2 / G1.
+        let once = self
+            .ggx
+            .sample_reflection(wo, u)
+            .filter(|(_, microfacet)| random.unit() * microfacet.pdf < microfacet.value);
+        let (wi, microfacet, scatter) = if let Some((wi, microfacet)) = once {
+            (wi, microfacet, Scatter::Glossy)
         } else {
-            let wi = energy::sample_mirror_lost(self.ggx, &mut random);
-            (wi, self.ggx.mirror(wo, wi), Scatter::Diffuse)
+            let wi = energy::sample_mirror_loss(self.ggx, &mut random);
+            (wi, self.ggx.eval_reflection(wo, wi), Scatter::Diffuse)
         };
-        let single = self.fresnel.at(facing.cos) * facing.value;
-        let (value, pdf) = self.with_multiple(wo, wi, single, facing.value);
+        let single = self.fresnel.reflectance(microfacet.cos) * microfacet.value;
+        let (value, pdf) = self.with_multiple(wo, wi, single, microfacet.value);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
-    fn mirrored(&self, wo: Vec3) -> BsdfSample {
-        delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.at(wo.z), 1.0)
+    fn mirror_delta(&self, wo: Vec3) -> BsdfSample {
+        delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.reflectance(wo.z), 1.0)
     }
 
-    /// Albedo of single scattering. On a stretched surface, the angles of visible microfacets depend on the slopes along `wo`: a
-    /// round surface of these slopes gives the mean of Fresnel's share, a table of stretched surfaces the loss. That round
-    /// surface is as rough across `wo` as along it; see [`Conductor::round_cosine`].
+    /// Albedo of single scattering. On an anisotropic surface, the angles at visible microfacets
+    /// depend on the slopes along `wo`: an isotropic surface of these slopes gives the mean Fresnel
+    /// reflectance, a table of anisotropic surfaces the loss. That isotropic surface is as rough
+    /// across `wo` as along it; see [`Conductor::isotropic_cosine`].
     fn single_albedo(&self, wo: Vec3) -> Rgb {
         let alpha = self.ggx.alpha_towards(wo);
-        if self.ggx.is_round() {
-            return self.fresnel.mirrored(wo.z, alpha);
+        if self.ggx.is_isotropic() {
+            return self.fresnel.rough_albedo(wo.z, alpha);
         }
-        let cos = self.round_cosine(wo, alpha);
-        let round = self.fresnel.mirrored(cos, alpha);
-        round * ((1.0 - self.lost(wo)) / (1.0 - energy::mirror_loss(cos, alpha)).max(f32::MIN_POSITIVE))
+        let cos = self.isotropic_cosine(wo, alpha);
+        let isotropic = self.fresnel.rough_albedo(cos, alpha);
+        isotropic
+            * ((1.0 - self.energy_loss(wo)) / (1.0 - energy::isotropic_mirror_loss(cos, alpha)).max(f32::MIN_POSITIVE))
     }
 
-    /// The cosine of the angle at which a round surface of this alpha reflects the share of light that this one reflects
-    /// along `wo`: slopes across `wo` turn microfacets away from it, and the round surface has others. Fitted to integrals over
-    /// visible normals for ratios of both alphas from 0.1 to 0.55 and indices from 1.1 to 2.4: the root mean square of the
-    /// errors over all directions is 0.001 and the largest error 0.02, half of what they are without this.
-    fn round_cosine(&self, wo: Vec3, alpha: f32) -> f32 {
+    /// Cosine of the angle at which an isotropic surface of this alpha has the reflectance of this
+    /// one along `wo`: slopes across `wo` tilt microfacets away from it, and the isotropic surface
+    /// has others. Fitted to integrals over visible normals for ratios of both alphas from 0.1 to
+    /// 0.55 and indices from 1.1 to 2.4: the root mean square error over all directions is 0.001
+    /// and the largest error 0.02, half of the errors without this.
+    fn isotropic_cosine(&self, wo: Vec3, alpha: f32) -> f32 {
         let cos = wo.z.min(1.0);
         let across = self.ggx.alpha_towards(Vec3::new(-wo.y, wo.x, wo.z));
         let tilt = |alpha: f32| cos + 0.5 * alpha * alpha * (1.0 - cos);
@@ -132,7 +143,6 @@ impl Conductor {
 }
 
 impl ScatteringLobe for Conductor {
-    /// One alpha of its microfacets that stands for both.
     #[inline]
     fn mean_alpha(&self) -> f32 {
         self.ggx.mean_alpha()
@@ -144,32 +154,33 @@ impl ScatteringLobe for Conductor {
         if wo.z <= 0.0 || wi.z <= 0.0 || self.is_smooth() {
             return (Rgb::BLACK, 0.0);
         }
-        let facing = self.ggx.mirror(wo, wi);
-        let single = self.fresnel.at(facing.cos) * facing.value;
+        let microfacet = self.ggx.eval_reflection(wo, wi);
+        let single = self.fresnel.reflectance(microfacet.cos) * microfacet.value;
         if self.multiple.is_black() {
-            return (single, facing.pdf);
+            return (single, microfacet.pdf);
         }
-        self.with_multiple(wo, wi, single, facing.value)
+        self.with_multiple(wo, wi, single, microfacet.value)
     }
 
-    /// A direction by visible normals, or as often as single scattering loses light by what it loses.
+    /// Samples visible normals or, with the probability that single scattering loses the light,
+    /// multiple scattering.
     #[inline]
-    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _u_choice: f32) -> Option<BsdfSample> {
         if wo.z <= 0.0 {
             return None;
         }
         if self.is_smooth() {
-            return Some(self.mirrored(wo));
+            return Some(self.mirror_delta(wo));
         }
         if !self.multiple.is_black() {
             return self.sample_compensated(wo, u);
         }
-        let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
-        let weight = self.fresnel.at(facing.cos) * (facing.value / facing.pdf);
-        Some(BsdfSample { wi, weight, pdf: facing.pdf, scatter: Scatter::Glossy, ior: 1.0 })
+        let (wi, microfacet) = self.ggx.sample_reflection(wo, u)?;
+        let weight = self.fresnel.reflectance(microfacet.cos) * (microfacet.value / microfacet.pdf);
+        Some(BsdfSample { wi, weight, pdf: microfacet.pdf, scatter: Scatter::Glossy, ior: 1.0 })
     }
 
-    /// What is mirrored once and, if compensated, more often.
+    /// Albedo of single and, if compensated, multiple scattering.
     fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
@@ -178,15 +189,15 @@ impl ScatteringLobe for Conductor {
         if self.multiple.is_black() {
             return single;
         }
-        let average = energy::mirror_lost_average(self.ggx);
-        single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
+        let mean_loss = energy::mean_mirror_loss(self.ggx);
+        single + self.multiple * (self.energy_loss(wo) * mean_loss * std::f32::consts::PI)
     }
 
-    /// The mirror's, if it is smooth.
+    /// Mirror reflection, if smooth.
     fn deltas(&self, wo: Vec3) -> Deltas {
         let mut deltas = Deltas::new();
         if self.is_smooth() && wo.z > 0.0 {
-            deltas.push(self.mirrored(wo));
+            deltas.push(self.mirror_delta(wo));
         }
         deltas
     }
@@ -197,7 +208,7 @@ impl ScatteringLobe for Conductor {
     }
 
     #[inline]
-    fn is_stretched(&self) -> bool {
-        !self.is_round()
+    fn is_anisotropic(&self) -> bool {
+        !self.is_isotropic()
     }
 }

@@ -1,14 +1,14 @@
-//! Directions spread evenly over a cone: the classic way to a glossy mirror or a blurry window (Cook, Porter
-//! and Carpenter, Distributed Ray Tracing, 1984).
+//! Directions distributed uniformly over a cone, for glossy reflection and blurry transmission in
+//! classic ray tracing (Cook, Porter and Carpenter, Distributed Ray Tracing, 1984).
 
 use juggler_math::{Frame, Vec2, Vec3, warp};
 
-/// A direction within `half_angle_radians` (0 to π) of the unit vector `axis`, all equally likely by solid
-/// angle, for `u` in the unit square.
+/// Samples a direction within `half_angle_radians` (0 to π) of the unit vector `axis`, uniformly by
+/// solid angle, for `u` in the unit square.
 ///
-/// It stays on the side of the surface (unit `normal`, either way round) to which `axis` goes: what would
-/// come out on the other side is mirrored back by the surface's plane, so no ray is lost and a grazing cone
-/// is folded over, not thinned.
+/// The direction stays on the side of the surface that `axis` is on; the unit vector `normal` may
+/// be on either side. Directions beyond the surface are reflected at its plane, so no ray is lost
+/// and a grazing cone is folded, not thinned.
 #[inline]
 pub fn direction(axis: Vec3, normal: Vec3, half_angle_radians: f32, u: Vec2) -> Vec3 {
     let local = warp::uniform_cone(u, warp::cone_size(half_angle_radians));
@@ -20,7 +20,7 @@ pub fn direction(axis: Vec3, normal: Vec3, half_angle_radians: f32, u: Vec2) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_math::fun;
+    use juggler_math::portable;
     use juggler_math::testing::{Random, chi_squared_directions, close};
     use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -32,9 +32,9 @@ mod tests {
             let w = direction(axis, normal, angle, random.vec2());
             assert!(close(w.length(), 1.0, 1e-6));
             assert!(w.dot(normal) * axis.dot(normal) >= -1e-7, "{w} {axis} {normal}");
-            let mirrored = w - normal * (2.0 * w.dot(normal));
-            let cos = w.dot(axis).max(mirrored.dot(axis));
-            assert!(cos >= fun::cos(angle) - 1e-6, "{w} {axis} {angle}");
+            let reflected = w - normal * (2.0 * w.dot(normal));
+            let cos = w.dot(axis).max(reflected.dot(axis));
+            assert!(cos >= portable::cos(angle) - 1e-6, "{w} {axis} {angle}");
         }
         assert_eq!(direction(Vec3::Y, Vec3::Y, 0.0, Vec2::new(0.3, 0.6)), Vec3::Y);
     }
@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn is_even_over_the_cap() {
         let axis = Vec3::new(2.0, -1.0, 2.0) / 3.0;
-        // The cone's rim falls on a cell border of the test once the axis is turned to z.
+        // With the axis along z, the cone's rim falls on a cell boundary of the test.
         let frame = Frame::around(axis);
         let sample = |u| Some(frame.to_local(direction(axis, axis, FRAC_PI_2 * 2.0 / 3.0, u)));
         let pdf = |w: Vec3| if w.z >= 0.5 { 1.0 / (TAU * 0.5) } else { 0.0 };
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn a_cone_half_in_the_ground_is_folded_over() {
-        // Axis in the surface: the upper half cap, twice as dense.
+        // The axis lies in the surface: half of the cap, at twice the density.
         let sample = |u| Some(direction(Vec3::X, Vec3::Z, FRAC_PI_2, u));
         let pdf = |w: Vec3| if w.z >= 0.0 && w.x >= 0.0 { 2.0 / TAU } else { 0.0 };
         chi_squared_directions(sample, pdf, 1_000_000, 1e-3).unwrap();

@@ -1,51 +1,52 @@
-//! Tiny mirrors whose normals are distributed like those of a stretched sphere: GGX (Trowbridge and Reitz 1975;
-//! Walter, Marschner, Li and Torrance 2007), with Smith's height-correlated masking (Heitz 2014), sampled by visible
-//! normals through spherical caps (Dupuy and Benyoub 2023).
+//! Microfacets whose normals are distributed like those of an ellipsoid: GGX (Trowbridge and Reitz
+//! 1975; Walter, Marschner, Li and Torrance 2007), with Smith's height-correlated masking (Heitz
+//! 2014). Visible normals are sampled by spherical caps (Dupuy and Benyoub 2023).
 //!
-//! `alpha` is the tangent of the typical slope along each axis. Materials offer a roughness instead, whose square
-//! it is (Burley 2012): lobes are given alpha, and who reads a material squares it.
+//! `alpha` is the tangent of the typical slope along each axis. Materials have a roughness instead,
+//! whose square is alpha (Burley 2012); lobes take alpha.
 //!
-//! With s(w) = √(z² + αx² x² + αy² y²) Smith's functions need no tangents: G1(w) = 2z / (z + s(w)), and
-//! G2(o, i) = 2 zo zi / (zo s(i) + zi s(o)).
+//! With s(w) = √(z² + αx² x² + αy² y²), Smith's functions need no tangents: G1(w) = 2z / (z +
+//! s(w)), and G2(o, i) = 2 zo zi / (zo s(i) + zi s(o)).
 
-use juggler_math::{Vec2, Vec3, fun};
+use juggler_math::{Vec2, Vec3, portable};
 use std::f32::consts::PI;
 
-/// The distribution of microfacets' normals, all with z > 0.
+/// Distribution of microfacet normals, all with z > 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     x: f32,
     y: f32,
 }
 
-/// A pair of directions seen through the microfacets that mirror one into the other.
+/// Reflection of one direction into another at the microfacets between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facing {
-    /// Cosine between either direction and the microfacet's normal.
+pub struct MicrofacetReflection {
+    /// Cosine between either direction and the microfacet normal.
     pub cos: f32,
-    /// D G2 / (4 zo): what is given back, times the cosine, were Fresnel's share 1.
+    /// D G2 / (4 zo): f |cos θi| for a Fresnel reflectance of 1.
     pub value: f32,
-    /// Density per steradian.
+    /// Density of [`Ggx::sample_reflection`], per steradian.
     pub pdf: f32,
 }
 
 impl Ggx {
-    /// Below this alpha (on both axes) a surface counts as smooth: a mirror's image is blurred by less than 0.1
-    /// degrees, and single precision could not tell the directions of the lobe apart.
+    /// Alpha below which (on both axes) a surface counts as smooth: it blurs a mirror image by less
+    /// than 0.1 degrees, and single precision cannot resolve the directions of its lobe.
     pub const SMOOTH: f32 = 1e-3;
 
-    /// From alpha along x and y, taken into `SMOOTH..=1`.
+    /// Distribution of this alpha along x and y, each clamped to `SMOOTH..=1`; smooth if both are
+    /// below `SMOOTH`.
     #[inline]
     pub fn new(alpha: Vec2) -> Self {
         if alpha.x < Self::SMOOTH && alpha.y < Self::SMOOTH {
             return Self { x: 0.0, y: 0.0 };
         }
-        // NaN becomes the smallest.
-        let taken = |alpha: f32| if alpha > Self::SMOOTH { alpha.min(1.0) } else { Self::SMOOTH };
-        Self { x: taken(alpha.x), y: taken(alpha.y) }
+        // NaN becomes `SMOOTH`.
+        let clamped = |alpha: f32| if alpha > Self::SMOOTH { alpha.min(1.0) } else { Self::SMOOTH };
+        Self { x: clamped(alpha.x), y: clamped(alpha.y) }
     }
 
-    /// The same alpha along both axes.
+    /// Distribution of the same alpha along both axes.
     #[inline]
     pub fn isotropic(alpha: f32) -> Self {
         Self::new(Vec2::splat(alpha))
@@ -57,23 +58,23 @@ impl Ggx {
         self.x == 0.0
     }
 
-    /// Alpha along x and y; 0 for a smooth one.
+    /// Alpha along x and y; 0 if smooth.
     #[inline]
     pub fn alpha(self) -> Vec2 {
         Vec2::new(self.x, self.y)
     }
 
-    /// One alpha that stands for both.
+    /// Root mean square of both alphas.
     #[inline]
     pub fn mean_alpha(self) -> f32 {
-        if self.is_round() { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
+        if self.is_isotropic() { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
     }
 
-    /// One alpha that stands for both where light goes along `w`: at a grazing angle what counts is the slopes along it,
-    /// head on both alike.
+    /// Isotropic alpha for light along `w`: at grazing angles only the slopes along `w` matter, at
+    /// normal incidence both axes alike.
     #[inline]
     pub fn alpha_towards(self, w: Vec3) -> f32 {
-        if self.is_round() {
+        if self.is_isotropic() {
             return self.x;
         }
         let (x2, y2, z2) = (self.x * self.x, self.y * self.y, (w.z * w.z).min(1.0));
@@ -81,40 +82,40 @@ impl Ggx {
         (along + 0.5 * (x2 + y2) * (z2 * z2)).sqrt()
     }
 
-    /// Whether both alphas are the same.
+    /// Whether the distribution is isotropic.
     #[inline]
-    pub fn is_round(self) -> bool {
+    pub fn is_isotropic(self) -> bool {
         self.x == self.y
     }
 
-    /// The smaller alpha over the larger one.
+    /// Smaller alpha over the larger one; 1 if isotropic.
     #[inline]
-    pub fn roundness(self) -> f32 {
-        if self.is_round() { 1.0 } else { self.x.min(self.y) / self.x.max(self.y) }
+    pub fn alpha_ratio(self) -> f32 {
+        if self.is_isotropic() { 1.0 } else { self.x.min(self.y) / self.x.max(self.y) }
     }
 
-    /// s(w), see above.
+    /// s(w) of the module's documentation.
     #[inline]
-    pub fn stretch(self, w: Vec3) -> f32 {
+    pub fn stretched_length(self, w: Vec3) -> f32 {
         let (x, y) = (self.x * w.x, self.y * w.y);
         (w.z * w.z + x * x + y * y).sqrt()
     }
 
-    /// D of the microfacets whose normals go along `m`, which need not be a unit vector; per steradian.
+    /// D at the normal `m`, which need not be a unit vector; per steradian.
     #[inline]
-    pub fn density(self, m: Vec3) -> f32 {
+    pub fn normal_density(self, m: Vec3) -> f32 {
         let (x, y) = (m.x / self.x, m.y / self.y);
         let ratio = m.length_squared() / (x * x + y * y + m.z * m.z).max(f32::MIN_POSITIVE);
         ratio * ratio / (PI * self.x * self.y)
     }
 
-    /// The normal of a microfacet as seen from `wo`, z >= 0, and its density D.
+    /// Samples a normal visible from `wo` (z >= 0), and returns it with its D; `so` is s(wo).
     #[inline]
-    pub fn sample(self, wo: Vec3, stretch: f32, u: Vec2) -> (Vec3, f32) {
-        let standard = Vec3::new(self.x * wo.x, self.y * wo.y, wo.z) / stretch.max(f32::MIN_POSITIVE);
+    pub fn sample_visible_normal(self, wo: Vec3, so: f32, u: Vec2) -> (Vec3, f32) {
+        let standard = Vec3::new(self.x * wo.x, self.y * wo.y, wo.z) / so.max(f32::MIN_POSITIVE);
         let z = (1.0 - u.x) * (1.0 + standard.z) - standard.z;
         let radius = (1.0 - z * z).max(0.0).sqrt();
-        let (sin, cos) = fun::sin_cos_turns(u.y);
+        let (sin, cos) = portable::sin_cos_turns(u.y);
         let cap = Vec3::new(radius * cos, radius * sin, z) + standard;
         let m = Vec3::new(self.x * cap.x, self.y * cap.y, cap.z.max(0.0));
         let squared = m.length_squared().max(f32::MIN_POSITIVE);
@@ -122,38 +123,43 @@ impl Ggx {
         (m / squared.sqrt(), ratio * ratio / (PI * self.x * self.y))
     }
 
-    /// What [`Ggx::sample`] and a mirror make of a pair of directions, both above the surface.
+    /// Reflection of `wo` into `wi`, both above the surface.
     #[inline]
-    pub fn mirror(self, wo: Vec3, wi: Vec3) -> Facing {
+    pub fn eval_reflection(self, wo: Vec3, wi: Vec3) -> MicrofacetReflection {
         let m = wo + wi;
-        let (so, si) = (self.stretch(wo), self.stretch(wi));
-        Self::facing(wo.z, wi.z, so, si, 0.5 * m.length(), self.density(m))
+        let (so, si) = (self.stretched_length(wo), self.stretched_length(wi));
+        Self::reflection_terms(wo.z, wi.z, so, si, 0.5 * m.length(), self.normal_density(m))
     }
 
-    /// A direction into which `wo` is mirrored, above the surface; `None` where it would go below.
+    /// Reflects `wo` at a sampled visible normal; `None` where the direction would be below the
+    /// surface.
     #[inline]
-    pub fn sample_mirror(self, wo: Vec3, u: Vec2) -> Option<(Vec3, Facing)> {
-        let so = self.stretch(wo);
-        let (m, density) = self.sample(wo, so, u);
+    pub fn sample_reflection(self, wo: Vec3, u: Vec2) -> Option<(Vec3, MicrofacetReflection)> {
+        let so = self.stretched_length(wo);
+        let (m, density) = self.sample_visible_normal(wo, so, u);
         let cos = wo.dot(m);
         let wi = m * (2.0 * cos) - wo;
         if wi.z <= 0.0 || cos <= 0.0 {
             return None;
         }
-        Some((wi, Self::facing(wo.z, wi.z, so, self.stretch(wi), cos, density)))
+        Some((wi, Self::reflection_terms(wo.z, wi.z, so, self.stretched_length(wi), cos, density)))
     }
 
-    /// G2 / G1(o): the share of what a visible normal scatters that no other microfacet stops, from the cosines and
-    /// stretched lengths s(w) of both directions.
+    /// G2 / G1(o): fraction of the light from visible normals that no other microfacet blocks, from
+    /// the cosines and s(w) of both directions.
     #[inline]
-    pub fn unmasked(self, zo: f32, so: f32, zi: f32, si: f32) -> f32 {
+    pub fn g2_over_g1(self, zo: f32, so: f32, zi: f32, si: f32) -> f32 {
         zi * (zo + so) / (so * zi + si * zo).max(f32::MIN_POSITIVE)
     }
 
     #[inline]
-    fn facing(zo: f32, zi: f32, so: f32, si: f32, cos: f32, density: f32) -> Facing {
+    fn reflection_terms(zo: f32, zi: f32, so: f32, si: f32, cos: f32, density: f32) -> MicrofacetReflection {
         let cross = (so * zi + si * zo).max(f32::MIN_POSITIVE);
-        Facing { cos, value: 0.5 * density * zi / cross, pdf: 0.5 * density / (zo + so).max(f32::MIN_POSITIVE) }
+        MicrofacetReflection {
+            cos,
+            value: 0.5 * density * zi / cross,
+            pdf: 0.5 * density / (zo + so).max(f32::MIN_POSITIVE),
+        }
     }
 }
 
@@ -166,25 +172,27 @@ mod tests {
 
     #[test]
     fn normals_cover_the_surface_once() {
-        // ∫ D cos = 1, and the visible ones seen from anywhere cover what is seen: ∫ D G1 max(0, o·m) = zo.
+        // ∫ D cos = 1, and visible normals cover the projected area from any view: ∫ D G1 max(0,
+        // o·m) = zo.
         let mut random = Random::new(71);
         for (x, y) in ALPHAS {
             let ggx = Ggx::new(Vec2::new(x, y));
             let wo = Vec3::new(0.6, -0.3, random.range(0.1, 1.0)).normalize();
-            let g1 = 2.0 * wo.z / (wo.z + ggx.stretch(wo));
+            let g1 = 2.0 * wo.z / (wo.z + ggx.stretched_length(wo));
             let (mut flat, mut seen) = (0.0f64, 0.0f64);
             let (steps, turns) = (1500, 300);
             for i in 0..steps {
-                // Even in slopes over alpha, where the density is smooth.
+                // Uniform in t = s / (1 + s) of the slope s over alpha, where the density is
+                // smooth.
                 let t = (i as f32 + 0.5) / steps as f32;
                 let slope = t / (1.0 - t);
                 for j in 0..turns {
-                    let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / turns as f32);
+                    let (sin, cos) = portable::sin_cos_turns((j as f32 + 0.5) / turns as f32);
                     let m = Vec3::new(x * slope * cos, y * slope * sin, 1.0);
                     // dω = dx dy / |m|³ over slopes dx dy = αx αy s ds dφ.
                     let area =
                         x * y * slope * (std::f32::consts::TAU / turns as f32) / ((1.0 - t) * (1.0 - t) * steps as f32);
-                    let weight = ggx.density(m) * area / m.length().powi(3);
+                    let weight = ggx.normal_density(m) * area / m.length().powi(3);
                     flat += f64::from(weight / m.length());
                     seen += f64::from(weight * g1 * wo.dot(m.normalize()).max(0.0));
                 }
@@ -199,17 +207,22 @@ mod tests {
         for (i, (x, y)) in ALPHAS.into_iter().enumerate() {
             let ggx = Ggx::new(Vec2::new(x, y));
             let wo = Vec3::new(0.7, 0.3, [0.4, 0.05, 2.0][i % 3]).normalize();
-            let so = ggx.stretch(wo);
+            let so = ggx.stretched_length(wo);
             let pdf = |m: Vec3| {
-                if m.z > 0.0 { 2.0 * ggx.density(m) * wo.dot(m).max(0.0) / (wo.z + so) } else { 0.0 }
+                if m.z > 0.0 { 2.0 * ggx.normal_density(m) * wo.dot(m).max(0.0) / (wo.z + so) } else { 0.0 }
             };
-            // Turned over, since the test's cells are longest around its z.
+            // Rotate the normal away from z, around which the test's cells are longest.
             let turned = |w: Vec3| Vec3::new(w.z, w.x, w.y);
             let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
-            chi_squared_directions(|u| Some(turned(ggx.sample(wo, so, u).0)), |w| pdf(back(w)), 1_000_000, 1e-3 / 5.0)
-                .unwrap();
-            let (m, density) = ggx.sample(wo, so, Vec2::new(0.3, 0.8));
-            assert!(close(m.length(), 1.0, 1e-6) && close(density, ggx.density(m), 1e-4));
+            chi_squared_directions(
+                |u| Some(turned(ggx.sample_visible_normal(wo, so, u).0)),
+                |w| pdf(back(w)),
+                1_000_000,
+                1e-3 / 5.0,
+            )
+            .unwrap();
+            let (m, density) = ggx.sample_visible_normal(wo, so, Vec2::new(0.3, 0.8));
+            assert!(close(m.length(), 1.0, 1e-6) && close(density, ggx.normal_density(m), 1e-4));
         }
     }
 

@@ -1,17 +1,18 @@
-//! Phong's highlight (1975) as a lobe that gives no more light than it gets: f = ks (n + 2) / 2π (r · v)^n with r the
-//! light mirrored (Lafortune and Willems 1994). The same both ways; its whole share `specular` head on, less at a slant.
+//! Phong's highlight (1975) as a lobe that conserves energy: f = ks (n + 2) / 2π (r · v)^n with r
+//! the mirror direction of the light (Lafortune and Willems 1994). It is reciprocal; its albedo is
+//! `specular` at normal incidence and less at oblique angles.
 
 use super::{BsdfSample, Scatter};
 use crate::ScatteringLobe;
-use juggler_math::{Frame, Rgb, Vec2, Vec3, fun};
+use juggler_math::{Frame, Rgb, Vec2, Vec3, portable};
 use std::f32::consts::TAU;
 
-/// A classic highlight.
+/// Phong highlight lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhongHighlight {
-    /// Share of light that is given back, head on.
+    /// Albedo at normal incidence, 0 to 1.
     pub specular: Rgb,
-    /// n: the larger, the smaller the highlight; from 0.
+    /// Exponent n, from 0; larger values make the highlight smaller.
     pub exponent: f32,
 }
 
@@ -23,23 +24,23 @@ impl ScatteringLobe for PhongHighlight {
         if wo.z <= 0.0 || wi.z <= 0.0 || cos <= 0.0 {
             return (Rgb::BLACK, 0.0);
         }
-        let power = fun::powf(cos.min(1.0), self.exponent) / TAU;
+        let power = portable::powf(cos.min(1.0), self.exponent) / TAU;
         (self.specular * ((self.exponent + 2.0) * power * wi.z), (self.exponent + 1.0) * power)
     }
 
-    /// A direction around the mirrored one.
+    /// Samples a direction around the mirror direction.
     #[inline]
-    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
-        let cos = fun::powf(1.0 - u.x, 1.0 / (self.exponent + 1.0));
+    fn sample(&self, wo: Vec3, u: Vec2, _u_choice: f32) -> Option<BsdfSample> {
+        let cos = portable::powf(1.0 - u.x, 1.0 / (self.exponent + 1.0));
         let radius = (1.0 - cos * cos).max(0.0).sqrt();
-        let (sin, turn) = fun::sin_cos_turns(u.y);
+        let (sin, turn) = portable::sin_cos_turns(u.y);
         let frame = Frame::around(Vec3::new(-wo.x, -wo.y, wo.z));
         let wi = frame.to_world(Vec3::new(radius * turn, radius * sin, cos));
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 1e-20).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Glossy, ior: 1.0 })
     }
 
-    /// Head on everything; at a slant what is left of the lobe's cosine, by a rough fit.
+    /// Fit of the directional albedo, exact at normal incidence.
     fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;

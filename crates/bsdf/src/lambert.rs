@@ -1,14 +1,14 @@
-//! Light is spread evenly over all directions, whichever it comes from (Lambert 1760).
+//! Lambertian diffuse reflection: the same radiance in all directions (Lambert 1760).
 
 use super::{BsdfSample, Scatter};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
 
-/// A matt surface.
+/// Lambertian lobe: f = albedo / π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {
-    /// Share of light that is given back, 0 to 1.
+    /// Fraction of light that is reflected, 0 to 1.
     pub albedo: Rgb,
 }
 
@@ -23,9 +23,9 @@ impl ScatteringLobe for Lambert {
         (self.albedo * pdf, pdf)
     }
 
-    /// A direction by cosine.
+    /// Samples a cosine-weighted direction.
     #[inline]
-    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _u_choice: f32) -> Option<BsdfSample> {
         let wi = warp::cosine_hemisphere(u);
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return None;
@@ -34,7 +34,7 @@ impl ScatteringLobe for Lambert {
     }
 
     #[inline]
-    fn is_matt(&self) -> bool {
+    fn attenuates_as_diffuse(&self) -> bool {
         true
     }
 

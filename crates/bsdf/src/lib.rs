@@ -1,14 +1,16 @@
-//! What a surface does with light at one point: numbers, no names and no textures.
+//! Bidirectional scattering distribution functions (BSDFs) of surfaces at one point, without names
+//! or textures.
 //!
-//! A [`Bsdf`] (bidirectional scattering distribution function) is a sum of lobes in the local frame: z is the shading
-//! normal, `wo` goes towards the viewer, `wi` towards the light. Both are unit vectors and point away from the surface.
-//! Values are for radiance that arrives along `wi` and leaves along `wo`: what crosses a border of media is scaled by
-//! the square of the ratio of their indices of refraction, since radiance is squeezed into (or spread out of) a smaller
-//! cone there (Veach 1997, section 5.2; the mode `Radiance` of PBR 4th ed., section 9.5.2). Particles from
-//! lights would be scattered by the adjoint: the same values without that scale.
+//! A [`Bsdf`] is a sum of lobes in the local shading frame: z is the shading normal, `wo` points
+//! towards the viewer and `wi` towards the light. Both are unit vectors and point away from the
+//! surface. Values are for radiance that arrives along `wi` and leaves along `wo`: radiance that
+//! crosses an interface of two media is scaled by the squared ratio of their indices of refraction,
+//! because refraction changes its solid angle (Veach 1997, section 5.2; the mode `Radiance` of PBR
+//! 4th ed., section 9.5.2). Particles from lights are scattered by the adjoint, which lacks that
+//! scale.
 //!
-//! Opaque lobes are black seen from z <= 0: who makes the `Bsdf` of a two-sided material turns the frame. Dielectrics
-//! see z < 0 as their inside.
+//! Opaque lobes are black for z <= 0: the caller that makes the `Bsdf` of a two-sided material
+//! flips the frame. Dielectrics take z < 0 as their inside.
 
 use juggler_math::{Rgb, Vec2, Vec3};
 
@@ -18,7 +20,6 @@ pub mod curve;
 pub mod dielectric;
 pub mod diffuse_transmission;
 pub mod energy;
-pub mod film;
 pub mod fresnel;
 pub mod ggx;
 pub mod highlight;
@@ -32,6 +33,7 @@ pub mod principled;
 pub mod sheen;
 mod sum;
 pub mod thin;
+pub mod thin_film;
 pub mod whitted;
 
 #[cfg(test)]
@@ -40,15 +42,15 @@ mod contract;
 pub mod testing;
 
 pub use curve::Fresnel;
-pub use film::Film;
 pub use lobe::{Deltas, ScatteringLobe};
-pub use phong::{Cone, Highlight, Phong};
+pub use phong::{Highlight, PhongParameters, RayCone};
 pub use plastic::Plastic;
 pub use principled::Principled;
 pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};
+pub use thin_film::ThinFilm;
 
 juggler_math::closed_set! {
-    /// Every lobe, a few of which make a [`Bsdf`].
+    /// Any kind of lobe; a [`Bsdf`] is a sum of a few.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub enum Lobe: static ScatteringLobe {
         lambert::Lambert,
@@ -62,52 +64,55 @@ juggler_math::closed_set! {
         whitted::Whitted,
     }
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
-    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample>;
+    fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample>;
     fn albedo(&self, wo: Vec3) -> Rgb;
     fn deltas(&self, wo: Vec3) -> Deltas;
     fn is_specular(&self) -> bool;
-    fn has_choice(&self) -> bool;
-    fn is_matt(&self) -> bool;
+    fn uses_u_choice(&self) -> bool;
+    fn attenuates_as_diffuse(&self) -> bool;
     fn is_diffuse(&self) -> bool;
     fn mean_alpha(&self) -> f32;
-    fn is_stretched(&self) -> bool;
+    fn is_anisotropic(&self) -> bool;
 }
 
-/// How a direction was scattered.
+/// Kind of scattering that produced a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scatter {
-    /// Anywhere.
+    /// Over the whole hemisphere.
     Diffuse,
-    /// Around a direction.
+    /// Around one direction.
     Glossy,
-    /// Into one direction only: a delta, which no light of finite size is seen by but in that very direction.
+    /// Into one direction only: a Dirac delta, which light sampling never hits.
     Specular,
 }
 
-/// A direction that a [`Bsdf`] picked.
+/// Direction sampled from a [`Bsdf`], with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
-    /// Where light comes from: unit, local.
+    /// Direction towards the light: unit vector, shading frame.
     pub wi: Vec3,
-    /// f |cos θi| over the density; of a delta its weight over the probability with which it was picked.
+    /// f |cos θi| / pdf; for a delta, its weight over the probability of its selection.
     pub weight: Rgb,
-    /// Density per steradian of the whole `Bsdf`, all lobes together, at `wi`; of a delta the probability.
+    /// Density per steradian of the whole `Bsdf` at `wi`, over all lobes; for a delta, the
+    /// probability of its selection.
     pub pdf: f32,
-    /// How it was scattered.
+    /// Kind of scattering.
     pub scatter: Scatter,
-    /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 for what stays on its side.
+    /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless light
+    /// crosses an interface.
     pub ior: f32,
 }
 
 impl BsdfSample {
-    /// Whether the light comes from the other side than where `wo` goes.
+    /// Whether `wi` and `wo` are on opposite sides of the surface.
     #[inline]
     pub fn is_transmitted(&self, wo: Vec3) -> bool {
         self.wi.z * wo.z < 0.0
     }
 }
 
-/// Whether `u` in [0, 1) falls into the first `probability`, and where in its part it lies, in [0, 1) again.
+/// Selects the first of two events, of this `probability`, by `u` in [0, 1). Returns whether it
+/// occurs, and `u` remapped to [0, 1) for reuse.
 #[inline]
 pub fn choose(u: f32, probability: f32) -> (bool, f32) {
     let (first, rest) =

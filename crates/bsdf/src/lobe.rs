@@ -4,24 +4,25 @@ use super::{BsdfSample, Lobe, Scatter};
 use arrayvec::ArrayVec;
 use juggler_math::{Rgb, Vec2, Vec3};
 
-/// Deltas of one lobe.
+/// Dirac deltas of one lobe.
 pub type Deltas = ArrayVec<BsdfSample, 2>;
 
-/// Scattering of light at a point of a surface. Directions are unit vectors in the shading frame,
-/// z along the shading normal; `wo` points to the viewer, `wi` to where light comes from.
+/// Scattering of light at a point of a surface. Directions are unit vectors in the shading frame, z
+/// along the shading normal; `wo` points towards the viewer, `wi` towards the light.
 pub trait ScatteringLobe: Copy {
     /// f |cos θi| and the density of [`sample`](Self::sample) per steradian, both without deltas.
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
 
-    /// Samples a direction, by a point `u` in the unit square and, where
-    /// [`has_choice`](Self::has_choice), a third number `choice` in [0, 1).
-    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample>;
+    /// Samples a direction by a point `u` in the unit square and, where
+    /// [`uses_u_choice`](Self::uses_u_choice), a third number `u_choice` in [0, 1). `None` counts
+    /// as absorption.
+    fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample>;
 
-    /// Share of light from `wo` that the lobe scatters anywhere; see
-    /// [`Bsdf::albedo`](super::Bsdf::albedo). Never black where the lobe is not.
+    /// Directional albedo: fraction of light along `wo` that the lobe scatters into all directions;
+    /// see [`Bsdf::albedo`](super::Bsdf::albedo). Never black where the lobe is not.
     fn albedo(&self, wo: Vec3) -> Rgb;
 
-    /// Every delta with its full weight.
+    /// Every delta with its full weight, not divided by a probability.
     fn deltas(&self, _wo: Vec3) -> Deltas {
         Deltas::new()
     }
@@ -32,24 +33,24 @@ pub trait ScatteringLobe: Copy {
         false
     }
 
-    /// Whether single microfacets reflect some light and transmit some, between which a third
-    /// number chooses.
+    /// Whether [`sample`](Self::sample) uses `u_choice`, which selects reflection or transmission
+    /// at a microfacet.
     #[inline]
-    fn has_choice(&self) -> bool {
+    fn uses_u_choice(&self) -> bool {
         false
     }
 
-    /// Whether the lobe spreads light so evenly that what lies over it shows in `wi` as much as in
-    /// `wo`.
+    /// Whether the lobe is so diffuse that layers over it attenuate light along `wi` as much as
+    /// along `wo`.
     #[inline]
-    fn is_matt(&self) -> bool {
+    fn attenuates_as_diffuse(&self) -> bool {
         false
     }
 
     /// Whether paths count the lobe's scattering as diffuse.
     #[inline]
     fn is_diffuse(&self) -> bool {
-        self.is_matt()
+        self.attenuates_as_diffuse()
     }
 
     /// Mean of the microfacet distribution's roughness α along both tangents; 0 for lobes without
@@ -61,14 +62,14 @@ pub trait ScatteringLobe: Copy {
 
     /// Whether the albedo depends on the azimuth.
     #[inline]
-    fn is_stretched(&self) -> bool {
+    fn is_anisotropic(&self) -> bool {
         false
     }
 }
 
 impl Lobe {
-    /// Scattering that paths count for the lobe; multiple scattering of a rough mirror counts as
-    /// its rest.
+    /// Kind of scattering of the lobe as a whole; multiple scattering between microfacets counts as
+    /// the lobe does.
     pub fn scatter(&self) -> Scatter {
         if self.is_specular() {
             Scatter::Specular
@@ -79,30 +80,30 @@ impl Lobe {
         }
     }
 
-    /// Share of a glossy lobe under layers that spreads light like a matt one, 0 to 1: fitted by
-    /// its roughness, so that balls of white metal stay white within 0.01 on average under coat and
-    /// sheen of any roughness, and each direction within 0.04.
+    /// Fraction, 0 to 1, of a glossy lobe under layers that is attenuated like a diffuse lobe.
+    /// Fitted over roughness: spheres of white metal under coat and sheen of any roughness have an
+    /// albedo within 0.01 of 1 on average and within 0.04 for each direction.
     #[inline]
-    pub(crate) fn spread(&self) -> f32 {
+    pub(crate) fn diffuse_fraction(&self) -> f32 {
         (1.5 * self.mean_alpha().sqrt() - 0.1).clamp(0.0, 0.92)
     }
 }
 
-/// A delta of weight 1 picked for sure.
+/// Delta that is selected with probability 1.
 #[inline]
 pub(crate) fn delta(wi: Vec3, weight: Rgb, ior: f32) -> BsdfSample {
     BsdfSample { wi, weight, pdf: 1.0, scatter: Scatter::Specular, ior }
 }
 
 /// Deltas whose weight is not black.
-pub(crate) fn visible(deltas: [BsdfSample; 2]) -> Deltas {
+pub(crate) fn nonzero_deltas(deltas: [BsdfSample; 2]) -> Deltas {
     deltas.into_iter().filter(|delta| !delta.weight.is_black()).collect()
 }
 
-/// One of two deltas, by the energy that each carries.
+/// Selects one of two deltas in proportion to their energies; `None` if both are black.
 #[inline]
-pub(crate) fn one_of_two(first: BsdfSample, second: BsdfSample, u: f32) -> Option<BsdfSample> {
-    let energy = |delta: &BsdfSample| sum(delta.weight) * (delta.ior * delta.ior);
+pub(crate) fn sample_delta_pair(first: BsdfSample, second: BsdfSample, u: f32) -> Option<BsdfSample> {
+    let energy = |delta: &BsdfSample| channel_sum(delta.weight) * (delta.ior * delta.ior);
     let (a, b) = (energy(&first), energy(&second));
     if a + b <= 0.0 {
         return None;
@@ -113,15 +114,15 @@ pub(crate) fn one_of_two(first: BsdfSample, second: BsdfSample, u: f32) -> Optio
     Some(BsdfSample { weight: picked.weight / probability, pdf: probability, ..picked })
 }
 
-/// How often to take the first of two parts of light: by what each carries.
+/// Probability of the first of two events in proportion to their weights; 0.5 if both are black.
 #[inline]
-pub(crate) fn share_of_first(first: Rgb, second: Rgb) -> f32 {
-    let (a, b) = (sum(first), sum(second));
+pub(crate) fn selection_probability(first: Rgb, second: Rgb) -> f32 {
+    let (a, b) = (channel_sum(first), channel_sum(second));
     if a + b > 0.0 { a / (a + b) } else { 0.5 }
 }
 
-/// Of all channels.
+/// Sum of all channels.
 #[inline]
-pub(crate) fn sum(color: Rgb) -> f32 {
+pub(crate) fn channel_sum(color: Rgb) -> f32 {
     color.r + color.g + color.b
 }

@@ -1,16 +1,16 @@
 //! Named metals: an index of refraction per channel, derived from measured tables of n and k.
 //!
 //! The reflectance at normal incidence is the spectral reflectance of the named table, integrated
-//! with the CIE 1931 2-degree color matching functions under D65 to linear sRGB and clamped to 0..1.
-//! η and k of each channel meet that reflectance and follow the integrated curve up to 80 degrees
-//! within 0.005 (Fresnel's equations for conductors; Born and Wolf, section 14.2). Gold's red is
-//! clamped: its integral is 1.038, and its η and k reflect 0.996. `tests/metals/derive.py` derives all
-//! numbers from the tables as the refractiveindex.info database publishes them.
+//! with the CIE 1931 2-degree color matching functions under D65 to linear sRGB and clamped to
+//! 0..1. η and k of each channel meet that reflectance and follow the integrated curve up to 80
+//! degrees within 0.005 (Fresnel's equations for conductors; Born and Wolf, section 14.2). Gold's
+//! red is clamped: its integral is 1.038, and its η and k reflect 0.996. `tests/metals/derive.py`
+//! derives all numbers from the tables as the refractiveindex.info database publishes them.
 //!
-//! P. B. Johnson and R. W. Christy, Phys. Rev. B 6, 4370 (1972) and 9, 5056 (1974); A. D. Rakić, Appl.
-//! Opt. 34, 4755 (1995); A. D. Rakić, A. B. Djurišić, J. M. Elazar and M. L. Majewski, Appl. Opt. 37,
-//! 5271 (1998); M. R. Querry, Optical constants, CRDC-CR-85034 (1985); W. S. M. Werner, K. Glantschnig
-//! and C. Ambrosch-Draxl, J. Phys. Chem. Ref. Data 38, 1013 (2009).
+//! P. B. Johnson and R. W. Christy, Phys. Rev. B 6, 4370 (1972) and 9, 5056 (1974); A. D. Rakić,
+//! Appl. Opt. 34, 4755 (1995); A. D. Rakić, A. B. Djurišić, J. M. Elazar and M. L. Majewski, Appl.
+//! Opt. 37, 5271 (1998); M. R. Querry, Optical constants, CRDC-CR-85034 (1985); W. S. M. Werner, K.
+//! Glantschnig and C. Ambrosch-Draxl, J. Phys. Chem. Ref. Data 38, 1013 (2009).
 
 use super::Fresnel;
 use juggler_math::Rgb;
@@ -45,7 +45,8 @@ const fn metal(name: &'static str, eta: [f32; 3], k: [f32; 3]) -> Metal {
     Metal { name, eta: Rgb::new(eta[0], eta[1], eta[2]), k: Rgb::new(k[0], k[1], k[2]) }
 }
 
-/// All metals by name, each with the source of its table and the clamped reflectance at normal incidence.
+/// All metals by name, each with the source of its table and the clamped reflectance at normal
+/// incidence.
 pub const METALS: [Metal; 13] = [
     // Rakić 1995: 0.9073, 0.9159, 0.9223.
     metal("aluminum", [1.513, 0.9867, 0.6076], [7.681, 6.554, 5.358]),

@@ -1,26 +1,29 @@
-//! A matt surface with valleys: brighter than Lambert's where viewer and light stand on the same side (Oren and Nayar
-//! 1994), in Fujii's form (2012) with the light of further bounces put back, so that a white one is white: EON
-//! (Portsmouth, Kutz and Hill 2024, "EON: a practical energy-preserving rough diffuse BRDF").
+//! Rough diffuse reflection, brighter than Lambertian where viewer and light are on the same side
+//! (Oren and Nayar 1994), in Fujii's form (2012) with multiple scattering added, so that a white
+//! surface reflects all light: EON (Portsmouth, Kutz and Hill 2024, "EON: a practical
+//! energy-preserving rough diffuse BRDF").
 //!
-//! Directional albedos are the paper's polynomial fit, so nothing needs an angle. Directions are picked by cosine.
+//! Directional albedos are the paper's polynomial fit, which needs no angles. Directions are
+//! sampled by the cosine.
 
 use super::{BsdfSample, Scatter};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// A rough matt surface.
+/// Rough diffuse lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrenNayar {
-    /// Colour of one bounce, 0 to 1. More than what is given back, unless it is white: valleys take more light.
+    /// Albedo of a single bounce, 0 to 1. The lobe's albedo is lower unless this is white: further
+    /// bounces absorb more.
     albedo: Rgb,
     roughness: f32,
-    /// Colour of further bounces over π (1 - mean albedo of one).
+    /// Albedo of further bounces over π (1 - Ē), with Ē the mean albedo of a single white bounce.
     multiple: Rgb,
 }
 
 impl OrenNayar {
-    /// `roughness` from 0, which is Lambert's, to 1.
+    /// Lobe of this color; `roughness` is clamped to 0, which is Lambertian, to 1.
     pub fn new(albedo: Rgb, roughness: f32) -> Self {
         let roughness = roughness.clamp(0.0, 1.0);
         let average = Self::scale(roughness) * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * roughness);
@@ -29,13 +32,13 @@ impl OrenNayar {
         Self { albedo, roughness, multiple }
     }
 
-    /// A in Fujii's model.
+    /// Coefficient A of Fujii's model.
     #[inline]
     fn scale(roughness: f32) -> f32 {
         1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness)
     }
 
-    /// Directional albedo of one bounce off a white one.
+    /// Directional albedo of a single white bounce.
     #[inline]
     fn once(&self, cos: f32) -> f32 {
         let m = 1.0 - cos;
@@ -58,15 +61,15 @@ impl ScatteringLobe for OrenNayar {
         ((self.albedo * single + self.multiple * more.max(0.0)) * wi.z, wi.z * FRAC_1_PI)
     }
 
-    /// A direction by cosine.
+    /// Samples a cosine-weighted direction.
     #[inline]
-    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _u_choice: f32) -> Option<BsdfSample> {
         let wi = warp::cosine_hemisphere(u);
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Diffuse, ior: 1.0 })
     }
 
-    /// What comes out again.
+    /// Directional albedo of single and multiple scattering.
     fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
@@ -77,7 +80,7 @@ impl ScatteringLobe for OrenNayar {
     }
 
     #[inline]
-    fn is_matt(&self) -> bool {
+    fn attenuates_as_diffuse(&self) -> bool {
         true
     }
 }

@@ -1,72 +1,75 @@
-//! The classic model at one point, and what comes closest to it of what a path tracer can follow.
+//! Classic shading model of Phong and Whitted at one point, and lobes that approximate it in a path
+//! tracer.
 
 use super::{Bsdf, Conductor, Dielectric, Fresnel, Lambert, PhongHighlight, Whitted};
-use juggler_math::{Rgb, Vec2, fun};
+use juggler_math::{Rgb, Vec2, portable};
 
-/// How a highlight is weighted.
+/// Angular falloff of the highlight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Highlight {
-    /// `(r · v)^n`, as Phong wrote it (1975).
+    /// `(r · v)^n` (Phong 1975), with `r` the mirror direction of the light, `v` the direction to
+    /// the viewer and `n` the `shininess`.
     #[default]
     Phong,
-    /// `(r · v)^n (n · l)`: fades towards the terminator, as the Juggler's article does.
+    /// `(r · v)^n (n · l)`: also scaled by the cosine of the incident light, so the highlight fades
+    /// towards the terminator, as in the article about the Juggler.
     PhongCosine,
 }
 
-/// A bundle of rays around a direction, for glossy mirrors and blurry glass.
+/// Cone of rays around a direction, for glossy reflection and blurry transmission.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone {
-    /// Half of the opening angle; 0 for a single sharp ray.
+pub struct RayCone {
+    /// Half of the opening angle, in radians; 0 for a single sharp ray.
     pub half_angle_radians: f32,
     /// Rays per sample, at least 1; they share the weight.
     pub rays: u32,
 }
 
-impl Cone {
-    /// One ray, exactly along the direction.
+impl RayCone {
+    /// One ray exactly along the direction.
     pub const SHARP: Self = Self { half_angle_radians: 0.0, rays: 1 };
 }
 
-/// The classic model at one point (Phong 1975, Whitted 1980): ambient, diffuse and specular light, a
-/// mirror and a transparent share, each filtered by a colour.
+/// Classic shading at one point (Phong 1975, Whitted 1980): ambient, diffuse and specular
+/// reflection of lights, a reflected and a transmitted ray, each filtered by a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Phong {
-    /// Light given off.
+pub struct PhongParameters {
+    /// Emitted radiance.
     pub emission: Rgb,
-    /// Share of the ambient light.
+    /// Factor on the ambient light.
     pub ambient: Rgb,
-    /// Share of `ambient` that nearby geometry takes away, 0..=1.
+    /// Fraction of the ambient light that nearby geometry occludes, 0 to 1.
     pub occlusion: f32,
-    /// Weight of `n · l`; a factor 1/π, where wanted, is already in it.
+    /// Weight of `n · l`; includes the factor 1/π, if any.
     pub diffuse: Rgb,
-    /// The albedo over `diffuse`: 1, or π where `diffuse` carries a factor 1/π.
+    /// Albedo over `diffuse`: 1, or π where `diffuse` includes a factor 1/π.
     pub albedo_scale: f32,
     /// Weight of the highlight.
     pub specular: Rgb,
     /// Exponent of the highlight.
     pub shininess: f32,
-    /// How the highlight is weighted.
+    /// Angular falloff of the highlight.
     pub highlight: Highlight,
-    /// Lit by `|n · l|` from either side, whoever looks (paper-thin surfaces); otherwise only from the
-    /// side that is looked at.
+    /// Whether lights on either side count, by `|n · l|` (paper-thin surfaces); otherwise only
+    /// lights on the viewer's side do.
     pub both_sides: bool,
-    /// Filter of the mirrored ray; black for none.
+    /// Filter of the reflected ray; black for none.
     pub mirror: Rgb,
-    /// Spread of the mirrored ray.
-    pub glossy: Cone,
-    /// Filter of the ray that goes through; black for none. Also what a shadow ray keeps.
+    /// Cone of the reflected ray.
+    pub glossy: RayCone,
+    /// Filter of the transmitted ray and of shadow rays; black for none.
     pub transparency: Rgb,
-    /// Spread of the ray that goes through.
-    pub blurry: Cone,
-    /// Index of refraction inside over outside; 1 goes straight on.
+    /// Cone of the transmitted ray.
+    pub blurry: RayCone,
+    /// Index of refraction inside over outside; 1 transmits in a straight line.
     pub ior: f32,
-    /// Shares light between mirror and transparency by Fresnel's equations.
+    /// Divides light between reflection and transmission by Fresnel's equations.
     pub fresnel: bool,
 }
 
-impl Phong {
-    /// Takes all light and gives none back.
+impl PhongParameters {
+    /// Absorbs all light.
     pub const BLACK: Self = Self {
         emission: Rgb::BLACK,
         ambient: Rgb::BLACK,
@@ -78,31 +81,32 @@ impl Phong {
         highlight: Highlight::Phong,
         both_sides: false,
         mirror: Rgb::BLACK,
-        glossy: Cone::SHARP,
+        glossy: RayCone::SHARP,
         transparency: Rgb::BLACK,
-        blurry: Cone::SHARP,
+        blurry: RayCone::SHARP,
         ior: 1.0,
         fresnel: false,
     };
 
-    /// Factor on what the scene's lights bring along paths: as much as they bring in classic pictures, where one of
-    /// radiance 1 makes a white surface white; 1 where `diffuse` has a factor 1/π.
-    pub fn lamp_scale(&self) -> f32 {
+    /// Factor on the scene's lights in a path tracer: π, or 1 where `diffuse` includes a factor
+    /// 1/π. It matches the classic model, where a light of radiance 1 makes a white surface white.
+    pub fn light_scale(&self) -> f32 {
         std::f32::consts::PI / self.albedo_scale
     }
 
-    /// Adds the lobes of the same surface for light that is followed path by path: `diffuse` (times `albedo_scale`) is Lambert's albedo,
-    /// the highlight a lobe of the same exponent that gives back `specular` head on, mirror and transparency are deltas.
-    /// A glossy mirror is a rough one of about the same spread, glossy or blurry glass with `fresnel` rough glass; blurry
-    /// windows without are sharp. z is the side of the viewer, who is
-    /// `outside` where that is the side of the true normal.
+    /// Adds lobes that approximate the model in a path tracer; z is the viewer's side, which is
+    /// `outside` if it is the side of the geometric normal. `diffuse` times `albedo_scale` is the
+    /// albedo of a Lambertian lobe, `specular` the albedo at normal incidence of a highlight of the
+    /// same exponent; reflection and transmission are deltas. Glossy reflection becomes a rough
+    /// conductor of about the same spread, glossy or blurry glass with `fresnel` a rough
+    /// dielectric; blurry transmission without `fresnel` is sharp.
     ///
-    /// The classic model may give back more light than there was; then the whole is dimmed so that no channel's albedo
-    /// is above 1.
+    /// The classic model may reflect more light than arrives; then all lobes are scaled so that no
+    /// channel's albedo exceeds 1.
     pub fn add_lobes(&self, outside: bool, bsdf: &mut Bsdf) {
         let albedo = self.diffuse * self.albedo_scale;
         let rays = self.mirror + self.transparency;
-        let rays = if self.fresnel { larger(self.mirror, self.transparency) } else { rays };
+        let rays = if self.fresnel { channel_max(self.mirror, self.transparency) } else { rays };
         let weight = 1.0 / (albedo + self.specular + rays).max_channel().max(1.0);
         let spread = self.glossy.half_angle_radians.max(self.blurry.half_angle_radians);
         let mut whitted = Whitted {
@@ -118,8 +122,9 @@ impl Phong {
             let exponent = self.shininess.clamp(0.0, 1e5);
             bsdf.push_scaled(PhongHighlight { specular: self.specular, exponent }, weight);
         }
-        // Normals turn by half of what mirrored rays do; the mean turn of an even cone is 2/3 of its half angle.
-        let alpha = |half_angle: f32| Vec2::splat(fun::tan(half_angle.min(1.5) / 3.0));
+        // A normal tilts by half the angle of a reflected ray; the mean angle of a uniform cone is
+        // 2/3 of its half angle.
+        let alpha = |half_angle: f32| Vec2::splat(portable::tan(half_angle.min(1.5) / 3.0));
         if spread > 0.0 && self.fresnel {
             let glass = Dielectric::new(whitted.ior, alpha(spread)).tinted(self.mirror, self.transparency);
             bsdf.push_scaled(glass, weight);
@@ -136,7 +141,7 @@ impl Phong {
     }
 }
 
-/// The larger of each channel.
-fn larger(a: Rgb, b: Rgb) -> Rgb {
+/// Maximum of each channel.
+fn channel_max(a: Rgb, b: Rgb) -> Rgb {
     Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))
 }

@@ -1,67 +1,74 @@
-//! The surface that glTF 2.0 describes: metal or not, by roughness (Burley 2012), with its extensions clearcoat, transmission,
-//! volume (its border), ior, specular, sheen, anisotropy, iridescence and diffuse_transmission.
+//! Material model of glTF 2.0: metallic-roughness (Burley 2012), with the extensions clearcoat,
+//! transmission, volume (its interface), ior, specular, sheen, anisotropy, iridescence and
+//! diffuse_transmission.
 //!
-//! From top to bottom: clearcoat over sheen over a patchwork of metal, glass and plastic by their shares. Where light comes from
-//! below, it meets the same patchwork: metal, glass, and plastic's body without its coat. Numbers mean
-//! what glTF says they do. Where its formulas are not the same both ways or lose light, these are used instead:
+//! From top to bottom: clearcoat, sheen, and a weighted sum of metal, glass and plastic. Light from
+//! below meets the same sum: metal, glass, and plastic's base without its coat. Parameters have the
+//! meaning that glTF gives them. Where its formulas are not reciprocal or lose light, these are
+//! used instead:
 //!
-//! - layers dim what is below as [`Bsdf`] says, not by the viewer's side alone, and what they keep from leaving glass goes
-//!   back into it;
-//! - rough surfaces get back what is scattered more than once, unless `single_scattering`;
-//! - glass uses Fresnel's exact equations, and thin-walled glass mirrors to and fro inside;
-//! - of glass, `specular` and `specular_color` dim what is mirrored; what they take away does not go through instead.
+//! - layers attenuate lower layers as [`Bsdf`] does, not by the viewer's side alone, and light that
+//!   they keep from leaving glass goes back into it;
+//! - rough surfaces include multiple scattering, unless `single_scattering`;
+//! - glass uses Fresnel's exact equations, and thin-walled glass includes reflections between its
+//!   two interfaces;
+//! - for glass, `specular` and `specular_color` reduce the reflection without increasing the
+//!   transmission.
 
-use super::film::Film;
-use super::fresnel::head_on;
+use super::fresnel::f0_from_ior;
+use super::thin_film::ThinFilm;
 use super::{Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Sheen, ThinDielectric};
 use juggler_math::{Rgb, Vec2};
 
-/// A surface by numbers; all shares and roughnesses from 0 to 1, as are channels of colours.
+/// Parameters of the model; all weights, roughnesses and color channels are from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principled {
-    /// Colour of metal head on, of plastic's body, and of light that goes through glass.
+    /// Reflectance of metal at normal incidence, albedo of plastic's base, and transmittance of
+    /// glass.
     pub base_color: Rgb,
-    /// Share of metal.
+    /// Weight of metal.
     pub metallic: f32,
     /// Square root of [`Ggx`](super::ggx::Ggx)'s alpha.
     pub roughness: f32,
-    /// Weight of what plastic mirrors.
+    /// Weight of plastic's specular reflection.
     pub specular: f32,
-    /// Colour of what plastic mirrors head on.
+    /// Color of plastic's specular reflection at normal incidence.
     pub specular_color: Rgb,
     /// Index of refraction of plastic, and of thin-walled glass, in air.
     pub ior: f32,
-    /// Share of glass in what is not metal.
+    /// Weight of glass in the nonmetallic part.
     pub transmission: f32,
-    /// Whether glass is a thin sheet, through which light goes straight on, and not the border of a body.
+    /// Whether glass is a thin sheet, which transmits in a straight line, instead of the interface
+    /// of a solid.
     pub thin_walled: bool,
-    /// How much rougher it is along x than along y.
+    /// Strength of anisotropy: 0 is isotropic, 1 raises alpha along x to 1.
     pub anisotropy: f32,
-    /// Share that is covered by clear varnish.
+    /// Weight of the clearcoat.
     pub clearcoat: f32,
-    /// Roughness of the varnish.
+    /// Roughness of the clearcoat.
     pub clearcoat_roughness: f32,
-    /// Index of refraction of the varnish; glTF has 1.5.
+    /// Index of refraction of the clearcoat; 1.5 in glTF.
     pub clearcoat_ior: f32,
-    /// Colour of fibres on top.
+    /// Color of the sheen; black for none.
     pub sheen_color: Rgb,
-    /// Roughness of fibres.
+    /// Roughness of the sheen.
     pub sheen_roughness: f32,
-    /// Share that is covered by a thin film.
+    /// Fraction of the surface that a thin film covers.
     pub iridescence: f32,
     /// Index of refraction of the film.
     pub iridescence_ior: f32,
-    /// Thickness of the film in nanometres.
+    /// Thickness of the film in nanometers.
     pub iridescence_thickness_nm: f32,
-    /// Share of the body's light that comes out on the other side.
+    /// Fraction of the base's diffuse light that is transmitted.
     pub diffuse_transmission: f32,
-    /// Colour of that light.
+    /// Color of transmitted diffuse light.
     pub diffuse_transmission_color: Rgb,
-    /// Whether light may come from below, be it through this point or another one.
+    /// Whether light may come from below, through this point of the surface or another.
     pub is_open: bool,
-    /// Whether some of it is refracted, be it through this point or another one.
+    /// Whether some light is refracted into the solid, through this point of the surface or
+    /// another.
     pub is_refracting: bool,
-    /// Leaves out what is scattered more than once among microfacets, as most other renderers do.
+    /// Leaves out multiple scattering between microfacets, as most other renderers do.
     pub single_scattering: bool,
 }
 
@@ -95,8 +102,8 @@ impl Default for Principled {
 }
 
 impl Principled {
-    /// Adds the lobes to `bsdf`. `relative_ior` is the index of refraction below the surface (-z) over that above, for glass that is
-    /// not thin-walled: the material's `ior` where air is above.
+    /// Adds the lobes to `bsdf`. `relative_ior` is the index of refraction below the surface (-z)
+    /// over that above, for glass that is not thin-walled: the material's `ior` where air is above.
     pub fn add_lobes(&self, relative_ior: f32, bsdf: &mut Bsdf) {
         if self.clearcoat > 0.0 {
             let fresnel = Fresnel::Dielectric { ior: self.clearcoat_ior, color: Rgb::WHITE };
@@ -105,7 +112,7 @@ impl Principled {
         }
         if !self.sheen_color.is_black() {
             let sheen = Sheen::new(self.sheen_color, self.sheen_roughness * self.sheen_roughness);
-            bsdf.push_dimmed_layer(sheen, self.covered());
+            bsdf.push_partial_layer(sheen, self.covered());
         }
         let (metal, rest) = (self.metallic, 1.0 - self.metallic);
         let (glass, plastic) = (rest * self.transmission, rest * (1.0 - self.transmission));
@@ -126,8 +133,9 @@ impl Principled {
         }
     }
 
-    /// How much of its albedo sheen takes from what lies below: it spreads light to where the clearcoat over it lets less
-    /// through, and what it so lacks is left to what is below. Fitted for a white furnace.
+    /// Fraction of the sheen's albedo that it takes from lower layers: sheen scatters light to
+    /// angles at which the clearcoat transmits less, and the missing energy is left to lower
+    /// layers. Fitted to a white furnace.
     fn covered(&self) -> f32 {
         let polished = 1.0 - self.clearcoat_roughness;
         1.0 - self.clearcoat * (0.015 + 0.045 * polished * polished)
@@ -139,44 +147,45 @@ impl Principled {
         Vec2::new(alpha + (1.0 - alpha) * self.anisotropy * self.anisotropy, alpha)
     }
 
-    /// Colour of what plastic mirrors head on, by KHR_materials_specular.
-    fn head_on(&self) -> Rgb {
-        (self.specular_color * head_on(self.ior)).map(|f0| f0.min(1.0)) * self.specular
+    /// Reflectance of plastic at normal incidence, by KHR_materials_specular.
+    fn dielectric_f0(&self) -> Rgb {
+        (self.specular_color * f0_from_ior(self.ior)).map(|f0| f0.min(1.0)) * self.specular
     }
 
     fn mirror(&self, fresnel: Fresnel, alpha: Vec2) -> Conductor {
         if self.single_scattering { Conductor::new(fresnel, alpha) } else { Conductor::compensated(fresnel, alpha) }
     }
 
-    fn film(&self, f0: Rgb) -> Option<(Film, f32)> {
-        let film = Film { f0, ior: self.iridescence_ior, thickness_nm: self.iridescence_thickness_nm };
-        (self.iridescence > 0.0 && self.iridescence_thickness_nm > 0.0).then_some((film, self.iridescence))
+    fn thin_film(&self, f0: Rgb) -> Option<(ThinFilm, f32)> {
+        let thin_film = ThinFilm { f0, ior: self.iridescence_ior, thickness_nm: self.iridescence_thickness_nm };
+        (self.iridescence > 0.0 && self.iridescence_thickness_nm > 0.0).then_some((thin_film, self.iridescence))
     }
 
     fn with_film(&self, fresnel: Fresnel, f0: Rgb) -> Fresnel {
-        self.film(f0).map_or(fresnel, |(film, amount)| Fresnel::Film { film, amount })
+        self.thin_film(f0).map_or(fresnel, |(thin_film, amount)| Fresnel::ThinFilm { thin_film, amount })
     }
 
     fn push_glass(&self, bsdf: &mut Bsdf, relative_ior: f32, weight: f32) {
         let reflection = self.specular_color.map(|c| c.min(1.0)) * self.specular;
-        let film = self.film(self.head_on());
+        let thin_film = self.thin_film(self.dielectric_f0());
         if self.thin_walled {
             let new = if self.single_scattering { ThinDielectric::new } else { ThinDielectric::compensated };
             let mut pane = new(self.ior, self.alpha()).tinted(reflection, self.base_color);
-            pane.film = film;
+            pane.thin_film = thin_film;
             bsdf.push_scaled(pane, weight);
         } else {
             let new = if self.single_scattering { Dielectric::new } else { Dielectric::compensated };
-            let mut border = new(relative_ior, self.alpha()).tinted(reflection, self.base_color);
-            border.film = film;
-            bsdf.push_scaled(border, weight);
+            let mut interface = new(relative_ior, self.alpha()).tinted(reflection, self.base_color);
+            interface.thin_film = thin_film;
+            bsdf.push_scaled(interface, weight);
         }
         bsdf.push_return(self.base_color, weight);
     }
 
-    /// Plastic, whose body light from below meets without the coat; `ior` is that of what refracts light, below over above.
+    /// Adds plastic, whose base light from below meets without the coat; `ior` is the index of
+    /// refraction below over above of a refracting surface, else 1.
     fn push_plastic(&self, bsdf: &mut Bsdf, weight: f32, is_open: bool, ior: f32) {
-        let f0 = self.head_on();
+        let f0 = self.dielectric_f0();
         if self.specular > 0.0 {
             let fresnel = self.with_film(Fresnel::Schlick { f0, f90: Rgb::splat(self.specular) }, f0);
             bsdf.push_coat(self.mirror(fresnel, self.alpha()), weight);
@@ -185,7 +194,7 @@ impl Principled {
             let reflectance = self.base_color * (1.0 - self.diffuse_transmission);
             let transmittance = self.diffuse_transmission_color * self.diffuse_transmission;
             bsdf.push_scaled(DiffuseTransmission { reflectance, transmittance, ior }, weight);
-            bsdf.push_matt_return(transmittance * (1.0 / (ior * ior)).min(1.0), weight);
+            bsdf.push_diffuse_return(transmittance * (1.0 / (ior * ior)).min(1.0), weight);
         } else {
             bsdf.push_scaled(Lambert { albedo: self.base_color }, weight);
             if is_open {
@@ -199,12 +208,12 @@ impl Principled {
 mod tests {
     use super::*;
     use juggler_math::testing::close;
-    use juggler_math::{Vec3, fun};
+    use juggler_math::{Vec3, portable};
 
     #[test]
     fn plain_plastic_is_the_sum_that_gltf_says() {
-        // KHR_materials_ior 1.5: f0 = 0.04. Head on, the matt part is base (1 - F) / π but for the layers' own coupling,
-        // and the highlight F D / 4.
+        // KHR_materials_ior 1.5: f0 = 0.04. At normal incidence, the diffuse part is base (1 - F) /
+        // π up to the coupling of the layers, and the highlight F D / 4.
         let red = Principled {
             base_color: Rgb::new(0.8, 0.1, 0.0),
             roughness: 0.6,
@@ -215,23 +224,24 @@ mod tests {
         let alpha = 0.36f32;
         let highlight = 0.04 / (4.0 * std::f32::consts::PI * alpha * alpha);
         assert!(close(value.b, highlight, 1e-4), "{value:?}");
-        let matt = (value.r - highlight) * std::f32::consts::PI / 0.8;
-        assert!((0.94..1.06).contains(&matt), "{matt}");
+        let diffuse = (value.r - highlight) * std::f32::consts::PI / 0.8;
+        assert!((0.94..1.06).contains(&diffuse), "{diffuse}");
     }
 
     #[test]
-    fn metal_is_its_colour_and_extensions_reach_their_lobes() {
+    fn metal_is_its_color_and_extensions_reach_their_lobes() {
         let gold =
             Principled { base_color: Rgb::new(1.0, 0.7, 0.3), metallic: 1.0, roughness: 0.0, ..Principled::default() };
         let deltas = Bsdf::with_lobes(|bsdf| gold.add_lobes(1.5, bsdf)).deltas(Vec3::Z);
         assert!(deltas.len() == 1 && close(deltas[0].weight.g, 0.7, 1e-6), "{deltas:?}");
         let brushed = Principled { roughness: 0.5, anisotropy: 0.6, ..gold };
         assert!(close(brushed.alpha().x, 0.25 + 0.75 * 0.36, 1e-6) && brushed.alpha().y == 0.25);
-        // Specular 0 is matt; transmission 1 lets through what it does not mirror, in its colour.
-        let matt = Principled { specular: 0.0, base_color: Rgb::splat(0.5), ..Principled::default() };
+        // Specular 0 is diffuse; transmission 1 transmits all light that is not reflected, filtered
+        // by the base color.
+        let diffuse = Principled { specular: 0.0, base_color: Rgb::splat(0.5), ..Principled::default() };
         let (wo, wi) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.8, 0.6));
         assert!(close(
-            Bsdf::with_lobes(|bsdf| matt.add_lobes(1.5, bsdf)).eval(wo, wi).r,
+            Bsdf::with_lobes(|bsdf| diffuse.add_lobes(1.5, bsdf)).eval(wo, wi).r,
             0.5 * 0.6 / std::f32::consts::PI,
             1e-6
         ));
@@ -243,8 +253,8 @@ mod tests {
         };
         let deltas = Bsdf::with_lobes(|bsdf| water.add_lobes(1.333, bsdf)).deltas(Vec3::Z);
         let through = deltas.iter().find(|d| d.is_transmitted(Vec3::Z)).unwrap();
-        assert!(close(through.weight.g * fun::powi(1.333, 2), 0.8 * (1.0 - 0.020_37), 1e-4), "{deltas:?}");
-        let coated = Principled { clearcoat: 1.0, ..matt };
+        assert!(close(through.weight.g * portable::powi(1.333, 2), 0.8 * (1.0 - 0.020_37), 1e-4), "{deltas:?}");
+        let coated = Principled { clearcoat: 1.0, ..diffuse };
         assert!(
             Bsdf::with_lobes(|bsdf| coated.add_lobes(1.5, bsdf)).has_specular()
                 && !Bsdf::with_lobes(|bsdf| coated.add_lobes(1.5, bsdf)).is_specular()

@@ -1,29 +1,31 @@
-//! The shine of cloth along its edge: fibres stand upright, their normals gather around the horizon (Estevez and Kulla
-//! 2017, "Production friendly microfacet sheen BRDF"; KHR_materials_sheen of glTF), with the paper's fit of masking.
+//! Sheen of cloth at grazing angles: fibers stand upright, so their normals are near the horizon
+//! (Estevez and Kulla 2017, "Production friendly microfacet sheen BRDF"; KHR_materials_sheen of
+//! glTF), with the paper's fit of masking.
 //!
-//! D(m) = (2 + 1/α) sin^(1/α) θ / 2π. Directions are picked evenly over the hemisphere. What lies below is dimmed by
-//! [`Sheen::albedo`], which a table holds.
+//! D(m) = (2 + 1/α) sin^(1/α) θ / 2π. Directions are sampled uniformly over the hemisphere.
+//! [`Sheen::albedo`], which a table holds, attenuates the layers below.
 
 use super::{BsdfSample, Scatter, energy};
 use crate::ScatteringLobe;
-use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
+use juggler_math::{Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::TAU;
 
-/// A fuzz of fibres.
+/// Sheen lobe of upright fibers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheen {
-    /// Colour of the fibres, 0 to 1.
+    /// Color of the fibers, 0 to 1.
     pub color: Rgb,
     alpha: f32,
-    /// Of the fit of masking for this alpha.
+    /// Coefficients of the masking fit for this alpha.
     fit: [f32; 5],
 }
 
 impl Sheen {
-    /// The smallest alpha: below, the fit gives more light than there is.
+    /// Smallest alpha; below, the fit does not conserve energy.
     pub const LEAST: f32 = 0.05;
 
-    /// `alpha`, the square of a material's roughness, is taken into [`Sheen::LEAST`]`..=1`.
+    /// Lobe of this color; `alpha`, the square of a material's roughness, is clamped to
+    /// [`Sheen::LEAST`]`..=1`.
     pub fn new(color: Rgb, alpha: f32) -> Self {
         const SOFT: [f32; 5] = [21.547_3, 3.829_87, 0.198_23, -1.977_6, -4.320_54];
         const SHARP: [f32; 5] = [25.324_5, 3.324_35, 0.168_01, -1.273_93, -4.859_67];
@@ -34,17 +36,17 @@ impl Sheen {
         Self { color, alpha, fit }
     }
 
-    /// The logarithm of Λ in the softer half.
+    /// ln Λ at a cosine `x` up to 0.5.
     fn curve(&self, x: f32) -> f32 {
         let [a, b, c, d, e] = self.fit;
-        a / (1.0 + b * fun::powf(x, c)) + d * x + e
+        a / (1.0 + b * portable::powf(x, c)) + d * x + e
     }
 
     /// Smith's Λ.
     fn lambda(&self, cos: f32) -> f32 {
-        // Rounding makes cosines a little larger than 1, where the curve is no number.
+        // Rounding can make cosines slightly larger than 1, where the fit is NaN.
         let power = if cos < 0.5 { self.curve(cos) } else { 2.0 * self.curve(0.5) - self.curve((1.0 - cos).max(0.0)) };
-        fun::exp(power)
+        portable::exp(power)
     }
 }
 
@@ -56,23 +58,23 @@ impl ScatteringLobe for Sheen {
         }
         let m = (wo + wi).normalize_or_zero();
         let inverse = 1.0 / self.alpha;
-        // sin θ by the square root of its square: to half the power.
+        // sin^(1/α) θ = (sin² θ)^(1 / 2α).
         let sin2 = (m.x * m.x + m.y * m.y).min(1.0);
-        let density = (2.0 + inverse) * fun::powf(sin2, 0.5 * inverse) / TAU;
+        let density = (2.0 + inverse) * portable::powf(sin2, 0.5 * inverse) / TAU;
         let masked = 1.0 + self.lambda(wo.z) + self.lambda(wi.z);
         (self.color * (density / (4.0 * wo.z * masked).max(f32::MIN_POSITIVE)), 1.0 / TAU)
     }
 
-    /// A direction, all equally likely.
-    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
+    /// Samples the hemisphere uniformly.
+    fn sample(&self, wo: Vec3, u: Vec2, _u_choice: f32) -> Option<BsdfSample> {
         let wi = warp::uniform_hemisphere(u);
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Diffuse, ior: 1.0 })
     }
 
-    /// What comes out again.
+    /// Directional albedo, from a table.
     fn albedo(&self, wo: Vec3) -> Rgb {
-        if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen(wo.z, self.alpha) }
+        if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen_albedo(wo.z, self.alpha) }
     }
 
     #[inline]

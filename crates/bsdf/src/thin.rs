@@ -1,111 +1,120 @@
-//! A sheet of a clear medium too thin to be modelled by two borders: a window pane, a soap bubble. Light is mirrored
-//! to and fro within it, and leaves where it came in: with F Fresnel's share at one border, R = F + F (1 - F)² / (1 - F²)
-//! = 2F / (1 + F) is mirrored in all and 1 - R goes straight on (PBR 4th ed., section 9.5.1).
+//! Dielectric sheet too thin to model its two interfaces: a window pane, a soap bubble. Light is
+//! reflected between both interfaces any number of times. With F the Fresnel reflectance of one
+//! interface, the sheet reflects R = F + F (1 - F)² / (1 - F²) = 2F / (1 + F) and transmits 1 - R
+//! in a straight line (PBR 4th ed., section 9.5.1).
 //!
-//! A rough one spreads both alike, as the extension KHR_materials_transmission of glTF has it: what goes through is
-//! what is mirrored, turned over at the surface. Light that is scattered more than once is given back, and samples of a
-//! clear pane carry a weight of 1, as those of a [`Conductor`](super::Conductor) do.
+//! A rough sheet transmits the lobe that it reflects, flipped to the other side, as the extension
+//! KHR_materials_transmission of glTF does. [`ThinDielectric::compensated`] adds multiple
+//! scattering between microfacets; samples of a clear pane then have a weight of 1, as those of a
+//! [`Conductor`](super::Conductor) do.
 
-use super::energy::Scramble;
-use super::ggx::{Facing, Ggx};
-use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum, visible};
-use super::{BsdfSample, Film, Scatter, energy, fresnel};
+use super::energy::SampleRng;
+use super::ggx::{Ggx, MicrofacetReflection};
+use super::lobe::{Deltas, channel_sum, delta, nonzero_deltas, sample_delta_pair, selection_probability};
+use super::{BsdfSample, Scatter, ThinFilm, energy, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// A thin sheet, the same from either side.
+/// Thin dielectric sheet, the same from either side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinDielectric {
     ggx: Ggx,
     ior: f32,
-    /// Factor on mirrored light, 0 to 1.
+    /// Factor on reflected light, 0 to 1.
     pub reflection: Rgb,
-    /// Factor on light that goes through, 0 to 1.
+    /// Factor on transmitted light, 0 to 1.
     pub transmission: Rgb,
-    /// A thin film on it, and how much of it that covers.
-    pub film: Option<(Film, f32)>,
+    /// Thin film on the sheet, and the fraction of the sheet that it covers, 0 to 1.
+    pub thin_film: Option<(ThinFilm, f32)>,
     compensated: bool,
 }
 
 impl ThinDielectric {
-    /// With single scattering only. `ior` is the index of the sheet over that around it, `alpha` as in [`Ggx`].
+    /// Sheet with single scattering only. `ior` is the index of refraction of the sheet over that
+    /// around it, `alpha` as in [`Ggx`].
     #[inline]
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
         let (reflection, transmission) = (Rgb::WHITE, Rgb::WHITE);
-        Self { ggx: Ggx::new(alpha), ior, reflection, transmission, film: None, compensated: false }
+        Self { ggx: Ggx::new(alpha), ior, reflection, transmission, thin_film: None, compensated: false }
     }
 
-    /// With all scattering among its microfacets.
+    /// Sheet with multiple scattering between microfacets.
     #[inline]
     pub fn compensated(ior: f32, alpha: Vec2) -> Self {
         let single = Self::new(ior, alpha);
-        Self { compensated: energy::mirror_lost_average(single.ggx) > 0.0, ..single }
+        Self { compensated: energy::mean_mirror_loss(single.ggx) > 0.0, ..single }
     }
 
-    /// The same in other colours.
+    /// The same sheet with other factors on reflected and transmitted light.
     #[inline]
     pub fn tinted(self, reflection: Rgb, transmission: Rgb) -> Self {
         Self { reflection, transmission, ..self }
     }
 
-    /// Whether it only mirrors and lets through, without spread.
+    /// Whether the sheet has only specular reflection and transmission.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.ggx.is_smooth()
     }
 
-    /// R at an angle of cosine `cos`.
+    /// Reflectance R at an angle of cosine `cos`.
     #[inline]
-    fn share(&self, cos: f32) -> Rgb {
-        let once = if self.ior == 1.0 { 0.0 } else { fresnel::dielectric(cos, self.ior) };
-        let once = self.film.map_or(Rgb::splat(once), |(film, amount)| Rgb::splat(once).lerp(film.at(cos), amount));
+    fn reflectance(&self, cos: f32) -> Rgb {
+        let once = if self.ior == 1.0 { 0.0 } else { fresnel::dielectric_reflectance(cos, self.ior) };
+        let once = self
+            .thin_film
+            .map_or(Rgb::splat(once), |(thin_film, amount)| Rgb::splat(once).lerp(thin_film.reflectance(cos), amount));
         once.map(|once| 2.0 * once / (1.0 + once))
     }
 
-    /// How often a microfacet that mirrors this share is to mirror.
+    /// Probability that a microfacet of this reflectance reflects.
     #[inline]
-    fn chance(&self, share: Rgb) -> f32 {
-        share_of_first(self.reflection * share, self.transmission * (Rgb::WHITE - share))
+    fn reflection_probability(&self, reflectance: Rgb) -> f32 {
+        selection_probability(self.reflection * reflectance, self.transmission * (Rgb::WHITE - reflectance))
     }
 
-    /// What single scattering loses of light along `w`.
-    fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_lost(self.ggx, w)
+    /// Fraction of light along `w` that single scattering loses.
+    fn energy_loss(&self, w: Vec3) -> f32 {
+        energy::mirror_loss(self.ggx, w)
     }
 
-    /// How much of the light that is scattered more than once is mirrored.
-    fn average(&self) -> f32 {
-        let once = fresnel::dielectric_average(self.ior);
+    /// Fraction of multiply scattered light that is reflected.
+    fn multiple_reflectance(&self) -> f32 {
+        let once = fresnel::mean_dielectric_reflectance(self.ior);
         2.0 * once / (1.0 + once)
     }
 
-    /// A direction above and how it is scattered, turned over by `choice` if light goes through.
-    fn pick(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
-        let mut random = Scramble::new(u, 0.0);
-        // Take the direction that a visible normal reflects, if compensated with probability G2 / G1.
-        let mut is_taken = |facing: &Facing| !self.compensated || random.unit() * facing.pdf < facing.value;
-        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| is_taken(facing));
+    /// Samples a direction and its kind of scattering for `wo` above; `u_choice` selects
+    /// transmission, which flips the direction.
+    fn sample_direction(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<(Vec3, Scatter)> {
+        let mut random = SampleRng::new(u, 0.0);
+        // Reflect at a visible normal; with compensation, accept the direction with probability G2
+        // / G1.
+        let mut is_accepted =
+            |microfacet: &MicrofacetReflection| !self.compensated || random.unit() * microfacet.pdf < microfacet.value;
+        let once = self.ggx.sample_reflection(wo, u).filter(|(_, microfacet)| is_accepted(microfacet));
         let (wi, probability, scatter) = match once {
-            Some((wi, facing)) => (wi, self.chance(self.share(facing.cos)), Scatter::Glossy),
+            Some((wi, microfacet)) => {
+                (wi, self.reflection_probability(self.reflectance(microfacet.cos)), Scatter::Glossy)
+            }
             None if self.compensated => {
-                (energy::sample_mirror_lost(self.ggx, &mut random), self.average(), Scatter::Diffuse)
+                (energy::sample_mirror_loss(self.ggx, &mut random), self.multiple_reflectance(), Scatter::Diffuse)
             }
             None => return None,
         };
-        Some((if choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
+        Some((if u_choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
     }
 
-    fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
-        let share = self.share(wo.z.abs());
-        let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
-        [mirrored, delta(-wo, self.transmission * (Rgb::WHITE - share), 1.0)]
+    fn delta_pair(&self, wo: Vec3) -> [BsdfSample; 2] {
+        let reflectance = self.reflectance(wo.z.abs());
+        let reflected = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * reflectance, 1.0);
+        [reflected, delta(-wo, self.transmission * (Rgb::WHITE - reflectance), 1.0)]
     }
 }
 
 impl ScatteringLobe for ThinDielectric {
-    /// One alpha of its microfacets that stands for both.
     #[inline]
     fn mean_alpha(&self) -> f32 {
         self.ggx.mean_alpha()
@@ -117,66 +126,71 @@ impl ScatteringLobe for ThinDielectric {
         if wo.z == 0.0 || wi.z == 0.0 || self.is_smooth() {
             return (Rgb::BLACK, 0.0);
         }
-        let is_mirrored = wo.z * wi.z > 0.0;
+        let is_reflected = wo.z * wi.z > 0.0;
         let (o, i) = (Vec3::new(wo.x, wo.y, wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
-        let facing = self.ggx.mirror(o, i);
-        let share = self.share(facing.cos);
-        let probability = self.chance(share);
-        let (color, average) =
-            if is_mirrored { (self.reflection, self.average()) } else { (self.transmission, 1.0 - self.average()) };
-        let (share, probability) =
-            if is_mirrored { (share, probability) } else { (Rgb::WHITE - share, 1.0 - probability) };
+        let microfacet = self.ggx.eval_reflection(o, i);
+        let reflectance = self.reflectance(microfacet.cos);
+        let probability = self.reflection_probability(reflectance);
+        let (color, multiple_reflectance) = if is_reflected {
+            (self.reflection, self.multiple_reflectance())
+        } else {
+            (self.transmission, 1.0 - self.multiple_reflectance())
+        };
+        let (fraction, probability) =
+            if is_reflected { (reflectance, probability) } else { (Rgb::WHITE - reflectance, 1.0 - probability) };
         if !self.compensated {
-            return (color * share * facing.value, probability * facing.pdf);
+            return (color * fraction * microfacet.value, probability * microfacet.pdf);
         }
-        let more = average * FRAC_1_PI * self.lost(o) * self.lost(i) * i.z / energy::mirror_lost_average(self.ggx);
-        (color * (share * facing.value + Rgb::splat(more)), probability * facing.value + more)
+        let more = multiple_reflectance * FRAC_1_PI * self.energy_loss(o) * self.energy_loss(i) * i.z
+            / energy::mean_mirror_loss(self.ggx);
+        (color * (fraction * microfacet.value + Rgb::splat(more)), probability * microfacet.value + more)
     }
 
-    /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether light is mirrored by it or goes through, as often
-    /// as R says there.
+    /// Samples a direction: `u` selects a microfacet, and `u_choice`, in [0, 1), reflection with
+    /// the microfacet's R or else transmission.
     #[inline]
-    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
         if self.is_smooth() {
-            let [mirrored, through] = self.both(wo);
-            return one_of_two(mirrored, through, u.x);
+            let [reflected, transmitted] = self.delta_pair(wo);
+            return sample_delta_pair(reflected, transmitted, u.x);
         }
         let up = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let (wi, scatter) = self.pick(up, u, choice)?;
+        let (wi, scatter) = self.sample_direction(up, u, u_choice)?;
         let wi = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
-    /// What is mirrored and what goes through, each in its colour.
+    /// Reflected and transmitted light with their factors.
     fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
         let (cos, alpha) = (wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
-            let share = self.share(cos);
-            return self.reflection * share + self.transmission * (Rgb::WHITE - share);
+            let reflectance = self.reflectance(cos);
+            return self.reflection * reflectance + self.transmission * (Rgb::WHITE - reflectance);
         }
-        let lost = self.lost(wo);
-        let share = energy::mirrored_share(cos, alpha, |cos| sum(self.share(cos)) / 3.0);
-        let once = (self.reflection * share + self.transmission * (1.0 - share)) * (1.0 - lost);
+        let loss = self.energy_loss(wo);
+        let reflectance =
+            energy::mean_microfacet_reflectance(cos, alpha, |cos| channel_sum(self.reflectance(cos)) / 3.0);
+        let once = (self.reflection * reflectance + self.transmission * (1.0 - reflectance)) * (1.0 - loss);
         if !self.compensated {
             return once;
         }
-        let average = self.average();
-        once + (self.reflection * average + self.transmission * (1.0 - average)) * lost
+        let multiple_reflectance = self.multiple_reflectance();
+        once + (self.reflection * multiple_reflectance + self.transmission * (1.0 - multiple_reflectance)) * loss
     }
 
-    /// Mirrored and straight on, if it is smooth; not those of no weight.
+    /// Specular reflection and transmission, if smooth; deltas of zero weight are left out.
     fn deltas(&self, wo: Vec3) -> Deltas {
         if !self.is_smooth() || wo.z == 0.0 {
             return Deltas::new();
         }
-        visible(self.both(wo))
+        nonzero_deltas(self.delta_pair(wo))
     }
 
     #[inline]
@@ -185,7 +199,7 @@ impl ScatteringLobe for ThinDielectric {
     }
 
     #[inline]
-    fn has_choice(&self) -> bool {
+    fn uses_u_choice(&self) -> bool {
         !self.is_smooth()
     }
 }

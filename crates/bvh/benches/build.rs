@@ -1,5 +1,6 @@
-//! Time and quality of builds: microseconds a triangle on one and two threads, expected cost, bytes a triangle.
-//! `cargo bench -p juggler-bvh --bench build`; a word after `--` picks the scenes whose names hold it.
+//! Time and quality of builds: microseconds per triangle on one and two threads, SAH cost, bytes
+//! per triangle. `cargo bench -p juggler-bvh --bench build`; a word after `--` selects the scenes
+//! whose names contain it.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 use juggler_bvh::{Quality, TriangleBvh};
@@ -23,23 +24,23 @@ fn point(i: u32, k: u32) -> Vec3 {
     vec3(unit(i, k), unit(i, k + 1), unit(i, k + 2)) * 2.0 - Vec3::ONE
 }
 
-/// Triangles whose corners are `corners(i)`.
+/// Unconnected triangles with the vertices `corners(i)`.
 fn loose(name: &'static str, count: u32, corners: impl Fn(u32) -> [Vec3; 3]) -> Scene {
     let positions = (0..count).flat_map(corners).collect();
     Scene { name, positions, triangles: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
 }
 
-/// Small triangles anywhere in a cube.
+/// Small triangles at random positions in a cube.
 fn soup() -> Scene {
     loose("soup", 500_000, |i| [0, 3, 6].map(|k| point(i, 9) + point(i, k) * 0.01))
 }
 
-/// Long thin triangles in every direction.
+/// Long thin triangles in random directions.
 fn needles() -> Scene {
     loose("needles", 500_000, |i| [0.0, 0.001, 1.0].map(|t| point(i, 9) + point(i, 0) * 0.2 * t + point(i, 3) * 0.001))
 }
 
-/// A grid of a million bumps in order, as scanners and modellers write them.
+/// A height field of a million quads in row order, as scanners and modelers write them.
 fn terrain() -> Scene {
     let side = 1000;
     let at = |i: u32| i as f32 / side as f32 * 2.0 - 1.0;
@@ -53,7 +54,7 @@ fn terrain() -> Scene {
     Scene { name: "terrain", positions, triangles: (0..side * side).flat_map(quad).collect() }
 }
 
-/// The quickest of some runs in seconds, and what was built.
+/// Fastest of several builds, in seconds, and its tree.
 fn build(scene: &Scene, quality: Quality, threads: usize) -> (f64, TriangleBvh) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let run = || {
@@ -65,8 +66,8 @@ fn build(scene: &Scene, quality: Quality, threads: usize) -> (f64, TriangleBvh) 
 }
 
 fn main() {
-    let wanted = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
-    for scene in [soup(), needles(), terrain()].iter().filter(|scene| scene.name.contains(&wanted)) {
+    let requested = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
+    for scene in [soup(), needles(), terrain()].iter().filter(|scene| scene.name.contains(&requested)) {
         let count = scene.triangles.len() as f64;
         println!("{}: {count} triangles", scene.name);
         for quality in Quality::ALL {

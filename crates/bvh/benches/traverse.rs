@@ -1,5 +1,5 @@
-//! Millions of rays a second of one thread, best of several runs. `cargo bench -p juggler-bvh`; a word
-//! after `--` picks the scenes whose names hold it.
+//! Traversal rates in millions of rays per second on one thread, best of several runs.
+//! `cargo bench -p juggler-bvh`; a word after `--` selects the scenes whose names contain it.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit};
@@ -12,7 +12,7 @@ const SAMPLES: usize = 8;
 const MEASUREMENTS: usize = 3;
 const LEAST: Duration = Duration::from_millis(100);
 
-/// Numbers in [0, 1), the same in every run.
+/// Deterministic random numbers in [0, 1).
 struct Random(u32);
 
 impl Random {
@@ -34,7 +34,7 @@ struct Scene {
     look_at: Vec3,
 }
 
-/// Small triangles anywhere in a cube.
+/// Small triangles at random positions in a cube.
 fn soup(count: u32) -> Scene {
     let random = &mut Random(1);
     let size = 1.5 / (count as f32).sqrt().sqrt();
@@ -47,11 +47,11 @@ fn soup(count: u32) -> Scene {
     Scene { name: "soup", positions, triangles, eye: vec3(0.0, 0.5, 3.0), look_at: Vec3::ZERO }
 }
 
-/// A height field of `side` squared quads.
+/// A height field of `side` × `side` quads.
 fn terrain(name: &'static str, side: u32) -> Scene {
     let height = |x: f32, z: f32| {
-        let (a, _) = juggler_math::fun::sin_cos(x * 9.0 + z * 3.0);
-        let (b, _) = juggler_math::fun::sin_cos(z * 23.0 - x * 5.0);
+        let (a, _) = juggler_math::portable::sin_cos(x * 9.0 + z * 3.0);
+        let (b, _) = juggler_math::portable::sin_cos(z * 23.0 - x * 5.0);
         0.15 * a + 0.05 * b + 0.002 * hash::unit_f32(hash::combine(x.to_bits(), z.to_bits()))
     };
     let at = |i: u32| i as f32 / side as f32 * 2.0 - 1.0;
@@ -68,7 +68,7 @@ fn terrain(name: &'static str, side: u32) -> Scene {
     Scene { name, positions, triangles, eye: vec3(0.3, 0.9, 2.2), look_at: Vec3::ZERO }
 }
 
-/// Eight samples of each pixel, one after the other.
+/// Camera rays: eight consecutive samples per pixel.
 fn camera(scene: &Scene, look_at: Vec3) -> Vec<Ray> {
     let random = &mut Random(2);
     let forward = (look_at - scene.eye).normalize();
@@ -85,30 +85,31 @@ fn camera(scene: &Scene, look_at: Vec3) -> Vec<Ray> {
     rays
 }
 
-/// From the hits to points of a lamp of this size.
+/// Shadow rays from the hits to random points of a light of this size.
 fn shadow(rays: &[Ray], hits: &[Option<TriangleHit>], size: f32) -> Vec<Ray> {
     let random = &mut Random(3);
     let lit = rays.iter().zip(hits).filter_map(|(ray, hit)| hit.map(|hit| ray.at(hit.t * 0.9999)));
-    let lamp = vec3(1.0, 3.0, 1.0);
-    lit.map(|origin| Ray::new(origin, lamp + random.point() * size - origin).up_to(1.0)).collect()
+    let light = vec3(1.0, 3.0, 1.0);
+    lit.map(|origin| Ray::new(origin, light + random.point() * size - origin).with_t_max(1.0)).collect()
 }
 
-/// From the hits in every direction.
+/// Rays from the hits in random directions.
 fn scattered(rays: &[Ray], hits: &[Option<TriangleHit>]) -> Vec<Ray> {
     let random = &mut Random(4);
     let origins = rays.iter().zip(hits).filter_map(|(ray, hit)| hit.map(|hit| ray.at(hit.t * 0.9999)));
     origins.map(|origin| Ray::new(origin, random.point())).collect()
 }
 
-/// Time that this thread has had the processor, where the system says so (Linux): other programs do not
-/// disturb it. Else the wall's.
+/// CPU time of this thread where the system reports it (Linux), which other programs do not
+/// disturb; else wall-clock time.
 fn clock(start: Instant) -> Duration {
     let scheduler = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = scheduler.and_then(|text| text.split(' ').next()?.parse().ok());
     nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
-/// Time of one run, in the best of a few measurements; each of many runs, for the clock may be coarse.
+/// Time of one run, best of several measurements. Each measurement averages many runs, since the
+/// clock may be coarse.
 fn best(mut run: impl FnMut()) -> Duration {
     let start = Instant::now();
     let time = |_| {
@@ -129,7 +130,7 @@ fn report(what: &str, rays: usize, time: Duration) {
     println!("    {what:<24} {:8.2} Mrays/s", rays as f64 / time.as_secs_f64() / 1e6);
 }
 
-/// Closest hits: rays one by one, and eight together.
+/// Measures closest hits in batches and in packets.
 fn closest(what: &str, bvh: &TriangleBvh, rays: &[Ray]) -> Vec<Option<TriangleHit>> {
     let mut hits = vec![None; rays.len()];
     let time = best(|| bvh.closest_batch(&mut rays.to_vec(), black_box(&mut hits)));
@@ -139,7 +140,7 @@ fn closest(what: &str, bvh: &TriangleBvh, rays: &[Ray]) -> Vec<Option<TriangleHi
     hits
 }
 
-/// Any hits: rays one by one, and eight together.
+/// Measures any hits in batches and in packets.
 fn any(what: &str, bvh: &TriangleBvh, rays: &[Ray]) {
     let mut occluded = vec![false; rays.len()];
     report(what, rays.len(), best(|| bvh.any_batch(rays, black_box(&mut occluded))));
@@ -167,10 +168,10 @@ fn measure(scene: &Scene, quality: Quality) {
 }
 
 fn main() {
-    let wanted = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
+    let requested = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
     for scene in [soup(100_000), terrain("terrain", 256), terrain("large terrain", 1024)] {
         for quality in Quality::ALL {
-            if format!("{}, {quality:?}", scene.name).contains(&wanted) {
+            if format!("{}, {quality:?}", scene.name).contains(&requested) {
                 measure(&scene, quality);
             }
         }

@@ -1,4 +1,4 @@
-//! A pyramid of four triangles: what one ray hits, whether one hits at all, and many at once.
+//! A pyramid of four triangles: closest hit and any hit of one ray, and closest hits of many rays.
 //! `cargo run -p juggler-bvh --example twenty_lines`
 
 #![allow(clippy::print_stdout)]
@@ -16,9 +16,9 @@ fn main() -> Result<(), TriangleError> {
     let hit = tree.closest(&ray);
     println!("{hit:?} at {:?}", hit.map(|hit| ray.at(hit.t)));
     assert_eq!(hit.map(|hit| (hit.index, hit.t)), Some((2, 3.5)));
-    assert!(tree.any(&ray) && !tree.any(&ray.up_to(3.0)));
+    assert!(tree.any(&ray) && !tree.any(&ray.with_t_max(3.0)));
 
-    // Many rays; neighbours that go the same way are faster with `closest_packet`.
+    // Many rays; coherent ones are faster with `closest_packet`.
     let mut rays: Vec<Ray> = (0..8u8).map(|i| Ray::new(vec3(f32::from(i) * 0.25, 2.0, 0.1), -Vec3::Y)).collect();
     let mut hits = vec![None; rays.len()];
     tree.closest_batch(&mut rays, &mut hits);

@@ -1,4 +1,4 @@
-//! What a ray costs, for debug views: nodes, leaves and items visited.
+//! Traversal cost of a ray for debug views: nodes, leaves and items visited.
 
 use crate::lanes::Bits;
 use crate::node::Child;
@@ -8,19 +8,19 @@ use crate::{Bvh, Leaf};
 use fearless_simd::{Level, dispatch};
 use juggler_math::Ray;
 
-/// What a search for the closest hit looked at.
+/// Counts of a closest-hit traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visits {
     /// Nodes whose eight boxes were tested.
     pub nodes: u32,
-    /// Leaves shown to the visitor.
+    /// Leaves passed to the visitor.
     pub leaves: u32,
-    /// Items in those leaves.
+    /// Items in these leaves.
     pub items: u32,
 }
 
 impl Bvh {
-    /// [`Bvh::closest`], step by step the same, with everything counted. Slower.
+    /// [`Bvh::closest`] with the same steps, but counted and slower.
     pub fn closest_counted(&self, ray: &mut Ray, leaf: &mut impl Leaf) -> Visits {
         let mut visits = Visits::default();
         let mut slabs = dispatch!(Level::baseline(), simd => Slabs::of_ray(simd, ray));

@@ -1,36 +1,37 @@
-//! Eight numbers side by side, on whatever vector unit there is.
+//! Eight single-precision SIMD lanes on any vector unit.
 //!
-//! The kernels are written once, over the token of `fearless_simd`, and made for every level that the target
-//! knows (SSE2 to AVX-512, NEON, wasm, none); `dispatch!` at the door of a call picks the one that the tree
-//! was given. They use only operations that round the same way everywhere (no fused multiplication), so that
-//! every level gives the same bits.
+//! The kernels are generic over the token of `fearless_simd` and compiled for every level of the
+//! target (SSE2 to AVX-512, NEON, wasm, scalar); `dispatch!` at the entry of a query selects the
+//! level of the tree. Results are the same bits at every level: they come from operations that
+//! round the same way everywhere, and multiply-add, which may be fused or not, only occurs in
+//! conservative tests that allow for its rounding.
 //!
-//! What the library leaves open is said here: the smaller and the larger of two numbers when one is NaN.
+//! This module defines minimum and maximum with a NaN operand, which the library leaves open.
 
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 
-/// What the kernels need beside the operators.
+/// SIMD operations that the kernels need beside the operators.
 pub(crate) trait Lanes: Simd {
-    /// The smaller of two, the second when one is NaN.
+    /// Minimum of two numbers; the second if one is NaN.
     #[inline(always)]
     fn least(self, a: f32x8<Self>, b: f32x8<Self>) -> f32x8<Self> {
         if HAS_ORDER { a.min(b) } else { a.simd_lt(b).select(a, b) }
     }
 
-    /// The larger of two, the second when one is NaN.
+    /// Maximum of two numbers; the second if one is NaN.
     #[inline(always)]
     fn most(self, a: f32x8<Self>, b: f32x8<Self>) -> f32x8<Self> {
         if HAS_ORDER { a.max(b) } else { a.simd_gt(b).select(a, b) }
     }
 
-    /// Eight times the same.
+    /// Broadcasts a number to all lanes.
     #[inline(always)]
     fn splat(self, number: f32) -> f32x8<Self> {
         f32x8::splat(self, number)
     }
 
-    /// Eight from memory.
+    /// Loads eight numbers.
     #[inline(always)]
     fn load(self, numbers: &[f32; 8]) -> f32x8<Self> {
         (*numbers).simd_into(self)
@@ -39,10 +40,11 @@ pub(crate) trait Lanes: Simd {
 
 impl<S: Simd> Lanes for S {}
 
-/// x86's own instructions give the second number where two do not compare (a test holds them to it).
+/// Whether `min` and `max` return the second operand if one is NaN, as the instructions of x86 do
+/// (checked by a test).
 const HAS_ORDER: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
 
-/// Asks for five cache lines to be brought into the cache: those of a node or of a block of triangles.
+/// Prefetches five cache lines, enough for a node or a block of triangles.
 #[inline(always)]
 pub(crate) fn prefetch(start: *const u8) {
     #[cfg(target_arch = "x86_64")]
@@ -60,13 +62,13 @@ pub(crate) fn prefetch(start: *const u8) {
     let _ = start;
 }
 
-/// One bit per lane, the first the lowest.
+/// Bit mask of the lanes; the first lane is the lowest bit.
 #[inline(always)]
 pub(crate) fn bits<S: Simd>(mask: fearless_simd::mask32x8<S>) -> u32 {
     mask.to_bitmask() as u32
 }
 
-/// The lanes of a mask's bits, lowest first.
+/// Iterator over the set bits of a lane mask, lowest first.
 pub(crate) struct Bits(pub u32);
 
 impl Iterator for Bits {
@@ -80,13 +82,13 @@ impl Iterator for Bits {
     }
 }
 
-/// The larger of two, the second when one is NaN.
+/// Maximum of two numbers; the second if one is NaN.
 #[inline(always)]
 pub(crate) fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// The smaller of two, the second when one is NaN.
+/// Minimum of two numbers; the second if one is NaN.
 #[inline(always)]
 pub(crate) fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }

@@ -1,10 +1,11 @@
-//! Bounding volume hierarchies over boxes and over triangles. Knows no shading and no shapes: boxes in,
-//! ranges of items out.
+//! Bounding volume hierarchies over boxes and over triangles. The crate knows neither shading nor
+//! shapes: it takes boxes and reports ranges of items.
 //!
-//! [`Bvh`] is a tree eight wide over anything that has a box; a [`Leaf`] visitor tests the items.
-//! [`TriangleBvh`] holds triangles and tests them itself, watertight. [`MovingBvh`] and [`MovingTriangleBvh`] are the same
-//! for what moves while the shutter is open. The crate's `README.md` explains the
-//! layout and the three ways to trace: one ray, a batch of unrelated rays, a packet of coherent ones.
+//! [`Bvh`] is an eight-wide hierarchy over items of any kind that have bounding boxes; a [`Leaf`]
+//! visitor intersects the items. [`TriangleBvh`] stores triangles and intersects them watertight.
+//! [`MovingBvh`] and [`MovingTriangleBvh`] add linear motion blur. The crate's `README.md` explains
+//! the layout and the three ways to trace: a single ray, a batch of incoherent rays, a packet of
+//! coherent rays.
 //!
 //! ```
 //! use juggler_bvh::{Bvh, Leaf, Quality};
@@ -28,7 +29,8 @@
 //!     }
 //! }
 //!
-//! let boxes: Vec<Aabb> = (0..100u8).map(|i| Aabb::from_points([Vec3::X * f32::from(i)]).grown(0.25)).collect();
+//! let boxes: Vec<Aabb> =
+//!     (0..100u8).map(|i| Aabb::from_points([Vec3::X * f32::from(i)]).grown(0.25)).collect();
 //! let bvh = Bvh::build(&boxes, Quality::Balanced);
 //! let shapes = bvh.order().iter().map(|&item| boxes[item as usize]).collect();
 //! let mut leaf = Boxes { shapes, nearest: None };
@@ -59,7 +61,7 @@ pub use packet::PACKET;
 pub use triangle::{TriangleTest, intersect_triangle};
 pub use triangles::{Filtered, MovingTriangleBvh, TriangleBvh, TriangleError, TriangleHit};
 
-/// A kind of vector unit, known to be there.
+/// SIMD instruction set that the machine supports.
 pub use fearless_simd::Level as SimdLevel;
 
 use juggler_math::{Aabb, Ray};
@@ -67,20 +69,20 @@ use node::Node;
 use pages::Pages;
 use std::ops::Range;
 
-/// A tree of boxes, eight wide.
+/// An eight-wide bounding volume hierarchy over boxes.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// The root is node 0; there is always one.
+    /// Nodes in depth-first order. The root is node 0 and always exists.
     nodes: Pages<Node>,
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
-    /// The vector unit that the kernels use.
+    /// SIMD level of the kernels.
     level: SimdLevel,
 }
 
-/// Every kind of vector unit that this machine has and the kernels are made for, the best last. All give the same
-/// bits.
+/// Returns the SIMD levels that the machine supports and the kernels are compiled for, the best one
+/// last. All levels give the same bits.
 pub fn simd_levels() -> Vec<SimdLevel> {
     let best = SimdLevel::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -94,17 +96,18 @@ pub fn simd_levels() -> Vec<SimdLevel> {
     lesser.into_iter().flatten().chain([best]).collect()
 }
 
-/// What happens at the leaves: the owner of the items tests them.
+/// Visitor that intersects the items of a leaf.
 pub trait Leaf {
-    /// Tests the items at the positions `items` (of [`Bvh::order`]) with ray number `lane` of the call;
-    /// shortens `ray.t_max` on a hit.
+    /// Intersects the items at the positions `items` of [`Bvh::order`] with a ray and shortens
+    /// `ray.t_max` on a hit. `lane` is the ray's index in the call.
     ///
-    /// A leaf is shown whenever its box is entered at or before `t_max`, so that of hits at equal distance
-    /// the implementor can keep the one with the smallest item number, whatever the order of the visits.
+    /// Every leaf whose box is entered at or before `t_max` is visited. So among hits at equal
+    /// distance the implementor can keep the smallest item index, independent of the traversal
+    /// order.
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>);
 
-    /// [`Leaf::closest`] for several rays of a packet: those whose bit in `active` is set. Ray `i` of the slice is
-    /// lane `first + i`. Says whether one of them may end earlier now.
+    /// [`Leaf::closest`] for the rays of a packet whose bits are set in `active`. `rays[i]` has
+    /// lane `first + i`. Returns whether any `t_max` may have shrunk.
     #[inline(always)]
     fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) -> bool {
         for lane in lanes::Bits(active) {
@@ -113,14 +116,16 @@ pub trait Leaf {
         true
     }
 
-    /// The ends of the eight rays from number `first` on, in [`Ray::t_max`]'s unit, where the visitor keeps them side by
-    /// side; the rays themselves need not be shortened then. By default `None`: the rays are read.
+    /// Current `t_max` of the eight rays from lane `first` on, if the visitor stores them
+    /// contiguously; it then need not shorten the rays themselves. The default `None` reads them
+    /// from the rays.
     #[inline(always)]
     fn packet_t_max(&self, _first: usize) -> Option<&[f32; PACKET]> {
         None
     }
 
-    /// [`Leaf::any`] for several rays of a packet: a bit for each that is occluded.
+    /// [`Leaf::any`] for the rays of a packet whose bits are set in `active`; returns a bit mask of
+    /// the occluded rays.
     #[inline(always)]
     fn any_many(&mut self, first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
         let mut found = 0;
@@ -130,34 +135,34 @@ pub trait Leaf {
         found
     }
 
-    /// Whether one of the items is hit between `ray.t_min` and `ray.t_max`.
+    /// Whether the ray hits any of the items between `ray.t_min` and `ray.t_max`.
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool;
 }
 
 impl Bvh {
-    /// The items in the order of the leaves: position `p` of a leaf's range is item `order()[p]`. Store what
-    /// the leaves need in this order.
+    /// Items in leaf order: position `p` of a leaf's range is item `order()[p]`. Store per-item
+    /// data in this order for locality.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// The box of everything in the tree; empty when nothing is.
+    /// Bounds of all items; empty for an empty hierarchy.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// The same tree for another vector unit than the best of this machine: for tests and measurements.
+    /// Selects another SIMD level than the machine's best one, for tests and benchmarks.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.level = level;
         self
     }
 
-    /// What the build made.
+    /// Statistics of the build.
     pub fn stats(&self) -> &BuildStats {
         &self.stats
     }
 
-    /// Bytes of memory that the tree holds, without the items.
+    /// Memory of the hierarchy in bytes, without the items.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.nodes.bytes() + self.order.capacity() * size_of::<u32>()
     }

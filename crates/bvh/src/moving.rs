@@ -1,11 +1,12 @@
-//! Trees over things that move while the shutter is open: each node keeps its boxes at shutter open and close,
-//! and the boxes between are interpolated (Glassner 1988, "Spacetime Ray Tracing for Animation"; as in Embree).
+//! Hierarchies with linear motion blur: each node stores its boxes at shutter open and close, and
+//! the traversal interpolates them (Glassner 1988, "Spacetime Ray Tracing for Animation"; as in
+//! Embree).
 
-use crate::build::{Extent, extent, refit};
+use crate::build::{SimdBox, checked_box, refit};
 use crate::lanes::Lanes;
-use crate::node::{Bounds, Child, Node, WIDTH, meet};
+use crate::node::{Bounds, Child, Node, WIDTH, intersect_boxes};
 use crate::pages::Pages;
-use crate::single::{Boxes, any_below, closest_below};
+use crate::single::{TraversalMemory, any_below, closest_below};
 use crate::slabs::Slabs;
 use crate::stack::Stack;
 use crate::{BuildOptions, BuildStats, Bvh, Leaf, Quality, SimdLevel};
@@ -14,16 +15,16 @@ use fearless_simd::{dispatch, f32x8};
 use juggler_math::{Aabb, Ray, Vec3};
 use rayon::prelude::*;
 
-/// The boxes of a node's children at shutter open and close.
+/// Boxes of a node's children at shutter open and close.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
-struct Motion {
+struct NodeMotion {
     ends: [Bounds; 2],
 }
 
-impl Motion {
-    /// The boxes at a time between 0 (open) and 1 (close). Every step is monotonic in the bounds, so that a
-    /// box that contains another at both ends contains it at every time, with all rounding.
+impl NodeMotion {
+    /// Boxes at a normalized time, 0 (open) to 1 (close). Every step is monotonic in the bounds, so
+    /// a box that contains another at both ends contains it at every time, including rounding.
     #[inline(always)]
     fn at(&self, time: f32) -> Bounds {
         let mut bounds = [[[0.0; WIDTH]; 2]; 3];
@@ -31,7 +32,7 @@ impl Motion {
             for (side, values) in sides.iter_mut().enumerate() {
                 let (open, close) = (&self.ends[0][axis][side], &self.ends[1][axis][side]);
                 for slot in 0..WIDTH {
-                    values[slot] = between(open[slot], close[slot], time);
+                    values[slot] = lerp(open[slot], close[slot], time);
                 }
             }
         }
@@ -39,75 +40,78 @@ impl Motion {
     }
 }
 
-/// What all that moves goes by, so that what encloses something at both ends does so at every time.
+/// Interpolates a coordinate of a box or a vertex. All motion uses this function, so that
+/// containment at both ends implies containment at every time.
 #[inline(always)]
-pub(crate) fn between(open: f32, close: f32, time: f32) -> f32 {
+pub(crate) fn lerp(open: f32, close: f32, time: f32) -> f32 {
     open * (1.0 - time) + close * time
 }
 
-/// A tree of boxes that move linearly while the shutter is open, eight wide. The calls are those of [`Bvh`] for one ray,
-/// with the boxes at the ray's time; a still tree has no part in it.
+/// An eight-wide hierarchy over linearly moving boxes. It offers the single-ray queries of [`Bvh`],
+/// with the boxes at the ray's time.
 #[derive(Clone, Debug)]
 pub struct MovingBvh {
-    /// Its boxes are those of all the time.
+    /// Hierarchy over the bounds of the whole shutter interval.
     pub(crate) bvh: Bvh,
-    motion: Pages<Motion>,
+    motion: Pages<NodeMotion>,
     shutter: f32,
 }
 
 impl MovingBvh {
-    /// Builds a tree over boxes that move linearly: item `i` has box `boxes[i][0]` when the shutter opens and
-    /// `boxes[i][1]` when it closes, `shutter` seconds later; what it holds at a time between lies in the box between.
-    /// Rays of other times see what is there at the nearer end. The shape of the tree is that over the boxes of the
-    /// whole time. An item that is empty or has a NaN at one end is left out. Otherwise as [`Bvh::build`].
+    /// Builds a hierarchy over linearly moving boxes: item `i` has the box `boxes[i][0]` at shutter
+    /// open (time 0) and `boxes[i][1]` at shutter close (time `shutter`, in the unit of
+    /// [`Ray::time`]). At a time in between, the interpolated box must contain the item. Ray times
+    /// are clamped to the shutter interval. The topology is that of a build over the bounds of the
+    /// whole interval. Items whose box is empty or has a NaN at one end are left out. Otherwise as
+    /// [`Bvh::build`].
     pub fn build(boxes: &[[Aabb; 2]], shutter: f32, quality: Quality) -> Self {
         Self::build_with(boxes, shutter, &quality.into())
     }
 
-    /// [`MovingBvh::build`] with the leaf's size and cost chosen.
+    /// [`MovingBvh::build`] with explicit [`BuildOptions`].
     pub fn build_with(boxes: &[[Aabb; 2]], shutter: f32, options: &BuildOptions) -> Self {
-        let bvh = Bvh::build_with(&boxes.par_iter().map(whole).collect::<Vec<_>>(), options);
-        let ends = [0, 1].map(|end| nodes_with(&bvh, |item| wide(boxes[item][end])));
-        let mut motion: Pages<Motion> = Pages::zeroed(bvh.nodes.len());
+        let bvh = Bvh::build_with(&boxes.par_iter().map(swept_bounds).collect::<Vec<_>>(), options);
+        let ends = [0, 1].map(|end| nodes_with(&bvh, |item| padded(boxes[item][end])));
+        let mut motion: Pages<NodeMotion> = Pages::zeroed(bvh.nodes.len());
         motion.par_iter_mut().enumerate().for_each(|(i, motion)| {
             motion.ends = [bounds_of(&ends[0][i]), bounds_of(&ends[1][i])];
         });
         Self { bvh, motion, shutter }
     }
 
-    /// [`Bvh::closest`] among the boxes at the ray's time.
+    /// [`Bvh::closest`] with the boxes at the ray's time.
     pub fn closest(&self, ray: &mut Ray, leaf: &mut impl Leaf) {
         dispatch!(self.bvh.level, simd => self.closest_one(simd, ray, leaf));
     }
 
-    /// [`Bvh::any`] among the boxes at the ray's time.
+    /// [`Bvh::any`] with the boxes at the ray's time.
     pub fn any(&self, ray: &Ray, leaf: &mut impl Leaf) -> bool {
         dispatch!(self.bvh.level, simd => self.any_one(simd, ray, leaf))
     }
 
     #[inline(always)]
     pub(crate) fn closest_one<S: Lanes>(&self, simd: S, ray: &mut Ray, leaf: &mut impl Leaf) {
-        let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
-        closest_below(simd, boxes, Child::ROOT, Stack::new().view(), (0, ray), slabs, leaf);
+        let (memory, slabs) = (self.memory(ray), Slabs::of_ray(simd, ray));
+        closest_below(simd, memory, Child::ROOT, Stack::new().view(), (0, ray), slabs, leaf);
     }
 
     #[inline(always)]
     pub(crate) fn any_one<S: Lanes>(&self, simd: S, ray: &Ray, leaf: &mut impl Leaf) -> bool {
-        let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
-        any_below(simd, boxes, Child::ROOT, Stack::new().view(), (0, ray), &slabs, leaf)
+        let (memory, slabs) = (self.memory(ray), Slabs::of_ray(simd, ray));
+        any_below(simd, memory, Child::ROOT, Stack::new().view(), (0, ray), &slabs, leaf)
     }
 
-    /// The ray's time as a share of the time that the shutter is open, 0 to 1.
+    /// The ray's time normalized to the shutter interval and clamped to 0 to 1.
     #[inline(always)]
-    pub(crate) fn share(&self, ray: &Ray) -> f32 {
-        let share = ray.time / self.shutter;
-        // Not a number where the shutter opens for no time.
-        if share > 0.0 { share.min(1.0) } else { 0.0 }
+    pub(crate) fn shutter_fraction(&self, ray: &Ray) -> f32 {
+        let fraction = ray.time / self.shutter;
+        // NaN for a shutter interval of length zero.
+        if fraction > 0.0 { fraction.min(1.0) } else { 0.0 }
     }
 
     #[inline(always)]
-    fn boxes(&self, ray: &Ray) -> MovingBoxes<'_> {
-        MovingBoxes { nodes: &self.bvh.nodes, motion: &self.motion, time: self.share(ray) }
+    fn memory(&self, ray: &Ray) -> MovingMemory<'_> {
+        MovingMemory { nodes: &self.bvh.nodes, motion: &self.motion, time: self.shutter_fraction(ray) }
     }
 
     /// [`Bvh::order`].
@@ -115,17 +119,17 @@ impl MovingBvh {
         self.bvh.order()
     }
 
-    /// The box of everything in the tree over all the time; empty when nothing is.
+    /// Bounds of all items over the shutter interval; empty for an empty hierarchy.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
 
-    /// What the build made; the cost is that of the boxes of all the time.
+    /// Statistics of the build; the SAH cost is that of the bounds over the shutter interval.
     pub fn stats(&self) -> &BuildStats {
         self.bvh.stats()
     }
 
-    /// Bytes of memory that the tree holds, without the items.
+    /// Memory of the hierarchy in bytes, without the items.
     pub fn bytes(&self) -> usize {
         self.bvh.bytes() + self.motion.bytes()
     }
@@ -137,15 +141,15 @@ impl MovingBvh {
     }
 }
 
-/// The boxes at one time.
+/// Boxes at one time.
 #[derive(Clone, Copy)]
-struct MovingBoxes<'a> {
+struct MovingMemory<'a> {
     nodes: &'a [Node],
-    motion: &'a [Motion],
+    motion: &'a [NodeMotion],
     time: f32,
 }
 
-impl Boxes for MovingBoxes<'_> {
+impl TraversalMemory for MovingMemory<'_> {
     #[inline(always)]
     fn node(&self, number: usize) -> &Node {
         &self.nodes[number]
@@ -153,34 +157,34 @@ impl Boxes for MovingBoxes<'_> {
 
     #[inline(always)]
     fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>) {
-        meet(simd, &self.motion[number].at(self.time), slabs)
+        intersect_boxes(simd, &self.motion[number].at(self.time), slabs)
     }
 }
 
-/// The nodes with the boxes that their items have at one end.
+/// Copies the nodes and refits them to the items' boxes at one end.
 fn nodes_with(bvh: &Bvh, bounds: impl Fn(usize) -> Aabb + Sync) -> Pages<Node> {
     let mut nodes = bvh.nodes.clone();
     refit(&mut nodes, |leaf| {
         let items = &bvh.order[leaf.items().start as usize..leaf.items().end as usize];
-        items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(Extent::raw(&bounds(item as usize)))))
+        items.iter().fold(SimdBox::EMPTY, |all, &item| all.union(checked_box(SimdBox::raw(&bounds(item as usize)))))
     });
     nodes
 }
 
-/// The bounds of a node; those of free slots finite, for infinity times zero is not a number.
+/// Bounds of a node with finite numbers in free slots, since infinity times zero is NaN.
 fn bounds_of(node: &Node) -> Bounds {
     node.bounds.map(|sides| sides.map(|values| values.map(|value| value.clamp(-f32::MAX, f32::MAX))))
 }
 
-/// The box of an item over all the time, empty when it is so at one end.
-fn whole(ends: &[Aabb; 2]) -> Aabb {
+/// Bounds of an item over the shutter interval; empty if the box at one end is empty.
+fn swept_bounds(ends: &[Aabb; 2]) -> Aabb {
     let usable = ends.iter().all(|bounds| bounds.min.cmple(bounds.max).all());
-    if usable { wide(ends[0]).union(wide(ends[1])) } else { Aabb::EMPTY }
+    if usable { padded(ends[0]).union(padded(ends[1])) } else { Aabb::EMPTY }
 }
 
-/// Large enough that the boxes between, rounded, contain what lies between, however that is rounded: an
-/// interpolation is off by at most two ulp of the larger end.
-fn wide(bounds: Aabb) -> Aabb {
+/// Enlarges a box so that interpolated boxes contain interpolated items despite rounding: an
+/// interpolation is off by at most two ulps of the larger end.
+fn padded(bounds: Aabb) -> Aabb {
     let margin = |v: Vec3| v.abs() * (4.0 * f32::EPSILON) + f32::MIN_POSITIVE;
     let margin = margin(bounds.min).max(margin(bounds.max));
     Aabb { min: bounds.min - margin, max: bounds.max + margin }

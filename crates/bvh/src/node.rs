@@ -1,7 +1,7 @@
-//! The node: eight child boxes side by side, and what each child is.
+//! The eight-wide node: eight child boxes in SoA layout and eight child words.
 //!
-//! 256 bytes in four cache lines: three axes of (eight minima, eight maxima), then eight child words. All
-//! eight boxes are tested together.
+//! A node has 256 bytes in four cache lines: for each of three axes eight minima and eight maxima,
+//! then eight child words. All eight boxes are tested together.
 
 use crate::lanes::{Lanes, bits};
 use crate::slabs::{Bundle, Slabs};
@@ -10,16 +10,17 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// Children of a node.
+/// Number of children of a node.
 pub(crate) const WIDTH: usize = 8;
-/// Most items in a leaf.
+/// Maximum number of items in a leaf.
 pub(crate) const LEAF_MAX: usize = 8;
 
 const LEAF_BIT: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
 
-/// What hangs below: the number of a node, or a leaf bit, the count less one (3 bits) and the first position.
+/// Reference to a child: a node index, or a leaf with the leaf bit, the count minus one (3 bits)
+/// and the first position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(transparent)]
 pub(crate) struct Child(pub u32);
@@ -43,13 +44,13 @@ impl Child {
         self.0 & LEAF_BIT != 0
     }
 
-    /// The number of the node, or the position of the leaf's first item.
+    /// Node index, or position of the leaf's first item.
     #[inline(always)]
     pub fn place(self) -> usize {
         (self.0 & FIRST_MASK) as usize
     }
 
-    /// Positions of a leaf's items.
+    /// Range of positions of a leaf's items.
     #[inline(always)]
     pub fn items(self) -> Range<u32> {
         let first = self.0 & FIRST_MASK;
@@ -57,17 +58,17 @@ impl Child {
     }
 }
 
-/// The boxes of a node's children: `bounds[axis][0]` are the minima, `bounds[axis][1]` the maxima. A slot without a child
-/// holds an empty box, which no ray meets.
+/// Boxes of a node's children: `bounds[axis][0]` are the minima, `bounds[axis][1]` the maxima. A
+/// free slot holds an empty box, which no ray intersects.
 pub(crate) type Bounds = [[[f32; WIDTH]; 2]; 3];
 
-/// Boxes of up to eight children and the children.
+/// A node with up to eight children.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     pub bounds: Bounds,
     pub children: [Child; WIDTH],
-    /// How many of the slots are in use.
+    /// Number of slots in use.
     pub count: u32,
     unused: [u32; 7],
 }
@@ -80,7 +81,7 @@ impl Node {
         unused: [0; 7],
     };
 
-    /// Puts a child into the next free slot.
+    /// Appends a child.
     pub fn add(&mut self, low: [f32; 3], high: [f32; 3], child: Child) {
         let slot = self.count as usize;
         self.set_bounds(slot, low, high);
@@ -95,41 +96,43 @@ impl Node {
         }
     }
 
-    /// [`meet`] with this node's boxes.
+    /// [`intersect_boxes`] with the boxes of this node.
     #[inline(always)]
     pub fn test<S: Lanes>(&self, simd: S, slabs: &Slabs) -> (u32, f32x8<S>) {
-        meet(simd, &self.bounds, slabs)
+        intersect_boxes(simd, &self.bounds, slabs)
     }
 
-    /// [`meet_bundle`] with this node's boxes.
+    /// [`intersect_bundle`] with the boxes of this node.
     #[inline(always)]
     pub fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> (u32, f32x8<S>) {
-        meet_bundle(simd, &self.bounds, bundle)
+        intersect_bundle(simd, &self.bounds, bundle)
     }
 }
 
-/// Which boxes any ray of a bundle may meet (bit per slot), and where the first could enter.
+/// Bit mask of the boxes that any ray of a bundle may intersect, and lower bounds of the entry
+/// distances.
 #[inline(always)]
-pub(crate) fn meet_bundle<S: Lanes>(simd: S, bounds: &Bounds, bundle: &Bundle) -> (u32, f32x8<S>) {
+pub(crate) fn intersect_bundle<S: Lanes>(simd: S, bounds: &Bounds, bundle: &Bundle) -> (u32, f32x8<S>) {
     let mut enter = simd.splat(bundle.t_min);
     let mut leave = simd.splat(bundle.t_max);
     for (axis, sides) in bounds.iter().enumerate() {
         let (near, far) = planes(simd, sides, bundle.side[axis]);
         let near = (near - bundle.near[axis]) * bundle.near_inverse[3 + axis];
         let far = (far - bundle.far[axis]) * bundle.far_inverse[3 + axis];
-        // In this order, so that a NaN leaves the range as it is.
+        // Operand order matters: a NaN leaves the interval unchanged.
         enter = simd.most(near, enter);
         leave = simd.least(far, leave);
     }
     (bits(enter.simd_le(leave)), enter)
 }
 
-/// Which boxes are met (bit per slot), and where each is entered.
+/// Bit mask of the boxes that a ray intersects, and the entry distances.
 ///
-/// No distance is a NaN, for slabs have finite offsets and inverses that are neither zero nor infinite. So extremes may be
-/// taken two by two, which ends sooner than one after the other (3 % more rays a second).
+/// No distance is NaN, since offsets are finite and inverses neither zero nor infinite. So the
+/// extremes may be reduced pairwise, with less latency than one after the other (3 % more rays per
+/// second).
 #[inline(always)]
-pub(crate) fn meet<S: Lanes>(simd: S, bounds: &Bounds, slabs: &Slabs) -> (u32, f32x8<S>) {
+pub(crate) fn intersect_boxes<S: Lanes>(simd: S, bounds: &Bounds, slabs: &Slabs) -> (u32, f32x8<S>) {
     let [(near_x, far_x), (near_y, far_y), (near_z, far_z)] =
         [distances(simd, bounds, slabs, 0), distances(simd, bounds, slabs, 1), distances(simd, bounds, slabs, 2)];
     let enter = simd.most(simd.most(near_x, near_y), simd.most(near_z, simd.splat(slabs.t_min)));
@@ -137,7 +140,7 @@ pub(crate) fn meet<S: Lanes>(simd: S, bounds: &Bounds, slabs: &Slabs) -> (u32, f
     (bits(enter.simd_le(leave)), enter)
 }
 
-/// Where the near and the far planes along an axis are met.
+/// Distances to the near and the far planes along an axis.
 #[inline(always)]
 fn distances<S: Lanes>(simd: S, bounds: &Bounds, slabs: &Slabs, axis: usize) -> (f32x8<S>, f32x8<S>) {
     let (near, far) = planes(simd, &bounds[axis], (slabs.signs >> axis) as usize);
@@ -174,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn free_slots_are_never_met() {
+    fn free_slots_are_never_hit() {
         let mut node = Node::EMPTY;
         node.add([-1.0; 3], [1.0; 3], Child::leaf(0, 1));
         for direction in [Vec3::X, -Vec3::X, Vec3::new(-0.0, 1.0, 0.0), Vec3::ONE, Vec3::new(1e-40, 1.0, 0.0)] {

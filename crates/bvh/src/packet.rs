@@ -1,87 +1,94 @@
-//! Up to eight coherent rays together: one interval test a node, then each ray against the boxes that the
-//! interval leaves.
+//! Packet traversal of coherent rays: one interval test per node for a group of rays, then each ray
+//! against the boxes that the interval intersects.
 //!
-//! Neighbouring rays are almost one ray; where their interval misses all children of the root, all of them
-//! have missed, for the price of one. The interval's test never misses what one of its rays meets. Where few
-//! rays are left in a box they go on alone.
+//! Where the interval misses all children of a node, all rays of the group miss them for the cost
+//! of one test. The interval test is conservative: it never misses a box that one of its rays
+//! intersects. Where few rays remain active, they are traversed singly.
 
 use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::single::{Boxes, any_below, closest_below, first, nearest};
-use crate::slabs::{Bundle, Extent, Slabs};
+use crate::single::{TraversalMemory, any_below, closest_below, last_child, nearest};
+use crate::slabs::{Bundle, RayExtremes, Slabs};
 use crate::stack::{Stack, StackView, distance};
 use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray};
 
-/// Most rays that are traced together.
+/// Maximum number of rays in a packet.
 pub const PACKET: usize = WIDTH;
-/// Rays whose interval is tested as one: several packets, for the nodes on the way are mostly the same.
+/// Maximum number of rays in a group, which shares one interval. A group has several packets,
+/// because neighboring packets visit mostly the same nodes.
 pub(crate) const GROUP: usize = PACKETS * PACKET;
 pub(crate) const PACKETS: usize = 4;
-/// Rays are neighbours when origins differ by less than this share of the scene, and directions of their length.
+/// Coherence limit: origins may differ by this fraction of the scene's size, directions by this
+/// fraction of their length.
 const NARROW: f32 = 0.25;
-/// With so few rays left in a box they go on alone.
-const FEW: u32 = 2;
+/// Number of active rays up to which they are traversed singly.
+const MAX_SINGLE_RAYS: u32 = 2;
 
-/// Rays of one octant, packet by packet, and their interval. Used again for the next rays: nothing is copied.
+/// Rays of one octant in packets, and their interval. Reused for the next rays without copying.
 pub(crate) struct Group {
     pub bundle: Bundle,
     packets: [RayLanes; PACKETS],
     count: usize,
-    extent: Extent,
+    extremes: RayExtremes,
 }
 
 impl Group {
     pub fn new() -> Self {
-        Self { bundle: Bundle::default(), packets: [RayLanes::default(); PACKETS], count: 0, extent: Extent::default() }
+        Self {
+            bundle: Bundle::default(),
+            packets: [RayLanes::default(); PACKETS],
+            count: 0,
+            extremes: RayExtremes::default(),
+        }
     }
 
-    /// Takes at most [`GROUP`] rays in; `false` where their directions do not share an octant or a ray may start
-    /// before its origin.
+    /// Loads up to [`GROUP`] rays. Returns `false` if their directions do not share an octant, a
+    /// ray may start before its origin, or a ray is infinite.
     #[inline(always)]
     pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> bool {
-        let mut all: Option<Extent> = None;
+        let mut all: Option<RayExtremes> = None;
         self.count = rays.len().div_ceil(PACKET).min(PACKETS);
         for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(PACKET)) {
-            let Some(extent) = packet.fill(simd, rays) else { return false };
-            packet.bundle = extent.bundle(simd);
-            match all.map_or(Some(extent), |all| all.union(simd, &extent)) {
-                Some(extent) => all = Some(extent),
+            let Some(extremes) = packet.fill(simd, rays) else { return false };
+            packet.bundle = extremes.bundle(simd);
+            match all.map_or(Some(extremes), |all| all.union(simd, &extremes)) {
+                Some(extremes) => all = Some(extremes),
                 None => return false,
             }
         }
         let Some(all) = all else { return false };
-        (self.bundle, self.extent) = (all.bundle(simd), all);
+        (self.bundle, self.extremes) = (all.bundle(simd), all);
         true
     }
 
-    /// Whether the rays are neighbours: an interval around rays that share no more than an octant would meet most of
-    /// the tree.
+    /// Whether the rays are coherent. The interval of rays that only share an octant would
+    /// intersect most of the tree.
     #[inline(always)]
     pub fn is_narrow(&self, scene: &Aabb) -> bool {
-        let Extent { low, high, .. } = &self.extent;
+        let RayExtremes { low, high, .. } = &self.extremes;
         let size = scene.extent().max_element();
         let length = (3..6).fold(0.0, |length, i| max(max(high[i].abs(), low[i].abs()), length));
         let is_near = (0..3).all(|i| high[i] - low[i] <= size * NARROW);
         is_near && (3..6).all(|i| high[i] - low[i] <= length * NARROW)
     }
 
-    /// The origin of all rays, where it is one.
+    /// Common origin of all rays, if there is one.
     #[inline(always)]
     pub fn common_origin(&self) -> Option<[f32; 3]> {
-        let Extent { low, high, .. } = &self.extent;
+        let RayExtremes { low, high, .. } = &self.extremes;
         (low[..3] == high[..3]).then_some([low[0], low[1], low[2]])
     }
 
-    /// The packets that hold rays.
+    /// Packets that contain rays.
     #[inline(always)]
     pub fn packets(&self) -> &[RayLanes] {
         &self.packets[..self.count]
     }
 
-    /// Which of the rays in `among` meet the box in `slot` of the bounds.
+    /// Bit mask of the rays in `among` that intersect the box in `slot` of the bounds.
     #[inline(always)]
     fn test<S: Lanes>(&self, simd: S, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize, among: u32) -> u32 {
         let mut active = 0;
@@ -95,13 +102,14 @@ impl Group {
 }
 
 impl Bvh {
-    /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. They
-    /// are taken 32 at a time, [`PACKET`] side by side. Rays that are no neighbours are traced alone.
+    /// [`Bvh::closest`] for coherent rays; a ray's lane is its index in the slice. Rays are traced
+    /// in groups of 32, packets of [`PACKET`] in SIMD. Groups that are not coherent are traversed
+    /// singly.
     pub fn closest_packet(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
         dispatch!(self.level, simd => self.closest_groups(simd, rays, leaf));
     }
 
-    /// [`Bvh::any`] for rays that go the same way; see [`Bvh::closest_packet`] and [`Bvh::any_batch`].
+    /// [`Bvh::any`] for coherent rays; see [`Bvh::closest_packet`] and [`Bvh::any_batch`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
         dispatch!(self.level, simd => self.any_groups(simd, rays, occluded, leaf));
     }
@@ -114,7 +122,7 @@ impl Bvh {
             if group.fill(simd, rays) && group.is_narrow(&self.bounds) {
                 self.closest_group(simd, &*self.nodes, &mut stack, (first, rays), &mut group, leaf);
             } else {
-                self.closest_alone(simd, &mut stack, first, rays, leaf);
+                self.closest_singly(simd, &mut stack, first, rays, leaf);
             }
         }
     }
@@ -129,7 +137,7 @@ impl Bvh {
             let found = if group.fill(simd, rays) {
                 self.any_group(simd, &*self.nodes, &mut stack, (first, rays), &group, leaf)
             } else {
-                self.any_alone(simd, &*self.nodes, Child::ROOT, stack.view(), (first, u32::MAX, rays), leaf)
+                self.any_singly(simd, &*self.nodes, Child::ROOT, stack.view(), (first, u32::MAX, rays), leaf)
             };
             for (lane, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = found >> lane & 1 != 0;
@@ -137,12 +145,12 @@ impl Bvh {
         }
     }
 
-    /// Traces the rays of a group as one, each from the leaves on.
+    /// Traverses the tree with the group's interval and tests single rays at the leaves.
     #[inline(always)]
     pub(crate) fn closest_group<S: Lanes>(
         &self,
         simd: S,
-        boxes: impl Boxes,
+        memory: impl TraversalMemory,
         stack: &mut Stack,
         (first, rays): (usize, &mut [Ray]),
         group: &mut Group,
@@ -150,7 +158,7 @@ impl Bvh {
     ) {
         let nodes = &*self.nodes;
         let mut stack = stack.view();
-        let mut next = self.nearest_slot(simd, boxes, Child::ROOT, &group.bundle, &mut stack);
+        let mut next = self.nearest_slot(simd, memory, Child::ROOT, &group.bundle, &mut stack);
         loop {
             let place = match next {
                 Some(place) => place as usize,
@@ -163,7 +171,7 @@ impl Bvh {
             let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
             let child = parent.children[slot];
             if !child.is_leaf() {
-                next = self.nearest_slot(simd, boxes, child, &group.bundle, &mut stack);
+                next = self.nearest_slot(simd, memory, child, &group.bundle, &mut stack);
                 continue;
             }
             next = None;
@@ -182,12 +190,12 @@ impl Bvh {
         }
     }
 
-    /// The nearest child that the bundle may meet, as a place (node and slot in one number); pushes the others.
+    /// Nearest child that the bundle may intersect, encoded by [`encode_slot`]; pushes the others.
     #[inline(always)]
     fn nearest_slot<S: Lanes>(
         &self,
         simd: S,
-        boxes: impl Boxes,
+        memory: impl TraversalMemory,
         node: Child,
         bundle: &Bundle,
         stack: &mut StackView,
@@ -199,39 +207,39 @@ impl Bvh {
             stack,
             #[inline(always)]
             |slot| {
-                boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
-                place_of(node, slot)
+                memory.prefetch(self.nodes[node.0 as usize].children[slot]);
+                encode_slot(node, slot)
             },
         )
     }
 
-    /// The last of the children that the bundle may meet, as a place: the largest one, which most likely holds a hit.
-    /// Pushes the others.
+    /// Last child that the bundle may intersect, encoded by [`encode_slot`]: the largest and most
+    /// likely one to be hit. Pushes the others.
     #[inline(always)]
     fn last_slot<S: Lanes>(
         &self,
         simd: S,
-        boxes: impl Boxes,
+        memory: impl TraversalMemory,
         node: Child,
         bundle: &Bundle,
         stack: &mut StackView,
     ) -> Option<u32> {
         let (mask, _) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
-        let last = first(
+        let last = last_child(
             mask,
             stack,
             #[inline(always)]
             |slot| {
-                boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
-                place_of(node, slot)
+                memory.prefetch(self.nodes[node.0 as usize].children[slot]);
+                encode_slot(node, slot)
             },
         )?;
-        Some(place_of(node, last))
+        Some(encode_slot(node, last))
     }
 
-    /// Traces the rays one by one.
+    /// Traverses the rays singly.
     #[inline(never)]
-    fn closest_alone<S: Lanes>(
+    fn closest_singly<S: Lanes>(
         &self,
         simd: S,
         stack: &mut Stack,
@@ -250,12 +258,12 @@ impl Bvh {
         );
     }
 
-    /// Which of the rays hit something (bit per lane).
+    /// Bit mask of the rays that hit something.
     #[inline(always)]
     pub(crate) fn any_group<S: Lanes>(
         &self,
         simd: S,
-        boxes: impl Boxes,
+        memory: impl TraversalMemory,
         stack: &mut Stack,
         (first, rays): (usize, &[Ray]),
         group: &Group,
@@ -265,7 +273,7 @@ impl Bvh {
         let all = u32::MAX >> (GROUP - rays.len());
         let mut found = 0;
         let mut stack = stack.view();
-        let mut next = self.last_slot(simd, boxes, Child::ROOT, &group.bundle, &mut stack);
+        let mut next = self.last_slot(simd, memory, Child::ROOT, &group.bundle, &mut stack);
         while found != all {
             let place = match next {
                 Some(place) => place as usize,
@@ -289,22 +297,23 @@ impl Bvh {
                         found |= leaf.any_many(first + shift, active, rays, child.items()) << shift;
                     }
                 }
-            } else if active.count_ones() > FEW {
-                next = self.last_slot(simd, boxes, child, &group.bundle, &mut stack);
+            } else if active.count_ones() > MAX_SINGLE_RAYS {
+                next = self.last_slot(simd, memory, child, &group.bundle, &mut stack);
             } else {
-                found |= self.any_alone(simd, boxes, child, stack.above(), (first, active, rays), leaf);
+                found |= self.any_singly(simd, memory, child, stack.above(), (first, active, rays), leaf);
             }
         }
         stack.clear();
         found
     }
 
-    /// Which of the active rays, each on its own, hit something in the subtree at `from`; the stack is empty.
+    /// Bit mask of the `active` rays that hit something in the subtree at `from`, traversed singly.
+    /// The stack is empty.
     #[inline(never)]
-    fn any_alone<S: Lanes>(
+    fn any_singly<S: Lanes>(
         &self,
         simd: S,
-        boxes: impl Boxes,
+        memory: impl TraversalMemory,
         from: Child,
         mut stack: StackView,
         (base, active, rays): (usize, u32, &[Ray]),
@@ -318,7 +327,7 @@ impl Bvh {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
                         let ray = (base + lane, ray);
-                        let hit = any_below(simd, boxes, from, stack.above(), ray, &slabs, leaf);
+                        let hit = any_below(simd, memory, from, stack.above(), ray, &slabs, leaf);
                         found |= u32::from(hit) << lane;
                     }
                 }
@@ -328,8 +337,8 @@ impl Bvh {
     }
 }
 
-/// A child's node and slot in one number.
+/// Encodes a node and a slot in one number.
 #[inline(always)]
-fn place_of(node: Child, slot: usize) -> u32 {
+fn encode_slot(node: Child, slot: usize) -> u32 {
     node.0 * WIDTH as u32 + slot as u32
 }

@@ -1,5 +1,5 @@
-//! Large arrays that ask the system for huge pages: beyond the cache a lookup in a tree then costs one miss
-//! instead of two, for the translation of its address stays in the processor's table.
+//! Large arrays on huge pages. Beyond the cache, a lookup then costs one miss in place of two,
+//! since the address translation stays in the TLB.
 
 use bytemuck::Pod;
 use memmap2::MmapMut;
@@ -7,21 +7,21 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
 
-/// Arrays below this many bytes live in a plain vector.
+/// Size in bytes below which an array lives in a plain vector.
 const SMALL: usize = 1 << 20;
-/// Size of a huge page, to which the array is aligned.
+/// Size of a huge page in bytes; large arrays are aligned to it.
 const HUGE: usize = 1 << 21;
 
-/// An array of fixed length, on huge pages when it is large and the system has them.
+/// An array of fixed length, on huge pages if it is large and the system supports them.
 pub(crate) struct Pages<T> {
-    /// The elements: inside of `map`, else a boxed slice that the array owns. One pointer for both, for it is followed
-    /// with every ray.
+    /// Elements: inside `map`, or else a leaked boxed slice that the array owns. A single pointer
+    /// serves both, since every ray follows it.
     elements: NonNull<[T]>,
     map: Option<MmapMut>,
 }
 
 #[expect(unsafe_code, reason = "an array owns its elements, which a pointer does not say")]
-// SAFETY: `elements` is not shared with anything but `map`, which nobody else reads or writes; as a `Vec<T>`.
+// SAFETY: `elements` aliases nothing but `map`, which nobody else reads or writes; as a `Vec<T>`.
 unsafe impl<T: Send> Send for Pages<T> {}
 #[expect(unsafe_code, reason = "an array owns its elements, which a pointer does not say")]
 // SAFETY: as above; only `&mut self` writes.
@@ -37,24 +37,24 @@ impl<T: Pod> Pages<T> {
         Self { elements: NonNull::from(Box::leak(elements.into_boxed_slice())), map: None }
     }
 
-    /// Zeroed elements on pages of their own; `None` where the array is small or there is no such memory.
+    /// Zeroed elements on pages of their own; `None` if the array is small or the mapping fails.
     fn mapped(len: usize) -> Option<Self> {
         let bytes = len.checked_mul(size_of::<T>()).filter(|&bytes| bytes >= SMALL)?;
-        // Anonymous memory comes zeroed.
+        // Anonymous mappings are zeroed.
         let mut map = MmapMut::map_anon(bytes.checked_add(HUGE)?).ok()?;
         let start = map.as_ptr().align_offset(HUGE);
         let fits = start.checked_add(bytes).is_some_and(|end| end <= map.len());
         if !fits || align_of::<T>() > HUGE {
             return None;
         }
-        // A wish: where it is refused, small pages do.
+        // Only advice: without huge pages, small ones serve.
         #[cfg(target_os = "linux")]
         let _ = map.advise(memmap2::Advice::HugePage);
         let first = NonNull::new(map.as_mut_ptr().wrapping_add(start).cast())?;
         Some(Self { elements: NonNull::slice_from_raw_parts(first, len), map: Some(map) })
     }
 
-    /// Bytes of memory that the elements take.
+    /// Memory of the elements in bytes.
     pub fn bytes(&self) -> usize {
         self.len() * size_of::<T>()
     }
@@ -66,8 +66,9 @@ impl<T: Pod> Deref for Pages<T> {
     #[inline(always)]
     #[expect(unsafe_code, reason = "checked casts cost every single ray 9 % more instructions, an enum 3 %")]
     fn deref(&self) -> &[T] {
-        // SAFETY: `elements` is a leaked box, or `mapped` has checked that it lies inside of `map`, aligned; `map` lives
-        // as long as `self`, is never resized, came zeroed, and every pattern of bits is a `T: Pod`.
+        // SAFETY: `elements` is a leaked box, or lies aligned inside `map`, as `mapped` has
+        // checked; `map` lives as long as `self`, is never resized and was zeroed, and every bit
+        // pattern is a valid `T: Pod`.
         unsafe { self.elements.as_ref() }
     }
 }
@@ -85,7 +86,8 @@ impl<T> Drop for Pages<T> {
     #[expect(unsafe_code, reason = "a boxed slice is freed by who owns it")]
     fn drop(&mut self) {
         if self.map.is_none() {
-            // SAFETY: without a map `elements` was leaked from a box by `boxed`, and this is its only owner.
+            // SAFETY: without a map, `boxed` leaked `elements` from a box, and this is its only
+            // owner.
             drop(unsafe { Box::from_raw(self.elements.as_ptr()) });
         }
     }
@@ -100,7 +102,7 @@ impl<T: Pod> Clone for Pages<T> {
 }
 
 impl<T: Pod> From<Vec<T>> for Pages<T> {
-    /// Copies the elements where the array is large.
+    /// Copies the elements if the array is large.
     fn from(elements: Vec<T>) -> Self {
         match Self::mapped(elements.len()) {
             Some(mut pages) => {

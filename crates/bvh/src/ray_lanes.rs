@@ -1,41 +1,42 @@
-//! Up to eight rays side by side, to test all against one box.
+//! Up to eight rays in SoA layout, tested against one box.
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{Bundle, Extent, SLACK, WIDEN, cull_distance};
+use crate::slabs::{Bundle, RayExtremes, SLACK, WIDEN, cull_distance};
 use crate::triangle::FARTHEST;
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
-/// The numbers of a ray's row that must be finite.
+/// Lanes of a ray's row that must be finite: origin and direction.
 const ORIGIN_AND_DIRECTION: u32 = 0x3f;
 
-/// Up to eight rays of one octant, coordinate by coordinate.
+/// Up to eight rays of one octant in SoA layout.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RayLanes {
     pub origin: [[f32; WIDTH]; 3],
     pub direction: [[f32; WIDTH]; 3],
-    /// Of the directions, NaN where one overflows though the component is not zero.
+    /// Reciprocal directions; NaN where the reciprocal of a nonzero component overflows.
     pub inverse: [[f32; WIDTH]; 3],
     pub t_min: [f32; WIDTH],
-    /// Of the rays, but finite.
+    /// `t_max` of the rays, limited to finite numbers.
     pub ray_t_max: [f32; WIDTH],
-    /// In the sense of [`cull_distance`].
+    /// `t_max` for culling, see [`cull_distance`].
     t_max: [f32; WIDTH],
-    /// The largest of these.
+    /// Maximum of `t_max`.
     pub farthest: f32,
-    /// Bit per axis: the directions' signs.
+    /// Direction signs, a bit per axis.
     pub signs: u32,
-    /// Their interval.
+    /// Interval of the rays.
     pub bundle: Bundle,
 }
 
 impl RayLanes {
-    /// Takes up to eight rays in, in place, and says what their extremes are; lanes without a ray meet nothing.
-    /// `None` where the directions do not share an octant, or a ray may start before its origin, or is infinite.
+    /// Loads up to eight rays in place and returns their extremes; unused lanes intersect nothing.
+    /// `None` if the directions do not share an octant, a ray may start before its origin, or a ray
+    /// is infinite.
     #[inline(always)]
-    pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> Option<Extent> {
+    pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> Option<RayExtremes> {
         let first = row(simd, rays.first()?);
         let mut rows = [first; WIDTH];
         for (row, ray) in rows.iter_mut().zip(rays) {
@@ -67,10 +68,10 @@ impl RayLanes {
         for lane in rays.len()..WIDTH {
             (self.t_min[lane], self.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
         }
-        Some(Extent { low, high, signs: self.signs })
+        Some(RayExtremes { low, high, signs: self.signs })
     }
 
-    /// Tells how far the active rays still go.
+    /// Updates `t_max` of the active rays.
     #[inline(always)]
     pub fn shorten(&mut self, active: u32, rays: &[Ray]) {
         for (lane, ray) in rays.iter().enumerate().take(WIDTH) {
@@ -81,7 +82,8 @@ impl RayLanes {
         self.farthest = self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a));
     }
 
-    /// [`RayLanes::shorten`] of all rays to ends that lie side by side; lanes without a ray still meet nothing.
+    /// [`RayLanes::shorten`] for all rays from an array of `t_max`; unused lanes still intersect
+    /// nothing.
     #[inline(always)]
     pub fn shorten_to<S: Lanes>(&mut self, simd: S, t_max: &[f32; WIDTH]) {
         let t_max = simd.least(simd.load(t_max) * SLACK, simd.splat(f32::MAX));
@@ -90,7 +92,7 @@ impl RayLanes {
         self.farthest = t_max.reduce_max();
     }
 
-    /// Which rays meet the box in `slot` of the bounds (bit per lane).
+    /// Bit mask of the rays that intersect the box in `slot` of the bounds.
     #[inline(always)]
     pub fn test<S: Lanes>(&self, simd: S, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize) -> u32 {
         let slot = slot & (WIDTH - 1);
@@ -100,7 +102,7 @@ impl RayLanes {
             let side = (self.signs >> axis) as usize & 1;
             let (near, far) = (planes[side][slot], planes[side ^ 1][slot]);
             let (origin, inverse) = (simd.load(&self.origin[axis]), simd.load(&self.inverse[axis]));
-            // In this order, so that a NaN leaves the range as it is.
+            // Operand order matters: a NaN leaves the interval unchanged.
             enter = simd.most((simd.splat(near) - origin) * inverse, enter);
             leave = simd.least((simd.splat(far) - origin) * inverse, leave);
         }
@@ -114,8 +116,8 @@ fn row<S: Lanes>(simd: S, ray: &Ray) -> f32x8<S> {
     [o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max].simd_into(simd)
 }
 
-/// The least and the largest of each number; `None` where a ray is infinite. (Undefined rays may be passed over, or also
-/// give `None`.)
+/// Minimum and maximum of each component; `None` where a ray is infinite. Rays with a NaN may be
+/// ignored or also give `None`.
 #[inline(always)]
 fn extremes<S: Lanes>(simd: S, rows: &[f32x8<S>; WIDTH]) -> Option<([f32; WIDTH], [f32; WIDTH])> {
     let [a, b, c, d, e, f, g, h] = *rows;
@@ -129,7 +131,7 @@ fn extremes<S: Lanes>(simd: S, rows: &[f32x8<S>; WIDTH]) -> Option<([f32; WIDTH]
     )
 }
 
-/// Rows become columns: three perfect shuffles.
+/// Transposes an 8 × 8 matrix by three perfect shuffles.
 #[inline(always)]
 fn transposed<S: Simd>(mut rows: [f32x8<S>; WIDTH]) -> [f32x8<S>; WIDTH] {
     for _ in 0..3 {

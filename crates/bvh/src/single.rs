@@ -1,4 +1,4 @@
-//! One ray at a time: nearest child first for the closest hit, any order for any hit.
+//! Single-ray traversal: ordered by distance for the closest hit, unordered for any hit.
 
 use crate::lanes::{Bits, Lanes};
 use crate::node::{Child, Node};
@@ -8,29 +8,30 @@ use crate::{Bvh, Leaf};
 use fearless_simd::{dispatch, f32x8};
 use juggler_math::Ray;
 
-/// So many rays are made ready together: each is a chain of latencies, which then overlap.
+/// Number of rays prepared together, so that their dependency chains overlap.
 const AHEAD: usize = 8;
 
 impl Bvh {
-    /// Shows the visitor every leaf that could hold the closest hit, near ones first. Lane 0.
+    /// Finds the closest hit: visits the leaves that may contain it, nearest first. The lane is 0.
     pub fn closest(&self, ray: &mut Ray, leaf: &mut impl Leaf) {
         self.closest_batch(std::slice::from_mut(ray), leaf);
     }
 
-    /// Whether the visitor finds a hit. Lane 0.
+    /// Whether the visitor reports a hit in any leaf. The lane is 0.
     pub fn any(&self, ray: &Ray, leaf: &mut impl Leaf) -> bool {
         let mut occluded = [false];
         self.any_batch(std::slice::from_ref(ray), &mut occluded, leaf);
         occluded[0]
     }
 
-    /// [`Bvh::closest`] for any number of unrelated rays; a ray's lane is its number in the slice.
+    /// [`Bvh::closest`] for any number of incoherent rays; a ray's lane is its index in the slice.
     pub fn closest_batch(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
         dispatch!(self.level, simd => self.closest_each(simd, rays, leaf));
     }
 
-    /// [`Bvh::any`] for any number of unrelated rays; a ray's lane is its number in the slice. The answers
-    /// replace what `occluded` held; rays without a place in it are not traced.
+    /// [`Bvh::any`] for any number of incoherent rays; a ray's lane is its index in the slice.
+    /// Overwrites `occluded`. If `occluded` is shorter than `rays`, the remaining rays are not
+    /// traced.
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
         dispatch!(self.level, simd => self.any_each(simd, rays, occluded, leaf));
     }
@@ -64,24 +65,24 @@ impl Bvh {
     }
 }
 
-/// What a traversal reads: the nodes of a tree, whose boxes may lie elsewhere, and what its leaves hold.
-pub(crate) trait Boxes: Copy {
-    /// The node with this number.
+/// Memory that a traversal reads: nodes and their boxes, which may be stored elsewhere.
+pub(crate) trait TraversalMemory: Copy {
+    /// Node with this index.
     fn node(&self, number: usize) -> &Node;
 
-    /// [`Node::test`] with its boxes.
+    /// [`Node::test`] against the boxes of node `number`.
     fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>);
 
-    /// Asks for a child's memory, which is read soon.
+    /// Prefetches the memory of a child.
     ///
-    /// All children that a ray meets are asked for, before the processor has to guess which is the nearest: 3 to 25 % more
-    /// incoherent rays a second where trees are larger than the second cache (Intel, 2 MiB), the same number where they
-    /// are not. (On Zen 4 it made no difference.)
+    /// Called for all intersected children before the branch on the nearest one. Gains 3 to 25 %
+    /// incoherent rays per second for trees larger than the L2 cache (Intel, 2 MiB) and nothing for
+    /// smaller trees or on Zen 4.
     #[inline(always)]
     fn prefetch(&self, _child: Child) {}
 }
 
-impl Boxes for &[Node] {
+impl TraversalMemory for &[Node] {
     #[inline(always)]
     fn node(&self, number: usize) -> &Node {
         &self[number]
@@ -93,11 +94,11 @@ impl Boxes for &[Node] {
     }
 }
 
-/// Traces one ray through the subtree at `from`, on an empty stack.
+/// Traverses the subtree at `from` with one ray, starting with an empty stack.
 #[inline(always)]
 pub(crate) fn closest_below<S: Lanes>(
     simd: S,
-    boxes: impl Boxes,
+    memory: impl TraversalMemory,
     from: Child,
     mut stack: StackView,
     (lane, ray): (usize, &mut Ray),
@@ -108,21 +109,21 @@ pub(crate) fn closest_below<S: Lanes>(
     loop {
         let ray_slabs = reloaded(&slabs);
         while !current.is_leaf() {
-            let (mask, enter) = boxes.test(simd, current.0 as usize, &ray_slabs);
-            let node = boxes.node(current.0 as usize);
+            let (mask, enter) = memory.test(simd, current.0 as usize, &ray_slabs);
+            let node = memory.node(current.0 as usize);
             let next = nearest(
                 mask,
                 &enter.into(),
                 &mut stack,
                 #[inline(always)]
                 |slot| {
-                    boxes.prefetch(node.children[slot]);
+                    memory.prefetch(node.children[slot]);
                     node.children[slot].0
                 },
             );
             current = match next {
                 Some(word) => Child(word),
-                None => match next_below(&mut stack, ray_slabs.t_max) {
+                None => match pop_nearer_than(&mut stack, ray_slabs.t_max) {
                     Some(child) => child,
                     None => return,
                 },
@@ -130,16 +131,16 @@ pub(crate) fn closest_below<S: Lanes>(
         }
         leaf.closest(lane, ray, current.items());
         slabs.t_max = cull_distance(ray.t_max);
-        let Some(next) = next_below(&mut stack, slabs.t_max) else { return };
+        let Some(next) = pop_nearer_than(&mut stack, slabs.t_max) else { return };
         current = next;
     }
 }
 
-/// Whether one ray hits something in the subtree at `from`, on an empty stack.
+/// Whether one ray hits anything in the subtree at `from`, starting with an empty stack.
 #[inline(always)]
 pub(crate) fn any_below<S: Lanes>(
     simd: S,
-    boxes: impl Boxes,
+    memory: impl TraversalMemory,
     from: Child,
     mut stack: StackView,
     (lane, ray): (usize, &Ray),
@@ -150,14 +151,14 @@ pub(crate) fn any_below<S: Lanes>(
     loop {
         let slabs = reloaded(slabs);
         while !current.is_leaf() {
-            let (mask, _) = boxes.test(simd, current.0 as usize, &slabs);
-            let node = boxes.node(current.0 as usize);
-            let next = first(
+            let (mask, _) = memory.test(simd, current.0 as usize, &slabs);
+            let node = memory.node(current.0 as usize);
+            let next = last_child(
                 mask,
                 &mut stack,
                 #[inline(always)]
                 |slot| {
-                    boxes.prefetch(node.children[slot]);
+                    memory.prefetch(node.children[slot]);
                     node.children[slot].0
                 },
             );
@@ -178,18 +179,18 @@ pub(crate) fn any_below<S: Lanes>(
     }
 }
 
-/// A copy that the compiler believes to be new. Otherwise it makes the slabs' vectors once per ray, runs out of registers
-/// at the leaves, and loads them from the stack at every node; a copy after each leaf keeps them in registers between
-/// nodes (17 % fewer instructions a ray).
+/// Copies the slabs in a way that the optimizer cannot see through. Otherwise it broadcasts the
+/// vectors once per ray, spills them at the leaves and reloads them at every node; a copy after
+/// each leaf keeps them in registers between nodes (17 % fewer instructions per ray).
 #[inline(always)]
 fn reloaded(slabs: &Slabs) -> Slabs {
     *std::hint::black_box(slabs)
 }
 
-/// The slot of the largest of the children that are met, which the builder puts last: it most likely holds a hit. The
-/// words of the others go onto the stack.
+/// Slot of the last intersected child, which the builder makes the largest and so the most likely
+/// one to be hit. Pushes the words of the others.
 #[inline(always)]
-pub(crate) fn first(mut mask: u32, stack: &mut StackView, word: impl Fn(usize) -> u32) -> Option<usize> {
+pub(crate) fn last_child(mut mask: u32, stack: &mut StackView, word: impl Fn(usize) -> u32) -> Option<usize> {
     let last = mask.checked_ilog2()?;
     mask ^= 1 << last;
     for slot in Bits(mask) {
@@ -198,9 +199,9 @@ pub(crate) fn first(mut mask: u32, stack: &mut StackView, word: impl Fn(usize) -
     Some(last as usize)
 }
 
-/// The next child on the stack that is entered before `t_max`.
+/// Pops the next child that is entered at or before `t_max`.
 #[inline(always)]
-pub(crate) fn next_below(stack: &mut StackView, t_max: f32) -> Option<Child> {
+pub(crate) fn pop_nearer_than(stack: &mut StackView, t_max: f32) -> Option<Child> {
     while let Some(entry) = stack.pop() {
         if distance(entry) <= t_max {
             return Some(Child(entry as u32));
@@ -209,11 +210,12 @@ pub(crate) fn next_below(stack: &mut StackView, t_max: f32) -> Option<Child> {
     None
 }
 
-/// The word of the nearest of the children that are met; the others go onto the stack, farthest first.
+/// Word of the nearest intersected child; pushes the others, farthest first.
 ///
-/// One and two children are the rule and stand apart: branches let the processor guess the next node and fetch it before
-/// the boxes are tested, selections would not. Three and four are sorted by compare-exchanges in registers. The nearest
-/// never goes through memory, where its load would wait for its store.
+/// One and two children are the common cases and use branches: the processor then predicts the next
+/// node and loads it speculatively, before the boxes are tested. Three and four children are sorted
+/// by compare-exchange in registers. The nearest child never goes through memory, which would add
+/// store-to-load latency.
 #[inline(always)]
 pub(crate) fn nearest(mask: u32, enter: &[f32; 8], stack: &mut StackView, word: impl Fn(usize) -> u32) -> Option<u32> {
     let mut entries = Bits(mask).map(
@@ -250,7 +252,7 @@ pub(crate) fn nearest(mask: u32, enter: &[f32; 8], stack: &mut StackView, word: 
     Some(a as u32)
 }
 
-/// Two entries, the smaller first, without a branch.
+/// Sorts two entries without a branch.
 #[inline(always)]
 fn ordered(a: u64, b: u64) -> (u64, u64) {
     (a.min(b), a.max(b))

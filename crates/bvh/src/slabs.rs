@@ -1,21 +1,24 @@
-//! A ray, or several at once, made ready for box tests.
+//! A ray, or the interval of several rays, prepared for box tests.
 //!
-//! The slab test (Kay and Kajiya 1986): a box is entered at the last of its three near planes and left at
-//! the first of its far planes. Three rules make it safe to cull by:
+//! Slab test (Kay and Kajiya 1986): a ray enters a box at the last of its three near planes and
+//! leaves it at the first of its three far planes. Three rules make the test conservative:
 //!
-//! - The far distances are widened by 8 ulp. Rounding of the test itself can cost 3.5 (Ize 2013), the rest
-//!   covers the rounding of what lies in the box. A single ray's planes are also moved outwards by a few ulp of the
-//!   origin, so that the test may be one multiplication and subtraction, fused or not.
-//! - A direction component of zero gives an infinite inverse, and `0 · infinity` (the origin lies in a plane
-//!   of the box) a NaN, which must not narrow the range. A component so small that its inverse overflows
-//!   would give wrong distances; its inverse is made NaN, so that this axis never narrows anything. A single ray takes
-//!   a large finite inverse instead and planes moved outwards (`Slabs::parallel`), for its offsets must be finite.
-//! - Distances up to `t_max` and a hair more count, so that hits whose distance is rounded the other way
-//!   than their box's are still seen, whatever the order.
+//! - Far distances are enlarged by 8 ulps. The rounding of the test itself costs up to 3.5 (Ize
+//!   2013); the rest covers the rounding of the items in the box. A single ray's planes are also
+//!   moved outward by a few ulps of the origin, so that a multiply-add, fused or not, suffices per
+//!   plane.
+//! - A zero direction component has an infinite reciprocal, and `0 · infinity` (the origin lies in
+//!   a plane of the box) is a NaN, which must not narrow the interval. The reciprocal of a
+//!   component so small that it overflows would give wrong distances and is replaced by NaN, so
+//!   that its axis never narrows the interval. A single ray uses a large finite reciprocal and
+//!   planes moved outward instead (`Slabs::parallel`), since its offsets must be finite.
+//! - Boxes are entered up to slightly beyond `t_max`, so that a hit is found in any order of
+//!   traversal even if its distance and that of its box round differently.
 //!
-//! For several rays of one octant the same six planes are tested with the extreme origins and inverses
-//! (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray
-//! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
+//! For several rays of one octant, the same planes are tested with the extreme origins and
+//! reciprocals (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling
+//! Methods for Entire Ray Packets", 2006). Rounding is monotonic, so the interval's result bounds
+//! that of each ray exactly.
 
 use crate::lanes::Lanes;
 use crate::node::WIDTH;
@@ -26,16 +29,19 @@ use juggler_math::{Ray, Vec3};
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
 pub(crate) const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
 
-/// How much of its offset a plane may be off by: rounding of the inverse and of the offset, 2 ulp with room.
+/// Relative error bound of a plane's offset: 2 ulps for the rounding of reciprocal and offset,
+/// doubled.
 const OFFSET: f32 = 4.0 * f32::EPSILON;
 
-/// One ray, ready for [`meet`](crate::node::meet): a plane at `p` is met at
-/// `p * inverse + offset`, with both rounded to the safe side. The fourth of each four means nothing.
+/// A ray prepared for [`intersect_boxes`](crate::node::intersect_boxes): the distance to a plane at
+/// `p` is `p * inverse + offset`, rounded to the conservative side. The fourth element of each
+/// array is unused.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Slabs {
-    /// Bit per axis: 0 where the minimum is the near plane, 1 where the maximum is.
+    /// Bit per axis: 0 if the minimum is the near plane, 1 if the maximum is.
     pub signs: u32,
-    /// Of the direction as it is: infinite where it is zero, NaN where only the inverse overflows.
+    /// Reciprocal direction: infinite for a zero component, NaN where only the reciprocal
+    /// overflows.
     pub exact_inverse: [f32; 4],
     pub inverse: [f32; 4],
     pub near_offset: [f32; 4],
@@ -45,31 +51,31 @@ pub(crate) struct Slabs {
     pub t_max: f32,
 }
 
-/// The interval of several rays, ready for [`Node::test_bundle`](crate::node::Node::test_bundle): a plane at `p` is
-/// met at `(p - origin) * inverse`.
+/// Interval of several rays, prepared for [`Node::test_bundle`](crate::node::Node::test_bundle):
+/// the distance to a plane at `p` is `(p - origin) * inverse`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bundle {
-    /// Per axis 0 where the minimum is the near plane, 1 where the maximum is.
+    /// Per axis: 0 if the minimum is the near plane, 1 if the maximum is.
     pub side: [usize; 3],
-    /// Of the rays that enter first: origin and direction. (The other two mean nothing.)
+    /// Origin and direction that enter first; the last two elements are unused.
     pub near: [f32; WIDTH],
-    /// Of the rays that leave last.
+    /// Origin and direction that leave last; the last two elements are unused.
     pub far: [f32; WIDTH],
-    /// The inverses of these, as [`inverses`] gives them.
+    /// Reciprocals of `near`, see [`inverses`].
     pub near_inverse: [f32; WIDTH],
     pub far_inverse: [f32; WIDTH],
     pub t_min: f32,
     pub t_max: f32,
 }
 
-/// The distance up to which boxes are opened for hits up to `t_max`.
+/// Distance up to which boxes are entered to find hits up to `t_max`.
 #[inline(always)]
 pub(crate) fn cull_distance(t_max: f32) -> f32 {
-    // Never infinite: planes parallel to the ray and beside it lie at infinity.
+    // Never infinite: planes parallel to the ray that it misses lie at infinity.
     (t_max * SLACK).min(f32::MAX)
 }
 
-/// The inverses of a direction's components, NaN where one overflows though the component is not zero.
+/// Reciprocals of a direction's components; NaN where that of a nonzero component overflows.
 #[inline(always)]
 pub(crate) fn inverses(direction: Vec3) -> Vec3 {
     let inverses = Vec3::ONE / direction;
@@ -95,7 +101,7 @@ impl Slabs {
         slabs
     }
 
-    /// Takes a ray in, in place: a copy by wide loads would wait for the narrow stores before it.
+    /// Loads a ray in place: a copy by wide loads would stall on the narrow stores before it.
     #[inline(always)]
     pub fn fill<S: Lanes>(&mut self, simd: S, ray: &Ray) {
         let (o, d) = (ray.origin, ray.direction);
@@ -121,13 +127,14 @@ impl Slabs {
         };
     }
 
-    /// For rays that run parallel, or almost, to an axis plane: along that axis the ray stays where it is, so
-    /// planes lie far behind or far ahead. The offset is exact, a power of two times the origin, and a plane
-    /// through the origin counts as before and behind. Planes a step of rounding beside the origin lie 2^100 away:
-    /// of such a ray hits beyond that (1.3e30 lengths of its direction) may be missed.
+    /// Prepares a ray that is parallel, or nearly so, to a coordinate plane. Along the axis in
+    /// question the ray does not move, so planes lie far behind or far ahead. The offset is exact,
+    /// a power of two times the origin, and a plane through the origin counts as both. Planes one
+    /// ulp beside the origin lie at a distance of 2^100; hits of such a ray beyond that (1.3e30
+    /// times its direction's length) may be missed.
     ///
-    /// A ray from nowhere, or to nowhere (not a number, infinite), meets nothing, not even empty boxes: their planes lie
-    /// at infinity, and zero times infinity would never end a traversal.
+    /// A ray that is not finite intersects nothing, not even empty boxes: their planes lie at
+    /// infinity, and a NaN from zero times infinity would keep the traversal from ending.
     #[cold]
     #[inline(never)]
     fn parallel(ray: Ray) -> Self {
@@ -168,17 +175,17 @@ impl Slabs {
     }
 }
 
-/// Extremes of several rays: origin, direction, `t_min`, `t_max`; and the signs that all directions have.
+/// Extremes of several rays: origin, direction, `t_min`, `t_max`; and their common direction signs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Extent {
+pub(crate) struct RayExtremes {
     pub low: [f32; WIDTH],
     pub high: [f32; WIDTH],
-    /// Bit per axis.
+    /// Common direction signs, a bit per axis.
     pub signs: u32,
 }
 
-impl Extent {
-    /// Of both; `None` where the directions do not share an octant.
+impl RayExtremes {
+    /// Union of two extremes; `None` if the directions do not share an octant.
     #[inline(always)]
     pub fn union<S: Lanes>(&self, simd: S, other: &Self) -> Option<Self> {
         let low = simd.least(simd.load(&self.low), simd.load(&other.low)).into();
@@ -186,10 +193,10 @@ impl Extent {
         (self.signs == other.signs).then_some(Self { low, high, signs: self.signs })
     }
 
-    /// What this misses, every one of the rays misses.
+    /// Conservative interval: a box that it misses is missed by every ray.
     ///
-    /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
-    /// distance (smallest inverse) and the far planes their largest.
+    /// Distances below `t_min >= 0` are clipped anyway, so the near planes only need their smallest
+    /// positive distance (smallest reciprocal) and the far planes their largest.
     #[inline(always)]
     pub fn bundle<S: Lanes>(&self, simd: S) -> Bundle {
         let (low, high) = (simd.load(&self.low), simd.load(&self.high));
@@ -211,7 +218,7 @@ impl Extent {
     }
 }
 
-/// [`inverses`], eight at a time.
+/// [`inverses`] of eight components.
 #[inline(always)]
 pub(crate) fn inverses_of<S: Lanes>(simd: S, components: f32x8<S>) -> f32x8<S> {
     let inverses = simd.splat(1.0) / components;

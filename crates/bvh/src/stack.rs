@@ -1,37 +1,38 @@
-//! The traversal's stack: a fixed array, large enough for every tree, of which only what is used is touched.
+//! Traversal stack: a fixed array that is large enough for every tree and is not initialized.
 //!
-//! An entry is a distance and a word in one `u64`, so that for distances of at least zero the order of the
-//! entries is the order of the numbers.
+//! An entry packs a distance and a word into one `u64`, so that entries with non-negative distances
+//! compare as integers.
 
 use std::mem::MaybeUninit;
 
-/// 72 levels of 7 waiting children. A power of two, so that a bit mask keeps an index in range.
+/// Capacity: 72 levels with 7 waiting children each. A power of two, so that a bit mask keeps an
+/// index in range.
 pub(crate) const SIZE: usize = 512;
 const MASK: usize = SIZE - 1;
 
-/// Memory of pending work between traversals and, for rays in flight, between steps. The first `len` entries have been
-/// written; of more than `SIZE`, all have.
+/// Stack memory, reused between traversals and, for rays in flight, between steps. The first
+/// `min(len, SIZE)` entries are initialized.
 pub(crate) struct Stack {
     len: usize,
     entries: [MaybeUninit<u64>; SIZE],
 }
 
-/// A stack during a traversal, nearest entry on top. The length is a local variable of the traversal: the compiler keeps
-/// it in a register, which it cannot do with the field of a [`Stack`]. What lies below `base` belongs to another
-/// traversal and is left alone.
+/// A stack during a traversal, nearest entry on top. The length is a local variable here, which the
+/// compiler keeps in a register, unlike the field of a [`Stack`]. Entries below `base` belong to
+/// another traversal.
 pub(crate) struct StackView<'a> {
     base: usize,
     len: usize,
     stack: &'a mut Stack,
 }
 
-/// Distance and word in one number.
+/// Packs a distance and a word into an entry.
 #[inline(always)]
 pub(crate) fn entry(enter: f32, word: u32) -> u64 {
     u64::from(enter.to_bits()) << 32 | u64::from(word)
 }
 
-/// The distance of an entry.
+/// Distance of an entry.
 #[inline(always)]
 pub(crate) fn distance(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
@@ -49,7 +50,7 @@ impl Stack {
         self.len = 0;
     }
 
-    /// The stack with all its entries.
+    /// View of all entries.
     #[inline(always)]
     pub fn view(&mut self) -> StackView<'_> {
         StackView { base: 0, len: self.len, stack: self }
@@ -57,7 +58,7 @@ impl Stack {
 }
 
 impl StackView<'_> {
-    /// An empty stack on top of this one.
+    /// An empty view on top of this one.
     #[inline(always)]
     pub fn above(&mut self) -> StackView<'_> {
         StackView { base: self.len, len: self.len, stack: self.stack }
@@ -103,8 +104,9 @@ impl StackView<'_> {
     )]
     fn read(&self, position: usize) -> u64 {
         debug_assert!(position < self.len);
-        // SAFETY: only `push` and `insert` raise `len`, by one, and write the entry that this adds, `insert` at the
-        // latest when all above it have moved up; so entries below `len` are written. Callers read below `len`.
+        // SAFETY: only `push` and `insert` raise `len`, by one, and write the entry that this adds,
+        // `insert` at the latest when all above it have moved up; so entries below `len` are
+        // written. Callers read below `len`.
         unsafe { self.stack.entries[position & MASK].assume_init() }
     }
 

@@ -1,75 +1,78 @@
-//! The watertight ray-triangle test (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection",
-//! JCGT 2(1)).
+//! Watertight ray-triangle intersection (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
+//! Intersection", JCGT 2(1)).
 //!
-//! The triangle is sheared so that the ray becomes the z axis; what is left is on which side of three edges
-//! the origin of the plane lies. Two triangles that share an edge compute the same number for it with
-//! opposite sign, so no ray can pass between them. Both faces are hit.
+//! A shear aligns the ray with the z axis. The test then evaluates three edge functions at the
+//! origin. Two triangles that share an edge compute its edge function with the same magnitude and
+//! opposite sign, so no ray passes between them. Triangles are two-sided.
 //!
-//! Deviations from the paper: the winding is not kept, for nothing is culled by it; single precision, eight triangles at
-//! a time, only tells misses (a product difference rounds to zero or keeps its sign), weights and distance of hits are always summed
-//! in double precision; and the distance is never before the entry of the triangle's own box, so that which hit is
-//! closest cannot depend on the order in which boxes are visited.
+//! Deviations from the paper: the winding is not preserved, since there is no back-face culling.
+//! Single precision, eight triangles at a time, only rejects misses (a difference of products keeps
+//! its sign or rounds to zero); barycentric weights and distance of a hit are always computed in
+//! double precision. The distance is clamped to the entry of the triangle's own box, so that the
+//! closest hit does not depend on the traversal order.
 
 use crate::lanes::{max, min};
 use crate::slabs::inverses;
 use juggler_math::{Ray, Vec3};
 
-/// No hit is farther: a distance that is no number of single precision is none that could be compared.
+/// Upper bound of hit distances: larger ones are infinite in single precision and cannot be
+/// compared.
 pub(crate) const FARTHEST: f32 = f32::MAX;
 
-/// How the distance and the weights of a hit are found. Whether a ray passes inside of a triangle is told the same way
-/// by both.
+/// Precision of a hit's distance and barycentric weights. Both variants decide hit or miss by the
+/// same edge test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TriangleTest {
-    /// In double precision: watertight, and exact however slender the triangle is.
+    /// Double precision: watertight, and accurate for slender triangles.
     #[default]
     Watertight,
-    /// In single precision: slender triangles may be off by thousands of ulp, so that rays that leave them may
-    /// meet them again. For queries that want no more than a hit. Which of two hits within that error is the closest may
-    /// depend on the call.
+    /// Single precision: the distance to a slender triangle may be off by thousands of ulps, so
+    /// rays that leave it may hit it again, and the closest of two hits within that error may
+    /// depend on the query. Suitable for queries that only need a hit.
     Fast,
 }
 
-/// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
-/// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
-/// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
-/// never hit.
+/// Intersects a ray with a two-sided triangle. Returns `(t, u, v)` with `t` in units of the
+/// direction's length, between `t_min` and `t_max`, and the barycentric weights of `b` and `c`
+/// (that of `a` is `1 - u - v`). A ray through an edge or a vertex hits at least one of the
+/// adjacent triangles. Degenerate triangles are never hit.
 pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32, f32)> {
     let [x, y, z] = inverses(ray.direction).to_array();
     let signs = (0..3).fold(0, |signs, axis| signs | u32::from(ray.direction[axis].is_sign_negative()) << axis);
-    let shear = Shear::of(ray, [x, y, z, 0.0], signs);
+    let shear = Shear::new(ray, [x, y, z, 0.0], signs);
     let corners = [a, b, c].map(|corner| shear.axes.map(|axis| corner[axis]));
     let hit = shear.intersect(ray, corners)?;
     has_area([a, b, c]).then_some(hit)
 }
 
-/// Whether the triangle is one: finite, and with an area that is not zero in double precision.
+/// Whether the vertices are finite and the area is not zero in double precision.
 pub(crate) fn has_area([a, b, c]: [Vec3; 3]) -> bool {
     let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
     a.is_finite() && b.is_finite() && c.is_finite() && normal != juggler_math::DVec3::ZERO
 }
 
-/// A ray made ready for triangles: the shear that makes it the z axis, and what it takes to say where it enters
-/// a box. All by permuted axis: z is where the direction is largest.
+/// Precomputed ray data for triangle tests: the shear that aligns the ray with the z axis, and the
+/// data for the entry into a box. Axes are permuted so that z is the direction's largest component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    /// The axes that become x, y and z.
+    /// Object-space axes that become x, y and z.
     pub axes: [usize; 3],
     pub origin: [f32; 3],
-    /// What to multiply z by and subtract from x and y, and what to multiply z by.
+    /// Shear of x and y, as multiples of z, and scale of z.
     pub factors: [f32; 3],
     pub inverse: [f32; 3],
-    /// Where the minimum is the near plane 0, else 1.
+    /// Per axis: 0 where the minimum is the near plane, 1 where the maximum is.
     pub side: [usize; 3],
 }
 
-/// A vertex in the ray's frame.
+/// A vertex in the sheared frame.
 pub(crate) type Point = [f32; 3];
 
 impl Shear {
-    /// `inverse` of the direction as [`inverses`] gives it, `signs` of the direction, a bit per axis.
+    /// Constructs the shear. `inverse` is the reciprocal direction as [`inverses`] returns it;
+    /// `signs` has a bit per axis, set for a negative direction.
     #[inline(always)]
-    pub fn of(ray: &Ray, inverse: [f32; 4], signs: u32) -> Self {
+    pub fn new(ray: &Ray, inverse: [f32; 4], signs: u32) -> Self {
         const NEXT: [usize; 3] = [1, 2, 0];
         const LAST: [usize; 3] = [2, 0, 1];
         let size = ray.direction.abs();
@@ -94,20 +97,21 @@ impl Shear {
         [x - self.factors[0] * z, y - self.factors[1] * z, self.factors[2] * z]
     }
 
-    /// [`intersect_triangle`] for the ray that the shear was made of and a triangle that [has an area](has_area), its
+    /// [`intersect_triangle`] for this shear's ray and a triangle that [has an area](has_area);
     /// coordinates in the order of [`Shear::axes`].
     #[inline(always)]
     pub fn intersect(&self, ray: &Ray, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
         let points = [self.project(corners[0]), self.project(corners[1]), self.project(corners[2])];
         let end = max(points[0][2], max(points[1][2], points[2][2]));
-        let (t, u, v) = weigh(points)?;
+        let (t, u, v) = barycentric_hit(points)?;
         let (t_min, t_max) = (ray.t_min, ray.t_max);
         let t_clamped = self.clamp(t, corners);
         let t_max = min(t_max, FARTHEST);
         (t <= t_max && end >= t_min && t_min <= t_clamped && t_clamped <= t_max).then_some((t_clamped, u, v))
     }
 
-    /// The distance, but not before the ray's line enters the box of the triangle as the traversal computes it.
+    /// Clamps `t` to the entry of the ray's line into the triangle's box, computed as in the
+    /// traversal.
     #[inline(always)]
     pub fn clamp(&self, t: f32, corners: [[f32; 3]; 3]) -> f32 {
         let mut enter = t;
@@ -118,23 +122,23 @@ impl Shear {
         enter
     }
 
-    /// Least (side 0) or largest coordinate of the corners along an axis. Looked up, not chosen: the signs are
-    /// hard to guess for the processor.
+    /// Minimum (side 0) or maximum (side 1) of the vertices along an axis. An array lookup in place
+    /// of a branch, since direction signs are hard to predict.
     #[inline(always)]
     pub fn near([a, b, c]: &[[f32; 3]; 3], axis: usize, side: usize) -> f32 {
         [min(a[axis], min(b[axis], c[axis])), max(a[axis], max(b[axis], c[axis]))][side & 1]
     }
 }
 
-/// Distance and weights of the second and third corner; `None` where the axis passes outside.
+/// Distance and weights of the second and third vertex; `None` where the axis misses the triangle.
 ///
-/// In double precision products are exact. So what is found lies on the triangle of the given points, and is off by
-/// no more than their own rounding, however slender the triangle is.
+/// Products of single-precision numbers are exact in double precision, so the error is bounded by
+/// that of the projected vertices, however slender the triangle is.
 #[inline(always)]
-fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+fn barycentric_hit(points: [Point; 3]) -> Option<(f32, f32, f32)> {
     let [e, f, g] = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
     let determinant = e + f + g;
-    // Selections, for the signs of edges are hard to guess for the processor.
+    // Select instead of branching: the signs of edge functions are hard to predict.
     let less = |a: f64, b: f64| if a < b { a } else { b };
     let more = |a: f64, b: f64| if a > b { a } else { b };
     let outside = (less(e, less(f, g)) < 0.0) & (more(e, more(f, g)) > 0.0);
@@ -147,7 +151,7 @@ fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
     Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
 }
 
-/// Twice the signed areas between the axis and each edge, in the order of the opposite corners.
+/// Edge functions at the origin (twice the signed areas), in the order of the opposite vertices.
 #[inline(always)]
 pub(crate) fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
@@ -173,10 +177,10 @@ mod tests {
     }
 
     #[test]
-    fn only_the_stretch_of_the_ray_counts() {
+    fn hits_lie_in_the_interval_of_the_ray() {
         let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), -Vec3::Z);
-        assert!(intersect_triangle(&ray.up_to(1.0), A, B, C).is_some());
-        assert!(intersect_triangle(&ray.up_to(0.99), A, B, C).is_none());
+        assert!(intersect_triangle(&ray.with_t_max(1.0), A, B, C).is_some());
+        assert!(intersect_triangle(&ray.with_t_max(0.99), A, B, C).is_none());
         assert!(intersect_triangle(&Ray { t_min: 1.01, ..ray }, A, B, C).is_none());
         assert!(intersect_triangle(&Ray { direction: Vec3::Z, ..ray }, A, B, C).is_none());
     }
@@ -200,12 +204,12 @@ mod tests {
         assert_eq!(through(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO), None);
         assert_eq!(through(Vec3::NAN, Vec3::X, Vec3::Y), None);
         assert_eq!(through(Vec3::INFINITY, Vec3::X, Vec3::Y), None);
-        // Edge-on: the plane holds the ray.
+        // Edge-on: the ray lies in the triangle's plane.
         assert_eq!(through(-Vec3::X, Vec3::X, -Vec3::Z), None);
         assert_eq!(intersect_triangle(&Ray::new(Vec3::Z, Vec3::ZERO), A, B, C), None);
     }
 
-    /// The direction is so short that the distance in its units overflows.
+    /// The direction is so short that `t` overflows.
     #[test]
     fn nothing_is_hit_at_infinity() {
         let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0) * 1e20, -Vec3::Z * 1e-20);

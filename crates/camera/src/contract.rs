@@ -1,8 +1,8 @@
-//! What every camera must keep, and the fields that all share.
+//! Contract tests of all cameras, and of the fields that they share.
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared, close, close3};
-use juggler_math::{Ray, Vec2, Vec3, fun};
+use juggler_math::{Ray, Vec2, Vec3, portable};
 
 const SIZE: UVec2 = UVec2::new(64, 48);
 
@@ -11,15 +11,15 @@ fn parse(json: &str) -> AnyCamera {
 }
 
 fn ray(camera: &AnyCamera, film: Vec2) -> Ray {
-    camera.project(SIZE).unwrap().ray(film, Vec2::splat(0.5), 0.0)
+    camera.projection(SIZE).unwrap().ray(film, Vec2::splat(0.5), 0.0)
 }
 
-/// The ray through the picture's centre.
+/// Ray through the center of the picture.
 fn axis(json: &str) -> Ray {
     ray(&parse(json), SIZE.as_vec2() * 0.5)
 }
 
-/// The picture's right and upward directions, from rays (or their origins) at its edges.
+/// Directions of the picture's right and top, from points on rays through its edges.
 fn sides(json: &str) -> (Vec3, Vec3) {
     let camera = parse(json);
     let far = |x: f32, y: f32| ray(&camera, Vec2::new(x, y)).at(10.0);
@@ -30,7 +30,7 @@ fn sides(json: &str) -> (Vec3, Vec3) {
 fn rays_are_unit_and_carry_the_time() {
     let mut random = Random::new(41);
     for camera in AnyCamera::examples() {
-        let projection = camera.project(SIZE).unwrap();
+        let projection = camera.projection(SIZE).unwrap();
         for _ in 0..2000 {
             let film = random.vec2() * SIZE.as_vec2();
             let ray = projection.ray(film, random.vec2(), 0.25);
@@ -50,7 +50,8 @@ fn pictures_are_not_mirrored() {
     }
 }
 
-/// Wherever a ray crosses the film, it leaves the lens anywhere alike: 8 rings of the same area by 16 sectors.
+/// Ray origins are uniform on the lens, for any point of the film: 8 rings of equal area by 16
+/// sectors.
 #[test]
 fn lenses_are_filled_evenly() {
     let (mut random, count) = (Random::new(42), 1_000_000);
@@ -61,7 +62,7 @@ fn lenses_are_filled_evenly() {
         if radius == 0.0 {
             continue;
         }
-        let projection = camera.project(SIZE).unwrap();
+        let projection = camera.projection(SIZE).unwrap();
         assert!(projection.needs_lens());
         let mut observed = [0.0; 128];
         for _ in 0..count {
@@ -69,8 +70,8 @@ fn lenses_are_filled_evenly() {
             assert!(aside.dot(axes.forward).abs() < 1e-5 * radius.max(1.0));
             let (x, y) = (aside.dot(axes.right) / radius, aside.dot(axes.up) / radius);
             let ring = (((x * x + y * y) * 8.0) as usize).min(7);
-            let turn = (fun::atan2(y, x) / std::f32::consts::TAU).rem_euclid(1.0);
-            observed[ring * 16 + ((turn * 16.0) as usize).min(15)] += 1.0;
+            let azimuth = (portable::atan2(y, x) / std::f32::consts::TAU).rem_euclid(1.0);
+            observed[ring * 16 + ((azimuth * 16.0) as usize).min(15)] += 1.0;
         }
         chi_squared(&observed, &[f64::from(count) / 128.0; 128], 5e-4).unwrap_or_else(|e| panic!("{camera:?}: {e}"));
         lenses += 1;
@@ -89,7 +90,7 @@ fn json_goes_round() {
 #[test]
 fn fields_of_view_span_their_angles() {
     for (json, top, right) in [
-        (r#"{"perspective": {}}"#, fun::tan(20f32.to_radians()), None),
+        (r#"{"perspective": {}}"#, portable::tan(20f32.to_radians()), None),
         (r#"{"perspective": {"vertical_fov_degrees": 90}}"#, 1.0, None),
         (r#"{"perspective": {"horizontal_fov_degrees": 90}}"#, 0.75, None),
         (r#"{"perspective": {"screen": {"width": 100, "distance": 50}}}"#, 0.75, None),
@@ -109,9 +110,10 @@ fn fields_of_view_span_their_angles() {
 
 #[test]
 fn vertical_angle_is_the_zoom_angle_of_scalablitz() {
-    // Its ray through pixel (x, y): zoom · ((2x/W - 1) · W/H, 1 - 2y/H) with zoom = tan(π α / 360).
+    // ScalaBlitz's ray through pixel (x, y): zoom · ((2x/W - 1) · W/H, 1 - 2y/H) with zoom = tan(π
+    // α / 360).
     let camera = parse(r#"{"perspective": {"vertical_fov_degrees": 30}}"#);
-    let zoom = fun::tan(std::f32::consts::PI * 30.0 / 360.0);
+    let zoom = portable::tan(std::f32::consts::PI * 30.0 / 360.0);
     for (x, y) in [(0.0, 0.0), (10.0, 40.0), (63.0, 1.0)] {
         let d = ray(&camera, Vec2::new(x, y)).direction;
         let theirs = Vec2::new((2.0 * x / 64.0 - 1.0) * 64.0 / 48.0, 1.0 - 2.0 * y / 48.0) * zoom;
@@ -154,16 +156,17 @@ fn turns_have_a_pilots_signs() {
     assert!(close3(axis(&facing(r#""pitch_degrees": 45"#)).direction, Vec3::new(0.0, half, -half), 1e-6));
     let (right, up) = sides(&facing(r#""roll_degrees": 45"#));
     assert!(close3(up, Vec3::new(half, half, 0.0), 1e-6) && close3(right, Vec3::new(half, -half, 0.0), 1e-6));
-    // Yaw first, then pitch about the axis that the yaw has turned.
+    // Yaw comes first, then pitch about the right axis that yaw has rotated.
     let both = axis(&facing(r#""yaw_degrees": 90, "pitch_degrees": 45"#));
     assert!(close3(both.direction, Vec3::new(half, half, 0.0), 1e-6), "{both:?}");
 }
 
 #[test]
 fn scalablitz_rotations_are_yaw_and_pitch() {
-    // Forward (-cos p sin j, sin p, cos p cos j) with its z, which goes into the picture, turned round.
+    // Forward (-cos p sin j, sin p, cos p cos j) with the z axis, which points into the picture,
+    // reversed.
     for (p, j) in [(0.1f32, 0.3f32), (-0.7, 1.2), (0.4, -2.0)] {
-        let ((sp, cp), (sj, cj)) = (fun::sin_cos(p), fun::sin_cos(j));
+        let ((sp, cp), (sj, cj)) = (portable::sin_cos(p), portable::sin_cos(j));
         let turn = format!(r#""pitch_degrees": {}, "yaw_degrees": {}"#, p.to_degrees(), -j.to_degrees());
         let json = format!(r#"{{"perspective": {{"direction": [0, 0, -1], {turn}}}}}"#);
         assert!(close3(axis(&json).direction, Vec3::new(-cp * sj, sp, -cp * cj), 1e-6));
@@ -177,7 +180,8 @@ fn scalablitz_rotations_are_yaw_and_pitch() {
 fn moves_along_its_own_axes() {
     let json = r#"{"orthographic": {"eye": [1, 2, 3], "direction": [-1, 0, 0], "roll_degrees": 90,
         "move": {"right": 10, "up": 100, "forward": 1000}}}"#;
-    // Facing -x its right is -z; rolled by 90 degrees its top is -z and its right is -y.
+    // A camera that faces -x has -z on its right; after a roll of 90 degrees, -z at its top and -y
+    // on its right.
     assert!(close3(axis(json).origin, Vec3::new(1.0 - 1000.0, 2.0 - 10.0, 3.0 - 100.0), 1e-6));
 }
 
@@ -187,7 +191,7 @@ fn the_far_and_the_near_are_no_trouble() {
         let ray = axis(&format!(r#"{{"perspective": {{"eye": {eye}}}}}"#));
         assert!(close(ray.direction.length(), 1.0, 3e-7), "{ray:?}");
     }
-    assert!(parse(r#"{"perspective": {}}"#).project(UVec2::ZERO).is_ok());
+    assert!(parse(r#"{"perspective": {}}"#).projection(UVec2::ZERO).is_ok());
 }
 
 #[test]
@@ -209,7 +213,7 @@ fn says_what_is_wrong() {
         (r#""view_plane": {"width": 1, "height": 1, "distance": -1}"#, "view_plane.distance"),
         (r#""view_plane": {"width": 1, "height": 1, "distance": 1}, "horizontal_fov_degrees": 9"#, "view_plane"),
     ] {
-        let error = parse(&format!(r#"{{"perspective": {{{fields}}}}}"#)).project(SIZE).unwrap_err();
+        let error = parse(&format!(r#"{{"perspective": {{{fields}}}}}"#)).projection(SIZE).unwrap_err();
         assert_eq!(error.field, field, "{fields}");
         assert!(error.message.contains(field.rsplit('.').next().unwrap()), "{}", error.message);
     }

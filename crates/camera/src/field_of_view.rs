@@ -1,61 +1,65 @@
-//! How much a perspective camera sees: exactly one of four ways to say it.
+//! Field of view of a perspective camera, given by one of four alternatives.
 
 use super::InvalidCamera;
-use juggler_math::{UVec2, Vec2, fun};
+use juggler_math::{UVec2, Vec2, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A virtual screen in front of the eye; its height follows from the picture's shape (pixels are square).
+/// Field of view as a virtual screen in front of the eye. The aspect ratio of the picture gives its
+/// height, so pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Screen {
-    /// Width, scene units.
+#[schemars(rename = "Screen")]
+pub struct VirtualScreen {
+    /// Width in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width: f32,
-    /// Distance from the eye, scene units.
+    /// Distance from the eye in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub distance: f32,
 }
 
-/// A virtual screen of stated width and height; pictures of another shape are stretched over it.
+/// Field of view as a virtual screen of a given width and height. A picture of another aspect ratio
+/// is stretched over it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ViewPlane {
-    /// Width, scene units.
+    /// Width in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width: f32,
-    /// Height, scene units.
+    /// Height in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub height: f32,
-    /// Distance from the eye, scene units.
+    /// Distance from the eye in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub distance: f32,
 }
 
-/// A field of view as descriptions give it. None: 40 degrees from bottom to top.
+/// Field of view as a description gives it. If all fields are `None`, it is 40 degrees vertically.
 pub(super) struct FieldOfView {
     pub vertical_degrees: Option<f32>,
     pub horizontal_degrees: Option<f32>,
-    pub screen: Option<Screen>,
+    pub screen: Option<VirtualScreen>,
     pub view_plane: Option<ViewPlane>,
 }
 
 const DEFAULT_VERTICAL_DEGREES: f32 = 40.0;
 
-/// Half of the narrowest and of the widest field of view that zooming leads to, as tangents.
-const ZOOM: std::ops::RangeInclusive<f32> = 1e-4..=20.0;
+/// Range of the tangent of half the field of view when zooming.
+const ZOOM_RANGE: std::ops::RangeInclusive<f32> = 1e-4..=20.0;
 
 impl FieldOfView {
-    /// The same with the tangent of its half divided by `factor`.
+    /// Returns the field of view with the tangent of its half divided by `factor`, clamped to
+    /// [`ZOOM_RANGE`].
     pub fn zoomed(&self, factor: f32) -> Self {
         let factor = if factor > 0.0 { factor } else { 1.0 };
-        let tangent = |now: f32| (now / factor).clamp(*ZOOM.start(), *ZOOM.end());
+        let tangent = |now: f32| (now / factor).clamp(*ZOOM_RANGE.start(), *ZOOM_RANGE.end());
         let angle = |degrees: f32| {
             let now = half_tangent("", degrees).unwrap_or(1.0);
-            fun::atan2(tangent(now), 1.0).to_degrees() * 2.0
+            portable::atan2(tangent(now), 1.0).to_degrees() * 2.0
         };
         let distance = |width: f32, distance: f32| width * 0.5 / tangent(width * 0.5 / distance);
         let nothing = self.horizontal_degrees.is_none() && self.screen.is_none() && self.view_plane.is_none();
         let vertical = self.vertical_degrees.or(nothing.then_some(DEFAULT_VERTICAL_DEGREES));
-        let screen = |s: Screen| Screen { distance: distance(s.width, s.distance), ..s };
+        let screen = |s: VirtualScreen| VirtualScreen { distance: distance(s.width, s.distance), ..s };
         let plane = |p: ViewPlane| ViewPlane { distance: distance(p.width, p.distance), ..p };
         Self {
             vertical_degrees: vertical.map(angle),
@@ -65,14 +69,14 @@ impl FieldOfView {
         }
     }
 
-    /// Half of the width and height of a film one unit in front of the eye.
+    /// Half of the width and height of the film at unit distance from the eye.
     pub fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
         self.check_single()?;
         let size = size.max(UVec2::ONE).as_vec2();
         let from_width = |x: f32| Vec2::new(x, x * size.y / size.x);
         let (field, half) = if let Some(degrees) = self.horizontal_degrees {
             ("horizontal_fov_degrees", from_width(half_tangent("horizontal_fov_degrees", degrees)?))
-        } else if let Some(Screen { width, distance }) = self.screen {
+        } else if let Some(VirtualScreen { width, distance }) = self.screen {
             positive([("screen.width", width), ("screen.distance", distance)])?;
             ("screen", from_width(width * 0.5 / distance))
         } else if let Some(ViewPlane { width, height, distance }) = self.view_plane {
@@ -85,13 +89,13 @@ impl FieldOfView {
             let y = half_tangent("vertical_fov_degrees", degrees)?;
             ("vertical_fov_degrees", Vec2::new(y * size.x / size.y, y))
         };
-        // Within these limits no ray can overflow or lose its direction.
+        // Stay within limits where no ray overflows or loses its direction.
         if half.min_element() >= 1e-12 && half.max_element() <= 1e12 {
             return Ok(half);
         }
         Err(InvalidCamera::new(
             field,
-            format!("`{field}` makes the picture's edges {half} times as far as its distance"),
+            format!("`{field}` is out of range: half the picture's size is {half} times its distance"),
         ))
     }
 
@@ -115,13 +119,13 @@ impl FieldOfView {
 
 fn half_tangent(field: &'static str, degrees: f32) -> Result<f32, InvalidCamera> {
     if degrees > 0.0 && degrees < 180.0 {
-        let (sin, cos) = fun::sin_cos(degrees.to_radians() * 0.5);
+        let (sin, cos) = portable::sin_cos(degrees.to_radians() * 0.5);
         return Ok(sin / cos.max(f32::MIN_POSITIVE));
     }
     Err(InvalidCamera::new(field, format!("`{field}` must lie between 0 and 180, it is {degrees}")))
 }
 
-/// Refuses numbers that are not finite and above 0.
+/// Rejects numbers that are not finite and above 0.
 pub(super) fn positive<const N: usize>(fields: [(&'static str, f32); N]) -> Result<(), InvalidCamera> {
     match fields.iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
         Some((field, value)) => Err(InvalidCamera::new(field, format!("`{field}` must be above 0, it is {value}"))),

@@ -1,13 +1,13 @@
-//! A camera without perspective: all rays are parallel.
+//! Orthographic camera: all rays are parallel.
 //!
 //! ```json
 //! {"orthographic": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "height": 4}}
 //! ```
 //!
-//! Rays start on the film, which stands at `eye`: what lies behind it is not seen.
+//! Rays start on the film, a plane through `eye`: objects behind it are not visible.
 
 use super::field_of_view::positive;
-use super::pose::{Axes, Move, Pose};
+use super::pose::{CameraAxes, LocalTranslation, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -15,38 +15,42 @@ use serde::{Deserialize, Serialize};
 
 const DEFAULT_HEIGHT: f32 = 4.0;
 
-/// A camera without perspective: all rays are parallel.
+/// Orthographic camera: all rays are parallel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Orthographic {
-    /// Where it stands, world space.
+    /// Position of the camera, in world space.
     #[schemars(with = "[f32; 3]")]
     pub eye: Vec3,
-    /// Point that it looks at, world space; the origin when neither this nor `direction` is given.
+    /// Point that the camera looks at before yaw, pitch and roll, in world space. The default is
+    /// the origin, unless `direction` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub look_at: Option<Vec3>,
-    /// Direction in which it looks, any length; instead of `look_at`.
+    /// View direction, of any length; replaces `look_at`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub direction: Option<Vec3>,
-    /// Direction to which the picture's top leans.
+    /// Direction of the picture's top, of any length. It is projected perpendicular to the view
+    /// direction.
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// Turns to the right from there.
+    /// Rotation to the right about the camera's up axis, in degrees.
     pub yaw_degrees: f32,
-    /// Then tilts upwards.
+    /// Upward rotation about the camera's right axis, in degrees, after yaw.
     pub pitch_degrees: f32,
-    /// Then leans its top to the right.
+    /// Clockwise rotation of the camera about the view direction, in degrees, after pitch; its top
+    /// leans to the right.
     pub roll_degrees: f32,
-    /// Then steps along its own axes.
-    pub r#move: Move,
-    /// Height of what the picture shows, scene units. With `width` alone it follows from the picture's
-    /// shape (pixels are square); with both, the picture is stretched; with neither, it is 4.
+    /// Translation along the camera's axes, after the rotations.
+    pub r#move: LocalTranslation,
+    /// Height of the visible area in scene units, above 0. If only `width` is given, the aspect
+    /// ratio of the picture gives the height, so pixels are square. If both are given, the picture
+    /// is stretched. The default is 4.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub height: Option<f32>,
-    /// Width of what the picture shows, scene units.
+    /// Width of the visible area in scene units, above 0. The default follows from `height`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width: Option<f32>,
@@ -62,7 +66,7 @@ impl Default for Orthographic {
             yaw_degrees: 0.0,
             pitch_degrees: 0.0,
             roll_degrees: 0.0,
-            r#move: Move::default(),
+            r#move: LocalTranslation::default(),
             height: None,
             width: None,
         }
@@ -92,37 +96,41 @@ impl Orthographic {
             (None, height) => Vec2::new(size.x / size.y, 1.0) * height.unwrap_or(DEFAULT_HEIGHT),
         };
         if !(extent.min_element() > 0.0 && extent.is_finite()) {
-            return Err(InvalidCamera::new("width", format!("the camera shows {extent}, which is no area to show")));
+            return Err(InvalidCamera::new(
+                "width",
+                format!("the camera shows an area of {extent}; both sides must be finite and above 0"),
+            ));
         }
         Ok(extent * 0.5)
     }
 }
 
 impl Camera for Orthographic {
-    fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+    fn projection(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
         let half = self.half_extent(size)?;
         Ok(Projection::parallel(&self.pose().axes()?, half, size))
     }
 
-    fn axes(&self) -> Result<Axes, InvalidCamera> {
+    fn axes(&self) -> Result<CameraAxes, InvalidCamera> {
         self.pose().axes()
     }
 
-    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+    fn set_pose(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
         (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
         (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
-        self.r#move = Move::default();
+        self.r#move = LocalTranslation::default();
     }
 
     fn target(&self) -> Option<Vec3> {
         self.look_at
     }
 
-    fn upward(&self) -> Vec3 {
+    fn up(&self) -> Vec3 {
         self.up
     }
 
     fn zoom(&mut self, factor: f32) {
+        let factor = if factor > 0.0 { factor } else { 1.0 };
         let zoomed = |length: f32| (length / factor).clamp(f32::MIN_POSITIVE, 1e30);
         if self.width.is_none() {
             self.height = Some(self.height.unwrap_or(DEFAULT_HEIGHT));
@@ -133,7 +141,7 @@ impl Camera for Orthographic {
 
 #[cfg(any(test, feature = "testing"))]
 impl Orthographic {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let above = Self { eye: Vec3::new(0.0, 9.0, 0.0), width: Some(3.0), ..Self::default() };
         vec![Self::default(), above]
@@ -154,7 +162,7 @@ mod tests {
             (r#"{}"#, Vec2::new(8.0 / 3.0, 2.0)),
         ] {
             let camera: Orthographic = serde_json::from_str(json).unwrap();
-            let projection = camera.project(UVec2::new(400, 300)).unwrap();
+            let projection = camera.projection(UVec2::new(400, 300)).unwrap();
             let corner = projection.ray(Vec2::ZERO, Vec2::ZERO, 0.0);
             assert!(close3(corner.origin, Vec3::new(-half.x, half.y, 5.0), 1e-6), "{json} {corner:?}");
             assert_eq!(corner.direction, -Vec3::Z);
@@ -164,10 +172,21 @@ mod tests {
     }
 
     #[test]
+    fn factors_that_are_not_positive_do_not_zoom() {
+        for factor in [0.0, -2.0, f32::NEG_INFINITY, f32::NAN] {
+            let mut camera = Orthographic { width: Some(3.0), height: Some(2.0), ..Orthographic::default() };
+            camera.zoom(factor);
+            assert_eq!((camera.width, camera.height), (Some(3.0), Some(2.0)), "{factor}");
+            camera.zoom(2.0);
+            assert_eq!((camera.width, camera.height), (Some(1.5), Some(1.0)), "{factor}");
+        }
+    }
+
+    #[test]
     fn says_what_is_wrong() {
         for (json, field) in [(r#"{"height": 0}"#, "height"), (r#"{"width": -2}"#, "width")] {
             let camera: Orthographic = serde_json::from_str(json).unwrap();
-            assert_eq!(camera.project(UVec2::new(4, 3)).unwrap_err().field, field);
+            assert_eq!(camera.projection(UVec2::new(4, 3)).unwrap_err().field, field);
         }
     }
 }

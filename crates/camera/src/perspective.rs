@@ -1,59 +1,62 @@
-//! A pinhole camera.
+//! Pinhole camera.
 //!
 //! ```json
 //! {"perspective": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "vertical_fov_degrees": 40}}
 //! ```
 //!
-//! The Juggler's virtual screen: `"screen": {"width": 100, "distance": 50}`. The teaching engine's:
-//! `"view_plane": {"width": 500, "height": 500, "distance": 660}`. ScalaBlitz's zoom angle is the vertical
-//! field of view, for tan(π α / 360) is the tangent of half of α degrees.
+//! The Juggler's virtual screen is `"screen": {"width": 100, "distance": 50}`. The teaching
+//! engine's is `"view_plane": {"width": 500, "height": 500, "distance": 660}`. ScalaBlitz's zoom
+//! angle is the vertical field of view, because tan(π α / 360) is the tangent of half of α degrees.
 
-use super::field_of_view::{FieldOfView, Screen, ViewPlane};
-use super::pose::{Axes, Move, Pose};
+use super::field_of_view::{FieldOfView, ViewPlane, VirtualScreen};
+use super::pose::{CameraAxes, LocalTranslation, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A pinhole camera: everything is sharp.
+/// Pinhole camera: objects at all distances are sharp.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Perspective {
-    /// Where it stands, world space.
+    /// Position of the camera, in world space.
     #[schemars(with = "[f32; 3]")]
     pub eye: Vec3,
-    /// Point that it looks at, world space; the origin when neither this nor `direction` is given.
+    /// Point that the camera looks at before yaw, pitch and roll, in world space. The default is
+    /// the origin, unless `direction` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub look_at: Option<Vec3>,
-    /// Direction in which it looks, any length; instead of `look_at`.
+    /// View direction, of any length; replaces `look_at`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub direction: Option<Vec3>,
-    /// Direction to which the picture's top leans.
+    /// Direction of the picture's top, of any length. It is projected perpendicular to the view
+    /// direction.
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// Turns to the right from there.
+    /// Rotation to the right about the camera's up axis, in degrees.
     pub yaw_degrees: f32,
-    /// Then tilts upwards.
+    /// Upward rotation about the camera's right axis, in degrees, after yaw.
     pub pitch_degrees: f32,
-    /// Then leans its top to the right.
+    /// Clockwise rotation of the camera about the view direction, in degrees, after pitch; its top
+    /// leans to the right.
     pub roll_degrees: f32,
-    /// Then steps along its own axes.
-    pub r#move: Move,
-    /// Angle that the picture spans from bottom to top. At most one of `vertical_fov_degrees`,
-    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; without any, it is 40.
+    /// Translation along the camera's axes, after the rotations.
+    pub r#move: LocalTranslation,
+    /// Vertical field of view in degrees, between 0 and 180. At most one of `vertical_fov_degrees`,
+    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; the default is 40.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     pub vertical_fov_degrees: Option<f32>,
-    /// Angle that the picture spans from left to right.
+    /// Horizontal field of view in degrees, between 0 and 180.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     pub horizontal_fov_degrees: Option<f32>,
-    /// Field of view as a screen of some width at some distance.
+    /// Field of view as a screen of a given width at a given distance; pixels are square.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub screen: Option<Screen>,
-    /// Field of view as a rectangle at some distance, over which the picture is stretched.
+    pub screen: Option<VirtualScreen>,
+    /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
 }
@@ -68,7 +71,7 @@ impl Default for Perspective {
             yaw_degrees: 0.0,
             pitch_degrees: 0.0,
             roll_degrees: 0.0,
-            r#move: Move::default(),
+            r#move: LocalTranslation::default(),
             vertical_fov_degrees: None,
             horizontal_fov_degrees: None,
             screen: None,
@@ -102,26 +105,26 @@ impl Perspective {
 }
 
 impl Camera for Perspective {
-    fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+    fn projection(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
         let half = self.field_of_view().half_extent(size)?;
         Ok(Projection::pinhole(&self.pose().axes()?, half, size))
     }
 
-    fn axes(&self) -> Result<Axes, InvalidCamera> {
+    fn axes(&self) -> Result<CameraAxes, InvalidCamera> {
         self.pose().axes()
     }
 
-    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+    fn set_pose(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
         (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
         (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
-        self.r#move = Move::default();
+        self.r#move = LocalTranslation::default();
     }
 
     fn target(&self) -> Option<Vec3> {
         self.look_at
     }
 
-    fn upward(&self) -> Vec3 {
+    fn up(&self) -> Vec3 {
         self.up
     }
 
@@ -134,12 +137,12 @@ impl Camera for Perspective {
 
 #[cfg(any(test, feature = "testing"))]
 impl Perspective {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let juggler = Self {
             eye: Vec3::new(2.0, 100.0, -2.0),
             look_at: Some(Vec3::new(1000.0, 77.0, -1000.0)),
-            screen: Some(Screen { width: 100.0, distance: 50.0 }),
+            screen: Some(VirtualScreen { width: 100.0, distance: 50.0 }),
             ..Self::default()
         };
         let chess = Self {

@@ -1,36 +1,39 @@
-//! Where a camera stands and how it is turned.
+//! Position and orientation of a camera.
 //!
 //! The fields are applied in this order:
 //!
-//! 1. `eye` with `look_at` (a point) or `direction` (any length) gives the view direction; `up` says which
-//!    way the picture's top leans. Where `up` is parallel to the view, the picture's right side is x (y when
-//!    the view goes along x): looking straight down on a world with y up, −z is at the top, as on a map.
-//!    The camera's axes are unit vectors at right angles, always. (The 1986 Juggler's Java remake forgot to
-//!    normalise the axis to the right, which widens a tilted picture by 1 / cos tilt: a defect, not kept.)
-//! 2. `yaw_degrees` turns to the right around the camera's own upward axis, then `pitch_degrees` tilts up
-//!    around its axis to the right, then `roll_degrees` leans its top to the right around the view direction:
-//!    a pilot's signs. Conversions: the teaching engine's pitch and roll count the other way, its yaw the
-//!    same way; ScalaBlitz's pitch counts the same way, its yaw the other way.
-//! 3. `move` goes along the axes that result.
+//! 1. `eye` with `look_at` (a point) or `direction` (any length) gives the view direction, and `up`
+//!    gives the direction of the picture's top. If `up` is parallel to the view, the picture's
+//!    right side is x (y for a view along x): a view straight down on a world with y up has −z at
+//!    the top, as on a map. The camera's axes are always orthogonal unit vectors. (The Java remake
+//!    of the 1986 Juggler does not normalize the right axis, which widens a tilted picture by 1 /
+//!    cos tilt: a defect that is not reproduced.)
+//! 2. `yaw_degrees` rotates to the right about the camera's up axis, then `pitch_degrees` rotates
+//!    up about its right axis, then `roll_degrees` leans its top to the right about the view
+//!    direction: a pilot's signs. Conversions: the teaching engine has the opposite signs of pitch
+//!    and roll and the same sign of yaw; ScalaBlitz has the same sign of pitch and the opposite
+//!    sign of yaw.
+//! 3. `move` translates along the resulting axes.
 
 use super::InvalidCamera;
-use juggler_math::{Vec3, fun};
+use juggler_math::{Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Steps along the camera's own axes, in scene units.
+/// Translation along the camera's axes, in scene units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
-pub struct Move {
-    /// To the picture's right.
+#[schemars(rename = "Move")]
+pub struct LocalTranslation {
+    /// Distance to the picture's right.
     pub right: f32,
-    /// To the picture's top.
+    /// Distance to the picture's top.
     pub up: f32,
-    /// Into the picture.
+    /// Distance into the picture.
     pub forward: f32,
 }
 
-/// A camera's pose as descriptions give it.
+/// Pose of a camera as a description gives it.
 pub(super) struct Pose {
     pub eye: Vec3,
     pub look_at: Option<Vec3>,
@@ -39,25 +42,25 @@ pub(super) struct Pose {
     pub yaw_degrees: f32,
     pub pitch_degrees: f32,
     pub roll_degrees: f32,
-    pub r#move: Move,
+    pub r#move: LocalTranslation,
 }
 
-/// A camera's place and its axes: unit vectors at right angles, `right × up = -forward`.
+/// Position of a camera and its axes: orthogonal unit vectors with `right × up = -forward`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axes {
-    /// The place, world space.
+pub struct CameraAxes {
+    /// Position, in world space.
     pub eye: Vec3,
-    /// To the picture's right.
+    /// Direction of the picture's right.
     pub right: Vec3,
-    /// To the picture's top.
+    /// Direction of the picture's top.
     pub up: Vec3,
-    /// Into the picture.
+    /// View direction.
     pub forward: Vec3,
 }
 
 impl Pose {
-    /// Applies the fields in the order that this page states.
-    pub fn axes(&self) -> Result<Axes, InvalidCamera> {
+    /// Applies the fields in the order that the module documentation states.
+    pub fn axes(&self) -> Result<CameraAxes, InvalidCamera> {
         self.check_finite()?;
         let forward = self.forward()?;
         let Some(up) = unit(self.up) else {
@@ -66,11 +69,11 @@ impl Pose {
         let right = unit(forward.cross(up))
             .filter(|_| forward.cross(up).length_squared() > 1e-12)
             .unwrap_or_else(|| right_of_vertical(forward));
-        let mut axes = Axes { eye: self.eye, right, up: right.cross(forward), forward };
-        (axes.forward, axes.right) = turn(axes.forward, axes.right, self.yaw_degrees);
-        (axes.forward, axes.up) = turn(axes.forward, axes.up, self.pitch_degrees);
-        (axes.up, axes.right) = turn(axes.up, axes.right, self.roll_degrees);
-        let Move { right, up, forward } = self.r#move;
+        let mut axes = CameraAxes { eye: self.eye, right, up: right.cross(forward), forward };
+        (axes.forward, axes.right) = rotate(axes.forward, axes.right, self.yaw_degrees);
+        (axes.forward, axes.up) = rotate(axes.forward, axes.up, self.pitch_degrees);
+        (axes.up, axes.right) = rotate(axes.up, axes.right, self.roll_degrees);
+        let LocalTranslation { right, up, forward } = self.r#move;
         axes.eye = axes.eye + axes.right * right + axes.up * up + axes.forward * forward;
         Ok(axes)
     }
@@ -112,7 +115,7 @@ impl Pose {
     }
 }
 
-/// Unit vector along `v`; in f64, so that no length that f32 can hold is too short or too long.
+/// Normalizes `v` in `f64`, where no finite `f32` length overflows or underflows.
 fn unit(v: Vec3) -> Option<Vec3> {
     v.as_dvec3().try_normalize().map(|d| d.as_vec3())
 }
@@ -121,17 +124,17 @@ fn unit_between(from: Vec3, to: Vec3) -> Option<Vec3> {
     (to.as_dvec3() - from.as_dvec3()).try_normalize().map(|d| d.as_vec3())
 }
 
-/// The axis to the right where `up` cannot say: x, or y for a view along x.
+/// Right axis for an `up` parallel to the view: x, or y for a view along x.
 fn right_of_vertical(forward: Vec3) -> Vec3 {
     let right = if forward.x.abs() < 0.9 { Vec3::X } else { Vec3::Y };
     (right - forward * right.dot(forward)).normalize()
 }
 
-/// Turns `a` towards `b`, and `b` away from where `a` was.
-fn turn(a: Vec3, b: Vec3, degrees: f32) -> (Vec3, Vec3) {
+/// Rotates `a` towards `b`, and `b` away from `a`.
+fn rotate(a: Vec3, b: Vec3, degrees: f32) -> (Vec3, Vec3) {
     if degrees == 0.0 {
         return (a, b);
     }
-    let (sin, cos) = fun::sin_cos(degrees.to_radians());
+    let (sin, cos) = portable::sin_cos(degrees.to_radians());
     (a * cos + b * sin, b * cos - a * sin)
 }

@@ -1,86 +1,87 @@
-//! A camera ready for one size of picture.
+//! Projection of a camera for one picture size.
 
-use super::pose::Axes;
+use super::pose::CameraAxes;
 use juggler_math::{Ray, UVec2, Vec2, Vec3, warp};
 
-/// Rays that [`Projection::rays`] makes side by side.
+/// Number of rays that [`Projection::rays`] generates together.
 pub const LANES: usize = 8;
 
-/// A camera for one size of picture: all that a ray needs, nothing to look up.
+/// Camera for one picture size, with everything that ray generation needs.
 ///
-/// The film stands one unit in front of the eye (for a parallel projection: through the eye).
+/// The film is at unit distance from the eye; that of a parallel projection contains the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
-    /// The eye.
+    /// Eye, in world space.
     pub(super) origin: Vec3,
-    /// From the eye to the film's top left corner.
+    /// Vector from the eye to the film's top left corner.
     pub(super) corner: Vec3,
-    /// One pixel to the right.
+    /// Vector to the next pixel on the right.
     pub(super) right: Vec3,
-    /// One pixel down.
+    /// Vector to the next pixel below.
     pub(super) down: Vec3,
-    /// How rays leave the film.
+    /// Lens of the camera.
     pub(super) lens: Lens,
 }
 
-/// How rays leave the film.
+/// Lens of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lens {
-    /// All through one point.
+    /// All rays pass through one point.
     Pinhole,
-    /// Through a disk around the eye, spanned by two radii; sharp at a distance of 1 / `focus`.
+    /// Rays pass through a disk around the eye, spanned by two radii, with the focal plane at a
+    /// distance of 1 / `focus`.
     Disk { right: Vec3, up: Vec3, focus: f32 },
-    /// All in one direction.
+    /// All rays are parallel.
     Parallel { forward: Vec3 },
 }
 
 impl Projection {
-    /// All rays through the eye. `half` is half of the film's width and height.
-    pub(super) fn pinhole(axes: &Axes, half: Vec2, size: UVec2) -> Self {
-        Self::on_film(axes, axes.forward, half, size, Lens::Pinhole)
+    /// Pinhole projection; `half` is half of the film's width and height at unit distance.
+    pub(super) fn pinhole(axes: &CameraAxes, half: Vec2, size: UVec2) -> Self {
+        Self::from_film(axes, axes.forward, half, size, Lens::Pinhole)
     }
 
-    /// Rays through a disk of `radius` around the eye, sharp on the plane `focus_distance` away.
-    pub(super) fn thin_lens(axes: &Axes, half: Vec2, size: UVec2, radius: f32, focus_distance: f32) -> Self {
+    /// Thin-lens projection with a lens of `radius` around the eye, focused at `focus_distance`.
+    pub(super) fn thin_lens(axes: &CameraAxes, half: Vec2, size: UVec2, radius: f32, focus_distance: f32) -> Self {
         let lens = Lens::Disk { right: axes.right * radius, up: axes.up * radius, focus: 1.0 / focus_distance };
-        Self::on_film(axes, axes.forward, half, size, lens)
+        Self::from_film(axes, axes.forward, half, size, lens)
     }
 
-    /// Parallel rays that start on a film through the eye.
-    pub(super) fn parallel(axes: &Axes, half: Vec2, size: UVec2) -> Self {
-        Self::on_film(axes, Vec3::ZERO, half, size, Lens::Parallel { forward: axes.forward })
+    /// Parallel projection; rays start on a film through the eye.
+    pub(super) fn parallel(axes: &CameraAxes, half: Vec2, size: UVec2) -> Self {
+        Self::from_film(axes, Vec3::ZERO, half, size, Lens::Parallel { forward: axes.forward })
     }
 
-    fn on_film(axes: &Axes, centre: Vec3, half: Vec2, size: UVec2, lens: Lens) -> Self {
+    fn from_film(axes: &CameraAxes, center: Vec3, half: Vec2, size: UVec2, lens: Lens) -> Self {
         let pixel = half * 2.0 / size.max(UVec2::ONE).as_vec2();
-        let corner = centre - axes.right * half.x + axes.up * half.y;
+        let corner = center - axes.right * half.x + axes.up * half.y;
         Self { origin: axes.eye, corner, right: axes.right * pixel.x, down: axes.up * -pixel.y, lens }
     }
 
-    /// The same film in other pixels: cut into `to` of them instead of `from`.
+    /// Divides the same film into `to` pixels instead of `from`.
     #[must_use]
     pub fn resampled(&self, from: UVec2, to: UVec2) -> Self {
         let scale = from.max(UVec2::ONE).as_vec2() / to.max(UVec2::ONE).as_vec2();
         Self { right: self.right * scale.x, down: self.down * scale.y, ..*self }
     }
 
-    /// A share of the way to another projection, everything going straight. Where the lenses are of different kinds,
-    /// that of the nearer one counts.
-    pub(super) fn towards(&self, other: &Self, share: f32) -> Self {
-        let between = |from: Vec3, to: Vec3| juggler_math::motion::between(from, to, share);
+    /// Interpolates linearly to another projection. If the lenses are of different kinds, the
+    /// nearer one is used.
+    pub(super) fn interpolated(&self, other: &Self, fraction: f32) -> Self {
+        let between = |from: Vec3, to: Vec3| juggler_math::motion::lerp(from, to, fraction);
         let lens = match (self.lens, other.lens) {
             (Lens::Disk { right, up, focus }, Lens::Disk { right: to_right, up: to_up, focus: to_focus }) => {
                 Lens::Disk {
                     right: between(right, to_right),
                     up: between(up, to_up),
-                    focus: focus * (1.0 - share) + to_focus * share,
+                    focus: focus * (1.0 - fraction) + to_focus * fraction,
                 }
             }
             (Lens::Parallel { forward }, Lens::Parallel { forward: to }) => {
                 Lens::Parallel { forward: between(forward, to).try_normalize().unwrap_or(forward) }
             }
             (from, to) => {
-                if share < 0.5 {
+                if fraction < 0.5 {
                     from
                 } else {
                     to
@@ -96,26 +97,26 @@ impl Projection {
         }
     }
 
-    /// Where the camera stands.
+    /// Eye of the camera, in world space.
     pub fn eye(&self) -> Vec3 {
         self.origin
     }
 
-    /// Diameter of a pixel where rays begin, and how much it grows on each unit of the way: in the middle of a film that is
-    /// looked at straight.
-    pub fn pixel(&self) -> [f32; 2] {
+    /// Pixel size at the ray origin, and its growth per unit of distance, at the center of the
+    /// film.
+    pub fn pixel_footprint(&self) -> [f32; 2] {
         let size = (self.right.length() * self.down.length()).sqrt();
         if matches!(self.lens, Lens::Parallel { .. }) { [size, 0.0] } else { [0.0, size] }
     }
 
-    /// Whether the place on the lens makes a difference.
+    /// Whether rays depend on a lens sample.
     #[inline]
     pub fn needs_lens(&self) -> bool {
         matches!(self.lens, Lens::Disk { .. })
     }
 
-    /// The ray through a point of the film in pixels, for `lens` in the unit square. Its direction is a unit
-    /// vector; `time` is handed on.
+    /// Generates the ray through a film point in pixels, with the lens sample `lens` in the unit
+    /// square. The direction is a unit vector; the ray carries `time`.
     #[inline]
     pub fn ray(&self, film: Vec2, lens: Vec2, time: f32) -> Ray {
         let point = self.corner + self.right * film.x + self.down * film.y;
@@ -131,8 +132,8 @@ impl Projection {
         Ray { time, ..Ray::new(origin, direction) }
     }
 
-    /// The first `count` of eight rays at once, the same as [`Projection::ray`] gives one by one; `films` and
-    /// `lenses` hold all x and all y.
+    /// Appends the first `count` of eight rays, identical to those of [`Projection::ray`]; `films`
+    /// holds all x and all y.
     #[inline]
     pub fn rays(&self, films: &[[f32; LANES]; 2], lenses: &[Vec2; LANES], count: usize, rays: &mut Vec<Ray>) {
         let [u, v] = films;

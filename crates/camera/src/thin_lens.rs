@@ -1,65 +1,70 @@
-//! A camera with a round lens: sharp on one plane, blurred before and behind it (Cook, Porter and Carpenter,
-//! Distributed Ray Tracing, 1984).
+//! Thin-lens camera: a plane in focus, depth-of-field blur before and behind it (Cook, Porter and
+//! Carpenter, Distributed Ray Tracing, 1984).
 //!
 //! ```json
 //! {"thin_lens": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "lens_radius": 0.1, "focus_distance": 6}}
 //! ```
 //!
-//! A point at distance d along the view is spread over a circle of confusion of radius
-//! `lens_radius` · |d − `focus_distance`| / `focus_distance`, measured on the plane at distance d.
+//! A point at depth d has a circle of confusion of radius `lens_radius` · |d − `focus_distance`| /
+//! `focus_distance`, measured on the plane at depth d.
 
-use super::field_of_view::{FieldOfView, Screen, ViewPlane, positive};
-use super::pose::{Axes, Move, Pose};
+use super::field_of_view::{FieldOfView, ViewPlane, VirtualScreen, positive};
+use super::pose::{CameraAxes, LocalTranslation, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A camera with a round lens: sharp on one plane, blurred before and behind it.
+/// Thin-lens camera: a plane in focus, depth-of-field blur before and behind it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ThinLens {
-    /// Where it stands, world space.
+    /// Position of the camera, in world space.
     #[schemars(with = "[f32; 3]")]
     pub eye: Vec3,
-    /// Point that it looks at, world space; the origin when neither this nor `direction` is given.
+    /// Point that the camera looks at before yaw, pitch and roll, in world space. The default is
+    /// the origin, unless `direction` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub look_at: Option<Vec3>,
-    /// Direction in which it looks, any length; instead of `look_at`.
+    /// View direction, of any length; replaces `look_at`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub direction: Option<Vec3>,
-    /// Direction to which the picture's top leans.
+    /// Direction of the picture's top, of any length. It is projected perpendicular to the view
+    /// direction.
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// Turns to the right from there.
+    /// Rotation to the right about the camera's up axis, in degrees.
     pub yaw_degrees: f32,
-    /// Then tilts upwards.
+    /// Upward rotation about the camera's right axis, in degrees, after yaw.
     pub pitch_degrees: f32,
-    /// Then leans its top to the right.
+    /// Clockwise rotation of the camera about the view direction, in degrees, after pitch; its top
+    /// leans to the right.
     pub roll_degrees: f32,
-    /// Then steps along its own axes.
-    pub r#move: Move,
-    /// Angle that the picture spans from bottom to top. At most one of `vertical_fov_degrees`,
-    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; without any, it is 40.
+    /// Translation along the camera's axes, after the rotations.
+    pub r#move: LocalTranslation,
+    /// Vertical field of view in degrees, between 0 and 180. At most one of `vertical_fov_degrees`,
+    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; the default is 40.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     pub vertical_fov_degrees: Option<f32>,
-    /// Angle that the picture spans from left to right.
+    /// Horizontal field of view in degrees, between 0 and 180.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     pub horizontal_fov_degrees: Option<f32>,
-    /// Field of view as a screen of some width at some distance.
+    /// Field of view as a screen of a given width at a given distance; pixels are square.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub screen: Option<Screen>,
-    /// Field of view as a rectangle at some distance, over which the picture is stretched.
+    pub screen: Option<VirtualScreen>,
+    /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
-    /// Radius of the lens, scene units; 0 is a pinhole.
+    /// Radius of the lens in scene units, 0 or more. Larger lenses blur more outside the focal
+    /// plane; 0 is a pinhole.
     #[schemars(range(min = 0))]
     pub lens_radius: f32,
-    /// Distance of the plane that is sharp, along the view direction, scene units.
+    /// Distance from the eye to the plane in focus along the view direction, in scene units. It
+    /// must be above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub focus_distance: f32,
 }
@@ -74,7 +79,7 @@ impl Default for ThinLens {
             yaw_degrees: 0.0,
             pitch_degrees: 0.0,
             roll_degrees: 0.0,
-            r#move: Move::default(),
+            r#move: LocalTranslation::default(),
             vertical_fov_degrees: None,
             horizontal_fov_degrees: None,
             screen: None,
@@ -110,7 +115,7 @@ impl ThinLens {
 }
 
 impl Camera for ThinLens {
-    fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+    fn projection(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
         let half = self.field_of_view().half_extent(size)?;
         positive([("focus_distance", self.focus_distance)])?;
         if !(self.lens_radius >= 0.0 && self.lens_radius.is_finite()) {
@@ -120,21 +125,21 @@ impl Camera for ThinLens {
         Ok(Projection::thin_lens(&self.pose().axes()?, half, size, self.lens_radius, self.focus_distance))
     }
 
-    fn axes(&self) -> Result<Axes, InvalidCamera> {
+    fn axes(&self) -> Result<CameraAxes, InvalidCamera> {
         self.pose().axes()
     }
 
-    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+    fn set_pose(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
         (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
         (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
-        self.r#move = Move::default();
+        self.r#move = LocalTranslation::default();
     }
 
     fn target(&self) -> Option<Vec3> {
         self.look_at
     }
 
-    fn upward(&self) -> Vec3 {
+    fn up(&self) -> Vec3 {
         self.up
     }
 
@@ -151,7 +156,7 @@ impl Camera for ThinLens {
 
 #[cfg(any(test, feature = "testing"))]
 impl ThinLens {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let aside = Self { eye: Vec3::new(3.0, 1.0, 4.0), roll_degrees: 10.0, lens_radius: 0.3, ..Self::default() };
         vec![Self::default(), aside, Self { lens_radius: 0.0, ..Self::default() }]
@@ -166,13 +171,13 @@ mod tests {
 
     const SIZE: UVec2 = UVec2::new(80, 60);
 
-    /// Looks along -z from the origin.
+    /// Camera at the origin that looks along -z.
     fn camera(lens_radius: f32) -> Projection {
         let lens = ThinLens { eye: Vec3::ZERO, direction: Some(-Vec3::Z), lens_radius, ..ThinLens::default() };
-        lens.project(SIZE).unwrap()
+        lens.projection(SIZE).unwrap()
     }
 
-    /// Where a ray meets the plane `distance` ahead.
+    /// Intersection of a ray with the plane at depth `distance`.
     fn at_distance(ray: &Ray, distance: f32) -> Vec3 {
         ray.at((-distance - ray.origin.z) / ray.direction.z)
     }
@@ -191,18 +196,18 @@ mod tests {
 
     #[test]
     fn blur_is_the_circle_of_confusion() {
-        let (thin, centre) = (camera(0.4), SIZE.as_vec2() * 0.5);
+        let (thin, center) = (camera(0.4), SIZE.as_vec2() * 0.5);
         let mut random = Random::new(32);
         for distance in [1.0f32, 2.5, 4.0, 7.5, 20.0] {
             let radius = 0.4 * (distance - 5.0).abs() / 5.0;
             let (mut largest, mut squares) = (0f32, 0.0);
             for _ in 0..4000 {
-                let spot = at_distance(&thin.ray(centre, random.vec2(), 0.0), distance).truncate().length();
+                let spot = at_distance(&thin.ray(center, random.vec2(), 0.0), distance).truncate().length();
                 largest = largest.max(spot);
                 squares += spot * spot / 4000.0;
             }
             assert!(largest <= radius * 1.000_01 && largest > radius * 0.99, "{distance}: {largest} of {radius}");
-            // Uniform on the disk: the mean square is half the square of the radius.
+            // On a uniform disk the mean square is half the square of the radius.
             assert!((squares / (radius * radius) - 0.5).abs() < 0.02, "{distance}: {squares}");
         }
     }
@@ -215,7 +220,7 @@ mod tests {
             (r#"{"screen": {"width": 1, "distance": 1}, "horizontal_fov_degrees": 3}"#, "screen"),
         ] {
             let lens: ThinLens = serde_json::from_str(json).unwrap();
-            assert_eq!(lens.project(SIZE).unwrap_err().field, field);
+            assert_eq!(lens.projection(SIZE).unwrap_err().field, field);
         }
     }
 }

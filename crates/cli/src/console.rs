@@ -1,12 +1,12 @@
-//! Standard output for results, standard error for everything else.
+//! Console output: results to standard output, everything else to standard error.
 
 use crate::failure::Failure;
 use clap::ColorChoice;
 use juggler::math::message;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
-/// Writes a result. A reader that has gone away is no failure: it has seen enough.
-pub fn print(text: &str) -> Result<(), Failure> {
+/// Prints a result. A closed pipe is no error: the reader needs no more.
+pub fn print_result(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{}", text.trim_end_matches('\n')).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::file("write", "standard output", &error)),
@@ -14,31 +14,31 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says something that is no result, in one piece: others may write into the same log. Nobody can be told when that
-/// fails.
-pub fn say(text: &str) {
+/// Prints a message to standard error in a single write, since other processes may share the log.
+/// Errors are ignored.
+pub fn print_message(text: &str) {
     let line = format!("{}\n", text.trim_end_matches('\n'));
     let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
-/// Prints what the parser of command lines answers. Mistakes quote what was typed, which may be long. A closed pipe is
-/// no mistake.
-pub fn answer(error: &clap::Error) {
-    let told = error.render().to_string();
-    let shown = message::lines(&told);
-    if shown == told {
+/// Prints the message of the command-line parser, with long arguments shortened. A closed pipe is
+/// no error.
+pub fn print_parse_error(error: &clap::Error) {
+    let message_text = error.render().to_string();
+    let shown = message::lines(&message_text);
+    if shown == message_text {
         let _ = error.print();
     } else {
-        say(&shown);
+        print_message(&shown);
     }
 }
 
-/// Whether standard error shows colors.
+/// Whether messages on standard error are colored.
 pub fn color() -> bool {
     io::stderr().is_terminal() && !plain()
 }
 
-/// The same for what the command-line parser prints.
+/// Color choice for the command-line parser.
 pub fn color_choice() -> ColorChoice {
     if plain() { ColorChoice::Never } else { ColorChoice::Auto }
 }

@@ -1,74 +1,74 @@
-//! Why the program stops short, and the exit status that says so.
+//! Errors of the program and their exit statuses.
 
 use juggler::Error;
-use juggler::film::{MergeError, PartError, ResumeError};
+use juggler::film::{MergeError, PartialRenderError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::math::message;
-use juggler::scene::import::{Fault, ImportError};
-use juggler::scene::named::Unknown;
+use juggler::scene::import::{ImportError, ImportErrorKind};
+use juggler::scene::named::UnknownName;
 use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Why the program stops short.
+/// An error that ends the program.
 #[derive(Debug)]
 pub enum Failure {
-    /// A check or comparison says no; the answer has been given already.
-    No,
-    /// A comparison says no, for this reason.
+    /// Negative result of a check or comparison, already printed.
+    Negative,
+    /// Negative result of a comparison, with the reason.
     Different(String),
-    /// The command line or the scene asks for what cannot be.
-    Wrong(String),
-    /// The scene has mistakes.
+    /// Invalid command line, or a scene that cannot be rendered as requested.
+    Invalid(String),
+    /// Mistakes in the scene.
     Scene(Box<Problems>),
-    /// A file or the system failed.
+    /// Failed file operation or system call.
     System(String),
-    /// A signal came.
+    /// Interruption by a signal.
     Interrupted {
-        /// Its number.
+        /// Number of the signal.
         signal: u8,
-        /// Where the work so far is kept.
-        kept: Option<String>,
+        /// Checkpoint file or folder of frames to resume from.
+        saved: Option<String>,
     },
 }
 
 impl Failure {
-    /// What scripts see.
+    /// Exit status: 1 negative result, 2 invalid input, 3 system error, 128 + n signal n.
     pub fn status(&self) -> u8 {
         match self {
-            Self::No | Self::Different(_) => 1,
-            Self::Wrong(_) | Self::Scene(_) => 2,
+            Self::Negative | Self::Different(_) => 1,
+            Self::Invalid(_) | Self::Scene(_) => 2,
             Self::System(_) => 3,
             Self::Interrupted { signal, .. } => 128_u8.saturating_add(*signal),
         }
     }
 
-    /// What people see.
+    /// Message for standard error.
     pub fn message(&self, color: bool) -> Option<String> {
         let label = if color { "\x1b[1;31merror\x1b[0m" } else { "error" };
         match self {
-            Self::No => None,
+            Self::Negative => None,
             Self::Different(message) => Some(message::lines(message)),
-            Self::Wrong(message) | Self::System(message) => Some(format!("{label}: {}", message::lines(message))),
+            Self::Invalid(message) | Self::System(message) => Some(format!("{label}: {}", message::lines(message))),
             Self::Scene(problems) => Some(problems.render(color)),
-            Self::Interrupted { kept: None, .. } => Some("interrupted".into()),
-            Self::Interrupted { kept: Some(file), .. } => {
-                Some(format!("interrupted: the work so far is in `{file}`, the same command goes on with it"))
+            Self::Interrupted { saved: None, .. } => Some("interrupted".into()),
+            Self::Interrupted { saved: Some(file), .. } => {
+                Some(format!("interrupted: progress is saved in `{file}`; the same command resumes from it"))
             }
         }
     }
 
-    /// An interrupted render whose work is kept in a file.
-    pub fn keeping(self, file: Option<String>) -> Self {
+    /// Adds the file to resume from to an interruption.
+    pub fn with_saved_work(self, file: Option<String>) -> Self {
         match self {
-            Self::Interrupted { signal, .. } => Self::Interrupted { signal, kept: file },
+            Self::Interrupted { signal, .. } => Self::Interrupted { signal, saved: file },
             other => other,
         }
     }
 
-    /// A file that could not be read or written.
+    /// Error of reading or writing a file; `what` is the verb.
     pub fn file(what: &str, name: impl Display, error: &std::io::Error) -> Self {
         let name = name.to_string();
         match missing_folder(&name).filter(|_| error.kind() == ErrorKind::NotFound) {
@@ -86,9 +86,9 @@ impl From<Failure> for ExitCode {
 
 impl From<ImportError> for Failure {
     fn from(error: ImportError) -> Self {
-        match &error.fault {
-            Fault::Read(cause) => Self::file("read", error.path.display(), cause),
-            fault => Self::Wrong(format!("cannot read `{}`: {fault}", error.path.display())),
+        match &error.kind {
+            ImportErrorKind::Read(cause) => Self::file("read", error.path.display(), cause),
+            fault => Self::Invalid(format!("cannot read `{}`: {fault}", error.path.display())),
         }
     }
 }
@@ -97,19 +97,22 @@ impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         match error {
             SceneError::Problems(problems) => Self::Scene(Box::new(problems)),
-            SceneError::Read { .. } => Self::System(error.to_string()),
+            SceneError::Read { .. } | SceneError::Write { .. } | SceneError::Image(_) => {
+                Self::System(error.to_string())
+            }
             SceneError::Unknown(unknown) => unknown.into(),
             SceneError::NotText { .. }
+            | SceneError::AssetName(_)
             | SceneError::Foreign { .. }
             | SceneError::Mesh(_)
-            | SceneError::UnknownBuiltIn { .. } => Self::Wrong(error.to_string()),
+            | SceneError::UnknownBuiltIn { .. } => Self::Invalid(error.to_string()),
         }
     }
 }
 
-impl From<Unknown> for Failure {
-    fn from(unknown: Unknown) -> Self {
-        if unknown.is_file { Self::System(unknown.message) } else { Self::Wrong(unknown.message) }
+impl From<UnknownName> for Failure {
+    fn from(unknown: UnknownName) -> Self {
+        if unknown.is_file { Self::System(unknown.message) } else { Self::Invalid(unknown.message) }
     }
 }
 
@@ -117,10 +120,10 @@ impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Self {
         let message = error.to_string();
         match error {
-            ImageError::Read { place, source } => Self::file("read", place, &source),
-            ImageError::Write { place, source } => Self::file("write", place, &source),
+            ImageError::Read { file, source } => Self::file("read", file, &source),
+            ImageError::Write { file, source } => Self::file("write", file, &source),
             ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } | ImageError::Primaries { .. } => {
-                Self::Wrong(message)
+                Self::Invalid(message)
             }
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
@@ -128,12 +131,14 @@ impl From<ImageError> for Failure {
     }
 }
 
-impl From<PartError> for Failure {
-    fn from(error: PartError) -> Self {
+impl From<PartialRenderError> for Failure {
+    fn from(error: PartialRenderError) -> Self {
         match &error {
-            PartError::Read { file, source } => Self::file("read", file, source),
-            PartError::Write { file, source } => Self::file("write", file, source),
-            PartError::NotAPart { .. } | PartError::Unfit { .. } => Self::Wrong(error.to_string()),
+            PartialRenderError::Read { file, source } => Self::file("read", file, source),
+            PartialRenderError::Write { file, source } => Self::file("write", file, source),
+            PartialRenderError::NotAPartialRender { .. } | PartialRenderError::Invalid { .. } => {
+                Self::Invalid(error.to_string())
+            }
             _ => Self::System(error.to_string()),
         }
     }
@@ -142,11 +147,11 @@ impl From<PartError> for Failure {
 impl From<ResumeError> for Failure {
     fn from(error: ResumeError) -> Self {
         match error {
-            ResumeError::Part(error) => error.into(),
-            ResumeError::Foreign { .. } => Self::Wrong(format!(
-                "{error}\nhelp: give another file for --checkpoint, or remove this one to begin anew"
+            ResumeError::PartialRender(error) => error.into(),
+            ResumeError::OtherImage { .. } => Self::Invalid(format!(
+                "{error}\nhelp: give another file for --checkpoint, or remove this one to start over"
             )),
-            ResumeError::Beyond { .. } => Self::Wrong(error.to_string()),
+            ResumeError::Incompatible { .. } => Self::Invalid(error.to_string()),
             ResumeError::Tile { .. } => Self::System(error.to_string()),
         }
     }
@@ -155,7 +160,7 @@ impl From<ResumeError> for Failure {
 impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
         let message = error.to_string();
-        if error.is_of_files() { Self::System(message) } else { Self::Wrong(message) }
+        if error.has_file_errors() { Self::System(message) } else { Self::Invalid(message) }
     }
 }
 
@@ -163,30 +168,30 @@ impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error {
             Error::Scene(error) => error.into(),
-            Error::Settings(message) => Self::Wrong(message),
+            Error::Settings(message) => Self::Invalid(message),
             Error::Image(error) => error.into(),
-            Error::Stopped(stopped) => Self::System(stopped.to_string()),
+            Error::Cancelled(stopped) => Self::System(stopped.to_string()),
         }
     }
 }
 
-/// The first folder on the way to a file that is not there.
+/// First folder of a path that does not exist.
 pub fn missing_folder(file: &str) -> Option<String> {
     let folders: Vec<&Path> = Path::new(file).ancestors().skip(1).filter(|path| !path.as_os_str().is_empty()).collect();
     folders.into_iter().rev().find(|path| !path.exists()).map(|path| path.display().to_string())
 }
 
-/// The system's error in plain words.
+/// Description of a system error in plain words.
 pub fn plain(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file or folder".into(),
         ErrorKind::PermissionDenied => "permission denied".into(),
-        ErrorKind::IsADirectory => "it is a folder".into(),
-        ErrorKind::NotADirectory => "a part of its path is no folder".into(),
-        ErrorKind::StorageFull => "no space is left".into(),
-        ErrorKind::QuotaExceeded => "the quota is used up".into(),
-        ErrorKind::ReadOnlyFilesystem => "the disk cannot be written to".into(),
-        ErrorKind::BrokenPipe => "nobody reads it any more".into(),
+        ErrorKind::IsADirectory => "it is a folder, not a file".into(),
+        ErrorKind::NotADirectory => "a component of its path is not a folder".into(),
+        ErrorKind::StorageFull => "no space left on the device".into(),
+        ErrorKind::QuotaExceeded => "the disk quota is exhausted".into(),
+        ErrorKind::ReadOnlyFilesystem => "the file system is read-only".into(),
+        ErrorKind::BrokenPipe => "its reader has closed it".into(),
         _ => error.to_string(),
     }
 }

@@ -1,11 +1,11 @@
-//! Numbers as people read them.
+//! Formatting of numbers for people.
 
-use juggler::camera::film::Summary;
-use juggler::film::counts::Spread;
+use juggler::camera::film::FilmSummary;
+use juggler::film::counts::SampleCountStats;
 use std::time::Duration;
 
-/// `12ms`, `1.21s`, `12.3s`, `9m56s`, `2h03m04s`: three digits up to a minute, from then on whole
-/// seconds.
+/// A duration such as `12ms`, `1.21s`, `12.3s`, `9m56s` or `2h03m04s`: three digits up to a minute,
+/// then whole seconds.
 pub fn duration(duration: Duration) -> String {
     match duration.as_secs_f64() {
         seconds if seconds < 0.9995 => format!("{:.0}ms", seconds * 1e3),
@@ -15,7 +15,7 @@ pub fn duration(duration: Duration) -> String {
     }
 }
 
-/// `4s`, `9m56s`, `2h03m04s`: whole seconds in any case.
+/// A duration in whole seconds: `4s`, `9m56s`, `2h03m04s`.
 pub fn whole_seconds(duration: Duration) -> String {
     let seconds = duration.as_secs().saturating_add(u64::from(duration.subsec_millis() >= 500));
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
@@ -27,8 +27,8 @@ pub fn whole_seconds(duration: Duration) -> String {
 }
 
 /// `64 samples`, or `16 to 512 samples, 120.5 on average`.
-pub fn samples(spread: &Spread) -> String {
-    let Spread { min, mean, max } = *spread;
+pub fn samples(spread: &SampleCountStats) -> String {
+    let SampleCountStats { min, mean, max } = *spread;
     if min == max { counted(max.into(), "sample") } else { format!("{min} to {max} samples, {mean:.1} on average") }
 }
 
@@ -37,7 +37,7 @@ pub fn counted(count: u128, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// `850`, `12.3 thousand`, `4.56 million`, with three digits.
+/// A number with three significant digits: `850`, `12.3 thousand`, `4.56 million`.
 pub fn amount(value: f64) -> String {
     let units = [(1e9, " billion"), (1e6, " million"), (1e3, " thousand")];
     let (scale, unit) = units.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1.0, ""));
@@ -60,9 +60,9 @@ pub fn bytes(bytes: u64) -> String {
     }
 }
 
-/// What clamping took away, in words.
-pub fn clamping(film: &Summary) -> String {
-    let percent = film.clamped_share() * 100.0;
+/// Fraction of the light that clamping removed, as text.
+pub fn clamping(film: &FilmSummary) -> String {
+    let percent = film.clamped_fraction() * 100.0;
     match film.clamped {
         0.0 => "clamping removed no light".into(),
         _ if percent < 0.1 => "clamping removed less than 0.1 % of the light".into(),
@@ -98,8 +98,11 @@ mod tests {
 
     #[test]
     fn samples_tell_how_they_are_spread() {
-        assert_eq!((samples(&Spread::even(1)), samples(&Spread::even(64))), ("1 sample".into(), "64 samples".into()));
-        let spread = Spread { min: 16, mean: 120.51, max: 512 };
+        assert_eq!(
+            (samples(&SampleCountStats::uniform(1)), samples(&SampleCountStats::uniform(64))),
+            ("1 sample".into(), "64 samples".into())
+        );
+        let spread = SampleCountStats { min: 16, mean: 120.51, max: 512 };
         assert_eq!(samples(&spread), "16 to 512 samples, 120.5 on average");
     }
 

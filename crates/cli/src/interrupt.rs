@@ -1,4 +1,4 @@
-//! Signals that ask the program to stop: remembered, so that the render can end in order.
+//! Signals that end a render in an orderly way.
 
 use crate::failure::{Failure, plain};
 #[cfg(unix)]
@@ -10,9 +10,8 @@ use signal_hook::iterator::Signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// The signals that end a render in order: Ctrl-C, the end that a system or cluster asks for, and a
-/// terminal that goes away, unless `nohup` has the program outlive that.
-fn watched() -> Vec<i32> {
+/// Signals to watch: SIGINT, SIGTERM and, unless ignored as under `nohup`, SIGHUP.
+fn watched_signals() -> Vec<i32> {
     #[allow(unused_mut, reason = "only Unix has a third")]
     let mut signals = vec![SIGINT, SIGTERM];
     #[cfg(unix)]
@@ -22,8 +21,8 @@ fn watched() -> Vec<i32> {
     signals
 }
 
-/// Whether a process that has this status ignores a signal. A status that does not say it counts as
-/// one that does: then the signal keeps the effect that it has.
+/// Whether a process with this `/proc` status ignores a signal. If the status does not tell, the
+/// signal counts as ignored and keeps its default effect.
 #[cfg(unix)]
 fn is_ignored(status: &str, signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -31,18 +30,18 @@ fn is_ignored(status: &str, signal: i32) -> bool {
     mask.is_none_or(|mask| (mask >> (signal - 1)) & 1 == 1)
 }
 
-/// The signals that came.
+/// Record of received signals.
 pub struct Interrupts {
     number: Arc<AtomicUsize>,
 }
 
 impl Interrupts {
-    /// From now on SIGINT, SIGTERM and SIGHUP are remembered; a second one ends the program at
-    /// once.
+    /// Records SIGINT, SIGTERM and SIGHUP from now on; a second signal ends the program
+    /// immediately.
     pub fn watch() -> Result<Self, Failure> {
         let number = Arc::new(AtomicUsize::new(0));
         let again = Arc::new(AtomicBool::new(false));
-        for signal in watched() {
+        for signal in watched_signals() {
             flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))
                 .and_then(|_| flag::register(signal, Arc::clone(&again)))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&number), signal.unsigned_abs() as usize))
@@ -51,23 +50,23 @@ impl Interrupts {
         Ok(Self { number })
     }
 
-    /// The signal that came, as a failure.
+    /// Received signal as a [`Failure`], if any.
     pub fn caught(&self) -> Option<Failure> {
         let number = self.number.load(Relaxed);
         let signal = u8::try_from(number).unwrap_or(u8::MAX);
-        (number != 0).then_some(Failure::Interrupted { signal, kept: None })
+        (number != 0).then_some(Failure::Interrupted { signal, saved: None })
     }
 
-    /// An error as soon as a signal has come.
+    /// Fails if a signal was received.
     pub fn check(&self) -> Result<(), Failure> {
         self.caught().map_or(Ok(()), Err)
     }
 
-    /// Sleeps until a signal comes; it, as a failure.
+    /// Blocks until a signal arrives, and returns it.
     #[cfg(feature = "serve")]
     pub fn wait(&self) -> Failure {
-        // One that came before these listen is remembered.
-        let mut signals = match Signals::new(watched()) {
+        // A signal received before this point is in `caught`.
+        let mut signals = match Signals::new(watched_signals()) {
             Ok(signals) => signals,
             Err(error) => return cannot_watch(&error),
         };

@@ -1,4 +1,5 @@
-//! The program `juggler`: what was typed ([`args`]), what it means ([`plan`]), and doing it ([`command`]).
+//! The program `juggler`: command line ([`args`]), plan of a render ([`plan`]) and commands
+//! ([`command`]).
 
 mod args;
 mod command;
@@ -20,11 +21,11 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let words: Vec<_> = std::env::args_os().collect();
-    let args = match args::Args::parse_words(&words, console::color_choice()) {
+    let args = match args::Args::parse_arguments(&words, console::color_choice()) {
         Ok(args) => args,
         Err(error) => {
-            // Help and version go to standard output, mistakes to standard error.
-            console::answer(&error);
+            // Help and version go to standard output, errors to standard error.
+            console::print_parse_error(&error);
             return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
     };
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if let Some(message) = failure.message(console::color()) {
-                console::say(&message);
+                console::print_message(&message);
             }
             failure.into()
         }

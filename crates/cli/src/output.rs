@@ -1,4 +1,4 @@
-//! Where results go: standard output, files, numbered frames.
+//! Outputs: standard output, files and numbered frames.
 
 use crate::console;
 use crate::failure::{Failure, missing_folder};
@@ -7,21 +7,20 @@ use std::io::{ErrorKind, IsTerminal};
 use std::ops::Range;
 use std::path::Path;
 
-/// The name that means standard output.
+/// File name that stands for standard output.
 pub const STANDARD_OUTPUT: &str = "-";
 
-/// Writes a text and a line break to a file, which it replaces when complete, or to standard output.
+/// Writes a text and a line break to standard output, or atomically to a file.
 pub fn write_text(output: &str, text: &str) -> Result<(), Failure> {
     if output == STANDARD_OUTPUT {
-        return console::print(text);
+        return console::print_result(text);
     }
     atomic::write(Path::new(output), format!("{text}\n").as_bytes())
         .map_err(|error| Failure::file("write", output, &error))
 }
 
-/// The name of a frame's file: a row of `#`, or `%04d` as other programs have it, becomes the
-/// number, filled with zeros; without one, the number comes before the ending, after an underscore,
-/// in four digits.
+/// File name of a frame: a row of `#`, or `%04d`, becomes the frame number padded with zeros.
+/// Without one, an underscore and four digits are inserted before the extension.
 pub fn numbered(name: &str, frame: u32) -> String {
     let (folder, file) = split(name);
     if let Some((place, digits)) = place_of_number(file) {
@@ -34,19 +33,19 @@ pub fn numbered(name: &str, frame: u32) -> String {
     }
 }
 
-/// Whether a name says where the number of a frame goes.
+/// Whether a file name has a placeholder for the frame number.
 pub fn has_number(name: &str) -> bool {
     place_of_number(split(name).1).is_some()
 }
 
-/// Folder, with what divides them, and file.
+/// Splits a path into its folder, with the separator, and its file name.
 fn split(name: &str) -> (&str, &str) {
     let file = Path::new(name).file_name().and_then(|file| file.to_str()).unwrap_or(name);
     name.split_at(name.len().saturating_sub(file.len()))
 }
 
-/// Where in a file's name the number goes, and how many digits it has at least: the last row of
-/// `#`, or else the last `%d`, `%4d` or `%04d`.
+/// Position of the frame number in a file name, and its minimum number of digits: the last row of
+/// `#`, otherwise the last `%d`, `%4d` or `%04d`.
 fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
     if let Some(last) = file.rfind('#') {
         let start = file.get(..last)?.trim_end_matches('#').len();
@@ -59,21 +58,20 @@ fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
     })
 }
 
-/// Refuses a picture on a terminal: nobody can read its bytes there, and they change how the
-/// terminal behaves.
+/// Fails if a picture would go to a terminal, where its bytes are unreadable and may act as control
+/// characters.
 pub fn check_stream(output: &str) -> Result<(), Failure> {
     if output == STANDARD_OUTPUT && std::io::stdout().is_terminal() {
-        return Err(Failure::Wrong(
-            "-o - writes the picture to standard output, which is a terminal: give a file (-o picture.png), or send it \
-             to one (> picture.png) or to another program (| display)"
+        return Err(Failure::Invalid(
+            "-o - writes the picture to standard output, which is a terminal: give a file (-o picture.png), or \
+             redirect the output to a file (> picture.png) or a program (| display)"
                 .into(),
         ));
     }
     Ok(())
 }
 
-/// Refuses a file that cannot be written because a folder on the way is missing: before anything is
-/// rendered.
+/// Fails if the folder of a file does not exist, before anything is rendered.
 pub fn check_folder(file: &str) -> Result<(), Failure> {
     match missing_folder(file).filter(|_| file != STANDARD_OUTPUT) {
         Some(_) => Err(Failure::file("write", file, &ErrorKind::NotFound.into())),
@@ -81,10 +79,10 @@ pub fn check_folder(file: &str) -> Result<(), Failure> {
     }
 }
 
-/// Refuses what would write twice to standard output.
+/// Fails if both the picture and the statistics go to standard output.
 pub fn at_most_one_stream(output: &str, stats: Option<&str>) -> Result<(), Failure> {
     if output == STANDARD_OUTPUT && stats == Some(STANDARD_OUTPUT) {
-        return Err(Failure::Wrong("picture and statistics cannot both go to standard output".into()));
+        return Err(Failure::Invalid("picture and statistics cannot both go to standard output".into()));
     }
     Ok(())
 }

@@ -1,17 +1,17 @@
-//! What `juggler render` was asked for, from what was typed.
+//! Plan of a render, derived from the command line.
 
+pub mod aovs;
 pub mod effect;
-pub mod layers;
+mod movie;
+mod output_kind;
 mod parts;
-mod product;
-mod reel;
 mod view;
 
 pub use effect::Target;
+pub use movie::Movie;
+pub use output_kind::{Encoding, OutputKind, PART_ENDING};
 pub use parts::{Checkpoint, Cut, Shard};
-pub use product::{Encoding, PART_ENDING, Product};
-pub use reel::Reel;
-pub use view::beyond_the_end;
+pub use view::end_warning;
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
@@ -19,112 +19,116 @@ use crate::output::{self, STANDARD_OUTPUT};
 use crate::progress::Progress;
 use crate::source;
 use crate::value::FrameRange;
-use juggler::film::share::{self, FrameShare};
+use juggler::film::shard::{self, FrameShard};
 use juggler::imaging::Options;
 use juggler::{Limit, Settings};
 use std::ops::Range;
 use std::time::Duration;
 
-/// Threads when the system does not say how many cores there are.
+/// Number of threads if the number of cores is unknown.
 const FALLBACK_THREADS: usize = 1;
 
-/// A render, ready to be done.
+/// All choices of a `juggler render` command.
 #[derive(Debug)]
 pub struct Plan {
-    /// The scene's file or name.
+    /// Scene file or name of a built-in scene.
     pub scene: String,
-    /// What is wished for beyond what the scene says.
+    /// Overrides of the scene's settings.
     pub settings: Settings,
-    /// Which moments of it.
-    pub moments: Moments,
-    /// The picture's file, `-` for standard output; perhaps with `####`.
+    /// Frames or time to render.
+    pub times: TimeSelection,
+    /// Output file, possibly with `####`; `-` for standard output.
     pub output: String,
-    /// What it holds.
-    pub product: Product,
-    /// Where its layers go, if somebody said.
-    pub layers_output: Option<String>,
-    /// The film that the pictures are frames of.
-    pub reel: Option<Reel>,
-    /// How long rendering may take.
+    /// Kind of output.
+    pub output_kind: OutputKind,
+    /// File for the AOVs, if given.
+    pub aov_output: Option<String>,
+    /// Movie to encode, if any.
+    pub movie: Option<Movie>,
+    /// Time limit of rendering.
     pub time: Option<Duration>,
-    /// The picture or part whose numbers of samples are taken.
+    /// Picture or partial render whose numbers of samples are repeated.
     pub samples_from: Option<String>,
-    /// Where work is kept.
+    /// Checkpoints, if any.
     pub checkpoint: Option<Checkpoint>,
-    /// Which part of the picture or the frames.
+    /// Shard of the picture or of the frames.
     pub shard: Shard,
-    /// The pixels and samples that a part is cut to by hand.
+    /// Pixels and samples of a partial render, from `--crop` and `--sample-range`.
     pub cut: Cut,
-    /// The statistics' file.
+    /// File for the statistics.
     pub stats: Option<String>,
-    /// How many threads render.
+    /// Number of rendering threads.
     pub threads: usize,
-    /// The most memory, in bytes.
+    /// Memory limit, in bytes.
     pub max_memory: Option<u64>,
-    /// How progress is shown.
+    /// Form of progress reports.
     pub progress: Progress,
-    /// Whether nothing is said about what was done.
+    /// Whether to print errors only.
     pub quiet: bool,
 }
 
-/// Moments of an animation.
+/// Times of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Moments {
-    /// One frame.
+pub enum TimeSelection {
+    /// A single frame.
     Frame(u32),
-    /// Seconds from the start.
+    /// Time in seconds.
     At(f64),
-    /// Frames, one picture each.
+    /// A range of frames, one picture each.
     Frames(FrameRange),
 }
 
-/// One picture of a plan.
+/// A picture of a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shot {
-    /// The frame, perhaps between two.
+pub struct FrameOutput {
+    /// Frame number; fractional for times between frames.
     pub frame: f64,
-    /// The picture's file.
+    /// Output file.
     pub output: String,
-    /// Its layers' file, if somebody said.
-    pub layers_output: Option<String>,
-    /// The statistics' file.
+    /// File for the AOVs, if given.
+    pub aov_output: Option<String>,
+    /// File for the statistics.
     pub stats: Option<String>,
-    /// Where its work is kept.
+    /// Checkpoint file.
     pub checkpoint: Option<String>,
-    /// Which part of this picture.
+    /// Shard of this picture.
     pub shard: Shard,
 }
 
 impl Plan {
-    /// Works out what was meant, or says why it cannot be.
+    /// Derives the plan from the arguments.
+    ///
+    /// # Errors
+    ///
+    /// Fails if flags contradict each other or the output.
     pub fn new(args: RenderArgs) -> Result<Self, Failure> {
         let output = args.output.clone().unwrap_or_else(|| format!("{}.png", source::stem(&args.scene)));
         if output.is_empty() {
-            return Err(Failure::Wrong("the output has no name".into()));
+            return Err(Failure::Invalid("--output needs the name of a file".into()));
         }
         output::at_most_one_stream(&output, args.stats.as_deref())?;
-        let reel = Reel::new(&args, &output)?;
-        let output = reel.as_ref().map_or(output, Reel::frames);
-        let product = match reel {
-            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)),
-            None => Product::new(&args, &output)?,
+        let movie = Movie::new(&args, &output)?;
+        let output = movie.as_ref().map_or(output, Movie::frames);
+        let output_kind = match movie {
+            Some(_) => OutputKind::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)),
+            None => OutputKind::new(&args, &output)?,
         };
-        let moments = Moments::new(&args, &output, reel.is_some())?;
-        let target = Target::new(product, reel.as_ref());
-        effect::check(target, &effect::given(&args, matches!(moments, Moments::Frames(_))))?;
-        let aovs = layers::wanted(&args, &output)?;
-        let cut = Cut::new(&args, product);
-        let checkpoint = Checkpoint::new(&args, reel.as_ref())?;
+        let times = TimeSelection::new(&args, &output, movie.is_some())?;
+        let target = Target::new(output_kind, movie.as_ref());
+        effect::check(target, &effect::flags(&args, matches!(times, TimeSelection::Frames(_))))?;
+        let aovs = aovs::requested(&args, &output)?;
+        let cut = Cut::new(&args, output_kind);
+        let checkpoint = Checkpoint::new(&args, movie.as_ref())?;
         let shard = Shard::new(args.shard, parts::variable)?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
-            settings: Settings { aovs, ..settings(&args, product) },
+            settings: Settings { aovs, ..settings(&args, output_kind) },
             scene: args.scene,
-            moments,
+            times,
             output,
-            layers_output: args.aov_output,
-            product,
-            reel,
+            aov_output: args.aov_output,
+            output_kind,
+            movie,
             time: args.time,
             samples_from: args.samples_from,
             checkpoint,
@@ -138,56 +142,61 @@ impl Plan {
         })
     }
 
-    /// Whether standard output is taken by the picture or the statistics.
-    pub fn stream_taken(&self) -> bool {
+    /// Whether the picture or the statistics go to standard output.
+    pub fn uses_standard_output(&self) -> bool {
         self.output == STANDARD_OUTPUT || self.stats.as_deref() == Some(STANDARD_OUTPUT)
     }
 
-    /// What is written in the end.
+    /// Kind of file that the command writes in the end.
     pub fn target(&self) -> Target {
-        Target::new(self.product, self.reel.as_ref())
+        Target::new(self.output_kind, self.movie.as_ref())
     }
 
-    /// How the picture is written.
+    /// Encoding options of the picture.
     pub fn options(&self) -> Options {
-        match self.product {
-            Product::Picture(encoding) => encoding.options,
-            Product::Part => Options::default(),
+        match self.output_kind {
+            OutputKind::Picture(encoding) => encoding.options,
+            OutputKind::Part => Options::default(),
         }
     }
 
-    /// Whether a picture is made on a film that is kept, not row by row.
-    pub fn needs_film(&self, shot: &Shot) -> bool {
-        let is_kept =
-            self.product == Product::Part || shot.checkpoint.is_some() || self.settings.limit != Limit::Samples;
+    /// Whether the picture needs a film in memory instead of being written row by row.
+    pub fn needs_film(&self, frame_output: &FrameOutput) -> bool {
+        let is_kept = self.output_kind == OutputKind::Part
+            || frame_output.checkpoint.is_some()
+            || self.settings.limit != Limit::Samples;
         is_kept || !self.settings.aovs.is_empty() || self.settings.denoiser.is_some()
     }
 
-    /// Whether a picture that is there already, made by the same command from the same scene, is left as it is.
-    pub fn leaves_what_is_there(&self) -> bool {
-        let Product::Picture(encoding) = self.product else { return false };
-        matches!(self.moments, Moments::Frames(_)) && encoding.format.keeps_texts()
+    /// Whether existing pictures are kept if the same command made them from the same scene.
+    pub fn keeps_existing(&self) -> bool {
+        let OutputKind::Picture(encoding) = self.output_kind else { return false };
+        matches!(self.times, TimeSelection::Frames(_)) && encoding.format.stores_metadata()
     }
 
-    /// The pictures, for an animation of this length and pace.
-    pub fn shots(&self, length: u32, frames_per_second: f64) -> Result<Vec<Shot>, Failure> {
-        let single = |frame: f64| Shot {
+    /// Pictures to render, for an animation of `length` frames.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the range of frames is empty.
+    pub fn frame_outputs(&self, length: u32, frames_per_second: f64) -> Result<Vec<FrameOutput>, Failure> {
+        let single = |frame: f64| FrameOutput {
             frame,
             output: self.output.clone(),
-            layers_output: self.layers_output.clone(),
+            aov_output: self.aov_output.clone(),
             stats: self.stats.clone(),
             checkpoint: self.checkpoint.as_ref().map(|checkpoint| checkpoint.file.clone()),
             shard: self.shard,
         };
-        match self.moments {
-            Moments::Frame(frame) => Ok(vec![single(f64::from(frame))]),
-            Moments::At(seconds) => Ok(vec![single(seconds * frames_per_second)]),
-            Moments::Frames(_) => {
+        match self.times {
+            TimeSelection::Frame(frame) => Ok(vec![single(f64::from(frame))]),
+            TimeSelection::At(seconds) => Ok(vec![single(seconds * frames_per_second)]),
+            TimeSelection::Frames(_) => {
                 let frames = self.frames(length);
                 if frames.is_empty() {
                     let first = frames.start;
-                    return Err(Failure::Wrong(format!(
-                        "no frame is left from {first} on: the animation has {length}, 0 to {}",
+                    return Err(Failure::Invalid(format!(
+                        "--frames starts at {first}, beyond the end of the animation: its frames are 0 to {}",
                         length.saturating_sub(1)
                     )));
                 }
@@ -196,46 +205,47 @@ impl Plan {
         }
     }
 
-    /// The frames that are asked for, those of other shards too, for an animation of this length.
+    /// Requested frames over all shards, for an animation of `length` frames.
     pub fn frames(&self, length: u32) -> Range<u32> {
-        match self.moments {
-            Moments::Frames(range) => range.first..range.end.unwrap_or(length),
-            Moments::Frame(frame) => frame..frame.saturating_add(1),
-            Moments::At(_) => 0..1,
+        match self.times {
+            TimeSelection::Frames(range) => range.first..range.end.unwrap_or(length),
+            TimeSelection::Frame(frame) => frame..frame.saturating_add(1),
+            TimeSelection::At(_) => 0..1,
         }
     }
 
-    fn numbered(&self, frames: Range<u32>) -> Vec<Shot> {
+    fn numbered(&self, frames: Range<u32>) -> Vec<FrameOutput> {
         let name =
             |name: &str, frame| if name == STANDARD_OUTPUT { name.into() } else { output::numbered(name, frame) };
-        let shot = |frame: u32, shard: Shard| Shot {
+        let frame_output = |frame: u32, shard: Shard| FrameOutput {
             frame: f64::from(frame),
             output: name(&self.output, frame),
-            layers_output: layers::numbered(self.layers_output.as_deref(), frame),
+            aov_output: aovs::numbered(self.aov_output.as_deref(), frame),
             stats: self.stats.as_deref().map(|stats| name(stats, frame)),
             checkpoint: self.checkpoint.as_ref().map(|checkpoint| name(&checkpoint.file, frame)),
             shard,
         };
         let Shard { index, count } = self.shard;
-        if self.product != Product::Part {
-            // Pictures are shared whole, in turns.
+        if self.output_kind != OutputKind::Part {
+            // Distribute whole pictures over the shards in turns.
             let own = frames.skip(index as usize).step_by(count as usize);
-            return own.map(|frame| shot(frame, Shard::WHOLE)).collect();
+            return own.map(|frame| frame_output(frame, Shard::WHOLE)).collect();
         }
-        let shares = share::frames(frames, index, count).into_iter();
-        shares.map(|FrameShare { frame, index, count }| shot(frame, Shard { index, count })).collect()
+        let shards = shard::frames(frames, index, count).into_iter();
+        shards.map(|FrameShard { frame, index, count }| frame_output(frame, Shard { index, count })).collect()
     }
 }
 
-/// What is wished for beyond what the scene says. A picture's crop is the picture, a part's is a piece of it.
-fn settings(args: &RenderArgs, product: Product) -> Settings {
+/// Overrides of the scene's settings. The crop of a picture is its region; the crop of a partial
+/// render is in [`Cut`].
+fn settings(args: &RenderArgs, output_kind: OutputKind) -> Settings {
     Settings {
         limit: match (args.noise, args.time, &args.samples_from) {
             (Some(level), ..) => Limit::Noise(level),
             (_, None, None) => Limit::Samples,
             (None, time, _) => Limit::Time { seconds: time.map_or(0.0, |time| time.as_secs_f64()) },
         },
-        crop: if product == Product::Part { None } else { args.crop },
+        crop: if output_kind == OutputKind::Part { None } else { args.crop },
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
         aovs: Vec::new(),
@@ -247,12 +257,12 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
     }
 }
 
-impl Moments {
-    /// Of a film, all frames where nothing else is said.
+impl TimeSelection {
+    /// Requested times; all frames by default if the output is a movie.
     fn new(args: &RenderArgs, output: &str, is_film: bool) -> Result<Self, Failure> {
         match (args.frames, args.view.frame, args.view.at) {
             (Some(_), ..) if output == STANDARD_OUTPUT => {
-                Err(Failure::Wrong("several frames need files: standard output holds one picture".into()))
+                Err(Failure::Invalid("several frames need files: standard output holds one picture".into()))
             }
             (Some(range), ..) => Ok(Self::Frames(range)),
             (_, Some(frame), _) => Ok(Self::Frame(frame)),

@@ -1,4 +1,4 @@
-//! How far a render is: read from its [`Control`] by a thread of its own, shown on standard error.
+//! Progress reports: a thread reads the [`Control`] of a render and prints to standard error.
 
 use crate::console;
 use crate::format::{amount, duration, whole_seconds};
@@ -6,47 +6,47 @@ use crate::interrupt::Interrupts;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use juggler::camera::film::Film;
-use juggler::render::{Control, noise_so_far};
+use juggler::render::{Control, estimate_noise};
 use serde_json::json;
 use std::io::{self, IsTerminal};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-/// How often signals are looked for.
+/// Interval between checks for signals.
 const TICK: Duration = Duration::from_millis(20);
-/// Ticks between two reports on a terminal, and between two lines.
+/// Ticks between updates of the bar, and between lines.
 const TICKS: (u32, u32) = (5, 50);
-/// Parts that the bar moves by.
+/// Number of steps of the bar.
 const STEPS: u64 = 1000;
 
-/// How progress is shown.
+/// Form of progress reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Progress {
-    /// A bar when standard error is a terminal
+    /// Bar if standard error is a terminal
     #[default]
     Auto,
-    /// A bar; a line each second when standard error is no terminal
+    /// Bar, or a line per second if standard error is no terminal
     Bar,
-    /// One JSON object a line
+    /// JSON object per line
     Json,
-    /// Nothing
+    /// No progress reports
     None,
 }
 
-/// Where progress goes.
+/// Destination of progress reports.
 pub enum Reporter {
-    /// A bar on a terminal.
+    /// Bar on a terminal.
     Bar(ProgressBar),
-    /// A line for people each second.
+    /// Line of text per second.
     Lines,
-    /// A line for programs each second.
+    /// JSON object per second.
     Json,
-    /// Nowhere.
+    /// No reports.
     Nothing,
 }
 
 impl Progress {
-    /// Looks at what standard error is.
+    /// Selects the reporter, depending on whether standard error is a terminal.
     pub fn reporter(self) -> Reporter {
         let terminal = io::stderr().is_terminal();
         match self {
@@ -67,154 +67,156 @@ fn bar() -> ProgressBar {
     bar
 }
 
-/// Where a picture stands among the frames that one command renders.
+/// Position of a picture among the frames of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
-    /// Its place, from 1.
+pub struct FrameProgress {
+    /// Number of the frame, from 1.
     pub number: usize,
-    /// How many there are.
-    pub of: usize,
-    /// How many were rendered, not found.
+    /// Number of frames.
+    pub count: usize,
+    /// Number of frames rendered so far; existing ones do not count.
     pub rendered: u32,
-    /// The time that took.
+    /// Time spent on the rendered frames.
     pub spent: Duration,
 }
 
-impl Course {
-    /// At the first of some.
-    pub fn new(of: usize) -> Self {
-        Self { number: 1, of, rendered: 0, spent: Duration::ZERO }
+impl FrameProgress {
+    /// Position of the first of `count` frames.
+    pub fn new(count: usize) -> Self {
+        Self { number: 1, count, rendered: 0, spent: Duration::ZERO }
     }
 
-    /// After one that took so long, or was there already.
+    /// Position after a frame that took this time; `None` if it existed already.
     pub fn after(self, took: Option<Duration>) -> Self {
         let rendered = self.rendered.saturating_add(took.is_some().into());
         Self { number: self.number + 1, rendered, spent: self.spent + took.unwrap_or_default(), ..self }
     }
 
-    /// How much of all frames is there, with this share of the one under way.
+    /// Finished fraction of all frames; `share` is that of the current frame.
     fn fraction(&self, share: f64) -> f64 {
-        ((self.number.saturating_sub(1)) as f64 + share) / self.of.max(1) as f64
+        ((self.number.saturating_sub(1)) as f64 + share) / self.count.max(1) as f64
     }
 
-    /// How long the rest takes if each frame takes as long as those so far, with this share of the one under way, on which
-    /// `now` was spent.
+    /// Remaining time, from the mean time per frame. `share` is the finished fraction of the
+    /// current frame and `now` the time spent on it.
     fn left(&self, share: f64, now: Duration) -> Option<Duration> {
-        let rest = self.of.saturating_sub(self.number) as f64 + 1.0 - share;
+        let rest = self.count.saturating_sub(self.number) as f64 + 1.0 - share;
         let each = (self.spent + now).as_secs_f64() / (f64::from(self.rendered) + share);
         Duration::try_from_secs_f64(each * rest).ok()
     }
 }
 
-/// When a render will have enough.
+/// Criterion that ends a render.
 #[derive(Clone, Copy)]
 pub enum Goal<'g> {
-    /// When all pixels together have so many samples.
+    /// Number of samples over all pixels.
     Samples(u64),
-    /// After some time; or before, when all pixels together have so many samples.
+    /// Time limit, and number of samples over all pixels, whichever is reached first.
     Time(Duration, u64),
-    /// When a film is this free of noise.
+    /// Film and its target noise level.
     Noise(&'g Film, f32),
 }
 
-/// What else than samples a render goes by.
+/// Progress towards a goal other than a number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Toward {
-    /// Time that has passed, of the time that there is.
+enum GoalProgress {
+    /// Elapsed time and time limit.
     Time(Duration, Duration),
-    /// The largest relative error of a tile, if it can be told yet, and what it is to become.
+    /// Largest relative error of a tile, if known yet, and the target level.
     Noise(Option<f64>, f32),
 }
 
-/// One look at a running render.
-struct Look {
+/// Snapshot of a running render.
+struct Snapshot {
     fraction: f64,
     rays: u64,
     rays_per_second: f64,
     eta: Option<Duration>,
-    toward: Option<Toward>,
-    /// The same of all frames, and which one this is.
-    course: Option<(Course, Option<Duration>)>,
+    goal_progress: Option<GoalProgress>,
+    /// Position among the frames, and the remaining time of all frames.
+    frame_progress: Option<(FrameProgress, Option<Duration>)>,
 }
 
-impl Look {
-    fn at(control: &Control, goal: &Goal, start: Instant, course: Option<Course>) -> Self {
+impl Snapshot {
+    fn at(control: &Control, goal: &Goal, start: Instant, frame_progress: Option<FrameProgress>) -> Self {
         let now = start.elapsed();
         let seconds = now.as_secs_f64();
         let rays = control.rays().total();
         let of_samples = |samples: u64| (control.samples() as f64 / samples.max(1) as f64).min(1.0);
         let left = |fraction: f64| Duration::try_from_secs_f64(seconds * (1.0 - fraction) / fraction).ok();
-        let (fraction, eta, toward) = match *goal {
+        let (fraction, eta, goal_progress) = match *goal {
             Goal::Samples(samples) => (of_samples(samples), left(of_samples(samples)), None),
             Goal::Time(limit, samples) => {
                 let of_time = (seconds / limit.as_secs_f64().max(1e-9)).min(1.0);
                 let fraction = of_time.max(of_samples(samples));
                 let eta = limit.saturating_sub(now).min(left(of_samples(samples)).unwrap_or(limit));
-                (fraction, Some(eta), Some(Toward::Time(now, limit)))
+                (fraction, Some(eta), Some(GoalProgress::Time(now, limit)))
             }
             Goal::Noise(film, level) => {
-                let so_far = noise_so_far(film, level);
+                let so_far = estimate_noise(film, level);
                 let fraction = so_far.map_or(0.0, |so_far| so_far.fraction);
-                // What was there before took no time now.
+                // Samples that were resumed took no time in this run.
                 let rest = film.samples() as f64 * (1.0 - fraction) / fraction;
                 let eta = Duration::try_from_secs_f64(seconds * rest / control.samples() as f64).ok();
-                (fraction, eta, Some(Toward::Noise(so_far.map(|so_far| so_far.noise), level)))
+                (fraction, eta, Some(GoalProgress::Noise(so_far.map(|so_far| so_far.noise), level)))
             }
         };
-        let course = course.map(|course| (course, course.left(fraction, now)));
-        Self { fraction, rays, rays_per_second: rays as f64 / seconds.max(1e-9), eta, toward, course }
+        let frame_progress = frame_progress.map(|frame_progress| (frame_progress, frame_progress.left(fraction, now)));
+        Self { fraction, rays, rays_per_second: rays as f64 / seconds.max(1e-9), eta, goal_progress, frame_progress }
     }
 
-    /// The share of all frames, or of the only picture.
+    /// Finished fraction of all frames, or of the only picture.
     fn whole(&self) -> f64 {
-        self.course.map_or(self.fraction, |(course, _)| course.fraction(self.fraction))
+        self.frame_progress.map_or(self.fraction, |(frame_progress, _)| frame_progress.fraction(self.fraction))
     }
 
-    fn words(&self) -> String {
-        let frame = self.course.map(|(course, _)| format!("frame {} of {}, ", course.number, course.of));
+    fn text(&self) -> String {
+        let frame = self
+            .frame_progress
+            .map(|(frame_progress, _)| format!("frame {} of {}, ", frame_progress.number, frame_progress.count));
         let percent = self.whole() * 100.0;
-        let toward = match self.toward {
+        let goal_progress = match self.goal_progress {
             None => String::new(),
-            Some(Toward::Time(now, limit)) => format!(", {} of {}", whole_seconds(now), duration(limit)),
-            Some(Toward::Noise(None, level)) => format!(", noise not known yet, to become {level}"),
-            Some(Toward::Noise(Some(noise), level)) => format!(", noise {noise:.4}, to become {level}"),
+            Some(GoalProgress::Time(now, limit)) => format!(", {} of {}", whole_seconds(now), duration(limit)),
+            Some(GoalProgress::Noise(None, level)) => format!(", noise not known yet, target {level}"),
+            Some(GoalProgress::Noise(Some(noise), level)) => format!(", noise {noise:.4}, target {level}"),
         };
         let rate = amount(self.rays_per_second);
-        format!("{}{percent:5.1} %{toward}, {rate} rays/s{}", frame.unwrap_or_default(), self.left_in_words())
+        format!("{}{percent:5.1} %{goal_progress}, {rate} rays/s{}", frame.unwrap_or_default(), self.remaining_text())
     }
 
-    /// How long all frames, or the only picture, will take, unless that is told already.
-    fn left_in_words(&self) -> String {
-        let left = match (self.course, self.toward) {
+    /// Remaining time of all frames or of the only picture, unless the time limit shows it already.
+    fn remaining_text(&self) -> String {
+        let left = match (self.frame_progress, self.goal_progress) {
             (Some((_, left)), _) => left,
-            (None, Some(Toward::Time(..))) => None,
+            (None, Some(GoalProgress::Time(..))) => None,
             (None, _) => self.eta,
         };
         let left = left.filter(|left| left.as_secs_f64() >= 0.5);
         left.map(|left| format!(", {} left", whole_seconds(left))).unwrap_or_default()
     }
 
-    /// For programs; what several frames add comes last.
+    /// JSON event; the keys for several frames come last.
     fn json(&self) -> serde_json::Value {
         let seconds = |eta: Option<Duration>| eta.map(|eta| eta.as_secs_f64());
         let mut event = json!({
             "event": "progress", "fraction": self.fraction, "rays": self.rays,
             "rays_per_second": self.rays_per_second, "eta_seconds": seconds(self.eta),
         });
-        match self.toward {
+        match self.goal_progress {
             None => {}
-            Some(Toward::Time(now, limit)) => {
+            Some(GoalProgress::Time(now, limit)) => {
                 event["elapsed_seconds"] = now.as_secs_f64().into();
                 event["limit_seconds"] = limit.as_secs_f64().into();
             }
-            Some(Toward::Noise(noise, level)) => {
+            Some(GoalProgress::Noise(noise, level)) => {
                 event["noise"] = noise.into();
                 event["noise_limit"] = f64::from(level).into();
             }
         }
-        if let Some((course, left)) = self.course {
-            event["frame"] = course.number.into();
-            event["frames"] = course.of.into();
+        if let Some((frame_progress, left)) = self.frame_progress {
+            event["frame"] = frame_progress.number.into();
+            event["frames"] = frame_progress.count.into();
             event["film_fraction"] = self.whole().into();
             event["film_eta_seconds"] = seconds(left).into();
         }
@@ -223,56 +225,58 @@ impl Look {
 }
 
 impl Reporter {
-    /// Says that a picture begins; `samples` are those of a pixel, where that is known.
-    pub fn start(&self, name: &str, size: [u32; 2], samples: Option<u32>, course: Option<Course>) {
+    /// Reports the start of a picture; `samples` is the number per pixel, if known.
+    pub fn start(&self, name: &str, size: [u32; 2], samples: Option<u32>, frame_progress: Option<FrameProgress>) {
         match self {
             Self::Bar(bar) => {
                 bar.set_prefix(format!("{name} "));
-                bar.set_position(course.map_or(0, |course| (course.fraction(0.0) * STEPS as f64) as u64));
+                bar.set_position(
+                    frame_progress.map_or(0, |frame_progress| (frame_progress.fraction(0.0) * STEPS as f64) as u64),
+                );
             }
             Self::Json => {
                 let mut event = json!({"event": "start", "output": name, "size": size, "samples": samples});
-                if let Some(course) = course {
-                    event["frame"] = course.number.into();
-                    event["frames"] = course.of.into();
+                if let Some(frame_progress) = frame_progress {
+                    event["frame"] = frame_progress.number.into();
+                    event["frames"] = frame_progress.count.into();
                 }
-                say(&event);
+                print_event(&event);
             }
             Self::Lines | Self::Nothing => {}
         }
     }
 
-    fn report(&self, look: &Look) {
+    fn report(&self, snapshot: &Snapshot) {
         match self {
             Self::Bar(bar) => {
-                bar.set_message(look.words());
-                bar.set_position((look.whole() * STEPS as f64) as u64);
+                bar.set_message(snapshot.text());
+                bar.set_position((snapshot.whole() * STEPS as f64) as u64);
             }
-            Self::Lines => console::say(&look.words()),
-            Self::Json => say(&look.json()),
+            Self::Lines => console::print_message(&snapshot.text()),
+            Self::Json => print_event(&snapshot.json()),
             Self::Nothing => {}
         }
     }
 
-    /// Says that a picture is there.
+    /// Reports the end of a picture.
     pub fn done(&self, name: &str, seconds: f64, rays: u64, hash: &str) {
         match self {
             Self::Bar(bar) => bar.finish_and_clear(),
             Self::Json => {
-                say(&json!({"event": "done", "output": name, "seconds": seconds, "rays": rays, "hash": hash}));
+                print_event(&json!({"event": "done", "output": name, "seconds": seconds, "rays": rays, "hash": hash}));
             }
             Self::Lines | Self::Nothing => {}
         }
     }
 
-    /// Makes room for an error.
+    /// Removes the bar, before an error is printed.
     pub fn clear(&self) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
     }
 
-    /// From one report to the next; noise takes long to tell.
+    /// Ticks between reports; noise is expensive to estimate.
     fn ticks(&self, goal: &Goal) -> Option<u32> {
         match self {
             Self::Nothing => None,
@@ -282,32 +286,33 @@ impl Reporter {
     }
 }
 
-fn say(event: &serde_json::Value) {
-    console::say(&event.to_string());
+fn print_event(event: &serde_json::Value) {
+    console::print_message(&event.to_string());
 }
 
-/// What is watched, and what may end it.
+/// A render to watch.
 pub struct Watch<'w> {
-    /// Where progress goes.
+    /// Destination of progress reports.
     pub reporter: &'w Reporter,
-    /// Signals that cancel it.
+    /// Signals that cancel the render.
     pub interrupts: &'w Interrupts,
-    /// The render.
+    /// Control of the render.
     pub control: &'w Control,
-    /// When it has enough. One that goes by time is asked to finish then.
+    /// Goal of the render; a time limit ends it.
     pub goal: Goal<'w>,
-    /// Where it stands among several frames.
-    pub course: Option<Course>,
+    /// Position among several frames.
+    pub frame_progress: Option<FrameProgress>,
 }
 
-/// Does `work` while another thread reports on it, cancels it when a signal comes and ends it when its time is over.
-pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
+/// Runs `work` while another thread reports its progress, cancels it on a signal, and ends it at
+/// its time limit.
+pub fn with_progress<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
     std::thread::scope(|scope| {
         let (running, ended) = mpsc::channel::<()>();
         scope.spawn(move || {
             let start = Instant::now();
             let mut ticks = 0_u32;
-            let Watch { reporter, interrupts, control, goal, course } = *watch;
+            let Watch { reporter, interrupts, control, goal, frame_progress } = *watch;
             while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
                 ticks += 1;
                 if interrupts.caught().is_some() {
@@ -317,7 +322,7 @@ pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
                     control.finish();
                 }
                 if reporter.ticks(&goal).is_some_and(|each| ticks.is_multiple_of(each)) {
-                    reporter.report(&Look::at(control, &goal, start, course));
+                    reporter.report(&Snapshot::at(control, &goal, start, frame_progress));
                 }
             }
         });

@@ -1,21 +1,21 @@
-//! The command that a picture carries: what made it, without what cannot change it (output, threads, progress), so
-//! that equal pictures are equal files.
+//! The command in a picture's metadata: it reproduces the picture, and omits flags that cannot
+//! change it (output, threads, progress), so that equal pictures are equal files.
 
-use crate::plan::{Moments, Plan, Shot};
+use crate::plan::{FrameOutput, Plan, TimeSelection};
 use juggler::camera::film::Rect;
-use juggler::imaging::{Look, Options, Primaries, SampleDepth, WhiteBalance};
+use juggler::imaging::{DisplayLook, Options, Primaries, SampleDepth, WhiteBalance};
 use juggler::{Aov, Denoiser, Limit, Settings};
 use std::fmt::Display;
 
-/// In a command, the file that carries it.
+/// Placeholder in a command for the file that contains the command.
 const THIS_FILE: &str = "{this file}";
-/// The text of a picture that says how many samples a pixel got.
+/// Metadata key of the number of samples per pixel.
 pub const SAMPLES: &str = "Samples";
-/// The text of a picture that says how many samples each of its tiles got.
+/// Metadata key of the numbers of samples per tile.
 pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 
-/// The shortest command line that renders this picture again.
-pub fn command(plan: &Plan, shot: &Shot) -> String {
+/// Shortest command line that reproduces the picture.
+pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {
     // No flag sets a sampler.
     let Settings {
         size,
@@ -36,7 +36,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         primaries: _,
         dither: _,
     } = &plan.settings;
-    let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
+    let mut words = CommandLine(format!("juggler render {}", quoted(&plan.scene)));
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
     match limit {
         Limit::Time { .. } => words.flag("--samples-from", Some(THIS_FILE)),
@@ -46,10 +46,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--integrator", integrator.as_deref().map(quoted));
     words.flag("--max-depth", *max_depth);
     words.flag("--camera", camera.as_deref().map(quoted));
-    match plan.moments {
-        Moments::At(seconds) => words.flag("--at", Some(seconds)),
-        Moments::Frame(_) | Moments::Frames(_) => words.flag("--frame", Some(shot.frame).filter(|frame| *frame != 0.0)),
-    }
+    words.time(&plan.times, frame_output.frame);
     words.flag("--shutter", shutter.map(|[open, close]| format!("{open}..{close}")));
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
@@ -64,15 +61,25 @@ fn list(aovs: &[Aov]) -> String {
     names.join(",")
 }
 
-/// A command as the file tells it that carries it.
-pub fn told_by(file: &str, command: &str) -> String {
+/// Command of a file's metadata, with the file's current name.
+pub fn with_file_name(file: &str, command: &str) -> String {
     command.replace(THIS_FILE, &quoted(file))
 }
 
-struct Words(String);
+struct CommandLine(String);
 
-impl Words {
-    /// From light to levels.
+impl CommandLine {
+    /// Time or frame of the picture.
+    fn time(&mut self, times: &TimeSelection, frame: f64) {
+        match times {
+            TimeSelection::At(seconds) => self.flag("--at", Some(seconds)),
+            TimeSelection::Frame(_) | TimeSelection::Frames(_) => {
+                self.flag("--frame", Some(frame).filter(|frame| *frame != 0.0));
+            }
+        }
+    }
+
+    /// Flags of tone mapping.
     fn tone(&mut self, settings: &Settings) {
         let Settings { curve, exposure_stops, white_balance, primaries, dither, .. } = settings;
         self.flag("--tone", curve.as_deref().map(quoted));
@@ -94,7 +101,7 @@ impl Words {
 
     fn encoding(&mut self, options: Options) {
         let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = options;
-        self.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
+        self.flag("--look", Some(look.name()).filter(|_| look != DisplayLook::Plain));
         self.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
         self.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
     }
@@ -106,7 +113,7 @@ impl Words {
     }
 }
 
-/// As a shell takes it for one word. Line breaks, which some picture files cannot hold, become `?`.
+/// Quotes a word for a shell. Line breaks become `?`, since some picture formats cannot store them.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./,:=@+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -122,8 +129,8 @@ mod tests {
     use crate::args::RenderArgs;
 
     fn commands(words: &[&str]) -> Vec<String> {
-        let plan = Plan::new(RenderArgs::of(words.iter().copied()).unwrap()).unwrap();
-        plan.shots(30, 24.0).unwrap().iter().map(|shot| command(&plan, shot)).collect()
+        let plan = Plan::new(RenderArgs::from_words(words.iter().copied()).unwrap()).unwrap();
+        plan.frame_outputs(30, 24.0).unwrap().iter().map(|frame_output| command(&plan, frame_output)).collect()
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Where scenes come from: a file, standard input, or the program itself.
+//! Scene sources: files, standard input and built-in scenes.
 
 use crate::failure::Failure;
 use crate::format::bytes;
@@ -8,15 +8,15 @@ use juggler::scene::{Scene, named};
 use std::io::Read;
 use std::path::Path;
 
-/// The name that means standard input.
+/// Scene name that stands for standard input.
 const STANDARD_INPUT: &str = "-";
-/// How messages call it.
+/// Name of standard input in messages.
 const STANDARD_INPUT_NAME: &str = "standard input";
-/// Most bytes that are taken from there.
+/// Maximum length of standard input, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// Reads a scene file, or a mesh file, which gets a scene around it; what is no file may be the name
-/// of a built-in scene. A file that needs more than `most` bytes of memory is refused.
+/// Loads a scene file, a mesh file (in a default scene), or a built-in scene. Fails if reading the
+/// file needs more than `most` bytes of memory.
 pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     if name == STANDARD_INPUT {
         let text = standard_input()?;
@@ -24,8 +24,8 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         return Ok(Scene::from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
-    if Content::of_file(path).is_mesh() {
-        check_memory(estimate(path).map_or(0, |mesh| mesh.peak), name, most)?;
+    if Content::detect(path).is_mesh() {
+        check_memory(estimate(path).map_or(0, |mesh| mesh.peak_bytes), name, most)?;
     } else if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
@@ -33,11 +33,11 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     Ok(Scene::named(name)?)
 }
 
-/// Whether there is a scene file or a built-in scene of this name, whatever is in it.
+/// Checks that a scene file or built-in scene of this name exists, without checking its contents.
 #[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {
     let path = Path::new(name);
-    let is_foreign = matches!(Content::of_file(path), Content::Foreign(_));
+    let is_foreign = matches!(Content::detect(path), Content::Unsupported(_));
     if path.exists() && !path.is_dir() && !is_foreign {
         return Ok(());
     }
@@ -46,7 +46,7 @@ pub fn find(name: &str) -> Result<(), Failure> {
 
 fn check_memory(needed: u64, name: &str, most: Option<u64>) -> Result<(), Failure> {
     match most {
-        Some(most) if needed > most => Err(Failure::Wrong(format!(
+        Some(most) if needed > most => Err(Failure::Invalid(format!(
             "the scene `{name}` needs about {} of memory to be read, more than --max-memory {}",
             bytes(needed),
             bytes(most)
@@ -61,18 +61,18 @@ fn standard_input() -> Result<String, Failure> {
     read.map_err(|error| Failure::file("read", STANDARD_INPUT_NAME, &error))?;
     if text.len() as u64 > MAX_BYTES {
         let most = bytes(MAX_BYTES);
-        return Err(Failure::Wrong(format!("{STANDARD_INPUT_NAME} holds more than the limit of {most}")));
+        return Err(Failure::Invalid(format!("{STANDARD_INPUT_NAME} holds more than the limit of {most}")));
     }
-    String::from_utf8(text).map_err(|_| Failure::Wrong(format!("{STANDARD_INPUT_NAME} is no text in UTF-8")))
+    String::from_utf8(text).map_err(|_| Failure::Invalid(format!("{STANDARD_INPUT_NAME} is not UTF-8 text")))
 }
 
-/// The name without folder and ending.
+/// File name without folder and extension.
 pub fn stem(name: &str) -> &str {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
     stem.filter(|stem| *stem != STANDARD_INPUT).unwrap_or("picture")
 }
 
-/// What to say of a name that leads to no file and to nothing built in.
+/// Error for a name that is neither a file nor built in.
 pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'n str>) -> Failure {
     named::unknown(name, what, built_in).into()
 }

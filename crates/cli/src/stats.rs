@@ -1,38 +1,38 @@
-//! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
+//! `--stats`: a JSON object about a render, whose keys are a stable interface for scripts.
 
-use juggler::camera::film::Summary;
-use juggler::film::counts::Spread;
+use juggler::camera::film::FilmSummary;
+use juggler::film::counts::SampleCountStats;
 use juggler::imaging::Viewpoint;
-use juggler::render::Rays;
-use juggler::{Limit, Outcome, Picture};
+use juggler::render::RayCounts;
+use juggler::{Limit, Picture, RenderStats};
 use serde::Serialize;
 use serde_json::Value;
 
-/// All of it.
+/// Statistics of a render.
 #[derive(Debug, Serialize)]
 pub struct Stats<'s> {
     version: u32,
     scene: &'s str,
     size: [u32; 2],
-    /// Of a pixel, or the most of them.
+    /// Samples per pixel; the maximum if they vary.
     samples: u32,
-    /// Where noise or time ends the picture.
+    /// Numbers of samples per pixel, if a noise level or a time limit ended the render.
     #[serde(skip_serializing_if = "Option::is_none")]
-    samples_per_pixel: Option<Spread>,
+    samples_per_pixel: Option<SampleCountStats>,
     threads: usize,
     integrator: &'s str,
     integrator_reason: String,
     seconds: Seconds,
-    rays: RayCounts,
-    geometry: Geometry,
-    memory: Memory,
-    film: Film<'s>,
-    /// From where the picture was taken.
+    rays: RayStats,
+    geometry: GeometryStats,
+    memory: MemoryStats,
+    film: FilmStats<'s>,
+    /// Camera matrices.
     camera: Value,
     fingerprint: String,
 }
 
-/// How long each part took.
+/// Times of the phases, in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Seconds {
     /// Reading files.
@@ -45,12 +45,12 @@ pub struct Seconds {
     pub denoise: f64,
     /// Encoding and writing the picture.
     pub write: f64,
-    /// All of it.
+    /// All phases.
     pub total: f64,
 }
 
 #[derive(Debug, Serialize)]
-struct RayCounts {
+struct RayStats {
     camera: u64,
     shadow: u64,
     secondary: u64,
@@ -61,7 +61,7 @@ struct RayCounts {
 }
 
 #[derive(Debug, Serialize)]
-struct Geometry {
+struct GeometryStats {
     shapes: u64,
     triangles: u64,
     unique_triangles: u64,
@@ -70,42 +70,61 @@ struct Geometry {
 }
 
 #[derive(Debug, Serialize)]
-struct Film<'s> {
+struct FilmStats<'s> {
     mean: [f64; 3],
     hash: &'s str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    clamped: Option<Clamped>,
+    clamped: Option<ClampStats>,
 }
 
-/// What clamping took away, where it is on.
+/// Radiance that clamping removed.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Clamped {
-    /// Off a pixel, the mean of all pixels and channels.
+pub struct ClampStats {
+    /// Mean over all pixels and channels.
     mean: f64,
-    /// Of all the light.
+    /// Fraction of the total, 0 to 1.
     share: f64,
 }
 
-impl Clamped {
-    /// Of a picture that is clamped.
-    pub fn of(film: &Summary) -> Self {
-        Self { mean: film.clamped, share: film.clamped_share() }
+impl ClampStats {
+    /// Clamping of a picture.
+    pub fn of(film: &FilmSummary) -> Self {
+        Self { mean: film.clamped, share: film.clamped_fraction() }
     }
 }
 
 #[derive(Debug, Serialize)]
-struct Memory {
+struct MemoryStats {
     peak_rss_bytes: Option<u64>,
     expected_bytes: Option<u64>,
     geometry_bytes: usize,
     bvh_bytes: usize,
 }
 
+impl RayStats {
+    fn new(rays: &RayCounts, seconds: f64) -> Self {
+        Self {
+            camera: rays.camera,
+            shadow: rays.shadow,
+            secondary: rays.secondary,
+            total: rays.total(),
+            per_second: rays_per_second(rays, seconds),
+            not_finite: rays.not_finite,
+        }
+    }
+}
+
 impl<'s> Stats<'s> {
-    /// Of a finished picture.
-    pub fn new(scene: &'s str, picture: &'s Picture, threads: usize, seconds: Seconds, outcome: &'s Outcome) -> Self {
-        let Outcome { rays, film, .. } = outcome;
-        let geometry = picture.world().geometry();
+    /// Statistics of a finished picture.
+    pub fn new(
+        scene: &'s str,
+        picture: &'s Picture,
+        threads: usize,
+        seconds: Seconds,
+        outcome: &'s RenderStats,
+    ) -> Self {
+        let RenderStats { rays, film, .. } = outcome;
+        let geometry = picture.world().geometry_stats();
         Self {
             version: 1,
             scene,
@@ -116,56 +135,53 @@ impl<'s> Stats<'s> {
             integrator: picture.integrator().name(),
             integrator_reason: picture.compiled().integrator.reason.to_string(),
             seconds,
-            rays: RayCounts {
-                camera: rays.camera,
-                shadow: rays.shadow,
-                secondary: rays.secondary,
-                total: rays.total(),
-                per_second: rays_per_second(rays, seconds.render),
-                not_finite: rays.not_finite,
-            },
-            geometry: Geometry {
+            rays: RayStats::new(rays, seconds.render),
+            geometry: GeometryStats {
                 shapes: geometry.shapes,
                 triangles: geometry.triangles,
                 unique_triangles: geometry.unique_triangles,
                 instances: geometry.instances,
                 lights: geometry.lights,
             },
-            memory: Memory {
+            memory: MemoryStats {
                 peak_rss_bytes: peak_rss_bytes(),
                 expected_bytes: None,
                 geometry_bytes: geometry.geometry_bytes,
                 bvh_bytes: geometry.bvh_bytes,
             },
-            film: Film { mean: film.mean, hash: &film.hash, clamped: picture.is_clamped().then(|| Clamped::of(film)) },
+            film: FilmStats {
+                mean: film.mean,
+                hash: &film.hash,
+                clamped: picture.is_clamped().then(|| ClampStats::of(film)),
+            },
             camera: camera(picture.viewpoint().as_ref()),
             fingerprint: picture.fingerprint().hash(),
         }
     }
 
-    /// With the bytes that were thought to be needed before the world was built.
+    /// Sets the memory estimate made before the world was built, in bytes.
     pub fn expected_memory(&mut self, bytes: u64) {
         self.memory.expected_bytes = Some(bytes);
     }
 
-    /// The object on one line.
+    /// JSON object on one line.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 }
 
-/// From where a picture was taken: its matrices, each number as short as singles allow.
+/// Camera matrices as JSON, with the shortest decimal form of each `f32`.
 pub fn camera(viewpoint: Option<&Viewpoint>) -> Value {
     let text = serde_json::to_string(&viewpoint).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 
-/// Rays a second of rendering.
-pub fn rays_per_second(rays: &Rays, seconds: f64) -> f64 {
+/// Rays per second of rendering.
+pub fn rays_per_second(rays: &RayCounts, seconds: f64) -> f64 {
     rays.total() as f64 / seconds.max(1e-9)
 }
 
-/// The most memory that the process ever held, where the system says so.
+/// Peak resident memory of the process in bytes, if the system reports it.
 fn peak_rss_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,50 +1,52 @@
-//! What the parser of command lines suggests after a flag that does not exist. The parser's own
-//! tips mislead where another program's flag was typed: these come first.
+//! Suggestions for unknown flags. The parser's own suggestions are misleading for flags of other
+//! renderers, so these come first.
 
 use clap::Error;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use juggler::scene::suggest;
 
-/// Flags of other programs, and what does the same here.
-const FOREIGN: &[(&[&str], &str)] = &[
+/// Flags of other programs, and the corresponding tips.
+const FOREIGN_FLAGS: &[(&[&str], &str)] = &[
     (
         &["--width", "--height", "-W", "-H", "--resolution", "--res", "--dimensions", "--geometry"],
         "--size WxH sets width and height, such as --size 640x360",
     ),
     (&["-s", "--spp", "--sample", "--sample-count", "--num-samples"], "--samples N sets the samples per pixel"),
     (&["-t", "-j", "--jobs", "--nthreads", "--num-threads"], "--threads N sets the number of threads"),
-    (&["--bounces", "--max-bounces", "--depth", "--path-depth"], "--max-depth N limits the depth of paths"),
-    (&["--out", "--outfile", "--output-file", "-O"], "-o FILE, or --output FILE, says where the picture goes"),
-    (&["--timeout", "--time-limit", "--seconds"], "--time SECONDS ends the render after that time"),
-    (&["--threshold", "--noise-threshold", "--error"], "--noise LEVEL ends the render when the noise is below that"),
-    (&["--passes", "--layers", "--channels"], "--aov LIST names what is written beside the picture"),
+    (&["--bounces", "--max-bounces", "--depth", "--path-depth"], "--max-depth N limits the number of path segments"),
+    (&["--out", "--outfile", "--output-file", "-O"], "-o FILE, or --output FILE, sets the output file"),
+    (&["--timeout", "--time-limit", "--seconds"], "--time SECONDS stops the render after this time"),
+    (&["--threshold", "--noise-threshold", "--error"], "--noise LEVEL stops the render at this relative error"),
+    (&["--passes", "--layers", "--channels"], "--aov LIST selects the AOVs to write"),
     (&["--start", "--end", "-f", "-a", "--frame-range", "--animation"], "--frames A..B renders several frames"),
     (&["--gamma", "--tonemap", "--tonemapper", "--tone-mapping"], "--tone CURVE sets the tone curve"),
     (&["--ev", "--gain"], "--exposure STOPS makes the picture brighter or darker"),
     (&["--cam", "--view"], "--camera NAME chooses one of the scene's cameras"),
     (&["--region", "--window", "--cropwindow"], "--crop X,Y,W,H renders a part of the picture"),
-    (&["--resume", "--continue"], "--checkpoint FILE keeps the work; the same command goes on with it"),
-    (&["-v", "--verbose"], "--progress bar shows how far it is, --stats FILE writes what was done"),
+    (&["--resume", "--continue"], "--checkpoint FILE saves progress; the same command resumes from it"),
+    (&["-v", "--verbose"], "--progress bar shows the progress, --stats FILE writes statistics"),
     (&["-V"], "`juggler --version` prints the version"),
 ];
 
-/// The same error with a tip that helps, or none.
-pub fn mended(mut error: Error) -> Error {
+/// Replaces the parser's suggestion by a better one, or removes it.
+pub fn with_tip(mut error: Error) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg).cloned() else { return error };
     let name = flag.split([' ', '=']).next().unwrap_or_default();
-    let ours = FOREIGN.iter().find(|(names, _)| names.contains(&name)).map(|(_, tip)| *tip);
+    let ours = FOREIGN_FLAGS.iter().find(|(names, _)| names.contains(&name)).map(|(_, tip)| *tip);
     let keeps_suggestion = match error.get(ContextKind::SuggestedArg) {
-        Some(ContextValue::String(suggested)) => ours.is_none() && suggest::closest(name, [bare(suggested)]).is_some(),
+        Some(ContextValue::String(suggested)) => {
+            ours.is_none() && suggest::closest(name, [flag_name(suggested)]).is_some()
+        }
         _ => false,
     };
     if !keeps_suggestion {
         error.remove(ContextKind::SuggestedArg);
     }
-    // A flag is rarely a value.
+    // Remove the suggestion to pass the flag as a value.
     error.remove(ContextKind::Suggested);
     if let Some(tip) = ours {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
@@ -52,8 +54,8 @@ pub fn mended(mut error: Error) -> Error {
     error
 }
 
-/// `--samples <N>` without its value.
-fn bare(flag: &str) -> &str {
+/// `--samples <N>` without its value name.
+fn flag_name(flag: &str) -> &str {
     flag.split([' ', '=', '[']).next().unwrap_or_default()
 }
 
@@ -65,7 +67,7 @@ mod tests {
 
     fn refused(line: &str) -> String {
         let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
-        Args::parse_words(&words, ColorChoice::Never).unwrap_err().to_string()
+        Args::parse_arguments(&words, ColorChoice::Never).unwrap_err().to_string()
     }
 
     #[test]

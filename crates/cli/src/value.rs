@@ -1,20 +1,21 @@
-//! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
+//! Parsers of flag values: sizes, ranges, amounts of memory. Error messages give an example of a
+//! valid value.
 
 use juggler::Denoiser;
-use juggler::camera::film::{BLOCK, Rect};
-use juggler::imaging::animation::PACES;
-use juggler::imaging::{Look, Primaries, WhiteBalance};
+use juggler::camera::film::{BLOCK_SAMPLES, Rect};
+use juggler::imaging::animation::FRAME_RATES;
+use juggler::imaging::{DisplayLook, Primaries, WhiteBalance};
 use juggler::scene::compile::{MAX_PIXELS, MAX_SHUTTER};
 use std::ops::Range;
 use std::time::Duration;
 
-/// Largest width and height.
+/// Maximum width and height, in pixels.
 const MAX_EDGE: u32 = 65_536;
-/// Most samples of a pixel.
+/// Maximum number of samples per pixel.
 const MAX_SAMPLES: u32 = 16_777_216;
-/// Most frames of one command: as many as an animation may have.
+/// Maximum number of frames of one command, as of an animation.
 const MAX_FRAMES: u32 = 1_000_000;
-/// Longest time that a render may be given, in seconds (over 30 years).
+/// Maximum duration of a render, in seconds (over 30 years).
 const MAX_DURATION: f64 = 1e9;
 
 /// `640x360`: width and height in pixels.
@@ -46,10 +47,10 @@ pub fn crop(text: &str) -> Result<Rect, String> {
     }
 }
 
-/// `0.01`: a chance.
-pub fn chance(text: &str) -> Result<f64, String> {
-    let chance = text.parse().ok().filter(|chance: &f64| *chance > 0.0 && *chance < 1.0);
-    chance.ok_or_else(|| "a chance lies between 0 and 1, such as 0.01".to_owned())
+/// `0.01`: a probability between 0 and 1, exclusive.
+pub fn probability(text: &str) -> Result<f64, String> {
+    let probability = text.parse().ok().filter(|probability: &f64| *probability > 0.0 && *probability < 1.0);
+    probability.ok_or_else(|| "a chance lies between 0 and 1, such as 0.01".to_owned())
 }
 
 /// `320,180`: column and row of a pixel.
@@ -60,22 +61,22 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     Ok([number(x)?, number(y)?])
 }
 
-/// Frames from the first up to, but without, the end; an end that is not given is the scene's.
+/// Half-open range of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameRange {
     /// First frame.
     pub first: u32,
-    /// The frame after the last.
+    /// Frame after the last one; `None` for the end of the animation.
     pub end: Option<u32>,
 }
 
-/// A look by its name.
-pub fn look(text: &str) -> Result<Look, String> {
-    let look = Look::ALL.into_iter().find(|look| look.name() == text);
-    look.ok_or_else(|| Look::ALL.map(Look::name).join(" or "))
+/// Display look by name.
+pub fn look(text: &str) -> Result<DisplayLook, String> {
+    let look = DisplayLook::ALL.into_iter().find(|look| look.name() == text);
+    look.ok_or_else(|| DisplayLook::ALL.map(DisplayLook::name).join(" or "))
 }
 
-/// `3200` or `3200,5`: the light that is to look white.
+/// `3200` or `3200,5`: color temperature of the light that appears white, and tint.
 pub fn white_balance(text: &str) -> Result<WhiteBalance, String> {
     let wrong = || "a light is KELVIN or KELVIN,TINT, 1667 to 25000 and -50 to 50, such as 3200 or 3200,5".to_owned();
     let (kelvin, tint) = text.split_once(',').unwrap_or((text, "0"));
@@ -85,7 +86,7 @@ pub fn white_balance(text: &str) -> Result<WhiteBalance, String> {
     Ok(WhiteBalance { kelvin: number(kelvin, 1667.0, 25_000.0)?, tint: number(tint, -50.0, 50.0)? })
 }
 
-/// Primaries by their name.
+/// Primaries by name.
 pub fn primaries(text: &str) -> Result<Primaries, String> {
     let found = Primaries::ALL.into_iter().find(|primaries| primaries.name() == text);
     found.ok_or_else(|| Primaries::ALL.map(Primaries::name).join(", "))
@@ -100,20 +101,20 @@ pub fn switch(text: &str) -> Result<bool, String> {
     }
 }
 
-/// A denoiser by its name.
+/// Denoiser by name.
 pub fn denoiser(text: &str) -> Result<Denoiser, String> {
     Denoiser::by_name(text).map_err(|error| error.to_string())
 }
 
-/// Frames a second.
-pub fn pace(text: &str) -> Result<f64, String> {
-    let pace = text.parse().ok().filter(|pace| PACES.contains(pace));
-    pace.ok_or_else(|| format!("a number from {} to {}", PACES.start(), PACES.end()))
+/// Frames per second.
+pub fn frame_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| FRAME_RATES.contains(rate));
+    rate.ok_or_else(|| format!("a number from {} to {}", FRAME_RATES.start(), FRAME_RATES.end()))
 }
 
-/// `0..30`, `10..`, `..`: frames, without the last.
+/// `0..30`, `10..`, `..`: half-open range of frames.
 pub fn frames(text: &str) -> Result<FrameRange, String> {
-    let wrong = || "a range of frames is FIRST..END without the end, such as 0..30".to_owned();
+    let wrong = || "a range of frames is FIRST..END without END, such as 0..30".to_owned();
     let (first, end) = text.split_once("..").ok_or_else(wrong)?;
     let number = |text: &str| match text {
         "" => Ok(None),
@@ -122,7 +123,7 @@ pub fn frames(text: &str) -> Result<FrameRange, String> {
     let (first, end) = (number(first)?.unwrap_or(0), number(end)?);
     match end {
         Some(end) if end <= first => {
-            Err(format!("no frame is in {first}..{end}: a range ends before its second number"))
+            Err(format!("{first}..{end} contains no frame: END is the frame after the last one"))
         }
         Some(end) if end - first > MAX_FRAMES => {
             Err(format!("{first}..{end} has {} frames; at most {MAX_FRAMES} are allowed", end - first))
@@ -131,10 +132,10 @@ pub fn frames(text: &str) -> Result<FrameRange, String> {
     }
 }
 
-/// `0..0.5`: when the shutter opens and closes, in frames from the frame's own time.
+/// `0..0.5`: opening and closing time of the shutter, in frames relative to the frame's time.
 pub fn shutter(text: &str) -> Result<[f64; 2], String> {
     let wrong =
-        || "a shutter is OPEN..CLOSE in frames from the frame's own time, such as 0..0.5 or -0.25..0.25".to_owned();
+        || "a shutter is OPEN..CLOSE in frames relative to the frame's time, such as 0..0.5 or -0.25..0.25".to_owned();
     let (open, close) = text.split_once("..").ok_or_else(wrong)?;
     let time = |text: &str| text.parse().ok().filter(|time: &f64| time.abs() <= MAX_SHUTTER).ok_or_else(wrong);
     let [open, close] = [time(open)?, time(close)?];
@@ -155,16 +156,16 @@ pub fn memory(text: &str) -> Result<u64, String> {
     if bytes >= 1.0 && bytes < u64::MAX as f64 { Ok(bytes as u64) } else { Err(wrong()) }
 }
 
-/// Which part of how many.
+/// Index and number of shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Counted from 0; `None` when a cluster says it.
+    /// Index, from 0; `None` to read it from the environment of a cluster's task.
     pub index: Option<u32>,
-    /// How many parts, at least 1.
+    /// Number of shards, at least 1.
     pub count: u32,
 }
 
-/// Most parts of a picture.
+/// Maximum number of shards.
 const MAX_SHARDS: u32 = 1_000_000;
 
 /// `3/40` or `auto/40`.
@@ -184,40 +185,42 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// `16..64`: samples of a pixel, in whole blocks.
+/// `16..64`: half-open range of samples, at multiples of a block.
 pub fn samples(text: &str) -> Result<Range<u32>, String> {
-    let wrong = || format!("a range of samples is FIRST..END without the end, in multiples of {BLOCK}, such as 16..64");
+    let wrong =
+        || format!("a range of samples is FIRST..END without END, in multiples of {BLOCK_SAMPLES}, such as 16..64");
     let (first, end) = text.split_once("..").ok_or_else(wrong)?;
     let (first, end) = (first.parse::<u32>().map_err(|_| wrong())?, end.parse::<u32>().map_err(|_| wrong())?);
-    let whole = first.is_multiple_of(BLOCK) && end.is_multiple_of(BLOCK) && first < end && end <= MAX_SAMPLES;
+    let whole =
+        first.is_multiple_of(BLOCK_SAMPLES) && end.is_multiple_of(BLOCK_SAMPLES) && first < end && end <= MAX_SAMPLES;
     if whole { Ok(first..end) } else { Err(wrong()) }
 }
 
-/// A relative error, such as 0.02.
+/// A relative error between 0 and 1, exclusive, such as 0.02.
 pub fn noise(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
-        _ => Err("a level of noise is a relative error between 0 and 1, such as 0.02".into()),
+        _ => Err("a noise level is a relative error between 0 and 1, such as 0.02".into()),
     }
 }
 
-/// Seconds between two checkpoints.
-pub fn pause(text: &str) -> Result<f64, String> {
+/// Seconds between checkpoints, 0.001 to 10⁶.
+pub fn interval(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.001..=1e6).contains(&seconds) => Ok(seconds),
-        _ => Err("a pause is a number of seconds from 0.001 on, such as 60".into()),
+        _ => Err("a pause is a number of seconds, at least 0.001, such as 60".into()),
     }
 }
 
-/// A finite number of seconds, not before the start.
+/// A finite, non-negative number of seconds.
 pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
-        _ => Err("a time is a number of seconds from 0 on, such as 1.5".into()),
+        _ => Err("a time is a number of seconds, at least 0, such as 1.5".into()),
     }
 }
 
-/// How long a render may take, from 0 to [`MAX_DURATION`] seconds.
+/// Duration of a render, 0 to [`MAX_DURATION`] seconds.
 pub fn duration(text: &str) -> Result<Duration, String> {
     match seconds(text) {
         Ok(seconds) if seconds <= MAX_DURATION => Ok(Duration::from_secs_f64(seconds)),
@@ -225,11 +228,11 @@ pub fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A number that a difference may reach.
+/// A non-negative tolerance.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(tolerance) if tolerance >= 0.0 => Ok(tolerance),
-        _ => Err("a tolerance is a number from 0 on, such as 0.001".into()),
+        _ => Err("a tolerance is a number, at least 0, such as 0.001".into()),
     }
 }
 

@@ -1,24 +1,29 @@
-//! How much the filter gains: relative mean squared error before and after, own filter and Open Image Denoise, with times.
+//! Measures the denoiser: relative mean squared error before and after, for this filter and Open
+//! Image Denoise, with run times.
 //!
 //! ```sh
-//! cargo run --release -p juggler-denoise --example evaluate -- FOLDER [keep] [bare] [best-of=3] [SCENE...]
+//! cargo run --release -p juggler-denoise --example evaluate -- \
+//!     FOLDER [keep] [bare] [best-of=3] [strength=1] [SCENE...]
 //! ```
 //!
-//! For each scene a folder in FOLDER with the files that docs/denoising.md says how to make: `ref.pfm`, and for each number of samples N
-//! `path_N_1.pfm` and `path_N_2.pfm`, the halves of N/2 samples and different seeds, with `albedo_`, `normals_` and
-//! `depth_` alike. `keep` leaves pictures beside them, `bare` uses no features. Open Image Denoise is asked where `JUGGLER_OIDN` says where it is.
+//! FOLDER contains a folder for each scene, with files made as docs/denoising.md describes:
+//! `ref.pfm`, and for each number of samples N `path_N_1.pfm` and `path_N_2.pfm`, the halves of N/2
+//! samples with different seeds, with `albedo_`, `normals_` and `depth_` alike. `keep` writes the
+//! results beside them, `bare` uses no features, `best-of` takes the shortest of several times, and
+//! `strength` is that of the settings. Open Image Denoise runs if `JUGGLER_OIDN` is the path of its
+//! library.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it prints what it found")]
 
 use juggler_denoise::{Features, Noisy, Settings, SimdLevel, denoise_at};
 use juggler_math::{Image, Rgb, Vec3};
-use juggler_oidn::Library;
+use juggler_oidn::Oidn;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Numbers of samples that are looked for.
+/// Numbers of samples to look for.
 const SAMPLES: [u32; 4] = [4, 16, 64, 256];
 
 fn main() -> ExitCode {
@@ -31,7 +36,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the command line asks for.
+/// Options of the command line.
 struct Options {
     keep: bool,
     repeats: u32,
@@ -60,7 +65,7 @@ fn run() -> Result<(), Failure> {
         scenes.sort();
     }
     let library = match std::env::var_os("JUGGLER_OIDN") {
-        Some(path) => Some(Library::open(Some(Path::new(&path)))?),
+        Some(path) => Some(Oidn::open(Some(Path::new(&path)))?),
         None => None,
     };
     println!("| scene | samples | input | own | OIDN | of the input | moved | own, s | OIDN, s |");
@@ -76,11 +81,11 @@ fn run() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The halves of one picture and of its features.
+/// Halves of a picture and of its features.
 struct Loaded {
     width: usize,
     height: usize,
-    colour: [Vec<Rgb>; 2],
+    color: [Vec<Rgb>; 2],
     albedo: [Vec<Rgb>; 2],
     normal: [Vec<Vec3>; 2],
     depth: [Vec<f32>; 2],
@@ -92,26 +97,27 @@ fn halves(folder: &Path, kind: &str, samples: u32) -> Result<[Image; 2], Failure
 }
 
 fn load(folder: &Path, samples: u32) -> Result<Loaded, Failure> {
-    let colour = halves(folder, "path", samples)?;
-    // Normals stand in files as (n + 1) / 2, and as zero where nothing is.
+    let color = halves(folder, "path", samples)?;
+    // Files store normals as (n + 1) / 2, and black where there is no surface.
     let direction = |c: &Rgb| if c.is_black() { Vec3::ZERO } else { Vec3::new(c.r, c.g, c.b) * 2.0 - 1.0 };
     Ok(Loaded {
-        width: colour[0].width() as usize,
-        height: colour[0].height() as usize,
-        colour: colour.map(|image| image.pixels().to_vec()),
+        width: color[0].width() as usize,
+        height: color[0].height() as usize,
+        color: color.map(|image| image.pixels().to_vec()),
         albedo: halves(folder, "albedo", samples)?.map(|image| image.pixels().to_vec()),
         normal: halves(folder, "normals", samples)?.map(|image| image.pixels().iter().map(direction).collect()),
         depth: halves(folder, "depth", samples)?.map(|image| image.pixels().iter().map(|c| c.r).collect()),
     })
 }
 
-/// Prints what came of one picture; `None` when there is no such picture, else own error / input's error.
+/// Prints the results for one picture. Returns the ratio of the errors after and before; `None` if
+/// the picture does not exist.
 fn row(
     folder: &Path,
     scene: &str,
     samples: u32,
     options: &Options,
-    library: Option<&Library>,
+    library: Option<&Oidn>,
 ) -> Result<Option<f64>, Failure> {
     if !folder.join(format!("depth_{samples}_2.pfm")).exists() {
         return Ok(None);
@@ -119,18 +125,18 @@ fn row(
     let loaded = load(folder, samples)?;
     let reference = read(&folder.join("ref.pfm")).ok().map(|image| image.pixels().to_vec());
     let error = |pixels: &[Rgb]| reference.as_ref().map_or(f64::NAN, |reference| relative_error(pixels, reference));
-    let input: Vec<Rgb> = mean(&loaded.colour);
-    let (own, moved, seconds) = own(&loaded, options)?;
+    let input: Vec<Rgb> = mean(&loaded.color);
+    let (own, moved_energy, seconds) = own(&loaded, options)?;
     let foreign = library.map(|library| foreign(&loaded, &input, options, library)).transpose()?;
     let (foreign_error, foreign_seconds) = foreign.as_ref().map_or((f64::NAN, f64::NAN), |(p, s)| (error(p), *s));
     let (before, after) = (error(&input), error(&own));
     println!(
         "| {scene} | {samples} | {before:.5} | {after:.5} | {foreign_error:.5} | {:.3} | {:.2} % | {seconds:.2} | {foreign_seconds:.2} |",
         after / before,
-        moved * 100.0
+        moved_energy * 100.0
     );
     if samples == 256 && reference.is_some() {
-        println!("| {scene} | 128 | {:.5} | | | | | | |", error(&loaded.colour[0]));
+        println!("| {scene} | 128 | {:.5} | | | | | | |", error(&loaded.color[0]));
     }
     if options.keep {
         let foreign = foreign.map(|(pixels, _)| pixels);
@@ -149,8 +155,8 @@ fn own(loaded: &Loaded, options: &Options) -> Result<(Vec<Rgb>, f64, f64), Failu
         depth: Some([&loaded.depth[0], &loaded.depth[1]]),
     };
     let features = if options.bare { Features::default() } else { features };
-    let colour = [&loaded.colour[0][..], &loaded.colour[1][..]];
-    let noisy = Noisy::new(loaded.width, loaded.height, colour, features)?;
+    let color = [&loaded.color[0][..], &loaded.color[1][..]];
+    let noisy = Noisy::new(loaded.width, loaded.height, color, features)?;
     let settings = Settings { strength: options.strength, ..Settings::default() };
     let mut best = f64::INFINITY;
     let mut result = None;
@@ -160,10 +166,10 @@ fn own(loaded: &Loaded, options: &Options) -> Result<(Vec<Rgb>, f64, f64), Failu
         best = best.min(start.elapsed().as_secs_f64());
     }
     let denoised = result.ok_or("cancelled")?;
-    Ok((denoised.pixels, denoised.moved, best))
+    Ok((denoised.pixels, denoised.moved_energy, best))
 }
 
-fn foreign(loaded: &Loaded, input: &[Rgb], options: &Options, library: &Library) -> Result<(Vec<Rgb>, f64), Failure> {
+fn foreign(loaded: &Loaded, input: &[Rgb], options: &Options, library: &Oidn) -> Result<(Vec<Rgb>, f64), Failure> {
     let albedo = mean(&loaded.albedo);
     let normal: Vec<Vec3> = loaded.normal[0].iter().zip(&loaded.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
     let (mut best, mut pixels) = (f64::INFINITY, Vec::new());
@@ -180,7 +186,7 @@ fn mean(halves: &[Vec<Rgb>; 2]) -> Vec<Rgb> {
     halves[0].iter().zip(&halves[1]).map(|(a, b)| (*a + *b) * 0.5).collect()
 }
 
-/// The mean over pixels and channels of (x - r)² / (r² + 0.01).
+/// Relative mean squared error: the mean over pixels and channels of (x - r)² / (r² + 0.01).
 fn relative_error(pixels: &[Rgb], reference: &[Rgb]) -> f64 {
     let channel = |(x, r): (f32, f32)| {
         let (x, r) = (f64::from(x), f64::from(r));
@@ -190,7 +196,7 @@ fn relative_error(pixels: &[Rgb], reference: &[Rgb]) -> f64 {
     pixels.iter().zip(reference).map(pixel).sum::<f64>() / (3 * pixels.len()) as f64
 }
 
-/// A colour PFM of little endian numbers, whose last row stands first.
+/// Reads a color PFM file in little-endian order, whose last row comes first.
 fn read(path: &Path) -> Result<Image, Failure> {
     let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
     let mut lines = bytes.splitn(4, |byte| *byte == b'\n');
@@ -199,7 +205,7 @@ fn read(path: &Path) -> Result<Image, Failure> {
     let (width, height) = size.split_once(' ').ok_or("no size")?;
     let (width, height): (u32, u32) = (width.parse()?, height.trim().parse()?);
     if kind != "PF" || !scale.starts_with('-') || width == 0 {
-        return Err(format!("{}: no colour PFM", path.display()).into());
+        return Err(format!("{}: not a color PFM file", path.display()).into());
     }
     let numbers =
         lines.next().unwrap_or_default().chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));

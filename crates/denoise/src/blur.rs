@@ -1,8 +1,8 @@
-//! The mean over a square around each pixel.
+//! Box filter with a square window.
 
 use rayon::prelude::*;
 
-/// Means over the pixels not farther than `radius` in columns and rows that the picture has.
+/// Means over the pixels of the picture within `radius` columns and rows.
 pub(crate) fn mean(width: usize, numbers: &[f32], radius: usize) -> Vec<f32> {
     let mut across = vec![0.0; numbers.len()];
     across.par_chunks_mut(width).zip(numbers.par_chunks(width)).for_each(|(sums, row)| {
@@ -25,7 +25,7 @@ pub(crate) fn mean(width: usize, numbers: &[f32], radius: usize) -> Vec<f32> {
     means
 }
 
-/// How many of the places around `place` are in `0..length`.
+/// Number of positions within `radius` of `place` that lie in `0..length`.
 fn count(place: usize, length: usize, radius: usize) -> f32 {
     (length.min(place + radius + 1) - place.saturating_sub(radius)) as f32
 }
@@ -45,8 +45,8 @@ mod tests {
                 let near = |a: usize, b: usize| a.abs_diff(b) <= radius;
                 let around = (0..numbers.len()).filter(|j| near(j % width, x) && near(j / width, y));
                 let all: Vec<f32> = around.map(|j| numbers[j]).collect();
-                let wanted = all.iter().sum::<f32>() / all.len() as f32;
-                assert!((found - wanted).abs() < 1e-5, "{x} {y} {radius}: {found} {wanted}");
+                let expected = all.iter().sum::<f32>() / all.len() as f32;
+                assert!((found - expected).abs() < 1e-5, "{x} {y} {radius}: {found} {expected}");
             }
         }
     }

@@ -1,36 +1,40 @@
-//! Where things are: pictures with a margin, and the grid of windows on them.
+//! Layout of padded planes, and the grid of windows.
 
 use std::ops::Range;
 
-/// Pixels from one window's centre to the next, in both directions.
+/// Distance between window centers, in pixels, in both directions.
 pub(crate) const STEP: usize = 2;
-/// Pixels that a window reaches to each side of its centre.
-pub(crate) const REACH: usize = 9;
-/// Pixels that a patch, the neighbourhood by which pixels are compared, reaches to each side.
-pub(crate) const PATCH: usize = 3;
-/// Pixels around the picture, so that no window or patch ends outside. A multiple of `STEP`.
+/// Radius of a window, in pixels.
+pub(crate) const WINDOW_RADIUS: usize = 9;
+/// Radius of a patch, in pixels: patches are the neighborhoods by which pixels are compared.
+pub(crate) const PATCH_RADIUS: usize = 3;
+/// Width of the margin, in pixels, so that no window or patch leaves the plane. A multiple of
+/// `STEP`.
 pub(crate) const MARGIN: usize = 12;
-/// Pixels in the rows and columns of a window.
-pub(crate) const SIDE: usize = 2 * REACH + 1;
-/// Pixels of a window.
-pub(crate) const OFFSETS: usize = SIDE * SIDE;
-/// Windows that are computed side by side; two halves where vectors are shorter.
+/// Width and height of a window, in pixels.
+pub(crate) const WINDOW_SIZE: usize = 2 * WINDOW_RADIUS + 1;
+/// Number of pixels in a window.
+pub(crate) const WINDOW_PIXELS: usize = WINDOW_SIZE * WINDOW_SIZE;
+/// Number of windows in a SIMD vector; two vectors where registers are shorter.
 pub(crate) const LANES: usize = 16;
-/// Windows in a row of a tile.
+/// Number of windows in a row of a tile.
 pub(crate) const TILE_COLUMNS: usize = 32;
-/// Rows of windows of a tile.
+/// Number of rows of windows in a tile.
 pub(crate) const TILE_ROWS: usize = 8;
 
-const _: () = assert!(MARGIN >= REACH + PATCH && MARGIN.is_multiple_of(STEP) && TILE_COLUMNS.is_multiple_of(LANES));
+const _: () = assert!(
+    MARGIN >= WINDOW_RADIUS + PATCH_RADIUS && MARGIN.is_multiple_of(STEP) && TILE_COLUMNS.is_multiple_of(LANES)
+);
 
-/// A picture's size and that of its planes with margins.
+/// Size of a picture and of its padded planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
-    /// Pixels in a row.
+    /// Width of the picture, in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height of the picture, in pixels.
     pub height: usize,
-    /// Numbers in a row of a plane: margins, and room for a last tile that is not full. A multiple of `STEP`.
+    /// Row stride of a plane: margins included, and space for an incomplete last tile. A multiple
+    /// of `STEP`.
     pub stride: usize,
 }
 
@@ -40,22 +44,22 @@ impl Grid {
         Self { width, height, stride: (tiles * TILE_COLUMNS + LANES) * STEP + 2 * MARGIN }
     }
 
-    /// Windows in a row.
+    /// Number of windows in a row.
     pub fn columns(&self) -> usize {
         self.width.div_ceil(STEP)
     }
 
-    /// Rows of windows.
+    /// Number of rows of windows.
     pub fn rows(&self) -> usize {
         self.height.div_ceil(STEP)
     }
 
-    /// Numbers of a plane that belong to one of the `STEP` classes of columns, in one row.
+    /// Number of values in one row that belong to one of the `STEP` column phases.
     pub fn phase_stride(&self) -> usize {
         self.stride / STEP
     }
 
-    /// A plane with margins, which repeat the outermost pixels.
+    /// Pads a plane by repeating the outermost pixels.
     pub fn pad(&self, pixel: impl Fn(usize) -> f32) -> Vec<f32> {
         let mut plane = Vec::with_capacity(self.stride * (self.height + 2 * MARGIN));
         for y in 0..self.height + 2 * MARGIN {
@@ -65,7 +69,7 @@ impl Grid {
         plane
     }
 
-    /// A plane with margins of zero.
+    /// Pads a plane with zeros.
     pub fn pad_zero(&self, pixel: impl Fn(usize) -> f32) -> Vec<f32> {
         let mut plane = vec![0.0; self.stride * (self.height + 2 * MARGIN)];
         for y in 0..self.height {
@@ -77,7 +81,8 @@ impl Grid {
         plane
     }
 
-    /// A plane with each row sorted by column modulo `STEP`, so that pixels seen from neighbouring windows are neighbours.
+    /// Sorts each row of a plane by column modulo `STEP`, so that pixels at the same offset of
+    /// neighboring windows are contiguous.
     pub fn phases(&self, plane: &[f32]) -> Vec<f32> {
         let mut sorted = Vec::with_capacity(plane.len());
         for row in plane.chunks_exact(self.stride) {
@@ -88,7 +93,7 @@ impl Grid {
         sorted
     }
 
-    /// All tiles, row by row.
+    /// All tiles, in row-major order.
     pub fn tiles(&self) -> Vec<Tile> {
         let mut tiles = Vec::new();
         for row in (0..self.rows()).step_by(TILE_ROWS) {
@@ -101,17 +106,17 @@ impl Grid {
     }
 }
 
-/// Windows that are computed together.
+/// A block of windows that are computed together.
 #[derive(Clone, Debug)]
 pub(crate) struct Tile {
-    /// Of the grid's rows of windows.
+    /// Range in the grid's rows of windows.
     pub rows: Range<usize>,
-    /// Of the windows of each.
+    /// Range of windows in each row.
     pub columns: Range<usize>,
 }
 
-/// From a window's centre to each of its pixels (columns, rows), row by row.
+/// Offsets (x, y) of a window's pixels from its center, in row-major order.
 pub(crate) fn offsets() -> impl Iterator<Item = (isize, isize)> {
-    let reach = REACH as isize;
-    (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| (x, y)))
+    let radius = WINDOW_RADIUS as isize;
+    (-radius..=radius).flat_map(move |y| (-radius..=radius).map(move |x| (x, y)))
 }

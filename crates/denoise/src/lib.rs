@@ -1,25 +1,29 @@
-//! Takes the noise out of path traced pictures, with the same bits on every machine and any number of threads.
+//! Denoiser for path-traced pictures. The result is bit for bit the same on every machine and with
+//! any number of threads.
 //!
-//! The picture comes as two halves: means of disjoint halves of the samples. What differs between them is noise, so they say
-//! how much of it there is where, and each half can be filtered with weights that only the other one knows
-//! (cross filtering: what is an accident in one half is not taken for an edge). With them come features, pictures of
-//! what is seen: albedo, normal and depth, as halves too.
+//! The input consists of two half buffers: means of disjoint halves of the samples. Their
+//! difference estimates the variance, and each half can be filtered with weights from the other
+//! (cross filtering), so that the weights are independent of the noise that they filter. Feature
+//! buffers of albedo, normal and depth come as halves, too.
 //!
-//! 1. What is no number is filled in, outliers that the other half knows nothing of are cut (`outliers`), the features are
-//!    filtered by themselves (`features`), and the colour is divided by the albedo (`prepare`).
-//! 2. Non-local means of each half give weights for the other (`weights`: Rousselle, Knaus, Zwicker 2012; Rousselle,
-//!    Manzi, Zwicker 2013).
-//! 3. With these weights the colours around every other pixel of every other row are fitted by a linear function of place and features, which
-//!    is then spread over all the pixels around it (`regression`: Bitterli et al. 2016, sections 4 and 5). Deviations: windows
-//!    on a grid, no choice among bandwidths, ridge instead of truncated singular values, features also in the weights.
-//! 4. The filtered halves and the unfiltered ones tell how wrong the filter is compared with the noise; by that the input is
-//!    mixed in (`blend`), so that pictures of many samples are left as they are.
-//! 5. Single bright pixels that are left are cut (`speckles`), and every neighborhood and the whole picture get the mean of the
-//!    input (`energy`); in between, pixels that are brighter than both halves allow are dimmed (`ceiling`).
+//! 1. Replace values that are not finite, clamp outliers that the other half does not confirm
+//!    (`outliers`), prefilter the features (`features`), and divide the color by the albedo
+//!    (`prepare`).
+//! 2. Compute non-local means weights of each half for the other (`weights`: Rousselle, Knaus,
+//!    Zwicker 2012; Rousselle, Manzi, Zwicker 2013).
+//! 3. Around every other pixel of every other row, fit the color by a linear function of position
+//!    and features, and accumulate the fitted values over the window (`regression`: Bitterli et al.
+//!    2016, sections 4 and 5). Deviations: windows on a grid, one bandwidth, ridge regression
+//!    instead of truncated singular values, features also in the weights.
+//! 4. Estimate the filter's bias and the input's variance from filtered and unfiltered halves, and
+//!    blend filter and input accordingly (`blend`), so that pictures of many samples stay
+//!    unchanged.
+//! 5. Clamp single bright pixels that remain (`speckles`), and restore the mean of the input in
+//!    every neighborhood and in the whole picture (`energy`). In between, dim pixels that are
+//!    brighter than both halves allow (`upper_bound`).
 
 mod blend;
 mod blur;
-mod ceiling;
 mod energy;
 mod features;
 mod grid;
@@ -29,6 +33,7 @@ mod regression;
 mod speckles;
 mod strips;
 mod tile;
+mod upper_bound;
 mod weights;
 
 #[cfg(test)]
@@ -39,18 +44,19 @@ pub use fearless_simd::Level as SimdLevel;
 use juggler_math::{Rgb, Vec3};
 use std::ops::Range;
 
-/// Pictures of what is seen in each pixel, two halves each like the colour's; all optional.
+/// Feature buffers, each as two halves like the color; all optional.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Features<'a> {
-    /// How much light the surface gives back, 0..1 in each channel; black where there is none.
+    /// Albedo, 0 to 1 in each channel; black where there is no surface.
     pub albedo: Option<[&'a [Rgb]; 2]>,
-    /// Shading normal, world space; zero where there is no surface. A mean of different ones is shorter than 1.
+    /// Shading normal, in world space; zero where there is no surface. The mean of different
+    /// normals is shorter than 1.
     pub normal: Option<[&'a [Vec3]; 2]>,
-    /// Distance along the ray, scene units; zero or infinite where there is no surface.
+    /// Distance along the ray, in scene units; zero or infinite where there is no surface.
     pub depth: Option<[&'a [f32]; 2]>,
 }
 
-/// A picture with noise. Pixels stand row by row from the top left.
+/// A noisy picture as two halves, with features. Pixels are in row-major order from the top left.
 #[derive(Clone, Copy, Debug)]
 pub struct Noisy<'a> {
     width: usize,
@@ -59,7 +65,7 @@ pub struct Noisy<'a> {
     features: Features<'a>,
 }
 
-/// A part of a picture has not `width × height` pixels, or there are none.
+/// A buffer does not have `width × height` pixels, or the picture is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what} has {found} pixels instead of {width} × {height}")]
 pub struct SizeError {
@@ -70,10 +76,11 @@ pub struct SizeError {
 }
 
 impl<'a> Noisy<'a> {
-    /// `halves`: linear light, means of two disjoint halves of the samples. Colours that are not finite count as unknown.
+    /// Creates the input from `halves`, means of two disjoint halves of the samples in linear
+    /// light. Colors that are not finite count as unknown.
     pub fn new(width: usize, height: usize, halves: [&'a [Rgb]; 2], features: Features<'a>) -> Result<Self, SizeError> {
         let check = |what: &'static str, found: usize| match width.checked_mul(height) {
-            Some(wanted) if wanted == found && wanted > 0 => Ok(()),
+            Some(expected) if expected == found && expected > 0 => Ok(()),
             _ => Err(SizeError { what, found, width, height }),
         };
         halves.iter().try_for_each(|half| check("half of the picture", half.len()))?;
@@ -83,7 +90,7 @@ impl<'a> Noisy<'a> {
         Ok(Self { width, height, halves, features })
     }
 
-    /// Some of the picture's rows.
+    /// A range of the picture's rows.
     fn rows(&self, rows: Range<usize>) -> Self {
         let range = rows.start * self.width..rows.end * self.width;
         let Features { albedo, normal, depth } = self.features;
@@ -97,15 +104,16 @@ impl<'a> Noisy<'a> {
     }
 }
 
-/// What the filter may do.
+/// Settings of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How different colours may be, in standard deviations of their noise, to count as alike: 1 is the tried value,
-    /// less keeps more noise and more detail.
+    /// Filter strength: the bandwidth of color differences, relative to the tested value of 1, at
+    /// least 0. Smaller values keep more detail and more noise.
     pub strength: f32,
-    /// Whether pixels that are far brighter in one half than everything around them in both are cut, and single bright pixels
-    /// that are left after filtering. They leave blotches otherwise. Their light goes to their neighborhoods;
-    /// [`Denoised::moved`] reports how much the first of these two steps moved.
+    /// Whether to clamp outliers, pixels far brighter in one half than their surroundings in both,
+    /// and single bright pixels that remain after filtering. Otherwise they leave blotches. Their
+    /// energy goes to their neighborhoods; [`Denoised::moved_energy`] reports how much the first of
+    /// these two steps moved.
     pub cut_outliers: bool,
 }
 
@@ -115,28 +123,28 @@ impl Default for Settings {
     }
 }
 
-/// A picture without noise.
+/// A denoised picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Denoised {
-    /// Linear light, row by row from the top left.
+    /// Linear light, in row-major order from the top left.
     pub pixels: Vec<Rgb>,
-    /// Share of the picture's light (mean of the channels) that was moved from outliers to their neighborhoods, 0 to 1. The mean
-    /// of the picture stays that of the input.
-    pub moved: f64,
+    /// Fraction of the picture's energy (mean of the channels) that was moved from outliers to
+    /// their neighborhoods, 0 to 1. The mean of the picture stays that of the input.
+    pub moved_energy: f64,
 }
 
-/// The picture without noise, on the threads of the current rayon pool.
+/// Denoises a picture on the threads of the current rayon pool.
 pub fn denoise(noisy: &Noisy, settings: &Settings) -> Vec<Rgb> {
     denoise_unless(noisy, settings, &|| false).map(|denoised| denoised.pixels).unwrap_or_default()
 }
 
-/// Like [`denoise`], but asks now and then (about 50 times a picture of 1280 × 720, from any thread) whether to stop; `None`
-/// when it did.
+/// [`denoise`] with cancellation: calls `cancelled` from any thread, about 50 times for a picture
+/// of 1280 × 720 pixels, and returns `None` once it returns true.
 pub fn denoise_unless(noisy: &Noisy, settings: &Settings, cancelled: &(dyn Fn() -> bool + Sync)) -> Option<Denoised> {
     denoise_at(SimdLevel::new(), noisy, settings, cancelled)
 }
 
-/// Like [`denoise_unless`], on a vector unit of the caller's choice; it shows in the time alone.
+/// [`denoise_unless`] with a given SIMD instruction set, which affects only the time.
 pub fn denoise_at(
     level: SimdLevel,
     noisy: &Noisy,

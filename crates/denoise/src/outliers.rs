@@ -1,35 +1,39 @@
-//! Pixels that are far too bright in one half, of which neither their neighbours nor the other half know anything.
+//! Clamping of outliers: pixels far brighter in one half than their neighbors and the other half
+//! confirm.
 //!
-//! A sample of a rare way of light (a firefly) carries the energy of the many pixels that got none; where it is alone,
-//! no filter can put it back, and it would become a blotch as wide as the windows. It is cut to the brightest
-//! of what is around it before filtering; afterwards its light goes to its neighborhood (`energy`).
+//! A sample of an improbable path (a firefly) carries the energy of the many pixels that missed it.
+//! Where it is isolated, no filter can distribute it, and it would become a blotch as wide as the
+//! windows. It is clamped to the brightest of its surroundings before filtering; afterwards its
+//! energy goes to its neighborhood (`energy`).
 
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
-/// How many times as bright as everything around it a pixel must be.
+/// Factor over its surroundings from which a pixel is an outlier.
 const FACTOR: f32 = 2.0;
 
-/// Both halves without their outliers.
-pub(crate) fn cut(width: usize, halves: &[Vec<Rgb>; 2]) -> [Vec<Rgb>; 2] {
+/// Clamps the outliers of both halves.
+pub(crate) fn clamp(width: usize, halves: &[Vec<Rgb>; 2]) -> [Vec<Rgb>; 2] {
     let brightness = [0, 1].map(|half: usize| halves[half].par_iter().map(|c| c.r + c.g + c.b).collect::<Vec<_>>());
     [0, 1].map(|half: usize| {
         let (own, other) = (&brightness[half], &brightness[1 - half]);
-        let pixel = |(i, colour): (usize, &Rgb)| {
-            // Most pixels are no brighter than the other half or a neighbour says.
+        let pixel = |(i, color): (usize, &Rgb)| {
+            // Skip the search in the common case: the pixel is no brighter than the other half
+            // allows.
             let limit = other[i].max(0.0);
             if own[i] <= FACTOR * limit {
-                return *colour;
+                return *color;
             }
-            let limit = around(width, own, other, i).max(limit);
-            if own[i] > FACTOR * limit { *colour * (limit / own[i]) } else { *colour }
+            let limit = surrounding_brightness(width, own, other, i).max(limit);
+            if own[i] > FACTOR * limit { *color * (limit / own[i]) } else { *color }
         };
         halves[half].par_iter().enumerate().map(pixel).collect()
     })
 }
 
-/// The brightest of the other half's 3 × 3 pixels and the second brightest of the own 5 × 5 without the pixel itself.
-fn around(width: usize, own: &[f32], other: &[f32], i: usize) -> f32 {
+/// Maximum of the other half's 3 × 3 window and of the second brightest pixel of the own 5 × 5
+/// window, without the pixel itself.
+fn surrounding_brightness(width: usize, own: &[f32], other: &[f32], i: usize) -> f32 {
     let height = own.len() / width;
     let (x, y) = (i % width, i / width);
     let (mut best, mut first, mut second) = (0.0_f32, 0.0_f32, 0.0_f32);

@@ -1,10 +1,10 @@
-//! The whole filter, on pictures whose truth is known.
+//! Tests of the whole filter on pictures whose ground truth is known.
 
 use crate::{Denoised, Features, Noisy, Settings, SimdLevel, denoise, denoise_at, denoise_unless, strips};
 use juggler_math::testing::Random;
 use juggler_math::{Rgb, Vec3};
 
-/// A picture of two walls that meet at the middle, with the truth.
+/// A picture of two walls that meet in the middle, with its ground truth.
 struct Walls {
     width: usize,
     height: usize,
@@ -19,7 +19,8 @@ const LEFT: Rgb = Rgb::new(0.8, 0.2, 0.1);
 const RIGHT: Rgb = Rgb::new(0.1, 0.3, 0.6);
 
 impl Walls {
-    /// Light of 2 on the left wall and of 0.5 on the right one; noise, even in ± `noise` times the light, in each half.
+    /// Creates walls with an irradiance of 2 on the left and 0.5 on the right, and uniform noise of
+    /// ± `noise` times the color in each half.
     fn new(width: usize, height: usize, noise: f32) -> Self {
         let mut random = Random::new(7);
         let left = |i: usize| i % width < width / 2;
@@ -70,25 +71,25 @@ fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
 
 #[test]
 fn a_constant_picture_stays_as_it_is() {
-    for colour in [Rgb::BLACK, Rgb::new(0.3, 40.0, 1e-3), Rgb::splat(1e14)] {
-        let pixels = vec![colour; 50 * 31];
+    for color in [Rgb::BLACK, Rgb::new(0.3, 40.0, 1e-3), Rgb::splat(1e14)] {
+        let pixels = vec![color; 50 * 31];
         let noisy = Noisy::new(50, 31, [&pixels, &pixels], Features::default()).unwrap();
         for found in denoise(&noisy, &Settings::default()) {
-            for (f, c) in found.to_array().into_iter().zip(colour.to_array()) {
-                assert!((f - c).abs() <= 2e-6 * c.max(colour.max_channel() * 0.1), "{f} {c}");
+            for (f, c) in found.to_array().into_iter().zip(color.to_array()) {
+                assert!((f - c).abs() <= 2e-6 * c.max(color.max_channel() * 0.1), "{f} {c}");
             }
         }
     }
 }
 
 #[test]
-fn what_has_no_noise_stays_as_it_is() {
+fn a_picture_without_noise_stays_as_it_is() {
     let mut random = Random::new(3);
     let pixels: Vec<Rgb> = (0..70 * 41).map(|_| random.rgb() * 5.0).collect();
     let walls = Walls { halves: [pixels.clone(), pixels.clone()], ..Walls::new(70, 41, 0.0) };
     for features in [Features::default(), walls.features()] {
-        for (found, wanted) in denoise(&walls.noisy(features), &Settings::default()).iter().zip(&pixels) {
-            assert!((*found - *wanted).map(f32::abs).max_channel() < 1e-5 * 5.0, "{found:?} {wanted:?}");
+        for (found, expected) in denoise(&walls.noisy(features), &Settings::default()).iter().zip(&pixels) {
+            assert!((*found - *expected).map(f32::abs).max_channel() < 1e-5 * 5.0, "{found:?} {expected:?}");
         }
     }
 }
@@ -99,7 +100,7 @@ fn noise_of_flat_walls_falls_to_a_fiftieth_and_the_edge_stays() {
     let (before, after) = (walls.error(&walls.input()), walls.error(&walls.denoised()));
     assert!((before - 1.0 / 6.0).abs() < 0.01, "{before}");
     assert!(after < before / 50.0, "{before} {after}");
-    // The columns beside the edge hold nothing of the other side.
+    // The columns beside the edge contain no light from the other side.
     for column in [58, 59, 60, 61] {
         let denoised = walls.denoised();
         let pixels = (20..60).map(|y| denoised[y * 120 + column].b);
@@ -111,7 +112,7 @@ fn noise_of_flat_walls_falls_to_a_fiftieth_and_the_edge_stays() {
 #[test]
 fn without_features_noise_falls_too() {
     let walls = Walls::new(96, 64, 0.6);
-    // Away from the edge, which nothing but the colour tells of now.
+    // Evaluate only pixels away from the edge, which only the color shows here.
     let flat = |pixels: &[Rgb]| {
         let ratio = |i: usize| pixels[i].r / walls.truth[i].r - 1.0;
         let inner: Vec<f32> = (0..pixels.len()).filter(|i| (i % 96).abs_diff(48) > 4).map(ratio).collect();
@@ -120,23 +121,25 @@ fn without_features_noise_falls_too() {
     let (before, bare) = (flat(&walls.input()), denoise(&walls.noisy(Features::default()), &Settings::default()));
     assert!(flat(&bare) < before / 30.0, "{before} {}", flat(&bare));
     let features = Features { albedo: walls.features().albedo, ..Features::default() };
-    let colours = denoise(&walls.noisy(features), &Settings::default());
-    assert!(flat(&colours) < before / 30.0, "{before} {}", flat(&colours));
+    let colors = denoise(&walls.noisy(features), &Settings::default());
+    assert!(flat(&colors) < before / 30.0, "{before} {}", flat(&colors));
     for column in [46, 47, 48, 49] {
         let mean = (0..64).map(|y| bare[y * 96 + column].r).sum::<f32>() / 64.0;
-        // Patches of windows on a grid hardly ever lie to a sharp edge exactly as a pixel's own does.
+        // On the grid of windows, few patches have the same position relative to a sharp edge as
+        // that of the pixel.
         let bound = if column == 46 || column == 49 { 0.05 } else { 0.4 };
         assert!((mean - walls.truth[column].r).abs() < bound, "column {column}: {mean}");
     }
 }
 
 /// Sums of red, green and blue.
-fn light(pixels: &[Rgb]) -> [f64; 3] {
+fn energy(pixels: &[Rgb]) -> [f64; 3] {
     let sum = |channel: fn(&Rgb) -> f32| pixels.iter().map(|c| f64::from(channel(c))).sum();
     [sum(|c| c.r), sum(|c| c.g), sum(|c| c.b)]
 }
 
-/// Walls with the skewed noise of few samples: most pixels too dark, some far too bright, one pixel in 200 bright in a half.
+/// Creates walls with the skewed noise of few samples: most pixels are too dark, some far too
+/// bright, and one pixel in 200 is a firefly in one half.
 fn sparkling_walls() -> Walls {
     let mut walls = Walls::new(200, 120, 0.0);
     let mut random = Random::new(11);
@@ -149,16 +152,16 @@ fn sparkling_walls() -> Walls {
 }
 
 #[test]
-fn light_is_kept() {
+fn energy_is_conserved() {
     for walls in [Walls::new(120, 80, 1.0), sparkling_walls()] {
-        for (found, wanted) in light(&walls.denoised()).into_iter().zip(light(&walls.input())) {
-            assert!((found / wanted - 1.0).abs() < 1e-5, "{found} {wanted}");
+        for (found, expected) in energy(&walls.denoised()).into_iter().zip(energy(&walls.input())) {
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
         }
     }
 }
 
 #[test]
-fn blocks_lose_no_light() {
+fn blocks_lose_no_energy() {
     let walls = sparkling_walls();
     let (denoised, input) = (walls.denoised(), walls.input());
     for column in [0, 50, 100, 150] {
@@ -173,7 +176,7 @@ fn blocks_lose_no_light() {
 #[test]
 fn no_pixel_stands_out_from_a_plain_wall() {
     let mut walls = sparkling_walls();
-    // Fireflies in both halves.
+    // Put fireflies into both halves.
     for (half, brightness) in [90.0, 60.0].into_iter().enumerate() {
         walls.halves[half][60 * 200 + 30] = Rgb::splat(brightness);
     }
@@ -199,7 +202,7 @@ fn pictures_of_any_size_pass() {
 }
 
 #[test]
-fn what_is_no_number_is_filled_in_and_does_not_spread() {
+fn pixels_that_are_not_finite_are_filled_in_and_do_not_spread() {
     let mut walls = Walls::new(90, 60, 0.5);
     let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
     for (k, number) in strange.into_iter().enumerate() {
@@ -224,10 +227,10 @@ fn what_is_no_number_is_filled_in_and_does_not_spread() {
 #[test]
 fn the_same_bits_on_any_threads_and_vector_units() {
     let walls = Walls::new(200, 70, 0.8);
-    let wanted = bits(&walls.denoised());
+    let expected = bits(&walls.denoised());
     for threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        assert!(bits(&pool.install(|| walls.denoised())) == wanted, "{threads} threads");
+        assert!(bits(&pool.install(|| walls.denoised())) == expected, "{threads} threads");
     }
     let best = SimdLevel::new();
     #[cfg(target_arch = "x86_64")]
@@ -236,7 +239,7 @@ fn the_same_bits_on_any_threads_and_vector_units() {
     let levels = [Some(SimdLevel::baseline()), Some(best)];
     for level in levels.into_iter().flatten() {
         let found = denoise_at(level, &walls.noisy(walls.features()), &Settings::default(), &|| false).unwrap();
-        assert!(bits(&found.pixels) == wanted, "{level:?}");
+        assert!(bits(&found.pixels) == expected, "{level:?}");
     }
 }
 
@@ -247,7 +250,7 @@ fn strips_do_not_show() {
     let run = |rows: usize| strips::denoise(SimdLevel::new(), &noisy, &settings, &|| false, rows).unwrap();
     let (whole, strips) = (run(200), run(20));
     assert_eq!(strips.pixels.len(), whole.pixels.len());
-    assert!((strips.moved - whole.moved).abs() < 1e-9);
+    assert!((strips.moved_energy - whole.moved_energy).abs() < 1e-9);
     for (i, (a, b)) in strips.pixels.iter().zip(&whole.pixels).enumerate() {
         assert!((*a - *b).map(f32::abs).max_channel() < 1e-4, "row {}: {a:?} {b:?}", i / 50);
     }
@@ -265,19 +268,19 @@ fn an_outlier_of_one_half_leaves_no_blotch_and_a_highlight_of_both_stays() {
         let settings = Settings { cut_outliers, ..Settings::default() };
         denoise_unless(&noisy, &settings, &|| false).unwrap()
     };
-    let Denoised { pixels, moved } = run(true);
+    let Denoised { pixels, moved_energy } = run(true);
     for (x, y) in [(20, 20), (19, 21), (24, 20), (28, 28)] {
         let found = pixels[y * 96 + x].r / walls.truth[y * 96 + x].r;
         assert!((found - 1.0).abs() < 0.2, "{x} {y}: {found}");
     }
     assert!((pixels[highlight].g / 305.0 - 1.0).abs() < 0.06, "{:?}", pixels[highlight]);
     let all = walls.halves.iter().flatten().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
-    assert!((moved / (300.0 / all) - 1.0).abs() < 0.03, "{moved}");
-    assert_eq!(run(false).moved, 0.0);
+    assert!((moved_energy / (300.0 / all) - 1.0).abs() < 0.03, "{moved_energy}");
+    assert_eq!(run(false).moved_energy, 0.0);
 }
 
 #[test]
-fn wrong_sizes_are_refused_and_it_stops_when_asked() {
+fn wrong_sizes_are_rejected_and_cancellation_works() {
     let walls = Walls::new(30, 20, 0.5);
     let halves = [&walls.halves[0][..], &walls.halves[1][..]];
     let error = Noisy::new(30, 21, halves, Features::default()).unwrap_err();

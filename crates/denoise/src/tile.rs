@@ -1,7 +1,8 @@
-//! Tiles of windows on the threads of the current pool; what they give is added in the tiles' order.
+//! Parallel filtering of tiles. Sums are added in the order of the tiles, so that the result does
+//! not depend on the threads.
 
 use crate::features::FEATURES;
-use crate::grid::{LANES, MARGIN, REACH, STEP, TILE_COLUMNS, TILE_ROWS, Tile};
+use crate::grid::{LANES, MARGIN, STEP, TILE_COLUMNS, TILE_ROWS, Tile, WINDOW_RADIUS};
 use crate::prepare::Prepared;
 use crate::regression::{PHASE, SUMS, SUMS_STRIDE, Steps, Windows, block};
 use crate::weights::Guide;
@@ -9,13 +10,13 @@ use crate::{Settings, SimdLevel};
 use fearless_simd::dispatch;
 use rayon::prelude::*;
 
-/// Tiles whose sums are in memory at the same time.
+/// Maximum number of tiles whose sums are in memory at the same time.
 const AT_ONCE: usize = 64;
 
-/// Each pixel's red, green and blue, multiplied by the weight, and the weight.
+/// Weighted sums of red, green and blue and the sum of weights, for each pixel.
 pub(crate) type Sums = Vec<[f32; SUMS]>;
 
-/// Both halves filtered, or nothing when it was cancelled.
+/// Filters both halves; `None` if cancelled.
 pub(crate) fn filter(
     level: SimdLevel,
     prepared: &Prepared,
@@ -35,14 +36,15 @@ pub(crate) fn filter(
     Some(filtered)
 }
 
-/// What a tile's windows add to the pixels that they reach: a plane for each half and number, columns in phases.
+/// Sums of a tile's windows over the pixels that they cover: a plane for each half and component,
+/// columns in phases.
 type TileSums = [Vec<f32>; 2 * SUMS];
 
 fn windows(level: SimdLevel, prepared: &Prepared, settings: &Settings, steps: &Steps, tile: &Tile) -> TileSums {
-    let rows = (tile.rows.len() - 1) * STEP + 2 * REACH + 1;
-    debug_assert!(rows <= (TILE_ROWS - 1) * STEP + 2 * REACH + 1);
+    let rows = (tile.rows.len() - 1) * STEP + 2 * WINDOW_RADIUS + 1;
+    debug_assert!(rows <= (TILE_ROWS - 1) * STEP + 2 * WINDOW_RADIUS + 1);
     let mut sums: TileSums = std::array::from_fn(|_| vec![0.0; rows * SUMS_STRIDE]);
-    // Weights of a half come from the other.
+    // Cross filtering: the weights of a half come from the other.
     let mut weights = [1, 0].map(|guide| {
         let guide = Guide::new(prepared, guide, settings.strength);
         dispatch!(level, simd => guide.weights(simd, tile))
@@ -66,11 +68,13 @@ fn windows(level: SimdLevel, prepared: &Prepared, settings: &Settings, steps: &S
 /// Adds a tile's sums to those of the picture.
 fn add(prepared: &Prepared, tile: &Tile, sums: &TileSums, filtered: &mut [Sums; 2]) {
     let (width, height) = (prepared.grid.width, prepared.grid.height);
-    // Pixels before the tile's first centre that its sums begin with, in columns.
+    // Convert the column of the tile's first window to pixels.
     let first = tile.columns.start * STEP;
     for (row, start) in (0..sums[0].len()).step_by(SUMS_STRIDE).enumerate() {
-        let Some(y) = (tile.rows.start * STEP + row).checked_sub(REACH).filter(|y| *y < height) else { continue };
-        for x in (first.saturating_sub(REACH))..width.min(first + SUMS_STRIDE - MARGIN) {
+        let Some(y) = (tile.rows.start * STEP + row).checked_sub(WINDOW_RADIUS).filter(|y| *y < height) else {
+            continue;
+        };
+        for x in (first.saturating_sub(WINDOW_RADIUS))..width.min(first + SUMS_STRIDE - MARGIN) {
             let column = x + MARGIN - first;
             let at = start + column % STEP * PHASE + column / STEP;
             for half in 0..2 {

@@ -1,7 +1,7 @@
 //! Builds the tape of a program: folds constants and joins common subexpressions.
 
 use crate::functions::Code;
-use crate::program::Input;
+use crate::program::ProgramInput;
 use crate::{Binary, Op, Register, Ternary, Unary};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,12 +18,12 @@ pub enum Operand {
 
 /// Error: the tape has reached [`MAX_OPS`](crate::MAX_OPS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Full;
+pub struct TapeFull;
 
 /// Parts of a program.
 #[derive(Debug, Default)]
 pub struct Tape {
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<ProgramInput>,
     pub constants: Vec<f64>,
     pub ops: Vec<Op>,
 }
@@ -32,7 +32,7 @@ pub struct Tape {
 #[derive(Debug, Default)]
 pub struct Builder<'t> {
     tape: Tape,
-    /// Registers of what is on the tape.
+    /// Registers of the operations on the tape.
     known: BTreeMap<Key<'t>, Register>,
 }
 
@@ -49,25 +49,25 @@ enum Key<'t> {
 
 impl<'t> Builder<'t> {
     /// The tape whose last operation gives `result`.
-    pub fn finish(mut self, result: Operand) -> Result<Tape, Full> {
+    pub fn finish(mut self, result: Operand) -> Result<Tape, TapeFull> {
         self.register(result)?;
         Ok(self.tape)
     }
 
     /// Input `name`, or `name.component`, written at `at`.
-    pub fn input(&mut self, written: &'t str, at: Range<usize>) -> Result<Operand, Full> {
+    pub fn input(&mut self, written: &'t str, at: Range<usize>) -> Result<Operand, TapeFull> {
         let key = Key::Input(written);
         if let Some(register) = self.known.get(&key) {
             return Ok(Operand::Register(*register));
         }
-        let index = u16::try_from(self.tape.inputs.len()).map_err(|_| Full)?;
-        let (name, component) = split(written);
-        self.tape.inputs.push(Input { name: name.into(), component: component.map(Into::into), at });
+        let index = u16::try_from(self.tape.inputs.len()).map_err(|_| TapeFull)?;
+        let (name, component) = split_component(written);
+        self.tape.inputs.push(ProgramInput { name: name.into(), component: component.map(Into::into), at });
         self.emit(key, Op::Input(index)).map(Operand::Register)
     }
 
     /// Operation on one operand.
-    pub fn unary(&mut self, op: Unary, x: Operand) -> Result<Operand, Full> {
+    pub fn unary(&mut self, op: Unary, x: Operand) -> Result<Operand, TapeFull> {
         match x {
             Operand::Constant(x) => Ok(Operand::Constant(op.apply(x))),
             Operand::Register(x) => self.op(Op::Unary(op, x)),
@@ -75,7 +75,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Operation on two operands.
-    pub fn binary(&mut self, op: Binary, x: Operand, y: Operand) -> Result<Operand, Full> {
+    pub fn binary(&mut self, op: Binary, x: Operand, y: Operand) -> Result<Operand, TapeFull> {
         if let (Operand::Constant(x), Operand::Constant(y)) = (x, y) {
             return Ok(Operand::Constant(op.apply([x, y])));
         }
@@ -84,7 +84,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Operation on three operands.
-    pub fn ternary(&mut self, op: Ternary, [x, y, z]: [Operand; 3]) -> Result<Operand, Full> {
+    pub fn ternary(&mut self, op: Ternary, [x, y, z]: [Operand; 3]) -> Result<Operand, TapeFull> {
         if let (Operand::Constant(x), Operand::Constant(y), Operand::Constant(z)) = (x, y, z) {
             return Ok(Operand::Constant(op.apply([x, y, z])));
         }
@@ -94,7 +94,7 @@ impl<'t> Builder<'t> {
 
     /// Call of a function. Returns `None` for a number of arguments that the function does not
     /// take.
-    pub fn call(&mut self, code: Code, arguments: &[Operand]) -> Result<Option<Operand>, Full> {
+    pub fn call(&mut self, code: Code, arguments: &[Operand]) -> Result<Option<Operand>, TapeFull> {
         let result = match (code, arguments) {
             (Code::Unary(op), [x]) => self.unary(op, *x)?,
             (Code::Binary(op), [x, y]) => self.binary(op, *x, *y)?,
@@ -108,7 +108,7 @@ impl<'t> Builder<'t> {
         Ok(Some(result))
     }
 
-    fn register(&mut self, operand: Operand) -> Result<Register, Full> {
+    fn register(&mut self, operand: Operand) -> Result<Register, TapeFull> {
         let value = match operand {
             Operand::Register(register) => return Ok(register),
             Operand::Constant(value) => value,
@@ -117,12 +117,12 @@ impl<'t> Builder<'t> {
         if let Some(register) = self.known.get(&key) {
             return Ok(*register);
         }
-        let index = u16::try_from(self.tape.constants.len()).map_err(|_| Full)?;
+        let index = u16::try_from(self.tape.constants.len()).map_err(|_| TapeFull)?;
         self.tape.constants.push(value);
         self.emit(key, Op::Constant(index))
     }
 
-    fn op(&mut self, op: Op) -> Result<Operand, Full> {
+    fn op(&mut self, op: Op) -> Result<Operand, TapeFull> {
         let key = Key::Op(op);
         let register = match self.known.get(&key) {
             Some(register) => *register,
@@ -131,8 +131,8 @@ impl<'t> Builder<'t> {
         Ok(Operand::Register(register))
     }
 
-    fn emit(&mut self, key: Key<'t>, op: Op) -> Result<Register, Full> {
-        let register = Register::new(self.tape.ops.len()).ok_or(Full)?;
+    fn emit(&mut self, key: Key<'t>, op: Op) -> Result<Register, TapeFull> {
+        let register = Register::new(self.tape.ops.len()).ok_or(TapeFull)?;
         self.tape.ops.push(op);
         self.known.insert(key, register);
         Ok(register)
@@ -140,7 +140,7 @@ impl<'t> Builder<'t> {
 }
 
 /// Name and component of a written name.
-pub fn split(written: &str) -> (&str, Option<&str>) {
+pub fn split_component(written: &str) -> (&str, Option<&str>) {
     written.split_once('.').map_or((written, None), |(name, component)| (name, Some(component)))
 }
 
@@ -156,8 +156,8 @@ mod tests {
         for _ in 1..MAX_OPS {
             last = builder.unary(Unary::Sin, last).unwrap();
         }
-        assert_eq!(builder.unary(Unary::Sin, last).err(), Some(Full));
-        assert_eq!(builder.unary(Unary::Cos, last).err(), Some(Full));
+        assert_eq!(builder.unary(Unary::Sin, last).err(), Some(TapeFull));
+        assert_eq!(builder.unary(Unary::Cos, last).err(), Some(TapeFull));
         assert_eq!(builder.finish(last).unwrap().ops.len(), MAX_OPS);
     }
 }

@@ -22,9 +22,9 @@ impl ExpressionError {
 }
 
 /// Result of a step that may find the expression wrong.
-pub(crate) type Checked<T> = Result<T, ExpressionError>;
+pub(crate) type ExpressionResult<T> = Result<T, ExpressionError>;
 
 /// Fails with an error without a suggestion.
-pub(crate) fn fail<T>(at: Range<usize>, message: impl Into<String>) -> Checked<T> {
+pub(crate) fn fail<T>(at: Range<usize>, message: impl Into<String>) -> ExpressionResult<T> {
     Err(ExpressionError::new(at, message))
 }

@@ -11,7 +11,7 @@ pub struct Function {
     /// Call with named arguments, for documentation and messages.
     pub usage: &'static str,
     /// Number of arguments.
-    pub takes: RangeInclusive<usize>,
+    pub arity: RangeInclusive<usize>,
     /// Operations that the function compiles to.
     pub(crate) code: Code,
 }
@@ -60,17 +60,17 @@ pub const FUNCTIONS: &[Function] = &[
 ];
 
 const fn unary(name: &'static str, usage: &'static str, op: Unary) -> Function {
-    Function { name, usage, takes: 1..=1, code: Code::Unary(op) }
+    Function { name, usage, arity: 1..=1, code: Code::Unary(op) }
 }
 
 const fn binary(name: &'static str, usage: &'static str, op: Binary) -> Function {
-    Function { name, usage, takes: 2..=2, code: Code::Binary(op) }
+    Function { name, usage, arity: 2..=2, code: Code::Binary(op) }
 }
 
 const fn ternary(name: &'static str, usage: &'static str, op: Ternary) -> Function {
-    Function { name, usage, takes: 3..=3, code: Code::Ternary(op) }
+    Function { name, usage, arity: 3..=3, code: Code::Ternary(op) }
 }
 
 const fn fold(name: &'static str, usage: &'static str, start: f64, op: Binary) -> Function {
-    Function { name, usage, takes: 1..=usize::MAX, code: Code::Fold(start, op) }
+    Function { name, usage, arity: 1..=usize::MAX, code: Code::Fold(start, op) }
 }

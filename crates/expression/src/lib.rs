@@ -26,7 +26,7 @@
 //!            | name "(" comparison ("," comparison)* ")"
 //! ```
 //!
-//! - `reader` parses the text by recursive descent and hands operations to `builder`, which folds
+//! - `parser` parses the text by recursive descent and hands operations to `builder`, which folds
 //!   constants and joins common subexpressions.
 //! - A [`Program`] is a tape of operations ([`Op`]) in static single assignment form. It depends on
 //!   the text only, so it may be kept and evaluated with other [`Names`].
@@ -40,9 +40,9 @@ mod error;
 mod functions;
 mod names;
 mod op;
+mod parser;
 mod point;
 mod program;
-mod reader;
 mod token;
 
 pub use error::ExpressionError;
@@ -50,7 +50,7 @@ pub use functions::{FUNCTIONS, Function};
 pub use names::{COMPONENTS, Names, Quantity};
 pub use op::{Binary, Op, Register, Ternary, Unary};
 pub use point::{PointEvaluator, modulo};
-pub use program::{Input, Program};
+pub use program::{Program, ProgramInput};
 
 /// Maximum length of an expression, in bytes.
 pub const MAX_LENGTH: usize = 4096;

@@ -1,7 +1,7 @@
 //! Names that expressions refer to, with their values.
 
 use crate::FUNCTIONS;
-use crate::error::{Checked, ExpressionError, fail};
+use crate::error::{ExpressionError, ExpressionResult, fail};
 use indexmap::IndexMap;
 use juggler_math::suggest::{closest, did_you_mean};
 use std::ops::Range;
@@ -49,7 +49,12 @@ impl Names {
 
     /// Number that `name` or `name.component` stands for, written at `at`. Returns `None` if the
     /// name's value is [`Quantity::Unknown`].
-    pub(crate) fn number(&self, name: &str, component: Option<&str>, at: &Range<usize>) -> Checked<Option<f64>> {
+    pub(crate) fn number(
+        &self,
+        name: &str,
+        component: Option<&str>,
+        at: &Range<usize>,
+    ) -> ExpressionResult<Option<f64>> {
         match (self.get(name), component) {
             (Some(Quantity::Unknown), _) => Ok(None),
             (Some(Quantity::Number(value)), None) => Ok(Some(*value)),
@@ -66,7 +71,7 @@ impl Names {
             (None, None) if let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) => {
                 fail(at.clone(), format!("`{name}` is a function: write {}", function.usage))
             }
-            (None, _) => Err(unknown(name, at.clone(), "nothing", self.0.keys().map(String::as_str))),
+            (None, _) => Err(unknown_name(name, at.clone(), "nothing", self.0.keys().map(String::as_str))),
         }
     }
 }
@@ -89,7 +94,7 @@ fn components(name: &str, count: usize) -> String {
 }
 
 /// Error about an unknown name, with the nearest known name or all of them.
-pub(crate) fn unknown<'n>(
+pub(crate) fn unknown_name<'n>(
     name: &str,
     at: Range<usize>,
     what: &str,

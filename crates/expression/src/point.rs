@@ -1,8 +1,8 @@
 //! Evaluation in `f64`. All functions have the same bits on every platform.
 
-use crate::error::{Checked, ExpressionError};
+use crate::error::{ExpressionError, ExpressionResult};
 use crate::{Binary, Names, Op, Program, Quantity, Register, Ternary, Unary};
-use juggler_math::fun;
+use juggler_math::portable;
 
 /// Evaluator of programs in `f64`. It keeps its buffers from one evaluation to the next.
 #[derive(Clone, Debug, Default)]
@@ -33,7 +33,7 @@ impl PointEvaluator {
     }
 
     /// Looks up the inputs of a program. Returns whether all of them are known.
-    fn bind(&mut self, program: &Program, names: &Names) -> Checked<bool> {
+    fn bind(&mut self, program: &Program, names: &Names) -> ExpressionResult<bool> {
         self.inputs.clear();
         let mut is_known = true;
         for input in program.inputs() {
@@ -79,17 +79,17 @@ impl Unary {
     pub fn apply(self, x: f64) -> f64 {
         match self {
             Self::Negate => -x,
-            Self::Sin => fun::sin_f64(x),
-            Self::Cos => fun::cos_f64(x),
-            Self::Tan => fun::tan_f64(x),
-            Self::Asin => fun::asin_f64(x),
-            Self::Acos => fun::acos_f64(x),
-            Self::Atan => fun::atan2_f64(x, 1.0),
+            Self::Sin => portable::sin_f64(x),
+            Self::Cos => portable::cos_f64(x),
+            Self::Tan => portable::tan_f64(x),
+            Self::Asin => portable::asin_f64(x),
+            Self::Acos => portable::acos_f64(x),
+            Self::Atan => portable::atan2_f64(x, 1.0),
             Self::Radians => x.to_radians(),
             Self::Degrees => x.to_degrees(),
             Self::Sqrt => x.sqrt(),
-            Self::Exp => fun::exp_f64(x),
-            Self::Ln => fun::ln_f64(x),
+            Self::Exp => portable::exp_f64(x),
+            Self::Ln => portable::ln_f64(x),
             Self::Abs => x.abs(),
             Self::Sign if x == 0.0 || x.is_nan() => x,
             Self::Sign => x.signum(),
@@ -110,8 +110,8 @@ impl Binary {
             Self::Multiply => x * y,
             Self::Divide => x / y,
             Self::Modulo => modulo(x, y),
-            Self::Power => fun::pow_f64(x, y),
-            Self::Atan2 => fun::atan2_f64(x, y),
+            Self::Power => portable::pow_f64(x, y),
+            Self::Atan2 => portable::atan2_f64(x, y),
             Self::Hypot => (x * x + y * y).sqrt(),
             Self::Min => x.min(y),
             Self::Max => x.max(y),

@@ -1,8 +1,8 @@
 //! Compiled expressions.
 
 use crate::builder::Tape;
-use crate::error::Checked;
-use crate::reader::Reader;
+use crate::error::ExpressionResult;
+use crate::parser::Parser;
 use crate::{ExpressionError, MAX_LENGTH, Names, Op};
 use std::ops::Range;
 
@@ -13,14 +13,14 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     text_length: usize,
-    inputs: Box<[Input]>,
+    inputs: Box<[ProgramInput]>,
     constants: Box<[f64]>,
     ops: Box<[Op]>,
 }
 
 /// Number that a program reads from outside: a name, or a component of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Input {
+pub struct ProgramInput {
     /// Name.
     pub name: Box<str>,
     /// Component of a vector, as written after the name.
@@ -48,18 +48,18 @@ impl Program {
         Self::read(text, None)
     }
 
-    fn read(text: &str, names: Option<&Names>) -> Checked<Self> {
+    fn read(text: &str, names: Option<&Names>) -> ExpressionResult<Self> {
         if text.len() > MAX_LENGTH {
             let message = format!("an expression has at most {MAX_LENGTH} characters, this one has {}", text.len());
             return Err(ExpressionError::new(0..text.len(), message));
         }
-        let Tape { inputs, constants, ops } = Reader::new(text, names).whole()?;
+        let Tape { inputs, constants, ops } = Parser::new(text, names).parse()?;
         Ok(Self { text_length: text.len(), inputs: inputs.into(), constants: constants.into(), ops: ops.into() })
     }
 
     /// Inputs in the order of their first use. Inputs that the result does not depend on are among
     /// them.
-    pub fn inputs(&self) -> &[Input] {
+    pub fn inputs(&self) -> &[ProgramInput] {
         &self.inputs
     }
 

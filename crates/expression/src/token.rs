@@ -1,6 +1,6 @@
 //! Splits text into numbers, names and signs.
 
-use crate::error::{Checked, fail};
+use crate::error::{ExpressionResult, fail};
 use std::ops::Range;
 
 /// Smallest part of an expression.
@@ -19,7 +19,7 @@ pub enum Token<'t> {
 const SIGNS: [&str; 17] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "%", "^", "(", ")", ",", "=", "!"];
 
 /// Token that begins at or after `from`, and its byte range.
-pub fn next(text: &str, from: usize) -> Checked<(Token<'_>, Range<usize>)> {
+pub fn next(text: &str, from: usize) -> ExpressionResult<(Token<'_>, Range<usize>)> {
     let rest = text.get(from..).unwrap_or_default();
     let blank = rest.len() - rest.trim_start().len();
     let (start, rest) = (from + blank, rest.trim_start());

@@ -1,42 +1,43 @@
-//! How many samples each tile of a picture has, as a text: runs of tiles, `64x512 48x1523` for 512 tiles with 64
-//! samples and 1523 with 48. And what that is per pixel of the whole picture.
+//! Samples per pixel of each tile as run-length encoded text: `64x512 48x1523` means 512 tiles of
+//! 64 samples followed by 1523 tiles of 48.
 
-use crate::part::{Part, PartError};
-use juggler_camera::film::{Film, Layout};
+use crate::partial_render::{PartialRender, PartialRenderError};
+use juggler_camera::film::{Film, Tiling};
 use serde::Serialize;
 use std::fmt;
 
-/// Samples per pixel of a picture whose tiles may have different numbers of them.
+/// Range and mean of the samples per pixel of an image rendered with adaptive sampling.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
-    /// Of the tile with the fewest samples.
+pub struct SampleCountStats {
+    /// Fewest samples per pixel of any tile.
     pub min: u32,
     /// Mean over all pixels.
     pub mean: f64,
-    /// Of the tile with the most samples.
+    /// Most samples per pixel of any tile.
     pub max: u32,
 }
 
-impl Spread {
-    /// Of a picture all pixels of which have the same number.
-    pub fn even(samples: u32) -> Self {
+impl SampleCountStats {
+    /// Statistics of an image with the same number of samples in every pixel.
+    pub fn uniform(samples: u32) -> Self {
         Self { min: samples, mean: samples.into(), max: samples }
     }
 
-    /// Of the tiles that a film holds.
-    pub fn of_film(film: &Film) -> Self {
+    /// Statistics of the tiles of `film` that are present.
+    pub fn from_film(film: &Film) -> Self {
         let tiles = (0..film.len()).filter_map(|place| film.tile(place));
-        Self::of(tiles.map(|tile| (tile.pixels().area(), tile.count())))
+        Self::from_tiles(tiles.map(|tile| (tile.pixels().area(), tile.samples_per_pixel())))
     }
 
-    /// Of a whole picture, from the counts of its tiles.
-    pub fn of_counts(layout: &Layout, counts: &[u32]) -> Self {
+    /// Statistics of an image from `counts`, the samples per pixel of each tile of `tiling` in
+    /// order.
+    pub fn from_counts(tiling: &Tiling, counts: &[u32]) -> Self {
         let tiles = (0..).zip(counts);
-        Self::of(tiles.filter_map(|(number, count)| Some((layout.tile(number)?.area(), *count))))
+        Self::from_tiles(tiles.filter_map(|(number, count)| Some((tiling.tile(number)?.area(), *count))))
     }
 
-    /// Of tiles with so many pixels, each of which has so many samples.
-    fn of(tiles: impl Iterator<Item = (u64, u32)>) -> Self {
+    /// Statistics of tiles given as pairs of pixel count and samples per pixel.
+    fn from_tiles(tiles: impl Iterator<Item = (u64, u32)>) -> Self {
         let (mut pixels, mut samples, mut ends) = (0_u64, 0.0, None);
         for (area, count) in tiles {
             pixels += area;
@@ -49,21 +50,22 @@ impl Spread {
     }
 }
 
-/// `64`, or `16 to 512, 120.5 on average`.
-impl fmt::Display for Spread {
+/// Formats as `64`, or `16 to 512, 120.5 on average`.
+impl fmt::Display for SampleCountStats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { min, mean, max } = self;
         if min == max { write!(f, "{min}") } else { write!(f, "{min} to {max}, {mean:.1} on average") }
     }
 }
 
-/// The counts as a text.
+/// Encodes the counts as text.
 pub fn to_text(counts: &[u32]) -> String {
     let run = |run: &[u32]| Some(format!("{}x{}", run.first()?, run.len()));
     counts.chunk_by(|a, b| a == b).filter_map(run).collect::<Vec<_>>().join(" ")
 }
 
-/// The counts in a text, for as many `tiles`; `None` when it is none of that.
+/// Parses the counts of `tiles` tiles; `None` if the text is malformed or covers another number of
+/// tiles.
 pub fn from_text(text: &str, tiles: u64) -> Option<Vec<u32>> {
     let mut counts = Vec::new();
     for run in text.split_ascii_whitespace() {
@@ -75,14 +77,14 @@ pub fn from_text(text: &str, tiles: u64) -> Option<Vec<u32>> {
     (counts.len() as u64 == tiles).then_some(counts)
 }
 
-/// The counts of a part, tile by tile; tiles that it does not hold have none.
-pub fn of_part(part: &Part) -> Result<Vec<u32>, PartError> {
-    let mut counts = vec![0; usize::try_from(part.description().layout().tiles()).unwrap_or(0)];
+/// Samples per pixel of each tile of a partial render, in tile order; 0 for tiles that it lacks.
+pub fn from_partial_render(part: &PartialRender) -> Result<Vec<u32>, PartialRenderError> {
+    let mut counts = vec![0; usize::try_from(part.description().tiling().tile_count()).unwrap_or(0)];
     let mut reader = part.reader()?;
     for number in part.tiles() {
         let tile = reader.tile(number)?;
         if let Some(count) = usize::try_from(number).ok().and_then(|number| counts.get_mut(number)) {
-            *count = tile.samples();
+            *count = tile.gapless_samples();
         }
     }
     Ok(counts)
@@ -103,12 +105,15 @@ mod tests {
 
     #[test]
     fn spreads_weigh_tiles_by_their_pixels() {
-        // Tiles of 16 × 16 pixels and, at the right, of 4 × 16.
-        let layout = Layout::new(Rect { x: 0, y: 0, width: 20, height: 16 });
-        let spread = Spread::of_counts(&layout, &[10, 60]);
-        assert_eq!(spread, Spread { min: 10, mean: 20.0, max: 60 });
-        assert_eq!(spread.to_string(), "10 to 60, 20.0 on average");
-        assert_eq!((Spread::even(7).to_string(), Spread::of_counts(&layout, &[])), ("7".into(), Spread::default()));
+        // One tile of 16 × 16 pixels, one of 4 × 16.
+        let tiling = Tiling::new(Rect { x: 0, y: 0, width: 20, height: 16 });
+        let stats = SampleCountStats::from_counts(&tiling, &[10, 60]);
+        assert_eq!(stats, SampleCountStats { min: 10, mean: 20.0, max: 60 });
+        assert_eq!(stats.to_string(), "10 to 60, 20.0 on average");
+        assert_eq!(
+            (SampleCountStats::uniform(7).to_string(), SampleCountStats::from_counts(&tiling, &[])),
+            ("7".into(), SampleCountStats::default())
+        );
     }
 
     #[test]

@@ -1,22 +1,25 @@
-//! Parts of pictures on disk: no work is ever lost.
+//! Partial renders on disk (`.jfilm` files): checkpoints, shards and merging.
 //!
-//! - [`checkpoint`]: work kept while it is done, and gone on with;
-//! - [`part`]: the container `.jfilm`, any part of a picture with all that is known of it, every byte under a hash;
-//!   `README.md` of this crate describes it byte by byte;
-//! - [`counts`]: how many samples each tile got, as a text, and how many that is per pixel;
-//! - [`share`]: how one picture, or a range of frames, is cut into parts that cost about the same;
-//! - [`mod@merge`]: parts that belong together become one picture, or one part, with the bits of a single render.
+//! - [`checkpoint`]: saves a render in progress and resumes it;
+//! - [`partial_render`]: the `.jfilm` container, which holds any samples of any tiles of one image
+//!   with a description; hashes protect every byte, and this crate's `README.md` specifies the
+//!   format;
+//! - [`counts`]: samples per pixel of each tile, as text and as statistics;
+//! - [`shard`]: splits an image or a range of frames into shards of about equal cost;
+//! - [`mod@merge`]: merges partial renders into an image or a larger one, bit-identical to a
+//!   single render.
 
 pub mod checkpoint;
 pub mod counts;
 pub mod merge;
-pub mod part;
-pub mod share;
+pub mod partial_render;
+pub mod shard;
 #[cfg(test)]
 mod testing;
 
-pub use checkpoint::{Checkpoint, Found, ResumeError, resume};
-pub use merge::{Complaint, Merge, MergeError, ToDo, Wanted};
-pub use part::{
-    Chunk, Description, Layered, Mismatch, Part, PartError, PartWriter, Reader, Share, Stop, is_part, write,
+pub use checkpoint::{Checkpoint, OpenedCheckpoint, ResumeError, resume};
+pub use merge::{Merge, MergeError, MergeGoal, MergeProblem, RemainingWork};
+pub use partial_render::{
+    AovDescription, Chunk, Mismatch, PartialRender, PartialRenderError, PartialRenderWriter, RenderDescription,
+    ShardDescription, Stop, TileReader, is_partial_render, write,
 };

@@ -1,5 +1,5 @@
-//! Runs numbered cases in processes of their own: the address space is limited, so that what asks for too much memory is seen,
-//! and a case that does not end is found by the time that nothing is said.
+//! Runs numbered cases in separate processes with a limited address space, which catches excessive
+//! allocation; a time limit catches endless cases.
 
 use crate::{fields, mutate, seeds, targets};
 use std::io::{BufRead, BufReader, Read};
@@ -7,25 +7,26 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// Address space of a process, in bytes.
-const MOST_MEMORY: u64 = 2 << 30;
-/// Longest time for one case.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// Name of the scenes from the schema.
+/// Limit of a process's address space, in bytes.
+const MAX_MEMORY: u64 = 2 << 30;
+/// Time limit of one case.
+const TIME_LIMIT: Duration = Duration::from_secs(10);
+/// Kind of the cases generated from the schema.
 pub const FIELDS: &str = "fields";
 
-/// What cases of one kind came to.
+/// Results of the cases of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Cases that were taken: read, or rendered.
-    pub taken: u64,
-    /// What went wrong, with the number of the case.
+    /// Number of accepted cases: read without error, or rendered.
+    pub accepted: u64,
+    /// Failures, with their case numbers.
     pub failures: Vec<String>,
 }
 
-/// Runs the cases from `first` up to, but without, `end` here, and prints what parents want to know.
-pub fn run_here(kind: &str, first: u64, end: u64, say: &mut dyn FnMut(String)) {
-    let (seeds, fields) = (seeds::of(kind), if kind == FIELDS { fields::fields() } else { Vec::new() });
+/// Runs the cases `first..end` in this process and reports each to `say` by the protocol of
+/// [`run`].
+pub fn run_in_process(kind: &str, first: u64, end: u64, say: &mut dyn FnMut(String)) {
+    let (seeds, fields) = (seeds::for_target(kind), if kind == FIELDS { fields::fields() } else { Vec::new() });
     for case in first..end {
         say(format!("case {case}"));
         if kind == FIELDS {
@@ -35,20 +36,20 @@ pub fn run_here(kind: &str, first: u64, end: u64, say: &mut dyn FnMut(String)) {
                 Err(broken) => say(format!("broken {path}: {broken}: {text}").replace('\n', " ")),
             }
         } else if let Some(target) = targets::by_name(kind) {
-            let taken = (target.read)(&mutate::mutated(&seeds, case));
-            say(if taken { "taken" } else { "refused" }.to_owned());
+            let accepted = (target.read)(&mutate::mutate(&seeds, case));
+            say(if accepted { "taken" } else { "refused" }.to_owned());
         }
     }
 }
 
-/// Runs `count` cases of a kind by `program`, which is this crate's `cases`. After a case that ends the process another process
-/// goes on with the next.
+/// Runs `count` cases of a kind by `program`, which is this crate's binary `cases`. If a case ends
+/// the process, a new one continues with the next case.
 pub fn run(program: &str, kind: &str, count: u64) -> Outcome {
-    let mut outcome = Outcome { taken: 0, failures: Vec::new() };
+    let mut outcome = Outcome { accepted: 0, failures: Vec::new() };
     let mut first = 0;
     while first < count && outcome.failures.len() < 20 {
         match start(program, kind, first, count) {
-            Ok(child) => first = follow(child, kind, first, count, &mut outcome),
+            Ok(child) => first = read_results(child, kind, first, count, &mut outcome),
             Err(error) => {
                 outcome.failures.push(format!("{program} does not start: {error}"));
                 break;
@@ -59,16 +60,16 @@ pub fn run(program: &str, kind: &str, count: u64) -> Outcome {
 }
 
 fn start(program: &str, kind: &str, first: u64, end: u64) -> std::io::Result<Child> {
-    let line = format!("ulimit -v {}; exec \"$@\"", MOST_MEMORY / 1024);
+    let line = format!("ulimit -v {}; exec \"$@\"", MAX_MEMORY / 1024);
     let mut command = Command::new("sh");
     command.args(["-c", &line, "sh", program, kind, &first.to_string(), &end.to_string()]);
-    // Threads have stacks and arenas of address space: few are enough here.
+    // Threads reserve address space for stacks and allocator arenas, so use few of them.
     command.env("RAYON_NUM_THREADS", "2").env("RUST_BACKTRACE", "0");
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()
 }
 
-/// Listens to a process until it ends; the number of the next case.
-fn follow(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mut Outcome) -> u64 {
+/// Reads the output of a process until it ends. Returns the number of the next case.
+fn read_results(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mut Outcome) -> u64 {
     let (sender, lines) = mpsc::channel();
     let out = child.stdout.take();
     let listener = std::thread::spawn(move || {
@@ -77,16 +78,16 @@ fn follow(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mut Outc
     });
     let mut case = first;
     let failure = loop {
-        match lines.recv_timeout(PATIENCE) {
+        match lines.recv_timeout(TIME_LIMIT) {
             Ok(line) => match line.split_once(' ').unwrap_or((&line, "")) {
                 ("case", number) => case = number.parse().unwrap_or(case),
-                ("taken", _) => outcome.taken += 1,
+                ("taken", _) => outcome.accepted += 1,
                 ("broken", what) => outcome.failures.push(format!("{kind} {case}: {what}")),
                 _ => {}
             },
             Err(RecvTimeoutError::Timeout) => {
                 let _ = child.kill();
-                break Some(format!("takes longer than {} s", PATIENCE.as_secs()));
+                break Some(format!("takes longer than {} s", TIME_LIMIT.as_secs()));
             }
             Err(RecvTimeoutError::Disconnected) => break None,
         }
@@ -95,7 +96,7 @@ fn follow(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mut Outc
     let status = child.wait().map(|status| status.to_string());
     let failure = failure.or_else(|| match &status {
         Ok(status) if status.ends_with(": 0") => None,
-        Ok(status) => Some(format!("{status}: {}", complaint(&mut child))),
+        Ok(status) => Some(format!("{status}: {}", stderr_text(&mut child))),
         Err(error) => Some(error.to_string()),
     });
     let Some(failure) = failure else { return end };
@@ -103,8 +104,8 @@ fn follow(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mut Outc
     case + 1
 }
 
-/// What a process said last.
-fn complaint(child: &mut Child) -> String {
+/// Beginning of a process's standard error.
+fn stderr_text(child: &mut Child) -> String {
     let mut text = String::new();
     if let Some(err) = &mut child.stderr {
         let _ = err.read_to_string(&mut text);

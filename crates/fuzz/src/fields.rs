@@ -1,20 +1,24 @@
-//! Every number of the scene format at extreme values: the JSON Schema is walked, and each number becomes a scene with a
-//! hole in its place.
+//! Every number of the scene format at extreme values: a walk over the JSON Schema yields, for each
+//! number, a scene with a placeholder in its place.
 
 use crate::targets::is_affordable;
 use juggler::scene::{Scene, schema_json};
 use juggler::{Picture, Settings};
 use juggler_math::testing::Random;
 use serde_json::{Map, Value, json};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-/// What stands in the place of the number.
-const HOLE: &str = "@";
-/// The field whose values in time are walked, too.
-const MOVING: &str = "sphere.radius";
-/// Deepest nesting of definitions within one another.
-const DEEPEST: usize = 14;
+/// Placeholder of the number.
+const PLACEHOLDER: &str = "@";
+/// Path suffix of the only number whose animation is walked too.
+const ANIMATED_PATH: &str = "sphere.radius";
+/// Paths on which a member of a definition is visited, where not all are.
+const MAX_VISITS: u32 = 2;
+/// Maximum nesting depth of definitions.
+const MAX_DEPTH: usize = 14;
 
-/// Numbers that a field is given.
+/// Values for each number.
 const EXTREMES: [&str; 22] = [
     "0",
     "-0.0",
@@ -40,24 +44,57 @@ const EXTREMES: [&str; 22] = [
     "18446744073709551615",
 ];
 
-/// A number of the format.
+/// Values that many numbers of the format allow.
+const COMMON_VALUES: [&str; 9] = ["1", "0.5", "2", "0.25", "3", "20", "45", "1.5", "1000"];
+
+/// A field of the scene format.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Where it stands: `objects.0.shape.sphere.radius`.
+    /// Path in the scene, such as `objects.0.shape.sphere.radius`.
     pub path: String,
-    /// A scene with [`HOLE`] in its place.
+    /// A scene with [`PLACEHOLDER`] in place of the number.
     scene: Value,
 }
 
-/// All numbers of the format.
+/// All numbers of the scene format.
 pub fn fields() -> Vec<Field> {
     let schema: Value = serde_json::from_str(&schema_json()).unwrap_or_default();
-    let walk = Walk { definitions: schema.get("$defs").cloned().unwrap_or_default() };
-    let found = walk.holes(&schema, &mut Vec::new(), "");
+    let walk = Walk { definitions: schema.get("$defs").cloned().unwrap_or_default(), visits: None };
+    let found = walk.placeholders(&schema, &mut Vec::new(), "");
     found.into_iter().map(|(path, scene)| Field { path, scene: complete(scene) }).collect()
 }
 
-/// A scene of a case: some field at some extreme. The number of fields decides nothing but which one.
+/// Every field of every definition of the format: numbers, words and switches, each on a few paths.
+/// Words and switches have their possible values after the placeholder.
+pub fn all_fields() -> Vec<Field> {
+    let schema: Value = serde_json::from_str(&schema_json()).unwrap_or_default();
+    let definitions = schema.get("$defs").cloned().unwrap_or_default();
+    let walk = Walk { definitions, visits: Some(RefCell::default()) };
+    let found = walk.placeholders(&schema, &mut Vec::new(), "");
+    found.into_iter().map(|(path, scene)| Field { path, scene: complete(scene) }).collect()
+}
+
+impl Field {
+    /// Texts of scenes with different values of the field.
+    pub fn variations(&self) -> Vec<String> {
+        let text = self.scene.to_string();
+        let Some((before, rest)) = text.split_once(&format!("\"{PLACEHOLDER}")) else { return Vec::new() };
+        let mut is_escaped = false;
+        let is_end = |c: char| {
+            let was_escaped = std::mem::replace(&mut is_escaped, false);
+            is_escaped = c == '\\' && !was_escaped;
+            c == '"' && !was_escaped
+        };
+        let Some((values, after)) = rest.find(is_end).and_then(|end| rest.split_at_checked(end)) else {
+            return Vec::new();
+        };
+        let values = values.replace("\\\"", "\"");
+        let values: Vec<&str> = if values.is_empty() { COMMON_VALUES.to_vec() } else { values.split('|').collect() };
+        values.iter().map(|value| format!("{before}{value}{}", after.trim_start_matches('"'))).collect()
+    }
+}
+
+/// Path and scene text of a case: a random field with a random extreme value, seeded by `number`.
 pub fn case(fields: &[Field], number: u64) -> (String, String) {
     let mut random = Random::new(number);
     let Some(field) = fields.get(random.below(fields.len())) else { return Default::default() };
@@ -69,11 +106,16 @@ pub fn case(fields: &[Field], number: u64) -> (String, String) {
     {
         render.entry("integrator").or_insert_with(|| json!({"path": {"max_depth": 4}}));
     }
-    (field.path.clone(), scene.to_string().replace(&format!("\"{HOLE}\""), extreme))
+    (field.path.clone(), scene.to_string().replace(&format!("\"{PLACEHOLDER}\""), extreme))
 }
 
-/// Checks a scene and renders 8 × 8 pixels of it, if it is right and affordable. Whether it was rendered; an error where one
-/// of the promises is broken: what is rendered was checked, what was checked is rendered, and all pixels are finite.
+/// Checks a scene and, if it is valid and affordable, renders 8 × 8 pixels. Returns whether it was
+/// rendered.
+///
+/// # Errors
+///
+/// A description of a broken promise: a scene that passes the check must render, and all pixels
+/// must be finite.
 pub fn render(text: &str) -> Result<bool, String> {
     let Ok(scene) = Scene::from_json(text, "field.json") else { return Ok(false) };
     let settings = Settings { size: Some([8, 8]), samples: Some(1), ..Settings::default() };
@@ -88,32 +130,37 @@ pub fn render(text: &str) -> Result<bool, String> {
     }
 }
 
-/// The definitions of the schema.
-struct Walk {
+/// Walk over the definitions of the schema.
+pub(crate) struct Walk {
     definitions: Value,
+    /// Number of paths to each member of each definition so far, if words and switches count as
+    /// fields and each field is visited a few times only.
+    visits: Option<RefCell<BTreeMap<String, u32>>>,
 }
 
 impl Walk {
-    /// Values of a node with one hole each, and where it is.
-    fn holes<'s>(&'s self, node: &'s Value, within: &mut Vec<&'s str>, path: &str) -> Vec<(String, Value)> {
+    /// Values of a schema node with one placeholder each, and the path of the placeholder.
+    fn placeholders<'s>(&'s self, node: &'s Value, within: &mut Vec<&'s str>, path: &str) -> Vec<(String, Value)> {
         if let Some(name) = node.get("$ref").and_then(Value::as_str).and_then(|name| name.strip_prefix("#/$defs/")) {
-            let seen = within.contains(&name) || within.len() > DEEPEST;
-            // Every number may be an expression or move in time: what those hold is walked at one place.
-            let elsewhere = name == "Expression" || name == "ValueForm" && !path.ends_with(MOVING);
+            let seen = within.contains(&name) || within.len() > MAX_DEPTH;
+            // Every number may be an expression or an animation: skip expressions, and walk
+            // animations of one field only.
+            let elsewhere = name == "Expression" || name == "ValueForm" && !path.ends_with(ANIMATED_PATH);
             let Some(definition) = self.definitions.get(name).filter(|_| !seen && !elsewhere) else {
                 return Vec::new();
             };
             within.push(name);
-            let found = self.holes(definition, within, path);
+            let found = self.placeholders(definition, within, path);
             within.pop();
             return found;
         }
-        let mut found = Vec::new();
+        let mut found: Vec<(String, Value)> =
+            self.words(node).map(|placeholder| (path.to_owned(), placeholder)).into_iter().collect();
         for variants in ["anyOf", "oneOf"].iter().filter_map(|key| node.get(key)?.as_array()) {
-            variants.iter().for_each(|variant| found.extend(self.holes(variant, within, path)));
+            variants.iter().for_each(|variant| found.extend(self.placeholders(variant, within, path)));
         }
         if is_of(node, "number") || is_of(node, "integer") {
-            found.push((path.to_owned(), json!(HOLE)));
+            found.push((path.to_owned(), json!(PLACEHOLDER)));
         }
         if let Some(items) = node.get("items") {
             found.extend(self.in_items(node, items, within, path));
@@ -122,6 +169,32 @@ impl Walk {
             found.extend(self.in_members(node, within, path));
         }
         found
+    }
+
+    /// Placeholder for a word or switch, with the values that may stand in its place.
+    fn words(&self, node: &Value) -> Option<Value> {
+        self.visits.as_ref()?;
+        let variants = |key: &str| node.get(key).and_then(Value::as_array).into_iter().flatten();
+        let constants = variants("oneOf").chain(variants("anyOf")).filter_map(|variant| variant.get("const"));
+        let lists = variants("oneOf").filter_map(|variant| variant.get("enum")?.as_array()).flatten();
+        let words: Vec<&str> = constants.chain(lists).chain(variants("enum")).filter_map(Value::as_str).collect();
+        match words.as_slice() {
+            [] if is_of(node, "boolean") => Some(json!(format!("{PLACEHOLDER}true|false"))),
+            [] if is_of(node, "string") && node.get("const").is_none() => {
+                Some(json!(format!("{PLACEHOLDER}\"a\"|\"b\"")))
+            }
+            [] | [_] => None,
+            words => Some(json!(format!("{PLACEHOLDER}\"{}\"", words.join("\"|\"")))),
+        }
+    }
+
+    /// Whether a member of a definition is to be visited.
+    fn visit(&self, within: &[&str], name: &str) -> bool {
+        let Some(visits) = &self.visits else { return true };
+        let mut visits = visits.borrow_mut();
+        let count = visits.entry(format!("{}.{name}", within.last().unwrap_or(&""))).or_default();
+        *count += 1;
+        *count <= MAX_VISITS
     }
 
     fn in_items<'s>(
@@ -134,9 +207,9 @@ impl Walk {
         let count = node.get("minItems").and_then(Value::as_u64).unwrap_or(1).max(1) as usize;
         let mut found = Vec::new();
         for at in 0..if self.is_number(items) { count } else { 1 } {
-            for (path, hole) in self.holes(items, within, &format!("{path}.{at}")) {
-                let mut values = vec![self.least(items, 0); count];
-                values.iter_mut().skip(at).take(1).for_each(|value| *value = hole.clone());
+            for (path, placeholder) in self.placeholders(items, within, &format!("{path}.{at}")) {
+                let mut values = vec![self.minimal(items, 0); count];
+                values.iter_mut().skip(at).take(1).for_each(|value| *value = placeholder.clone());
                 found.push((path, Value::Array(values)));
             }
         }
@@ -147,11 +220,13 @@ impl Walk {
         let members = node.get("properties").and_then(Value::as_object).into_iter().flatten();
         let named = node.get("additionalProperties").filter(|schema| schema.is_object()).map(|schema| ("a", schema));
         let mut found = Vec::new();
-        for (name, schema) in members.map(|(name, schema)| (name.as_str(), schema)).chain(named) {
+        let members = members.map(|(name, schema)| (name.as_str(), schema)).chain(named);
+        let members: Vec<(&str, &Value)> = members.filter(|(name, _)| self.visit(within, name)).collect();
+        for (name, schema) in members {
             let place = if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
-            for (path, hole) in self.holes(schema, within, &place) {
+            for (path, placeholder) in self.placeholders(schema, within, &place) {
                 let mut whole = self.required(node, 0);
-                whole.insert(name.to_owned(), hole);
+                whole.insert(name.to_owned(), placeholder);
                 found.push((path, Value::Object(whole)));
             }
         }
@@ -161,38 +236,38 @@ impl Walk {
     fn required(&self, node: &Value, depth: usize) -> Map<String, Value> {
         let names = node.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
         let value = |name: &str| {
-            self.least(node.get("properties").and_then(|all| all.get(name)).unwrap_or(&Value::Null), depth + 1)
+            self.minimal(node.get("properties").and_then(|all| all.get(name)).unwrap_or(&Value::Null), depth + 1)
         };
         names.map(|name| (name.to_owned(), value(name))).collect()
     }
 
     fn is_number(&self, node: &Value) -> bool {
-        self.least(node, 0).is_number()
+        self.minimal(node, 0).is_number()
     }
 
-    /// The simplest value of a node.
-    fn least(&self, node: &Value, depth: usize) -> Value {
-        if let Some(value) = node.get("default").or_else(|| node.get("const")).filter(|_| depth < DEEPEST) {
+    /// A minimal value that the schema node accepts.
+    fn minimal(&self, node: &Value, depth: usize) -> Value {
+        if let Some(value) = node.get("default").or_else(|| node.get("const")).filter(|_| depth < MAX_DEPTH) {
             return value.clone();
         }
-        if depth >= DEEPEST {
+        if depth >= MAX_DEPTH {
             return Value::Null;
         }
         if let Some(name) = node.get("$ref").and_then(Value::as_str).and_then(|name| name.strip_prefix("#/$defs/")) {
-            return self.definitions.get(name).map_or(Value::Null, |node| self.least(node, depth + 1));
+            return self.definitions.get(name).map_or(Value::Null, |node| self.minimal(node, depth + 1));
         }
         let first = |key: &str| node.get(key)?.as_array()?.first();
         if let Some(value) = first("enum") {
             return value.clone();
         }
         if let Some(variant) = first("anyOf").or_else(|| first("oneOf")) {
-            return self.least(variant, depth + 1);
+            return self.minimal(variant, depth + 1);
         }
         match () {
             () if is_of(node, "number") || is_of(node, "integer") => json!(1),
             () if is_of(node, "array") => {
                 let count = node.get("minItems").and_then(Value::as_u64).unwrap_or(0) as usize;
-                Value::Array(vec![node.get("items").map_or(json!(1), |items| self.least(items, depth + 1)); count])
+                Value::Array(vec![node.get("items").map_or(json!(1), |items| self.minimal(items, depth + 1)); count])
             }
             () if is_of(node, "string") => json!("a"),
             () if is_of(node, "boolean") => json!(true),
@@ -210,14 +285,14 @@ fn is_of(node: &Value, kind: &str) -> bool {
     }
 }
 
-/// A scene in which the hole is looked at: what is named is used.
+/// Completes a scene so that the placeholder takes effect: everything named is used.
 fn complete(scene: Value) -> Value {
     let mut scene = scene;
     let has = |scene: &Value, key: &str| scene.get(key).is_some();
     let Some(members) = scene.as_object().cloned() else { return scene };
     scene["version"] = json!(1);
     for place in ["/objects/0", "/groups/a/0"] {
-        scene.pointer_mut(place).and_then(Value::as_object_mut).into_iter().for_each(show);
+        scene.pointer_mut(place).and_then(Value::as_object_mut).into_iter().for_each(add_shape);
     }
     if members.contains_key("textures") {
         scene["materials"] = json!({"a": {"phong": {"diffuse": "a"}}});
@@ -232,8 +307,8 @@ fn complete(scene: Value) -> Value {
     scene
 }
 
-/// Gives an object something to be seen by, if it has nothing.
-fn show(object: &mut Map<String, Value>) {
+/// Gives an object a shape if it has no geometry.
+fn add_shape(object: &mut Map<String, Value>) {
     if !["shape", "group", "objects", "chain", "limb"].iter().any(|key| object.contains_key(*key)) {
         object.insert("shape".to_owned(), json!("sphere"));
     }

@@ -1,8 +1,8 @@
-//! Changes of a file, drawn from the number of the case: the same on every machine.
+//! Mutations of a file, seeded by the case number: identical on every machine.
 
 use juggler_math::testing::Random;
 
-/// Numbers at the edge of what texts can say.
+/// Edge cases of numbers in text.
 const NUMBERS: [&str; 14] = [
     "-1",
     "0",
@@ -20,20 +20,20 @@ const NUMBERS: [&str; 14] = [
     "-inf",
 ];
 
-/// Numbers at the edge of what four bytes can say.
+/// Edge cases of 32-bit words.
 const WORDS: [u32; 8] = [u32::MAX, 0, 1, 0x7fff_ffff, 0x8000_0000, 0x7f80_0000, 0x00ff_ffff, 0x0001_0000];
 
-/// One to five changes of one of the seeds.
-pub fn mutated(seeds: &[Vec<u8>], case: u64) -> Vec<u8> {
+/// Applies one to four mutations to a random seed file.
+pub fn mutate(seeds: &[Vec<u8>], case: u64) -> Vec<u8> {
     let mut random = Random::new(case);
     let mut bytes = pick(seeds, &mut random);
     for _ in 0..=random.below(4) {
         change(&mut bytes, seeds, &mut random);
     }
-    // Half of the files have checksums that fit, so that what is behind them is reached.
+    // Repair the checksums of half of the files, to reach the code behind them.
     if random.below(2) == 0 {
-        mend_png(&mut bytes);
-        mend_part(&mut bytes);
+        repair_png(&mut bytes);
+        repair_film(&mut bytes);
     }
     bytes
 }
@@ -43,7 +43,7 @@ fn pick(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 }
 
 fn change(bytes: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut Random) {
-    // Heads matter most.
+    // Prefer the header, where mutations have most effect.
     let reach = if random.below(2) == 0 { bytes.len().min(400) } else { bytes.len() };
     let at = random.below(reach);
     match random.below(9) {
@@ -78,7 +78,7 @@ fn set(bytes: &mut [u8], at: usize, new: impl FnOnce(u8) -> u8) {
     }
 }
 
-/// Puts other digits in place of the next number of a text.
+/// Replaces the next number in a text.
 fn replace_number(bytes: &mut Vec<u8>, from: usize, new: &[u8]) {
     let is_digit = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
     let Some(start) = bytes.iter().skip(from).position(u8::is_ascii_digit).map(|at| from + at) else { return };
@@ -86,8 +86,8 @@ fn replace_number(bytes: &mut Vec<u8>, from: usize, new: &[u8]) {
     bytes.splice(start..start + length, new.iter().copied());
 }
 
-/// Makes the checksums of a PNG's chunks fit (CRC-32, ISO 3309).
-pub fn mend_png(bytes: &mut [u8]) {
+/// Recomputes the checksums of a PNG's chunks (CRC-32, ISO 3309).
+pub fn repair_png(bytes: &mut [u8]) {
     if !bytes.starts_with(b"\x89PNG") {
         return;
     }
@@ -103,8 +103,9 @@ pub fn mend_png(bytes: &mut [u8]) {
     }
 }
 
-/// Makes the length and the hashes of a film part fit (`README.md` of the crate `juggler-film`).
-pub fn mend_part(bytes: &mut [u8]) {
+/// Recomputes the lengths and the hashes of a partial render (see `README.md` of the crate
+/// `juggler-film`).
+pub fn repair_film(bytes: &mut [u8]) {
     const PRELUDE: usize = 32;
     const ENTRY: usize = 44;
     let total = bytes.len();
@@ -118,7 +119,7 @@ pub fn mend_part(bytes: &mut [u8]) {
     };
     let count = number(bytes, 24);
     let Some(index) = (total - 32).checked_sub(count.saturating_mul(ENTRY)) else { return };
-    // The head takes what the chunks leave.
+    // The header fills the bytes before the chunks.
     let entries = (0..count).map(|entry| index + entry * ENTRY);
     let chunks = entries.clone().fold(0_usize, |sum, entry| sum.saturating_add(number(bytes, entry + 8)));
     let Some(head) = index.checked_sub(PRELUDE).and_then(|room| room.checked_sub(chunks)) else { return };

@@ -1,12 +1,12 @@
-//! Good files of every reader, made by the program's own writers where it has one.
+//! Valid files for every reader, made by the program's own writers where they exist.
 
-use juggler::film::{self, Description, Share};
-use juggler::imaging::{Destination, ExrCompression, Format, Header, Options, SampleDepth, writer};
+use juggler::film::{self, RenderDescription, ShardDescription};
+use juggler::imaging::{Destination, ExrCompression, Header, ImageFormat, Options, SampleDepth, writer};
 use juggler::math::{Image, Rgb};
 use juggler::prelude::{Object, Scene, Settings, Sphere};
 use juggler::render::Control;
 use juggler::scene::built_in_scenes;
-use juggler::{Aov, Origin, Picture};
+use juggler::{Aov, Picture, RenderOrigin};
 use juggler_math::testing::Random;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -42,7 +42,7 @@ const MESSAGES: [&str; 7] = [
     r#"{"edit": {"look": {"perspective": {"eye": [0, 1, 5], "look_at": [0, 0, 0]}}}}"#,
 ];
 
-/// A scene with much of the format in it.
+/// A scene that uses much of the format.
 const SCENE: &str = r##"{"version": 1, "title": "a", "animation": {"frames": 30, "frames_per_second": 25},
  "variables": {"phi": "2*pi*frame/frames", "s": "(1+cos(phi))/2"},
  "render": {"size": [64, 36], "samples": 2, "integrator": {"path": {"max_depth": 3}}, "filter": "tent"},
@@ -55,8 +55,8 @@ const SCENE: &str = r##"{"version": 1, "title": "a", "animation": {"frames": 30,
   {"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1], [2, 2, "in_out"]], "repeat": "loop"}}}}},
   {"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [0, 5, 0], "radius": 2}, "count": 8}}]}"##;
 
-/// Good files of a reader; none for a name that is no reader.
-pub fn of(target: &str) -> Vec<Vec<u8>> {
+/// Valid files for the reader of this name; empty if there is no such reader or format.
+pub fn for_target(target: &str) -> Vec<Vec<u8>> {
     let texts = |texts: &[&str]| texts.iter().map(|text| text.as_bytes().to_vec()).collect::<Vec<_>>();
     match target {
         "scene" => scenes(),
@@ -94,7 +94,7 @@ fn binary_stl() -> Vec<u8> {
     bytes
 }
 
-/// Memory that stays readable after the writer has gone.
+/// Memory file that stays readable after its writer is dropped.
 #[derive(Clone, Default)]
 struct Shared(Arc<Mutex<Cursor<Vec<u8>>>>);
 
@@ -122,7 +122,9 @@ impl Seek for Shared {
 
 fn pictures(name: &str) -> Vec<Vec<u8>> {
     let ending = if name == "jpeg" { "jpg" } else { name };
-    let Some(format) = Format::ALL.into_iter().find(|format| format.ending() == ending) else { return Vec::new() };
+    let Some(format) = ImageFormat::ALL.into_iter().find(|format| format.extension() == ending) else {
+        return Vec::new();
+    };
     let mut random = Random::new(7);
     let pixels = (0..19 * 18).map(|i| if i < 100 { Rgb::splat(0.5) } else { random.rgb() * 2.0 }).collect();
     let Some(image) = Image::from_pixels(19, 18, pixels) else { return Vec::new() };
@@ -148,7 +150,7 @@ fn pictures(name: &str) -> Vec<Vec<u8>> {
     files.collect()
 }
 
-/// Film parts: a picture of several tiles with layers, and a tiny one.
+/// Partial renders: a picture of several tiles with AOVs, and a tiny one.
 fn parts() -> Vec<Vec<u8>> {
     let layers = vec![Aov::Albedo, Aov::LightGroups, Aov::CryptoObject, Aov::Samples];
     [([40, 20], layers), ([1, 2], Vec::new())].into_iter().filter_map(|(size, aovs)| part(size, aovs)).collect()
@@ -159,10 +161,10 @@ fn part([width, height]: [u32; 2], aovs: Vec<Aov>) -> Option<Vec<u8>> {
     let picture = Picture::new(&scene, &Settings { samples: Some(16), aovs, ..Settings::default() }).ok()?;
     let film = picture.film();
     picture.expose(&film, &Control::default()).ok()?;
-    let origin = Origin { scene: "a".to_owned(), frame: 0.0, command: "juggler render a".to_owned() };
-    let description = picture.description(&origin, &picture.header(Options::default()), Share::whole(16));
+    let origin = RenderOrigin { scene: "a".to_owned(), frame: 0.0, command: "juggler render a".to_owned() };
+    let description = picture.description(&origin, &picture.header(Options::default()), ShardDescription::whole(16));
     let folder = tempfile::tempdir().ok()?;
     let path = folder.path().join("a.jfilm");
-    film::write(&path, &Description { finished: true, ..description }, film.tiles()).ok()?;
+    film::write(&path, &RenderDescription { finished: true, ..description }, film.tiles()).ok()?;
     std::fs::read(&path).ok()
 }

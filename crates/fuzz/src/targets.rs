@@ -1,27 +1,28 @@
-//! One function a reader: it takes any bytes, and returns. Whatever it panics with is a bug of the reader.
+//! One function per reader, which accepts arbitrary bytes and returns. Every panic is a bug of the
+//! reader.
 
-use juggler::film::{Merge, Part, Wanted};
+use juggler::film::{Merge, MergeGoal, PartialRender};
 use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
-use juggler::light::Profile;
+use juggler::light::IesProfile;
 use juggler::memory::Memory;
 use juggler::scene::Scene;
 use juggler::scene::import::{self, parse};
-use juggler::{LayerSet, Settings};
+use juggler::{AovSet, Settings};
 use juggler_expression::{Names, PointEvaluator, Program, Quantity};
 use juggler_math::Rgb;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Most pixels that a picture may claim here.
-const MOST_PIXELS: u64 = 1 << 22;
-/// Memory that a scene may ask for before it is compiled.
+/// Maximum number of pixels that an image may claim.
+const MAX_PIXELS: u64 = 1 << 22;
+/// Memory budget of a scene, in bytes.
 const SCENE_BYTES: u64 = 512 << 20;
 
-/// A reader that is given any bytes.
+/// A reader under test.
 pub struct Target {
     /// Name of the reader.
     pub name: &'static str,
-    /// Gives bytes to the reader; whether it takes them.
+    /// Passes bytes to the reader; returns whether it accepts them.
     pub read: fn(&[u8]) -> bool,
 }
 
@@ -43,14 +44,14 @@ pub const TARGETS: [Target; 14] = [
     Target { name: "message", read: message },
 ];
 
-/// The reader of that name.
+/// Reader of this name.
 pub fn by_name(name: &str) -> Option<&'static Target> {
     TARGETS.iter().find(|target| target.name == name)
 }
 
-/// Whether a scene is within a budget of memory, so that it may be compiled.
+/// Whether the estimated memory of a scene is within the budget, so that it may be compiled.
 pub fn is_affordable(scene: &Scene, settings: &Settings) -> bool {
-    Memory::of(scene, settings).is_ok_and(|memory| memory.fit(SCENE_BYTES, 1).is_ok())
+    Memory::estimate(scene, settings).is_ok_and(|memory| memory.fit(SCENE_BYTES, 1).is_ok())
 }
 
 fn scene(bytes: &[u8]) -> bool {
@@ -80,29 +81,32 @@ fn mesh(name: &str, bytes: &[u8]) -> bool {
 }
 
 fn picture(bytes: &[u8]) -> bool {
-    let limits = Limits { most_pixels: MOST_PIXELS, ..Limits::default() };
+    let limits = Limits { max_pixels: MAX_PIXELS, ..Limits::default() };
     let image = decode("fuzz", Cursor::new(bytes), &limits);
     let raster = decode_raster("fuzz", Cursor::new(bytes), &limits);
     in_file(bytes, |path| (imaging::inspect(path).is_ok(), inspect_raster(path).is_ok()));
     for error in [image.as_ref().err(), raster.as_ref().err()].into_iter().flatten() {
-        let told = error.to_string();
-        assert!(told.starts_with("cannot read `fuzz`: ") && !told.contains(['{', '\u{1b}']), "no plain words: {told}");
+        let message_text = error.to_string();
+        assert!(
+            message_text.starts_with("cannot read `fuzz`: ") && !message_text.contains(['{', '\u{1b}']),
+            "no plain words: {message_text}"
+        );
     }
     image.is_ok() || raster.is_ok()
 }
 
 fn ies(bytes: &[u8]) -> bool {
-    Profile::read(&String::from_utf8_lossy(bytes)).is_ok()
+    IesProfile::parse(&String::from_utf8_lossy(bytes)).is_ok()
 }
 
 fn part(bytes: &[u8]) -> bool {
     in_file(bytes, |path| {
-        let Ok(part) = Part::open(path) else { return false };
+        let Ok(part) = PartialRender::open(path) else { return false };
         let is_whole = part.verify().is_ok();
-        let _ = LayerSet::of_part(&part.description().layers);
-        let _ = Merge::open(&[path], Wanted::Part);
-        let Ok(merge) = Merge::open(&[path], Wanted::Whole) else { return is_whole };
-        merge.rows(|_: &[Rgb]| Ok::<(), juggler::film::PartError>(())).is_ok()
+        let _ = AovSet::from_description(&part.description().aovs);
+        let _ = Merge::open(&[path], MergeGoal::PartialRender);
+        let Ok(merge) = Merge::open(&[path], MergeGoal::Whole) else { return is_whole };
+        merge.rows(|_: &[Rgb]| Ok::<(), juggler::film::PartialRenderError>(())).is_ok()
     })
 }
 
@@ -110,7 +114,7 @@ fn message(bytes: &[u8]) -> bool {
     juggler_serve::is_allowed(&String::from_utf8_lossy(bytes))
 }
 
-/// What comes of these bytes as a file.
+/// Writes the bytes to a temporary file and returns the result of `read`.
 fn in_file<T: Default>(bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     let Ok(folder) = tempfile::tempdir() else { return T::default() };
     let path = folder.path().join("fuzz");

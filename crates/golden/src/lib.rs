@@ -1,8 +1,8 @@
-//! Tests of the whole, and what they share.
+//! Functions shared by the end-to-end tests.
 
 use std::path::{Path, PathBuf};
 
-/// All Rust sources below a folder.
+/// Collects all Rust source files below a folder.
 #[expect(clippy::unwrap_used, reason = "for tests, which fail by panicking")]
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

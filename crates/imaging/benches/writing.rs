@@ -1,8 +1,9 @@
-//! How long a picture of 1920 × 1080 takes to become a file in each format: `cargo bench -p juggler-imaging`.
+//! Benchmark of tone mapping and of writing a 1920 × 1080 image in each format:
+//! `cargo bench -p juggler-imaging`.
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
 use juggler_imaging::tone::Quantizer;
-use juggler_imaging::{Destination, ExrCompression, Format, Header, ImageError, Options, Tone, writer};
+use juggler_imaging::{Destination, ExrCompression, Header, ImageError, ImageFormat, Options, Tone, writer};
 use juggler_math::Rgb;
 use juggler_math::testing::Random;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -12,7 +13,7 @@ use std::time::Instant;
 
 const SIZE: (u32, u32) = (1920, 1080);
 
-/// Counts bytes and forgets them.
+/// Sink that only counts bytes.
 #[derive(Clone, Default)]
 struct Counter(Arc<AtomicU64>);
 
@@ -55,8 +56,8 @@ fn tone(pixels: &[Rgb]) {
     }
 }
 
-/// Bytes written.
-fn write(format: Format, header: &Header, pixels: &[Rgb]) -> Result<u64, ImageError> {
+/// Writes the image and returns the file's length in bytes.
+fn write(format: ImageFormat, header: &Header, pixels: &[Rgb]) -> Result<u64, ImageError> {
     let counter = Counter::default();
     let mut rows = writer(format, Destination::seekable("counter", counter.clone()), header)?;
     rows.write_rows(pixels)?;
@@ -66,7 +67,7 @@ fn write(format: Format, header: &Header, pixels: &[Rgb]) -> Result<u64, ImageEr
 
 fn main() -> Result<(), ImageError> {
     let mut random = Random::new(1);
-    // A gradient with a little noise, like a path traced sky.
+    // A gradient with a little noise, like a path-traced sky.
     let pixels: Vec<Rgb> = (0..SIZE.0 * SIZE.1)
         .map(|i| Rgb::new(0.3, 0.5, 0.9) * (i as f32 / (SIZE.0 * SIZE.1) as f32) + random.rgb() * 0.02)
         .collect();
@@ -74,16 +75,16 @@ fn main() -> Result<(), ImageError> {
     let mut header = Header::new(SIZE.0, SIZE.1);
     for exr_compression in [ExrCompression::None, ExrCompression::Zip] {
         header.options = Options { exr_compression, ..Options::default() };
-        let size = write(Format::Exr, &header, &pixels)?;
-        let time = milliseconds(|| drop(write(Format::Exr, &header, &pixels)));
+        let size = write(ImageFormat::Exr, &header, &pixels)?;
+        let time = milliseconds(|| drop(write(ImageFormat::Exr, &header, &pixels)));
         println!("EXR {exr_compression:?}: {time:.1} ms, {:.2} MB", size as f64 * 1e-6);
     }
     header.options = Options::default();
-    for format in Format::ALL.into_iter().chain([Format::Png]) {
+    for format in ImageFormat::ALL.into_iter().chain([ImageFormat::Png]) {
         let size = write(format, &header, &pixels)?;
         let time = milliseconds(|| drop(write(format, &header, &pixels)));
         println!("{format:>12}: {time:.1} ms, {:.2} MB", size as f64 * 1e-6);
-        // The second PNG has 16 bits.
+        // Measure PNG again, with 16 bits per channel.
         header.options = Options { png_16_bit: true, ..Options::default() };
     }
     Ok(())

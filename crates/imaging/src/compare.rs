@@ -1,24 +1,28 @@
-//! How much two pictures of one size differ.
+//! Error metrics between two images of the same size.
 
 use crate::ImageError;
 use juggler_math::Image;
 
-/// Differences over all pixels and channels of a picture and a reference.
+/// Differences over all pixels and channels of an image and a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Root of the mean squared difference.
+    /// Root mean square error.
     pub rmse: f64,
-    /// Mean of squared differences relative to the reference, (x - r)² / (r² + 0.01) (Rousselle, Knaus and
-    /// Zwicker 2011): errors in the dark count as much as those in the light.
+    /// Relative mean square error: mean of (x - r)² / (r² + 0.01) (Rousselle, Knaus and Zwicker
+    /// 2011), which weights errors in dark and bright regions alike.
     pub relative_mse: f64,
-    /// The largest difference of one channel.
+    /// Largest absolute difference of a channel.
     pub largest: f64,
-    /// Whether all bits are equal, NaN and signs of zeros included.
+    /// Whether all bits are equal, including those of NaNs and signed zeros.
     pub same_bits: bool,
 }
 
-/// Compares a picture with a reference. Channels that are not finite in either count as different by
-/// infinity, unless their bits are equal.
+/// Compares an image with a reference. A channel that is not finite in either image counts as an
+/// infinite difference, unless the bits are equal.
+///
+/// # Errors
+///
+/// [`ImageError::SizesDiffer`] if the sizes differ.
 pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageError> {
     same_size(picture, reference)?;
     let (mut squares, mut relative, mut largest, mut same_bits) = (0.0, 0.0, 0.0f64, true);
@@ -40,7 +44,7 @@ pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageEr
     Ok(Difference { rmse: (squares / count).sqrt(), relative_mse: relative / count, largest, same_bits })
 }
 
-/// Pictures of different size cannot be compared.
+/// Checks that both images have the same size.
 pub(crate) fn same_size(a: &Image, b: &Image) -> Result<(), ImageError> {
     let [a, b] = [a, b].map(|image| (image.width(), image.height()));
     if a == b { Ok(()) } else { Err(ImageError::SizesDiffer { a, b }) }

@@ -1,158 +1,160 @@
-//! What can go wrong with files of pixels, told apart by who can act.
+//! Errors of image and movie files.
 
-use crate::{Format, Primaries};
+use crate::{ImageFormat, Primaries};
 use std::io;
 
-/// Why a picture was not written, read or compared. `place` is the file, as the user named it.
+/// Why an image could not be written, read or compared. `file` is the file as the user named it.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
-    /// The user names the file differently.
-    #[error("{place}: the ending says no format of pictures; known are {}", Format::endings())]
+    /// The file extension names no known image format.
+    #[error("`{file}` has an unknown extension; supported: {}", ImageFormat::extensions())]
     UnknownFormat {
-        /// The file.
-        place: String,
+        /// Name of the file.
+        file: String,
     },
-    /// The user names the file differently.
-    #[error("{place}: layers go into one .exr, or one .exr or .npy each where the name holds `{{}}` for theirs")]
+    /// Layers need an EXR file, or a file name with a placeholder for the layer.
+    #[error(
+        "`{file}`: write AOVs to one .exr file, or to one .exr or .npy file each with `{{}}` in the name for the AOV"
+    )]
     Layers {
-        /// The file.
-        place: String,
+        /// Name of the file.
+        file: String,
     },
-    /// The user picks another format or size.
-    #[error("a {format} file cannot be {width} × {height} pixels: each side is 1 to {most}")]
+    /// The format does not support the image size.
+    #[error("a {format} file cannot be {width} × {height} pixels: each side is 1 to {max_side}")]
     Dimensions {
-        /// The format.
-        format: Format,
-        /// Pixels in a row.
+        /// Format of the file.
+        format: ImageFormat,
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
-        /// The longest side that the format allows.
-        most: u32,
+        /// Longest side that the format supports, in pixels.
+        max_side: u32,
     },
-    /// The system could not read.
-    #[error("cannot read `{place}`: {source}")]
+    /// Reading failed.
+    #[error("cannot read `{file}`: {source}")]
     Read {
-        /// The file.
-        place: String,
-        /// What the system says.
+        /// Name of the file.
+        file: String,
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The system could not write.
-    #[error("{place}: cannot be written: {source}")]
+    /// Writing failed.
+    #[error("cannot write `{file}`: {source}")]
     Write {
-        /// The file.
-        place: String,
-        /// What the system says.
+        /// Name of the file.
+        file: String,
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file is damaged, or uses what is not read of its format.
-    #[error("cannot read `{place}`: {message} ({format}{})", at.map_or_else(String::new, |at| format!(", byte {at}")))]
+    /// The file is damaged or uses an unsupported feature of its format.
+    #[error("cannot read `{file}`: {message} ({format}{})", at.map_or_else(String::new, |at| format!(", byte {at}")))]
     Malformed {
-        /// The file.
-        place: String,
-        /// The format that its first bytes say.
-        format: Format,
+        /// Name of the file.
+        file: String,
+        /// Format, detected by the first bytes.
+        format: ImageFormat,
         /// What is wrong.
         message: String,
-        /// The byte at which reading stopped, if the decoder reads byte by byte.
+        /// File offset where decoding stopped, if known.
         at: Option<u64>,
     },
-    /// The file is cut short.
-    #[error("cannot read `{place}`: unexpected end of file at byte {at}")]
+    /// The file is truncated.
+    #[error("cannot read `{file}`: unexpected end of file at byte {at}")]
     Truncated {
-        /// The file.
-        place: String,
-        /// Bytes that are there.
+        /// Name of the file.
+        file: String,
+        /// Length of the file in bytes.
         at: u64,
     },
-    /// The head of the file claims a size that its bytes cannot hold, however well they are compressed.
-    #[error("cannot read `{place}`: {width} × {height} pixels are more than a {format} file of {bytes} bytes can hold")]
-    Claim {
-        /// The file.
-        place: String,
-        /// The format that its first bytes say.
-        format: Format,
-        /// Pixels in a row.
+    /// The header claims more pixels than the file's bytes can hold at any compression ratio.
+    #[error("cannot read `{file}`: {width} × {height} pixels are more than a {format} file of {bytes} bytes can hold")]
+    ImplausibleSize {
+        /// Name of the file.
+        file: String,
+        /// Format, detected by the first bytes.
+        format: ImageFormat,
+        /// Width in pixels.
         width: u64,
-        /// Rows.
+        /// Height in pixels.
         height: u64,
-        /// Bytes of the file.
+        /// Length of the file in bytes.
         bytes: u64,
     },
-    /// The first bytes are those of no picture that is read.
-    #[error("cannot read `{place}`: its first bytes are those of no known picture format ({})", Format::endings())]
+    /// The first bytes match no supported image format.
+    #[error("cannot read `{file}`: its first bytes match no supported format ({})", ImageFormat::extensions())]
     UnknownContent {
-        /// The file.
-        place: String,
+        /// Name of the file.
+        file: String,
     },
-    /// A side is longer than the caller allows.
-    #[error("cannot read `{place}`: {width} × {height} pixels, a side is {longest_side} pixels at most")]
+    /// A side exceeds the caller's limit.
+    #[error("cannot read `{file}`: {width} × {height} pixels; the limit is {longest_side} pixels per side")]
     TooLong {
-        /// The file.
-        place: String,
-        /// Pixels in a row.
+        /// Name of the file.
+        file: String,
+        /// Width in pixels.
         width: u64,
-        /// Rows.
+        /// Height in pixels.
         height: u64,
-        /// The longest side that is allowed.
+        /// Longest side allowed, in pixels.
         longest_side: u32,
     },
-    /// The user allows more, or makes the picture smaller.
-    #[error("cannot read `{place}`: {width} × {height} pixels are more than the limit of {most_pixels} pixels")]
+    /// The image has more pixels than the limit allows.
+    #[error("cannot read `{file}`: {width} × {height} pixels are more than the limit of {max_pixels} pixels")]
     TooLarge {
-        /// The file.
-        place: String,
-        /// Pixels in a row.
+        /// Name of the file.
+        file: String,
+        /// Width in pixels.
         width: u64,
-        /// Rows.
+        /// Height in pixels.
         height: u64,
-        /// Pixels allowed.
-        most_pixels: u64,
+        /// Maximum number of pixels.
+        max_pixels: u64,
     },
-    /// The frames do not fit the file of moving pictures, or its encoder refused.
-    #[error("{place}: {message}")]
+    /// The frames do not fit the movie's header, or the encoder failed.
+    #[error("cannot write `{file}`: {message}")]
     Animation {
-        /// The file.
-        place: String,
+        /// Name of the file.
+        file: String,
         /// What is wrong.
         message: String,
     },
-    /// The encoder refused: metadata that the format cannot hold, for instance.
-    #[error("{place}: cannot be encoded as {format}: {message}")]
+    /// The encoder failed, for example because of unsupported metadata.
+    #[error("cannot encode `{file}` as {format}: {message}")]
     Encode {
-        /// The file.
-        place: String,
-        /// The format.
-        format: Format,
-        /// What the encoder says.
+        /// Name of the file.
+        file: String,
+        /// Format of the file.
+        format: ImageFormat,
+        /// Message of the encoder.
         message: String,
     },
-    /// The user picks another format, or the usual primaries.
+    /// The format cannot store the primaries.
     #[error(
-        "a {format} file cannot say that its primaries are `{}`: PNG without a look takes display_p3 and rec2020, OpenEXR all",
+        "a {format} file cannot store the primaries `{}`; PNG without a display look stores display_p3 and rec2020, OpenEXR all",
         primaries.name()
     )]
     Primaries {
-        /// The format.
-        format: Format,
-        /// The primaries.
+        /// Format of the file.
+        format: ImageFormat,
+        /// Primaries of the tone settings.
         primaries: Primaries,
     },
-    /// The caller gave half a row, a row too much, or too few rows.
-    #[error("{given} pixels given where {expected} were expected")]
+    /// The caller passed incomplete rows, too many rows or too few.
+    #[error("{given} pixels given, but {expected} expected")]
     Rows {
-        /// Pixels that still belong to the picture.
+        /// Pixels expected.
         expected: u64,
-        /// Pixels given.
+        /// Pixels passed.
         given: u64,
     },
-    /// Two pictures of different size cannot be compared.
+    /// Images of different sizes cannot be compared.
     #[error("the pictures differ in size: {}×{} and {}×{}", a.0, a.1, b.0, b.1)]
     SizesDiffer {
-        /// Width and height of the one.
+        /// Width and height of the first image.
         a: (u32, u32),
-        /// Width and height of the other.
+        /// Width and height of the second image.
         b: (u32, u32),
     },
 }

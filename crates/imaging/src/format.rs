@@ -1,12 +1,12 @@
-//! The formats: endings, first bytes, limits, and the memory that writing takes.
+//! Image file formats: file extensions, magic numbers, size limits and memory use.
 
 use crate::{Header, ImageError, SampleDepth};
 use std::fmt;
 use std::path::Path;
 
-/// A file format for still pictures.
+/// Still image file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ImageFormat {
     /// Portable Network Graphics, 8 or 16 bits, lossless.
     Png,
     /// JPEG, 8 bits, lossy.
@@ -21,21 +21,25 @@ pub enum Format {
     Pfm,
 }
 
-impl Format {
-    /// All of them.
+impl ImageFormat {
+    /// All image formats.
     pub const ALL: [Self; 6] = [Self::Png, Self::Jpeg, Self::Exr, Self::Hdr, Self::Webp, Self::Pfm];
 
-    /// By the file's ending, whatever its case.
+    /// Format for the path's file extension, ignoring case.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::UnknownFormat`] if no format has this extension.
     pub fn from_path(path: &Path) -> Result<Self, ImageError> {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        let found = match ending.as_str() {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let found = match extension.as_str() {
             "jpeg" => Some(Self::Jpeg),
-            other => Self::ALL.into_iter().find(|f| f.ending() == other),
+            other => Self::ALL.into_iter().find(|f| f.extension() == other),
         };
-        found.ok_or_else(|| ImageError::UnknownFormat { place: path.display().to_string() })
+        found.ok_or_else(|| ImageError::UnknownFormat { file: path.display().to_string() })
     }
 
-    /// By the file's first bytes (12 are enough).
+    /// Format by the file's first bytes (12 suffice).
     pub fn from_first_bytes(bytes: &[u8]) -> Option<Self> {
         let starts = |magic: &[u8]| bytes.starts_with(magic);
         match bytes {
@@ -49,8 +53,8 @@ impl Format {
         }
     }
 
-    /// The usual ending, without a dot.
-    pub fn ending(self) -> &'static str {
+    /// File extension without the dot.
+    pub fn extension(self) -> &'static str {
         match self {
             Self::Png => "png",
             Self::Jpeg => "jpg",
@@ -61,71 +65,74 @@ impl Format {
         }
     }
 
-    /// All endings, for messages.
-    pub fn endings() -> String {
-        Self::ALL.map(|f| format!(".{}", f.ending())).join(" ")
+    /// All file extensions, for messages.
+    pub fn extensions() -> String {
+        Self::ALL.map(|f| format!(".{}", f.extension())).join(" ")
     }
 
-    /// Whether the tone curve applies; the other formats keep linear, scene-referred values.
+    /// Whether files store tone-mapped levels; the other formats store linear, scene-referred
+    /// values.
     pub fn is_tone_mapped(self) -> bool {
         matches!(self, Self::Png | Self::Jpeg | Self::Webp)
     }
 
-    /// Whether a file says in texts how it was made.
-    pub fn keeps_texts(self) -> bool {
+    /// Whether files store metadata such as program and seed.
+    pub fn stores_metadata(self) -> bool {
         matches!(self, Self::Png | Self::Exr | Self::Hdr)
     }
 
-    /// The longest side that a file can have.
+    /// Longest side of an image in pixels.
     pub fn longest_side(self) -> u32 {
         match self {
             Self::Png | Self::Hdr | Self::Pfm => i32::MAX as u32,
-            // Coordinates up to half the range, so that sums of a box do not overflow.
+            // OpenEXR limits box coordinates to half of the 32-bit range, so that differences do
+            // not overflow.
             Self::Exr => i32::MAX as u32 / 2,
             Self::Jpeg => 65_535,
             Self::Webp => 16_383,
         }
     }
 
-    /// Whether a picture of this size can be written: asked before anything is rendered.
+    /// Checks that the format supports an image size; called before rendering.
     pub fn check_dimensions(self, width: u32, height: u32) -> Result<(), ImageError> {
-        let most = self.longest_side();
-        let fits = |side: u32| (1..=most).contains(&side);
+        let max_side = self.longest_side();
+        let fits = |side: u32| (1..=max_side).contains(&side);
         if fits(width) && fits(height) {
             return Ok(());
         }
-        Err(ImageError::Dimensions { format: self, width, height, most })
+        Err(ImageError::Dimensions { format: self, width, height, max_side })
     }
 
-    /// Bytes of memory that a writer takes at most, beside the rows that it is given. `seekable` is false for
-    /// standard output.
+    /// Upper bound of a writer's memory in bytes, excluding the rows passed to it. `seekable` is
+    /// false for pipes such as standard output.
     pub fn memory_needed(self, header: &Header, seekable: bool) -> u64 {
         const FIXED: u64 = 1 << 20;
         let (width, height) = (u64::from(header.width), u64::from(header.height));
         let pixels = width.saturating_mul(height);
         let whole = |bytes_per_pixel: u64| pixels.saturating_mul(bytes_per_pixel);
         let bytes = match self {
-            // Five rows: encoded, the previous one, the filtered candidates.
+            // Encoded row, previous row and candidate filters: five rows, rounded up.
             Self::Png => width * 6 * 8,
-            // The picture in 8 bits and some rows of blocks.
+            // 8-bit pixels of the image and some rows of blocks.
             Self::Jpeg => whole(3).saturating_add(width * 64),
-            // A block of 16 rows as rows, planes and packed; the offset table; all packed blocks for a pipe.
+            // A block of 16 rows as floats, planes and compressed; the offset table; for pipes the
+            // whole file.
             Self::Exr => {
                 let pixel = if header.options.exr_depth == SampleDepth::Half { 6 } else { 12 };
                 let pipe = if seekable { 0 } else { whole(pixel).saturating_mul(2) };
                 (width * 16 * (12 + pixel * 6)).saturating_add(height * 24).saturating_add(pipe)
             }
             Self::Hdr => width * 16,
-            // The picture in 8 bits with alpha and without, and the packed picture as it grows.
+            // 8-bit pixels with and without alpha, and the growing output.
             Self::Webp => whole(3 + 4 + 8).saturating_add(width * 64),
             Self::Pfm => (width * 24).saturating_add(if seekable { 0 } else { whole(24) }),
         };
-        let look = if self.has_looks() { header.options.look.bytes_a_pixel() } else { 0 };
+        let look = if self.supports_display_looks() { header.options.look.bytes_per_pixel() } else { 0 };
         bytes.saturating_add(whole(look)).saturating_add(FIXED)
     }
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for ImageFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Png => "PNG",
@@ -145,30 +152,32 @@ mod tests {
     #[test]
     fn endings_pick_formats() {
         for (name, format) in [
-            ("a.png", Format::Png),
-            ("b/c.d.JPG", Format::Jpeg),
-            ("x.jpeg", Format::Jpeg),
-            ("x.Exr", Format::Exr),
-            ("x.hdr", Format::Hdr),
-            ("x.webp", Format::Webp),
-            ("x.pfm", Format::Pfm),
+            ("a.png", ImageFormat::Png),
+            ("b/c.d.JPG", ImageFormat::Jpeg),
+            ("x.jpeg", ImageFormat::Jpeg),
+            ("x.Exr", ImageFormat::Exr),
+            ("x.hdr", ImageFormat::Hdr),
+            ("x.webp", ImageFormat::Webp),
+            ("x.pfm", ImageFormat::Pfm),
         ] {
-            assert_eq!(Format::from_path(Path::new(name)).unwrap(), format);
+            assert_eq!(ImageFormat::from_path(Path::new(name)).unwrap(), format);
         }
         for wrong in ["png", "a.tga", "", ".png", "a.png/"] {
-            let result = Format::from_path(Path::new(wrong));
+            let result = ImageFormat::from_path(Path::new(wrong));
             assert!(result.is_err() || wrong == "a.png/", "{wrong}");
         }
-        let message = Format::from_path(Path::new("a.tga")).unwrap_err().to_string();
+        let message = ImageFormat::from_path(Path::new("a.tga")).unwrap_err().to_string();
         assert!(message.contains("a.tga") && message.contains(".png .jpg .exr .hdr .webp .pfm"), "{message}");
     }
 
     #[test]
     fn sizes_are_checked_before_rendering() {
-        Format::Png.check_dimensions(20_000, 20_000).unwrap();
-        Format::Jpeg.check_dimensions(65_535, 1).unwrap();
-        Format::Webp.check_dimensions(16_383, 16_383).unwrap();
-        for (format, width, height) in [(Format::Jpeg, 65_536, 1), (Format::Webp, 1, 16_384), (Format::Png, 0, 5)] {
+        ImageFormat::Png.check_dimensions(20_000, 20_000).unwrap();
+        ImageFormat::Jpeg.check_dimensions(65_535, 1).unwrap();
+        ImageFormat::Webp.check_dimensions(16_383, 16_383).unwrap();
+        for (format, width, height) in
+            [(ImageFormat::Jpeg, 65_536, 1), (ImageFormat::Webp, 1, 16_384), (ImageFormat::Png, 0, 5)]
+        {
             let message = format.check_dimensions(width, height).unwrap_err().to_string();
             assert!(message.contains(&width.to_string()) && message.contains("1 to"), "{message}");
         }
@@ -177,10 +186,10 @@ mod tests {
     #[test]
     fn a_huge_picture_streams_through_little_memory() {
         let header = Header::new(20_000, 20_000);
-        for format in [Format::Png, Format::Exr, Format::Hdr, Format::Pfm] {
+        for format in [ImageFormat::Png, ImageFormat::Exr, ImageFormat::Hdr, ImageFormat::Pfm] {
             assert!(format.memory_needed(&header, true) < 64 << 20, "{format}");
         }
         let huge = Header::new(u32::MAX, u32::MAX);
-        assert!(Format::ALL.iter().all(|f| f.memory_needed(&huge, false) > 1 << 30));
+        assert!(ImageFormat::ALL.iter().all(|f| f.memory_needed(&huge, false) > 1 << 30));
     }
 }

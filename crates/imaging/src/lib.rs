@@ -1,20 +1,21 @@
-//! Files of pixels and tone curves.
+//! Image and movie files, and tone mapping.
 //!
-//! Pictures are written as a stream of rows of linear light, so that a picture of 20,000 × 20,000 pixels
-//! needs a few rows of memory (formats that need more say how much: [`Format::memory_needed`]). Reading gives a
-//! whole [`juggler_math::Image`], for comparisons and textures.
+//! Writers take a stream of rows in linear RGB, so that an image of 20,000 × 20,000 pixels needs
+//! memory for a few rows only ([`ImageFormat::memory_needed`] tells which formats need more).
+//! Readers return a whole [`juggler_math::Image`], for comparisons and textures.
 //!
-//! - [`tone`]: from linear light to levels of 8 or 16 bits;
-//! - [`look`]: what may be done with the levels of a whole picture;
-//! - [`codec`]: one file per format, writer and reader;
-//! - [`layered`]: files of many layers;
-//! - [`animation`]: files of moving pictures;
-//! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
-//! - [`regular`]: opening files, and refusing what is no file;
-//! - [`input`]: from a file to an image;
-//! - [`raster`]: from a file to its samples as they are;
-//! - [`mod@compare`]: how much two images differ;
-//! - [`mod@flip`]: how different they look.
+//! - [`tone`]: tone mapping from linear RGB to levels of 8 or 16 bits;
+//! - [`look`]: display looks, applied to the levels of a whole image;
+//! - [`codec`]: writer and reader of each image format;
+//! - [`layered`]: files with several layers;
+//! - [`animation`]: movie files;
+//! - [`output`], [`atomic`]: destinations; a file is replaced only when the new one is complete;
+//! - [`regular`]: opens regular files and rejects devices and pipes;
+//! - [`input`]: reads files as linear images;
+//! - [`raster`]: reads files as stored samples, for textures;
+//! - [`mod@compare`]: error metrics between two images;
+//! - [`mod@flip`]: perceived difference between two images;
+//! - [`mod@significance`]: statistical test whether two noisy images have the same mean.
 
 pub mod animation;
 pub mod atomic;
@@ -34,14 +35,14 @@ pub mod tone;
 mod viewpoint;
 
 pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
-pub use codec::{ExrCompression, Facts, Header, Options, RowWriter, SampleDepth, writer};
+pub use codec::{ExrCompression, Header, ImageInfo, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
 pub use flip::Flip;
-pub use format::Format;
+pub use format::ImageFormat;
 pub use input::{Limits, decode, inspect, read, read_within};
-pub use look::Look;
+pub use look::DisplayLook;
 pub use output::{Destination, create, to_standard_output, write_image};
-pub use raster::{Encoding, Layout, Raster, Samples, decode_raster, inspect_raster};
+pub use raster::{Raster, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster};
 pub use tone::{AnyCurve, Primaries, Tone, WhiteBalance};
 pub use viewpoint::{Matrix4, Viewpoint};

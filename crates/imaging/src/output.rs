@@ -1,17 +1,17 @@
-//! Where bytes go: files (replaced only by finished ones), devices, standard output, memory.
+//! Destinations of files: regular files (replaced atomically), devices, standard output, memory.
 
-use crate::atomic::{AtomicFile, is_passage};
-use crate::{Format, Header, ImageError, RowWriter, writer};
+use crate::atomic::{AtomicFile, is_device_or_pipe};
+use crate::{Header, ImageError, ImageFormat, RowWriter, writer};
 use juggler_math::{Image, Rgb};
 use std::fs::File;
 use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// What can be written at any place.
+/// Seekable output.
 pub trait WriteSeek: Write + Seek + Send {}
 impl<T: Write + Seek + Send> WriteSeek for T {}
 
-/// A place for a file's bytes, and its name for messages.
+/// Output with a name for messages.
 pub struct Destination {
     name: String,
     sink: Sink,
@@ -23,17 +23,17 @@ enum Sink {
 }
 
 impl Destination {
-    /// A file, or memory. Should be buffered.
+    /// A file or memory; `sink` should be buffered.
     pub fn seekable(name: impl Into<String>, sink: impl Write + Seek + Send + 'static) -> Self {
         Self { name: name.into(), sink: Sink::Seekable(Box::new(sink)) }
     }
 
-    /// A pipe, where bytes can only follow bytes: formats that need more hold the file in memory.
+    /// A pipe, which cannot seek: formats that need to seek buffer the whole file in memory.
     pub fn stream(name: impl Into<String>, sink: impl Write + Send + 'static) -> Self {
         Self { name: name.into(), sink: Sink::Stream(Box::new(sink)) }
     }
 
-    /// How messages call it.
+    /// Name for messages.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -45,22 +45,22 @@ impl Destination {
         }
     }
 
-    /// To be flushed once, at the end: only then do bytes go down a pipe.
+    /// Converts to seekable output. Flush it once at the end, which is when data go to a pipe.
     pub(crate) fn into_seekable(self) -> Box<dyn WriteSeek> {
         match self.sink {
             Sink::Seekable(sink) => sink,
-            Sink::Stream(pipe) => Box::new(Held { pipe, bytes: Cursor::default() }),
+            Sink::Stream(pipe) => Box::new(BufferedPipe { pipe, bytes: Cursor::default() }),
         }
     }
 }
 
-/// A file held in memory for a pipe, and let go by `flush`.
-struct Held {
+/// A file buffered in memory, which `flush` writes to the pipe.
+struct BufferedPipe {
     pipe: Box<dyn Write + Send>,
     bytes: Cursor<Vec<u8>>,
 }
 
-impl Write for Held {
+impl Write for BufferedPipe {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.bytes.write(bytes)
     }
@@ -71,15 +71,15 @@ impl Write for Held {
     }
 }
 
-impl Seek for Held {
+impl Seek for BufferedPipe {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.bytes.seek(to)
     }
 }
 
-/// A writer to a file, which takes its place when finished and not before. Devices (`/dev/null`) and named pipes
-/// are written as they are.
-pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+/// Creates a writer to a file, which appears at `path` only once it is finished. Devices
+/// (`/dev/null`) and named pipes are written directly.
+pub fn create(path: &Path, format: ImageFormat, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
     header.check_primaries(format)?;
     let (destination, file) = whole_file(path)?;
@@ -91,11 +91,12 @@ pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn Ro
     })
 }
 
-/// Where the bytes for a file go until it is complete; a device or a named pipe is written as it is.
+/// Temporary output for the file at `path`, and the file to commit; devices and named pipes are
+/// written directly.
 pub(crate) fn whole_file(path: &Path) -> Result<(Destination, Option<AtomicFile>), ImageError> {
     let name = path.display().to_string();
-    let failed = |source| ImageError::Write { place: name.clone(), source };
-    if is_passage(path) {
+    let failed = |source| ImageError::Write { file: name.clone(), source };
+    if is_device_or_pipe(path) {
         let device = File::options().write(true).open(path).map_err(failed)?;
         return Ok((Destination::stream(name, BufWriter::new(device)), None));
     }
@@ -104,12 +105,12 @@ pub(crate) fn whole_file(path: &Path) -> Result<(Destination, Option<AtomicFile>
     Ok((Destination::seekable(name, handle), Some(file)))
 }
 
-/// A writer to standard output.
-pub fn to_standard_output(format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+/// Creates a writer to standard output.
+pub fn to_standard_output(format: ImageFormat, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     writer(format, Destination::stream("standard output", BufWriter::new(io::stdout())), header)
 }
 
-/// Writes a picture that is already there.
+/// Writes a complete image.
 pub fn write_image(rows: Box<dyn RowWriter>, image: &Image) -> Result<(), ImageError> {
     let mut rows = rows;
     rows.write_rows(image.pixels())?;
@@ -130,6 +131,6 @@ impl RowWriter for WholeFile {
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
         let Self { rows, file, name } = *self;
         rows.finish()?;
-        file.commit().map_err(|source| ImageError::Write { place: name, source })
+        file.commit().map_err(|source| ImageError::Write { file: name, source })
     }
 }

@@ -1,51 +1,51 @@
-//! Pictures as their files have them, for textures: levels as they are, alpha included, and by which curve levels stand for
-//! light.
+//! Images as stored in their files, for textures: samples without conversion, alpha included, and
+//! the transfer function that maps them to linear values.
 
 use crate::codec;
 use crate::input::{open, source};
 use crate::tone::{Curve, Gamma, Srgb};
-use crate::{Format, ImageError, Limits};
+use crate::{ImageError, ImageFormat, Limits};
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
-/// A picture as its file has it.
+/// Image as stored in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
-    /// What it is.
-    pub layout: Layout,
-    /// Rows from the top, in each row pixel by pixel all channels.
-    pub samples: Samples,
-    /// What levels mean.
-    pub encoding: Encoding,
+    /// Size and sample format.
+    pub layout: RasterLayout,
+    /// Samples, rows from the top, channels interleaved.
+    pub samples: RasterSamples,
+    /// Transfer function of the color samples.
+    pub transfer_function: TransferFunction,
 }
 
-/// What a picture's samples are.
+/// Size and sample format of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout {
-    /// The format, by the first bytes.
-    pub format: Format,
-    /// Pixels in a row.
+pub struct RasterLayout {
+    /// Format, detected by the first bytes.
+    pub format: ImageFormat,
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// 1 is grey, 2 grey and alpha, 3 red, green and blue, 4 these and alpha.
+    /// Number of channels: 1 gray, 2 gray and alpha, 3 RGB, 4 RGBA.
     pub channels: u8,
-    /// Bytes of a sample: 1, 2, or 4 for floats.
+    /// Bytes per sample: 1, 2, or 4 for floats.
     pub sample_bytes: u8,
 }
 
-/// The samples of a picture.
+/// Samples of an image.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Samples {
-    /// Levels up to 255.
+pub enum RasterSamples {
+    /// 8-bit levels.
     Bytes(Vec<u8>),
-    /// Levels up to 65,535.
+    /// 16-bit levels.
     Words(Vec<u16>),
-    /// Numbers as they are.
+    /// Floating-point values.
     Floats(Vec<f32>),
 }
 
-impl Samples {
+impl RasterSamples {
     pub(crate) fn len(&self) -> usize {
         match self {
             Self::Bytes(levels) => levels.len(),
@@ -55,19 +55,19 @@ impl Samples {
     }
 }
 
-/// What the levels of a picture's colours mean. Alpha is linear always.
+/// Transfer function of color samples; alpha is always linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Encoding {
-    /// The curve of sRGB: what a file with levels means that says nothing.
+pub enum TransferFunction {
+    /// sRGB, assumed for integer samples if the file states nothing.
     Srgb,
-    /// A power curve, by what the file says: light = level^gamma.
+    /// Power function stated by the file: linear = level^gamma.
     Gamma(f64),
-    /// The numbers themselves: files of floats.
+    /// Linear values, as in floating-point formats.
     Linear,
 }
 
-impl Encoding {
-    /// Linear light of a level from 0 to 1.
+impl TransferFunction {
+    /// Linear value of a level from 0 to 1.
     pub fn decode(self, level: f64) -> f64 {
         match self {
             Self::Srgb => Srgb {}.decode(level),
@@ -77,20 +77,21 @@ impl Encoding {
     }
 }
 
-/// Reads a picture from bytes; `place` is how messages call them.
-pub fn decode_raster(place: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Result<Raster, ImageError> {
+/// Reads an image's samples; `file` names the bytes in messages.
+pub fn decode_raster(file: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Result<Raster, ImageError> {
     let mut bytes = bytes;
-    let source = source(place, &mut bytes, limits)?;
+    let source = source(file, &mut bytes, limits)?;
     let raster = codec::raster(source, &mut bytes)?;
-    let Layout { width, height, channels, .. } = raster.layout;
+    let RasterLayout { width, height, channels, .. } = raster.layout;
     if raster.samples.len() as u64 != u64::from(width) * u64::from(height) * u64::from(channels) {
-        return Err(source.malformed(codec::ENDS));
+        return Err(source.malformed(codec::UNEXPECTED_END));
     }
     Ok(raster)
 }
 
-/// Reads what a picture is, and no pixels, whatever its size. For floats it is not known yet whether all are halves.
-pub fn inspect_raster(path: &Path) -> Result<Layout, ImageError> {
-    let (place, mut bytes) = (path.display().to_string(), open(path)?);
-    codec::layout(source(&place, &mut bytes, &Limits::NONE)?, &mut bytes)
+/// Reads the layout from the header without decoding pixels, whatever the size. EXR samples count
+/// as 4 bytes even if all channels are half floats.
+pub fn inspect_raster(path: &Path) -> Result<RasterLayout, ImageError> {
+    let (file, mut bytes) = (path.display().to_string(), open(path)?);
+    codec::layout(source(&file, &mut bytes, &Limits::NONE)?, &mut bytes)
 }

@@ -1,46 +1,50 @@
-//! Opening files for reading. Every input file of the workspace is opened here, so that nothing but a regular file
-//! is read: a named pipe waits for another program, and a device may never end.
+//! Opens input files. The whole workspace reads files through [`open`], which accepts regular files
+//! only: a named pipe would block until another program writes, and a device may never end.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Opens a regular file for reading. Links are followed. Folders, named pipes (FIFOs), devices and sockets are refused
-/// before they are opened, each by what it is; a link that leads back to itself is refused as such.
+/// Opens a regular file for reading and follows symbolic links.
+///
+/// # Errors
+///
+/// Folders, named pipes (FIFOs), devices, sockets and circular links are rejected before they are
+/// opened, each with a message that says what it is.
 pub fn open(path: &Path) -> io::Result<File> {
-    check(&fs::metadata(path).map_err(|error| of_link(path, error))?)?;
+    check(&fs::metadata(path).map_err(|error| explain_link_error(path, error))?)?;
     let file = File::open(path)?;
-    // Another program may have put something else there in the meantime.
+    // Another program may have replaced the file after the check.
     check(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Reads the first bytes of a regular file: up to `count`, fewer where the file is shorter.
+/// Reads up to `count` bytes from the start of a regular file.
 pub fn first_bytes(path: &Path, count: u64) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     open(path)?.take(count).read_to_end(&mut start)?;
     Ok(start)
 }
 
-/// Whether an error of [`open`] says that something is there, but no regular file.
-pub fn is_of_kind(error: &io::Error) -> bool {
+/// Whether an error of [`open`] means that the path exists but is not a regular file.
+pub fn is_not_regular(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported)
 }
 
-fn check(facts: &Metadata) -> io::Result<()> {
-    if facts.is_file() {
+fn check(metadata: &Metadata) -> io::Result<()> {
+    if metadata.is_file() {
         return Ok(());
     }
-    if facts.is_dir() {
+    if metadata.is_dir() {
         return Err(io::Error::new(ErrorKind::IsADirectory, "this is a folder, not a file"));
     }
-    Err(io::Error::new(ErrorKind::Unsupported, format!("this is {}, not a regular file", kind(facts))))
+    Err(io::Error::new(ErrorKind::Unsupported, format!("this is {}, not a regular file", kind(metadata))))
 }
 
 #[cfg(unix)]
-fn kind(facts: &Metadata) -> &'static str {
+fn kind(metadata: &Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt;
-    let kind = facts.file_type();
+    let kind = metadata.file_type();
     match () {
         () if kind.is_fifo() => "a named pipe (FIFO)",
         () if kind.is_socket() => "a socket",
@@ -53,9 +57,9 @@ fn kind(_: &Metadata) -> &'static str {
     "a device"
 }
 
-/// The error of a path that leads nowhere, where links lead in a circle in words of its own.
-fn of_link(path: &Path, error: io::Error) -> io::Error {
-    let is_link = fs::symlink_metadata(path).is_ok_and(|facts| facts.is_symlink());
+/// Replaces the system's error for circular links by a clearer message.
+fn explain_link_error(path: &Path, error: io::Error) -> io::Error {
+    let is_link = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
     match error.kind() {
         ErrorKind::NotFound | ErrorKind::PermissionDenied | ErrorKind::NotADirectory => error,
         kind if is_link => io::Error::new(kind, "this is a link that leads back to itself"),

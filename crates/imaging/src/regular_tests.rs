@@ -1,4 +1,4 @@
-//! What is opened, and in which words everything else is refused.
+//! Regular files are opened; everything else is rejected with its own message.
 
 use super::*;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -40,7 +40,7 @@ fn what_is_no_file_is_named_and_never_waited_for() {
     assert_eq!(open(&place("dangling")).unwrap_err().kind(), ErrorKind::NotFound);
     fs::write(place("closed"), "x").unwrap();
     fs::set_permissions(place("closed"), fs::Permissions::from_mode(0o0)).unwrap();
-    // Those who may do everything may read it, too.
+    // Root may read files without permissions.
     let closed = open(&place("closed")).map_err(|error| error.kind());
     assert!(closed.is_ok() || closed.is_err_and(|kind| kind == ErrorKind::PermissionDenied));
 }

@@ -1,40 +1,40 @@
-//! The diffuse colour of what is seen, unlit.
+//! Albedo of the first surface, without lighting.
 //!
 //! ```json
 //! {"albedo": {}}
 //! ```
 
-use super::{Emit, Integrator, PathState};
-use juggler_camera::layer::LightGroup;
+use super::{Integrator, PathState, VertexOutput};
+use juggler_camera::aov::LightGroup;
 use juggler_math::Ray;
 use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The diffuse colour of what is seen, unlit; black where nothing is.
+/// Albedo of the first surface, without lighting; black where there is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Albedo {}
 
 impl Integrator for Albedo {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        emit.see_unlit(world, ray, vertex);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        output.record_unlit(world, ray, vertex);
         let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
         let albedo = diffuse.unwrap_or_else(|| {
-            let shade = world.shade(vertex, -ray.direction, 1.0, path.sampler.at(0).next_1d());
-            shade.albedo(-ray.direction)
+            let shading = world.shade(vertex, -ray.direction, 1.0, path.sampler.skipped(0).next_1d());
+            shading.albedo(-ray.direction)
         });
-        emit.add(albedo, LightGroup::REST);
+        output.add(albedo, LightGroup::REST);
     }
 
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.miss(ray);
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Albedo {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

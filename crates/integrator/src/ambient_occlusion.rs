@@ -1,28 +1,30 @@
-//! How open each point is: white in the open, dark in corners.
+//! Ambient occlusion: white for exposed points, dark in corners.
 //!
 //! ```json
 //! {"ambient_occlusion": {"distance": 2}}
 //! ```
 
-use super::{Emit, Integrator, PathState};
-use juggler_camera::layer::LightGroup;
+use super::{Integrator, PathState, VertexOutput};
+use juggler_camera::aov::LightGroup;
 use juggler_math::{Frame, Ray, Rgb, warp};
 use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The cosine-weighted share of the hemisphere from which nothing within `distance` hides the sky.
+/// Ambient occlusion: the cosine-weighted fraction of the hemisphere that nothing within `distance`
+/// occludes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct AmbientOcclusion {
-    /// How far to look; without it half of the scene's diagonal.
+    /// Maximum distance of occluders, in scene units, above 0. The default is half of the diagonal
+    /// of the scene's bounding box; smaller values confine darkening to corners.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub distance: Option<f32>,
 }
 
 impl Integrator for AmbientOcclusion {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        emit.see_unlit(world, ray, vertex);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        output.record_unlit(world, ray, vertex);
         let surface = &vertex.surface;
         let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });
@@ -30,18 +32,22 @@ impl Integrator for AmbientOcclusion {
         let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
         let extent = world.bounds().extent();
         let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
-        emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE, LightGroup::REST);
+        output.add_shadow_ray(
+            surface.spawn_ray(direction, ray.time).with_t_max(distance),
+            Rgb::WHITE,
+            LightGroup::REST,
+        );
     }
 
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.miss(ray);
-        emit.add(Rgb::WHITE, LightGroup::REST);
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
+        output.add(Rgb::WHITE, LightGroup::REST);
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl AmbientOcclusion {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }

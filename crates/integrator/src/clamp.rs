@@ -1,78 +1,79 @@
-//! Clamping: contributions that are too bright are dimmed, and what that takes away is counted.
+//! Clamping of contributions (firefly removal), with an account of the energy that it removes.
 
 use juggler_math::Rgb;
 
-/// The most that one contribution of a path may bring to a sample, by its brightest channel; infinite for no limit.
+/// Limits of one contribution's brightest channel, in units of radiance; infinite for no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clamp {
-    /// Of light that the camera sees, and that lights send straight to what it sees: paths of up to two stretches.
+    /// Limit of emission and direct lighting: paths of one or two segments.
     pub direct: f32,
-    /// Of light that comes by longer ways.
+    /// Limit of indirect lighting: paths of three or more segments.
     pub indirect: f32,
 }
 
-/// How far light has come, and so which of the two limits holds.
+/// Number of path segments between camera and light, by which the limit is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
-    /// What the camera sees shine: [`Clamp::direct`].
-    Seen,
-    /// What lights light: [`Clamp::direct`].
+pub enum PathKind {
+    /// One segment, emission that the camera sees: [`Clamp::direct`].
+    Emission,
+    /// Two segments, direct lighting: [`Clamp::direct`].
     Direct,
-    /// By longer ways: [`Clamp::indirect`].
+    /// Three or more segments, indirect lighting: [`Clamp::indirect`].
     Indirect,
 }
 
-impl Way {
-    /// Of a path of so many stretches from the camera to the light.
+impl PathKind {
+    /// Classifies a path by its number of segments.
     #[inline]
-    pub fn of(stretches: u32) -> Self {
-        match stretches {
-            0 | 1 => Self::Seen,
+    pub fn from_segments(segments: u32) -> Self {
+        match segments {
+            0 | 1 => Self::Emission,
             2 => Self::Direct,
             _ => Self::Indirect,
         }
     }
 }
 
-/// The limits at work on some samples.
+/// Limits applied to the samples of a pass.
 #[derive(Debug)]
-pub struct Clamping {
+pub struct ClampState {
     limits: Clamp,
-    /// What the filter makes of each sample: limits are those of radiance as it comes in.
+    /// Absolute filter weight of each sample, since limits apply to radiance before filtering.
     weights: Vec<f32>,
-    /// What was taken off each sample: the means of the channels, summed.
-    pub taken: Vec<f32>,
+    /// Energy removed from each sample: the sum of channel means.
+    pub removed: Vec<f32>,
 }
 
-impl Clamping {
+impl ClampState {
     /// Creates clamping by `limits`, without samples.
     pub fn new(limits: Clamp) -> Self {
-        Self { limits, weights: Vec::new(), taken: Vec::new() }
+        Self { limits, weights: Vec::new(), removed: Vec::new() }
     }
 
-    /// For samples of these weights in the filter.
+    /// Starts samples with these filter weights.
     pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
         self.weights.clear();
         self.weights.extend(weights.map(f32::abs));
-        self.taken.clear();
-        self.taken.resize(self.weights.len(), 0.0);
+        self.removed.clear();
+        self.removed.resize(self.weights.len(), 0.0);
     }
 
-    /// What is left of a contribution to a sample. What is no finite number stays that, and is told as such.
+    /// Clamps a contribution and records the difference. Contributions that are not finite are
+    /// returned unchanged, to be reported.
     #[inline]
-    pub fn limit(&mut self, slot: usize, way: Way, radiance: Rgb) -> Rgb {
-        let limit = match way {
-            Way::Seen | Way::Direct => self.limits.direct,
-            Way::Indirect => self.limits.indirect,
+    pub fn limit(&mut self, slot: usize, path_kind: PathKind, radiance: Rgb) -> Rgb {
+        let limit = match path_kind {
+            PathKind::Emission | PathKind::Direct => self.limits.direct,
+            PathKind::Indirect => self.limits.indirect,
         };
-        let most = limit * self.weights[slot];
+        let max = limit * self.weights[slot];
         let brightest = radiance.map(f32::abs).max_channel();
-        if brightest <= most || !brightest.is_finite() || most.is_nan() {
+        if brightest <= max || !brightest.is_finite() || max.is_nan() {
             return radiance;
         }
-        let kept = radiance * (most / brightest);
+        let kept = radiance * (max / brightest);
         let Rgb { r, g, b } = radiance - kept;
-        self.taken[slot] += (r + g + b) / 3.0;
+        self.removed[slot] += (r + g + b) / 3.0;
         kept
     }
 }
@@ -81,8 +82,8 @@ impl Clamping {
 mod tests {
     use super::*;
 
-    fn clamping() -> Clamping {
-        let mut clamping = Clamping::new(Clamp { direct: 8.0, indirect: 2.0 });
+    fn clamping() -> ClampState {
+        let mut clamping = ClampState::new(Clamp { direct: 8.0, indirect: 2.0 });
         clamping.begin([1.0, 0.5, -0.5].into_iter());
         clamping
     }
@@ -90,27 +91,27 @@ mod tests {
     #[test]
     fn hue_stays_and_nothing_is_lost_from_sight() {
         let bright = Rgb::new(1.0, 4.0, 6.0);
-        for (slot, way, weight, limit) in [
-            (0, Way::Direct, 1.0, 6.0),
-            (0, Way::Indirect, 1.0, 2.0),
-            (1, Way::Indirect, 0.5, 2.0),
-            (2, Way::Indirect, -0.5, 2.0),
+        for (slot, path_kind, weight, limit) in [
+            (0, PathKind::Direct, 1.0, 6.0),
+            (0, PathKind::Indirect, 1.0, 2.0),
+            (1, PathKind::Indirect, 0.5, 2.0),
+            (2, PathKind::Indirect, -0.5, 2.0),
         ] {
             let mut clamping = clamping();
-            let kept = clamping.limit(slot, way, bright * weight);
+            let kept = clamping.limit(slot, path_kind, bright * weight);
             let expected = bright * (limit / 6.0 * weight);
             assert!((kept - expected).map(f32::abs).max_channel() < 1e-6, "{kept:?} instead of {expected:?}");
-            let taken = (11.0 - 11.0 * limit / 6.0) / 3.0 * weight;
-            assert!((clamping.taken[slot] - taken).abs() < 1e-6, "{} instead of {taken}", clamping.taken[slot]);
+            let removed = (11.0 - 11.0 * limit / 6.0) / 3.0 * weight;
+            assert!((clamping.removed[slot] - removed).abs() < 1e-6, "{} instead of {removed}", clamping.removed[slot]);
         }
     }
 
     #[test]
-    fn what_is_no_number_is_left_to_be_told_as_such() {
+    fn contributions_that_are_not_finite_are_kept() {
         let mut clamping = clamping();
-        assert!(!clamping.limit(0, Way::Direct, Rgb::new(f32::INFINITY, 1.0, 1.0)).is_finite());
-        assert!(!clamping.limit(0, Way::Direct, Rgb::new(f32::NAN, 1.0, 1.0)).is_finite());
-        assert_eq!(clamping.limit(0, Way::Direct, Rgb::splat(8.0)), Rgb::splat(8.0));
-        assert_eq!(clamping.taken, [0.0; 3]);
+        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::INFINITY, 1.0, 1.0)).is_finite());
+        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::NAN, 1.0, 1.0)).is_finite());
+        assert_eq!(clamping.limit(0, PathKind::Direct, Rgb::splat(8.0)), Rgb::splat(8.0));
+        assert_eq!(clamping.removed, [0.0; 3]);
     }
 }

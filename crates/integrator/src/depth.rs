@@ -1,39 +1,41 @@
-//! How far away what is seen is, in scene units along the ray.
+//! Distance from the camera to the first surface along the ray.
 //!
 //! ```json
 //! {"depth": {"far": 10}}
 //! ```
 
-use super::{Emit, Integrator, PathState};
-use juggler_camera::layer::LightGroup;
+use super::{Integrator, PathState, VertexOutput};
+use juggler_camera::aov::LightGroup;
 use juggler_math::{Ray, Rgb};
 use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Distance as a grey; 0 where nothing is.
+/// Distance from the camera to the first surface, along the ray, as a gray value; 0 where there is
+/// none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Depth {
-    /// The distance that is shown as 1. Without it the value is the distance itself, for EXR and PFM.
+    /// Distance that is shown as 1 (white), in scene units, above 0. Without it the value is the
+    /// distance itself, for EXR and PFM files.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub far: Option<f32>,
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        emit.see_unlit(world, ray, vertex);
-        emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
+    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        output.record_unlit(world, ray, vertex);
+        output.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
     }
 
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.miss(ray);
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Depth {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { far: Some(10.0) }]
     }

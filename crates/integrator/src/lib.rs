@@ -1,60 +1,62 @@
-//! Integrators: what a point where a path touches the world adds to the picture, and which rays go on.
+//! Integrators: the radiance that a path vertex contributes to its sample, and the rays that
+//! continue.
 //!
-//! An integrator is a pure function of one vertex. Queues, tiles and threads are the engine's
-//! (module `render`). Radiance is linear in its rays, so even a tree of mirror, glass and glossy rays is
-//! a queue of weighted rays.
+//! An integrator is a pure function of one vertex. The crate `render` owns queues, tiles and
+//! threads. Radiance is linear in its rays, so even a tree of reflected, refracted and glossy rays
+//! is a queue of rays with weights.
 
 use juggler_math::Ray;
-use juggler_world::{Shadows, Vertex, World};
+use juggler_world::{ShadowMode, Vertex, World};
 
 mod albedo;
 mod ambient_occlusion;
+mod aov_record;
 mod clamp;
 mod classic;
 mod cone;
 mod depth;
 mod direct;
-mod emit;
 mod normals;
 mod path;
+mod path_history;
 mod path_log;
-mod record;
-mod trail;
+mod vertex_output;
 
-pub use clamp::Clamping;
-pub use clamp::{Clamp, Way};
-pub use cone::Cone;
-pub use emit::{Bent, Harvest, Queue, ShadowQueue};
-pub use emit::{Emit, PathState};
-pub use path_log::{Arrival, PathLog, Seen};
-pub use path_log::{Event, Scattering};
-pub use record::Record;
-pub use record::Sight;
-pub use trail::{Chain, Counts, Stage, Trail};
+pub use aov_record::{AovRecord, SurfaceHit};
+pub use clamp::ClampState;
+pub use clamp::{Clamp, PathKind};
+pub use cone::RayCone;
+pub use path_history::{CausticStage, CausticState, PathHistory, ScatterCounts};
+pub use path_log::{HitRecord, PathLog, ShadingPoint};
+pub use path_log::{ScatterEvent, Scattering};
+pub use vertex_output::{BentShadowRay, PathBuffers, Queue, ShadowQueue};
+pub use vertex_output::{PathState, VertexOutput};
 
-/// Light transport, nothing else.
+/// A light transport algorithm.
 pub trait Integrator: Send + Sync {
-    /// `ray`, its end drawn in, met a surface: what that adds, which lights to ask, where the light came from.
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit);
-    /// `ray` left the world: what it adds.
-    fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, _emit: &mut Emit) {}
-    /// Whether patterns fade where rays are wider than they are fine. Classic pictures never had that: in them only
-    /// pictures on surfaces do.
-    fn fades_patterns(&self) -> bool {
+    /// Handles a hit: adds radiance, requests shadow rays and continues the path. `ray` ends at
+    /// `vertex`.
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput);
+    /// Handles a ray that left the world.
+    fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, _output: &mut VertexOutput) {}
+    /// Whether procedural textures are filtered where the ray cone is wider than their detail.
+    /// Classic ray tracing filters image textures only.
+    fn filters_textures(&self) -> bool {
         false
     }
-    /// What its shadow rays keep.
-    fn shadows(&self) -> Shadows {
-        Shadows::Filtered
+    /// How surfaces attenuate shadow rays.
+    fn shadows(&self) -> ShadowMode {
+        ShadowMode::Filtered
     }
-    /// What contributions are limited to.
+    /// Limits of contributions, if there are any.
     fn clamp(&self) -> Option<Clamp> {
         None
     }
 }
 
 juggler_math::closed_set! {
-    /// Every integrator. In JSON: `{"classic": {"max_depth": 10}}`, or short `"classic"`.
+    /// Light transport algorithm, or visualization of one surface property. In JSON: `{"classic":
+    /// {"max_depth": 10}}`, or short `"classic"`.
     pub enum AnyIntegrator: Integrator {
         classic::Classic, path::Path, direct::Direct, ambient_occlusion::AmbientOcclusion, albedo::Albedo, normals::Normals, depth::Depth,
     }

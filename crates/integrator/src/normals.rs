@@ -1,36 +1,36 @@
-//! The direction in which what is seen faces: (n + 1) / 2 as a colour, world space.
+//! Shading normals as colors, (n + 1) / 2, in world space.
 //!
 //! ```json
 //! {"normals": {}}
 //! ```
 
-use super::{Emit, Integrator, PathState};
-use juggler_camera::layer::LightGroup;
+use super::{Integrator, PathState, VertexOutput};
+use juggler_camera::aov::LightGroup;
 use juggler_math::{Ray, Rgb};
 use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shading normals as colours; black where nothing is.
+/// Shading normals in world space as colors, (n + 1) / 2; black where there is no surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Normals {}
 
 impl Integrator for Normals {
-    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        emit.see_unlit(world, ray, vertex);
+    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        output.record_unlit(world, ray, vertex);
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
-        emit.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
+        output.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
     }
 
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.miss(ray);
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Normals {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

@@ -1,53 +1,55 @@
-//! What paths did, step by step: for those who ask why a pixel is as it is. Nothing of it is kept while pictures are made.
+//! Log of path events, with which the probe explains a pixel. Renders do not keep it.
 
-use super::{PathState, Sight, Way};
+use super::{PathKind, PathState, SurfaceHit};
 use juggler_bsdf::{Scatter, fresnel};
-use juggler_camera::layer::LightGroup;
+use juggler_camera::aov::LightGroup;
 use juggler_math::{Ray, Rgb, Vec3};
 use juggler_world::{Vertex, World};
 
-/// How far a direction may lie beside that of a mirror and count as mirrored by it.
-const STRAIGHT: f32 = 1e-3;
+/// Maximum distance between unit directions that still counts as specular reflection.
+const REFLECTION_TOLERANCE: f32 = 1e-3;
 
-/// What a path did at a place.
+/// What a path did at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scattering {
-    /// Scattered by a matt surface.
+    /// Diffuse scattering.
     Diffuse,
-    /// Scattered by a rough mirror or rough glass.
+    /// Glossy scattering, by rough metal or rough glass.
     Glossy,
-    /// Mirrored or refracted by what is smooth.
+    /// Specular reflection or refraction.
     Specular,
-    /// Scattered by a medium.
+    /// Scattering in a medium.
     Volume,
-    /// It went on as if nothing had been there: a hole.
-    Passed,
+    /// Straight passage through a surface, because of its opacity.
+    PassThrough,
 }
 
-/// What a path did at a place, and to which side of the surface it went on.
+/// A scattering event, and the side of the surface on which the path continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Event {
-    /// How it was scattered.
+pub struct ScatterEvent {
+    /// Kind of scattering.
     pub scattering: Scattering,
-    /// Whether it goes on behind the surface.
+    /// Whether the path continues on the other side of the surface.
     pub transmitted: bool,
 }
 
-/// What samples did since the log was emptied.
+/// Path events since the log was cleared.
 #[derive(Clone, Debug, Default)]
 pub struct PathLog {
-    /// Light, in the order in which samples gather it: the slot, how far it came, its group, and how much.
-    pub lights: Vec<(usize, Way, LightGroup, Rgb)>,
-    /// What paths met that is no hole: the slot, and what is known of the place.
-    pub seen: Vec<(usize, Seen)>,
+    /// Contributions in the order in which samples receive them: sample index, number of path
+    /// segments, light group, radiance.
+    pub lights: Vec<(usize, PathKind, LightGroup, Rgb)>,
+    /// Surfaces that paths hit, except those passed through because of opacity: sample index and
+    /// surface.
+    pub hits: Vec<(usize, ShadingPoint)>,
 }
 
-/// A place as it was seen.
+/// Shading data of a surface that a path hit.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// Unit shading normal there, as maps have turned it.
+pub struct ShadingPoint {
+    /// Unit shading normal, after normal and bump mapping.
     pub normal: Vec3,
-    /// How most of what is no delta is scattered.
+    /// Kind of scattering of the strongest lobe that is not specular.
     pub scatter: Scatter,
 }
 
@@ -55,12 +57,12 @@ impl PathLog {
     /// Removes all entries.
     pub fn clear(&mut self) {
         self.lights.clear();
-        self.seen.clear();
+        self.hits.clear();
     }
 
-    /// Records the first hit of the sample in `slot`.
-    pub fn see(&mut self, slot: usize, sight: &Sight) {
-        self.seen.push((slot, Seen { normal: sight.normal, scatter: sight.scatter }));
+    /// Records a surface that a path of the sample `slot` hit.
+    pub fn record_hit(&mut self, slot: usize, hit: &SurfaceHit) {
+        self.hits.push((slot, ShadingPoint { normal: hit.normal, scatter: hit.scatter }));
     }
 }
 
@@ -74,74 +76,82 @@ impl From<Scatter> for Scattering {
     }
 }
 
-impl Event {
-    /// Mirrored by what is smooth.
-    pub const MIRRORED: Self = Self { scattering: Scattering::Specular, transmitted: false };
-    /// Refracted by it.
+impl ScatterEvent {
+    /// Specular reflection.
+    pub const REFLECTED: Self = Self { scattering: Scattering::Specular, transmitted: false };
+    /// Specular refraction.
     pub const REFRACTED: Self = Self { scattering: Scattering::Specular, transmitted: true };
-    /// Scattered by a medium.
+    /// Scattering in a medium.
     pub const VOLUME: Self = Self { scattering: Scattering::Volume, transmitted: false };
-    /// It went through a hole.
-    pub const PASSED: Self = Self { scattering: Scattering::Passed, transmitted: true };
+    /// Straight passage through a surface.
+    pub const PASS_THROUGH: Self = Self { scattering: Scattering::PassThrough, transmitted: true };
 }
 
-/// A ray on its way, and what it met.
+/// A ray and the surface that it hit.
 #[derive(Clone, Copy)]
-pub struct Arrival<'a> {
+pub struct HitRecord<'a> {
     /// Ray that arrived.
     pub ray: &'a Ray,
     /// State of its path before the vertex.
     pub path: &'a PathState,
     /// Surface that the ray hit, if any.
     pub vertex: Option<&'a Vertex>,
-    /// Shading normal and scattering there, if the surface is no opacity gap.
-    pub seen: Option<&'a Seen>,
+    /// Shading normal and scattering there, unless opacity lets the path pass.
+    pub shading_point: Option<&'a ShadingPoint>,
 }
 
-impl Arrival<'_> {
-    /// What became of it that goes on as `ray`.
-    pub fn event(&self, world: &World, ray: &Ray, next: &PathState) -> Event {
-        let (before, after) = (self.path.trail, next.trail);
-        if after.scattered.volume > before.scattered.volume {
-            return Event::VOLUME;
+impl HitRecord<'_> {
+    /// Derives the event at this vertex from the state of the path that continues along `ray`.
+    pub fn event(&self, world: &World, ray: &Ray, next: &PathState) -> ScatterEvent {
+        let (before, after) = (self.path.history, next.history);
+        if after.events.volume > before.events.volume {
+            return ScatterEvent::VOLUME;
         }
-        let (Some(vertex), Some(seen)) = (self.vertex, self.seen) else { return Event::PASSED };
-        if after.passed > before.passed {
-            return Event::PASSED;
+        let (Some(vertex), Some(point)) = (self.vertex, self.shading_point) else { return ScatterEvent::PASS_THROUGH };
+        if after.pass_throughs > before.pass_throughs {
+            return ScatterEvent::PASS_THROUGH;
         }
         let normal = vertex.surface.normal;
         let transmitted = normal.dot(ray.direction) * normal.dot(self.ray.direction) > 0.0;
-        let (a, b) = (before.scattered, after.scattered);
+        let (a, b) = (before.events, after.events);
         let scattering = match (b.diffuse > a.diffuse, b.glossy > a.glossy, b.specular > a.specular) {
             (true, ..) => Scattering::Diffuse,
             (_, true, _) => Scattering::Glossy,
             (_, _, true) => Scattering::Specular,
-            // Classic rays do not count.
-            _ => self.classic(world, vertex, seen, ray, transmitted),
+            // The classic integrator does not count scattering events.
+            _ => self.classic(world, vertex, point, ray, transmitted),
         };
-        Event { scattering, transmitted }
+        ScatterEvent { scattering, transmitted }
     }
 
-    /// Whether a classic ray is one of a bundle.
-    fn classic(&self, world: &World, vertex: &Vertex, seen: &Seen, ray: &Ray, transmitted: bool) -> Scattering {
+    /// Classifies a classic ray: glossy if it belongs to a bundle, else specular.
+    fn classic(
+        &self,
+        world: &World,
+        vertex: &Vertex,
+        point: &ShadingPoint,
+        ray: &Ray,
+        transmitted: bool,
+    ) -> Scattering {
         let is_spread = match (world.phong(vertex), transmitted) {
             (Some(phong), false) => phong.glossy.half_angle_radians > 0.0,
             (Some(phong), true) => phong.blurry.half_angle_radians > 0.0,
-            (None, true) => seen.scatter != Scatter::Specular,
+            (None, true) => point.scatter != Scatter::Specular,
             (None, false) => {
                 let wo = -self.ray.direction;
-                let normal = if seen.normal.dot(wo) < 0.0 { -seen.normal } else { seen.normal };
-                (fresnel::reflect(wo, normal) - ray.direction).length() > STRAIGHT
+                let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
+                (fresnel::reflect(wo, normal) - ray.direction).length() > REFLECTION_TOLERANCE
             }
         };
         if is_spread { Scattering::Glossy } else { Scattering::Specular }
     }
 
-    /// How light that was asked for is scattered: as most is; by the medium where the path never came to the surface.
-    pub fn lit(&self) -> Event {
-        match self.seen {
-            Some(seen) => Event { scattering: seen.scatter.into(), transmitted: false },
-            None => Event::VOLUME,
+    /// Event of a light sample: the surface's kind of scattering, or the medium's if the path did
+    /// not reach the surface.
+    pub fn light_sample_event(&self) -> ScatterEvent {
+        match self.shading_point {
+            Some(point) => ScatterEvent { scattering: point.scatter.into(), transmitted: false },
+            None => ScatterEvent::VOLUME,
         }
     }
 }

@@ -1,5 +1,6 @@
-//! What edits of a scene cost that is a value: `cargo bench -p juggler --bench edits` prints a table for a mesh of a million
-//! triangles that a program holds in memory, one for a hundred thousand spheres, and one for ten thousand that move.
+//! Cost of editing a scene value: `cargo bench -p juggler --bench edits` prints one table each for
+//! a mesh of a million triangles in memory, a hundred thousand spheres, and ten thousand moving
+//! spheres.
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
 use juggler::material::{Conductor, Diffuse};
@@ -11,11 +12,11 @@ use std::time::Instant;
 
 /// Vertices along an edge of the mesh: 977,202 triangles.
 const SIDE: u32 = 700;
-/// Spheres of the scene of many objects.
+/// Number of spheres in the scene with many objects.
 const SPHERES: u32 = 100_001;
-/// Spheres of the scene in which all move.
+/// Number of spheres in the scene in which all move.
 const MOVING: u32 = 10_000;
-/// Runs of each measurement, of which the median counts.
+/// Number of runs of each measurement, of which the median is printed.
 const RUNS: usize = 9;
 
 fn main() -> Result<(), Error> {
@@ -42,7 +43,7 @@ fn timed<T>(what: &str, runs: usize, mut run: impl FnMut() -> Result<T, Error>) 
     }
 }
 
-/// A bumpy square of triangles.
+/// Returns a mesh of a bumpy square.
 fn bumps() -> MeshData {
     let place = |i: u32| 2.0 * i as f32 / (SIDE - 1) as f32 - 1.0;
     let points = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (place(column), place(row))));
@@ -57,7 +58,7 @@ fn bumps() -> MeshData {
     MeshData { positions, triangles: triangles.collect(), ..MeshData::default() }
 }
 
-/// Most memory that the process has held, in MB; 0 where the system does not tell.
+/// Returns the peak memory of the process in MB; 0 if the system does not report it.
 fn peak_megabytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -84,7 +85,7 @@ fn million_triangles() -> Result<(), Error> {
     edits(&scene, &picture)
 }
 
-/// Edits of the scene that the picture shows.
+/// Measures edits of the scene that `picture` renders.
 fn edits(scene: &Scene, picture: &Picture) -> Result<(), Error> {
     let after = |edited: &Scene| picture.after(scene, edited, &Settings::default());
     timed("another camera, to a picture that is ready", RUNS, || {

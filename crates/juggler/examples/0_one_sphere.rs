@@ -1,4 +1,4 @@
-//! Lesson 0: one sphere, everything else by default, into `one_sphere.png`.
+//! Lesson 0: renders one sphere with all defaults to `one_sphere.png`.
 //!
 //! `cargo run --release --example 0_one_sphere`
 

@@ -1,4 +1,5 @@
-//! Lesson 1: a mirror ball over a checkered floor, built piece by piece, into `mirror_ball.png`.
+//! Lesson 1: builds a scene of a mirror sphere over a checkered floor, and renders it to
+//! `mirror_ball.png`.
 //!
 //! `cargo run --release --example 1_build_a_scene`
 

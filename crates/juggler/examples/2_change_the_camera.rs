@@ -1,4 +1,4 @@
-//! Lesson 2: a scene as JSON, seen by its own camera into `lesson.png` and by another one into
+//! Lesson 2: renders a JSON scene from its own camera to `lesson.png`, and from another camera to
 //! `from_above.png`. The world and its acceleration structures are built once.
 //!
 //! `cargo run --release --example 2_change_the_camera`
@@ -15,7 +15,7 @@ const SCENE: &str = r#"{
 }"#;
 
 fn main() -> Result<(), Error> {
-    // A file is read by Scene::load("name.json").
+    // `Scene::load("name.json")` reads a file.
     let scene = Scene::from_json(SCENE, "lesson.json")?;
     let picture = Picture::new(&scene, &Settings::default())?;
     picture.image(&Control::default())?.save("lesson.png")?;

@@ -1,4 +1,5 @@
-//! Lesson 3: a render that is watched from another thread, and stopped when it takes longer than two seconds.
+//! Lesson 3: reports the progress of a render from another thread, and cancels it after two
+//! seconds.
 //!
 //! `cargo run --release --example 3_progress_and_cancel`
 

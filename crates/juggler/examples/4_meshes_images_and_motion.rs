@@ -1,6 +1,6 @@
-//! Lesson 4: a surface and its colors from numbers in memory, a ball that moves, and edits of the
-//! finished scene, into `wave.png`, `wave_later.png` and `wave_polished.png`. Nothing is read from
-//! a file, and no array passes through a text.
+//! Lesson 4: renders a mesh with a texture, both computed in memory, and a moving sphere to
+//! `wave.png`; then edits the scene for `wave_later.png` and `wave_polished.png`. The example reads
+//! no file and converts no array to text.
 //!
 //! `cargo run --release --example 4_meshes_images_and_motion`
 
@@ -39,7 +39,7 @@ fn wave() -> Mesh {
     Mesh::from_triangles(positions, triangles.collect::<Vec<_>>()).with_normals(normals).with_uvs(uvs)
 }
 
-/// The colors of the heights, from blue over white to orange, with a dark line every tenth.
+/// Texture that maps height to color, from blue over white to orange, with a dark line every tenth.
 fn colors() -> Option<Image> {
     const EDGE: u32 = 1024;
     let place = |i: u32| 2.0 * i as f32 / (EDGE - 1) as f32 - 1.0;
@@ -77,8 +77,8 @@ fn main() -> Result<(), Error> {
         scene = scene.image("colors", image);
     }
 
-    // Expressions of the frame move the ball around the wave; the shutter stays open for half a
-    // frame.
+    // Move the sphere around the wave by expressions of the frame, and keep the shutter open for
+    // half a frame.
     let path = json!([{"translate": ["=0.62 * cos(frame / 12)", -0.02, "=0.62 * sin(frame / 12)"]}]);
     let mut scene = scene.with_value("/objects/2/transform", path)?;
     scene.description.render.shutter = [0.0, 0.5];
@@ -86,8 +86,8 @@ fn main() -> Result<(), Error> {
     picture.image(&Control::default())?.save("wave.png")?;
     juggler::render_to_file(&scene.at_frame(12.0)?, &Settings::default(), "wave_later.png")?;
 
-    // Another material is an edit of a value. The new picture shares meshes and hierarchies with
-    // the old.
+    // Replace the material by editing its value. The new picture shares meshes and hierarchies with
+    // the old one.
     let mut polished = scene.clone();
     polished.description.materials.insert("paint".into(), AnyMaterial::from(Conductor::default()).into());
     let picture = picture.after(&scene, &polished, &Settings::default())?;

@@ -1,36 +1,36 @@
-//! Taking the noise out of a film's picture: its halves and what guides the filter, gathered tile by tile.
+//! Denoising of a film: gathers its half buffers and feature buffers tile by tile.
 
-use crate::{Error, LayerSet, check_name};
+use crate::{AovSet, Error, check_name};
+use juggler_camera::aov::{DenoisingFeature, FilmAov, is_in_second_half};
 use juggler_camera::film::{Rect, Tile};
-use juggler_camera::layer::{Guide, Layer, is_half};
 pub use juggler_denoise::Denoised;
 use juggler_denoise::{Features, Noisy, denoise_unless};
 use juggler_math::{Rgb, Vec3};
-use juggler_oidn::Library;
+use juggler_oidn::Oidn;
 use juggler_render::Control;
 use std::path::Path;
 
-/// What takes the noise out.
+/// Denoising algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Denoiser {
-    /// Our own filter: the same bits everywhere.
+    /// Own filter, bit-identical on all machines.
     Own,
-    /// Intel's Open Image Denoise, where it is installed: what it gives may differ from machine to machine.
+    /// Intel Open Image Denoise, if installed; its result may differ between machines.
     Oidn,
 }
 
 impl Denoiser {
-    /// All of them.
+    /// All denoisers.
     pub const ALL: [Self; 2] = [Self::Own, Self::Oidn];
 
-    /// The one of that name; an error says which was probably meant.
+    /// Returns the denoiser of a name. The error suggests similar names.
     pub fn by_name(name: &str) -> Result<Self, Error> {
         check_name("denoiser", name, Self::ALL.iter().map(|denoiser| denoiser.name()))?;
-        // It is one of them.
+        // The check above ensures that the name exists.
         Ok(Self::ALL.into_iter().find(|denoiser| denoiser.name() == name).unwrap_or(Self::Own))
     }
 
-    /// As it is asked for.
+    /// Returns the name that settings and the command line use.
     pub fn name(self) -> &'static str {
         match self {
             Self::Own => "own",
@@ -39,9 +39,10 @@ impl Denoiser {
     }
 }
 
-/// A picture in two halves of its samples, with what guides a filter; twice the same where nobody compares halves.
+/// Input of a denoiser: color and feature buffers, each as two halves of the samples. Both are
+/// equal where the film stores no halves.
 #[derive(Clone, Debug)]
-pub struct Guides {
+pub struct DenoiserInput {
     region: Rect,
     color: [Vec<Rgb>; 2],
     albedo: [Vec<Rgb>; 2],
@@ -49,17 +50,17 @@ pub struct Guides {
     depth: [Vec<f32>; 2],
 }
 
-/// What both halves of a pixel have in sum, and how many samples they are.
+/// Sums of a pixel over both halves of its samples, with their numbers of samples.
 struct Halves {
     sums: [Rgb; 2],
     counts: [f32; 2],
 }
 
-impl Guides {
-    /// Bytes a pixel, with what filters need besides.
+impl DenoiserInput {
+    /// Peak memory in bytes per pixel, including the filter's own buffers.
     pub const BYTES: u64 = 320;
 
-    /// For a picture of these pixels, black.
+    /// Creates black buffers for the pixels of `region`.
     pub fn new(region: Rect) -> Self {
         let area = region.area() as usize;
         let black = || [vec![Rgb::BLACK; area], vec![Rgb::BLACK; area]];
@@ -67,18 +68,18 @@ impl Guides {
         Self { region, color: black(), albedo: black(), normal: none(), depth: [vec![0.0; area], vec![0.0; area]] }
     }
 
-    /// Takes in the pixels of a tile whose film kept the guides.
-    pub fn add(&mut self, set: &LayerSet, tile: &Tile) {
-        let (extras, count) = (tile.extras(), tile.count());
-        let place = |layer| set.layers().place(layer);
-        let layers = set.layers().planes.len();
+    /// Adds the pixels of a tile whose film stored the features.
+    pub fn add(&mut self, set: &AovSet, tile: &Tile) {
+        let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel());
+        let place = |aov| set.film_aovs().index_of(aov);
+        let plane_count = set.film_aovs().planes.len();
         let (pixels, region) = (tile.pixels(), self.region);
-        let sum = |pixel: usize, layer: Option<usize>| {
-            let plane = layer.and_then(|layer| extras.planes.get(pixel * layers + layer));
+        let sum = |pixel: usize, aov: Option<usize>| {
+            let plane = aov.and_then(|aov| aov_sums.planes.get(pixel * plane_count + aov));
             plane.copied().unwrap_or(Rgb::BLACK)
         };
         let means = tile.means();
-        let halves = |pixel: usize, whole: Rgb, guide: Guide| match place(Layer::Half(guide)) {
+        let halves = |pixel: usize, whole: Rgb, feature: DenoisingFeature| match place(FilmAov::HalfFeature(feature)) {
             Some(place) => {
                 let one = sum(pixel, Some(place));
                 Halves { sums: [one, whole - one], counts: half_counts(count) }
@@ -89,23 +90,25 @@ impl Guides {
             let all = 0..pixels.area() as usize;
             let color = all.clone().map(|pixel| {
                 let whole = means.get(pixel).map_or(Rgb::BLACK, |mean| *mean * count as f32);
-                halves(pixel, whole, Guide::Color).mean(half)
+                halves(pixel, whole, DenoisingFeature::Color).mean(half)
             });
-            pixels.copy(&color.collect::<Vec<_>>(), &region, &mut self.color[half]);
-            let of = |guide: Guide| {
-                all.clone().map(move |pixel| halves(pixel, sum(pixel, place(Layer::Guide(guide))), guide))
+            pixels.copy_into(&color.collect::<Vec<_>>(), &region, &mut self.color[half]);
+            let of = |feature: DenoisingFeature| {
+                all.clone().map(move |pixel| halves(pixel, sum(pixel, place(FilmAov::Feature(feature))), feature))
             };
-            let albedo: Vec<Rgb> = of(Guide::Albedo).map(|halves| halves.mean(half)).collect();
-            pixels.copy(&albedo, &region, &mut self.albedo[half]);
-            let normal: Vec<Vec3> = of(Guide::Normal).map(|halves| halves.mean(half).to_array().into()).collect();
-            pixels.copy(&normal, &region, &mut self.normal[half]);
-            let depth: Vec<f32> = of(Guide::Depth).map(|halves| halves.ratio(half)).collect();
-            pixels.copy(&depth, &region, &mut self.depth[half]);
+            let albedo: Vec<Rgb> = of(DenoisingFeature::Albedo).map(|halves| halves.mean(half)).collect();
+            pixels.copy_into(&albedo, &region, &mut self.albedo[half]);
+            let normal: Vec<Vec3> =
+                of(DenoisingFeature::Normal).map(|halves| halves.mean(half).to_array().into()).collect();
+            pixels.copy_into(&normal, &region, &mut self.normal[half]);
+            let depth: Vec<f32> = of(DenoisingFeature::Depth).map(|halves| halves.ratio(half)).collect();
+            pixels.copy_into(&depth, &region, &mut self.depth[half]);
         }
     }
 
-    /// The picture without noise, from 2 samples a pixel on; `library` is the place of Open Image Denoise where the system does not know it. Nothing when
-    /// `control` was cancelled.
+    /// Returns the denoised image; `None` if `control` was cancelled. It needs 2 samples per pixel
+    /// or more. `library` is the path of Open Image Denoise where the system does not find it.
+    /// Fails if that library cannot be loaded or rejects the image.
     pub fn denoise(
         &self,
         with: Denoiser,
@@ -126,7 +129,7 @@ impl Guides {
             }
             Denoiser::Oidn => {
                 let failed = |error: juggler_oidn::Error| Error::Settings(error.to_string());
-                let library = Library::open(library).map_err(failed)?;
+                let library = Oidn::open(library).map_err(failed)?;
                 let both = |halves: &[Vec<Rgb>; 2]| -> Vec<Rgb> {
                     halves[0].iter().zip(&halves[1]).map(|(a, b)| (*a + *b) * 0.5).collect()
                 };
@@ -134,7 +137,7 @@ impl Guides {
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
                 let pixels = library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map_err(failed)?;
-                Ok(Some(Denoised { pixels, moved: 0.0 }))
+                Ok(Some(Denoised { pixels, moved_energy: 0.0 }))
             }
         }
     }
@@ -145,17 +148,18 @@ impl Halves {
         self.sums[half] / self.counts[half].max(1.0)
     }
 
-    /// The first channel over the second.
+    /// Returns the first channel over the second: the mean depth of the samples that hit a surface.
     fn ratio(&self, half: usize) -> f32 {
         let Rgb { r, g, .. } = self.sums[half];
         if g > 0.0 { r / g } else { 0.0 }
     }
 }
 
-/// How many of the first samples are in the half that [`Layer::Half`] keeps, and how many in the other.
+/// Returns how many of the first `count` samples belong to the half that [`FilmAov::HalfFeature`]
+/// stores, and how many to the other.
 fn half_counts(count: u32) -> [f32; 2] {
-    // Of two neighbours one is.
-    let one = count / 2 + u32::from(count % 2 == 1 && is_half(count - 1));
+    // Each pair of samples 2k and 2k + 1 has one in that half.
+    let one = count / 2 + u32::from(count % 2 == 1 && is_in_second_half(count - 1));
     [one as f32, (count - one) as f32]
 }
 
@@ -166,7 +170,7 @@ mod tests {
     #[test]
     fn halves_are_counted() {
         for count in 0..300 {
-            let one = (0..count).filter(|sample| is_half(*sample)).count() as f32;
+            let one = (0..count).filter(|sample| is_in_second_half(*sample)).count() as f32;
             assert_eq!(half_counts(count), [one, count as f32 - one], "{count}");
         }
     }

@@ -1,22 +1,22 @@
-//! Why there is no picture.
+//! Errors of rendering.
 
 use juggler_imaging::ImageError;
-use juggler_render::Stopped;
+use juggler_render::Cancelled;
 use juggler_scene::SceneError;
 
-/// Why there is no picture.
+/// Error that prevented an image.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The scene has mistakes, or cannot be read.
+    /// The scene has errors, or cannot be read.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The settings ask for what cannot be.
+    /// The settings are invalid.
     #[error("{0}")]
     Settings(String),
-    /// The picture cannot be written.
+    /// The image cannot be encoded or written.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// Somebody cancelled.
+    /// The render was cancelled.
     #[error(transparent)]
-    Stopped(#[from] Stopped),
+    Cancelled(#[from] Cancelled),
 }

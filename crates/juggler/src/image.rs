@@ -1,12 +1,12 @@
-//! Images in memory, written to files and turned into bytes.
+//! Images in memory: saving and conversion to bytes.
 
 use crate::Error;
 use juggler_imaging::tone::Quantizer;
-use juggler_imaging::{Format, Header, Tone};
+use juggler_imaging::{Header, ImageFormat, Tone};
 use juggler_math::Image;
 use std::path::Path;
 
-/// What programs do with a finished [`Image`].
+/// Extension methods of a finished [`Image`].
 ///
 /// ```
 /// use juggler::prelude::*;
@@ -21,18 +21,18 @@ use std::path::Path;
 /// # Ok::<(), juggler::Error>(())
 /// ```
 pub trait ImageExt {
-    /// Writes the image to a file; its ending (`png`, `jpg`, `exr`, `hdr`, `webp`, `pfm`) selects
-    /// the format, and formats with levels get sRGB. An existing file is replaced when the new one
-    /// is complete. Errors: an unknown ending, a size that the format cannot hold, and files that
-    /// cannot be written.
+    /// Writes the image to a file, whose extension (`png`, `jpg`, `exr`, `hdr`, `webp`, `pfm`)
+    /// selects the format. Integer formats are encoded as sRGB. The file replaces an existing one
+    /// once it is complete. Fails for an unknown extension, a size that the format cannot hold, and
+    /// a file that cannot be written.
     fn save(&self, path: impl AsRef<Path>) -> Result<(), Error>;
 
-    /// [`ImageExt::save`] with a tone curve, exposure and the like. Formats of linear light (EXR,
+    /// Writes the image as [`ImageExt::save`] does, with a tone. Formats of linear radiance (EXR,
     /// HDR, PFM) ignore all of it but the primaries of an EXR.
     fn save_with_tone(&self, path: impl AsRef<Path>, tone: &Tone) -> Result<(), Error>;
 
-    /// Levels from 0 to 255 of red, green and blue of all pixels, row by row, not dithered: an
-    /// array of the shape (height, width, 3).
+    /// Returns 8-bit red, green and blue levels of all pixels, row by row from the top, without
+    /// dithering: an array of shape (height, width, 3).
     fn to_rgb8(&self, tone: &Tone) -> Vec<u8>;
 }
 
@@ -43,7 +43,7 @@ impl ImageExt for Image {
 
     fn save_with_tone(&self, path: impl AsRef<Path>, tone: &Tone) -> Result<(), Error> {
         let path = path.as_ref();
-        let format = Format::from_path(path)?;
+        let format = ImageFormat::from_path(path)?;
         let header = Header { tone: tone.clone(), ..Header::new(self.width(), self.height()) };
         let writer = juggler_imaging::create(path, format, &header)?;
         Ok(juggler_imaging::write_image(writer, self)?)

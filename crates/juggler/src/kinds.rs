@@ -1,30 +1,30 @@
-//! Kinds of a family by name, with all their defaults: how command lines and settings choose one.
+//! Selection of integrators, samplers, tone curves and the like by name, with default parameters.
 
 use crate::Error;
-use juggler_scene::suggest::meant_or_all;
+use juggler_scene::suggest::did_you_mean_or_list;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 
-/// The names of a family's kinds, as the schema of the scene format lists them.
+/// Returns the names of a family's types, as the schema of the scene format lists them.
 pub fn names<Family: JsonSchema>() -> Vec<String> {
     let schema = schemars::schema_for!(Family);
     let kinds = schema.get("oneOf").and_then(|kinds| kinds.as_array()).into_iter().flatten();
     kinds.filter_map(|kind| kind.pointer("/required/0")?.as_str().map(str::to_owned)).collect()
 }
 
-/// A kind by name; `what` is what messages call the family.
+/// Creates a type of a family by name; `what` names the family in messages.
 pub fn by_name<Family: JsonSchema + DeserializeOwned>(what: &str, name: &str) -> Result<Family, Error> {
     check_name(what, name, names::<Family>().iter().map(String::as_str))?;
     let kind = serde_json::json!({ name: {} });
     Family::deserialize(&kind).map_err(|error| Error::Settings(format!("{what} `{name}`: {error}")))
 }
 
-/// Refuses a name that is not known, and says which was probably meant.
+/// Checks that a name is known. The error suggests similar names.
 pub fn check_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n str> + Clone) -> Result<(), Error> {
     if known.clone().any(|one| one == name) {
         return Ok(());
     }
-    let help = meant_or_all(name, known).map(|help| format!("; {help}")).unwrap_or_default();
+    let help = did_you_mean_or_list(name, known).map(|help| format!("; {help}")).unwrap_or_default();
     Err(Error::Settings(format!("there is no {what} `{name}`{help}")))
 }
 

@@ -1,4 +1,4 @@
-//! Juggler, a ray tracer whose pictures are the same to the bit everywhere.
+//! Juggler, a path tracer whose images are bit-identical on all machines.
 //!
 //! ```
 //! use juggler::prelude::*;
@@ -13,34 +13,36 @@
 //! # Ok::<(), juggler::Error>(())
 //! ```
 //!
-//! - [`Scene`](scene::Scene) is built here or loaded from a file,
-//! - [`Settings`] say what is wanted beyond what the scene says,
-//! - [`render()`] makes an image in memory, [`render_to_file`] a file of any size,
-//! - [`layers`] are what can be asked for beside the picture,
-//! - [`ImageExt`] saves an image in memory, and turns it into bytes,
-//! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards; and it keeps
-//!   the world with its acceleration structures for further pictures.
+//! - [`Scene`](scene::Scene) is built by a program or loaded from a file.
+//! - [`Settings`] override values of the scene.
+//! - [`render()`] renders an image in memory, [`render_to_file`] a file of any size.
+//! - [`aovs`] are the arbitrary output variables (AOVs).
+//! - [`ImageExt`] saves an image in memory, or converts it to bytes.
+//! - [`Picture`] renders step by step, with progress, cancellation and statistics, and keeps the
+//!   world with its acceleration structures for further renders.
 //!
-//! Rendering uses the current rayon thread pool. The crates behind it, in the order of a ray's
-//! journey: [`math`], [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`],
-//! [`world`], [`integrator`], [`mod@render`]; and [`scene`], [`imaging`], [`film`]. The folder
-//! `examples/` is a course in five steps.
+//! Rendering uses the current rayon thread pool. The facade re-exports the crates [`math`],
+//! [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`], [`world`],
+//! [`integrator`], [`mod@render`], [`scene`], [`imaging`] and [`film`]. The folder `examples/` is a
+//! course in five steps.
 
+pub mod aovs;
 pub mod denoise;
 mod error;
 pub mod estimate;
-mod frames;
 mod image;
 mod kinds;
-pub mod layers;
 pub mod memory;
-mod part;
+mod neighbor_scenes;
+mod partial_render;
 mod picture;
 pub mod prelude;
 pub mod probe;
+mod render_stats;
 mod settings;
 mod viewpoint;
 
+pub use aovs::{Aov, AovSet, MAX_GAIN};
 pub use denoise::Denoiser;
 pub use error::Error;
 pub use image::ImageExt;
@@ -58,7 +60,7 @@ pub use juggler_shape as shape;
 pub use juggler_texture as texture;
 pub use juggler_world as world;
 pub use kinds::{by_name, check_name, names};
-pub use layers::{Aov, LayerSet, MOST_GAIN};
-pub use part::Origin;
-pub use picture::{Outcome, Picture, View, render, render_to_file};
+pub use partial_render::RenderOrigin;
+pub use picture::{Picture, View, render, render_to_file};
+pub use render_stats::RenderStats;
 pub use settings::{Limit, Settings};

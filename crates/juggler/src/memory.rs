@@ -1,9 +1,9 @@
-//! How much memory a render takes, told before it starts; and how it takes less.
+//! Memory estimates of a render before it starts, and settings that fit it into a limit.
 
-use crate::frames;
-use crate::{Error, LayerSet, Picture, Settings};
-use juggler_camera::film::{Extras, Film, Rect, TILE};
-use juggler_camera::layer::Layers;
+use crate::neighbor_scenes;
+use crate::{AovSet, Error, Picture, Settings};
+use juggler_camera::aov::FilmAovs;
+use juggler_camera::film::{AovSums, Film, Rect, TILE_EDGE};
 use juggler_render::BAND_PIXELS;
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::import;
@@ -12,50 +12,51 @@ use std::ops::Range;
 
 /// Bytes of the program itself; unoptimized code takes more.
 pub const PROGRAM: u64 = if cfg!(debug_assertions) { 36 << 20 } else { 20 << 20 };
-/// Bytes of a thread: queues of rays, pieces of files.
+/// Bytes of a thread: ray queues and file buffers.
 const THREAD: u64 = 2 << 20;
-/// Rays of a sample that are followed side by side, and bytes of each ray and shadow ray that one of them may send on,
-/// waiting ones included.
+/// Rays of a sample that are traced together, then bytes of each ray and each shadow ray that one
+/// of them may spawn, including queued ones.
 const GROUP: u64 = 256;
 const RAY: u64 = 1024;
 const SHADOW: u64 = 96;
-/// Bytes of an object that is stored, while the world is built.
+/// Bytes of a stored object while the world is built.
 const OBJECT: u64 = 768;
-/// Bytes of a shape that emits light, while the world is built.
+/// Bytes of an emitting shape while the world is built.
 const EMITTER: u64 = 768;
-/// Bytes of a triangle that stands in the scene itself, while the world is built.
+/// Bytes of a triangle written in the scene file itself, while the world is built.
 const TRIANGLE: u64 = 160;
 
-/// What worlds are called that stand beside the one that is rendered.
-const BESIDE: &str = "the scene at the frames beside";
+/// Description of the worlds at the neighboring frames.
+const NEIGHBOR_WORLDS: &str = "the scene at the neighboring frames";
 
-/// Something that takes memory.
+/// Memory of one component of a render.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
-    /// What it is.
+pub struct MemoryPart {
+    /// Description of the component.
     pub what: String,
-    /// How much it takes.
+    /// Size in bytes.
     pub bytes: u64,
 }
 
-/// How much of the machine a render may use. No picture depends on it.
+/// Share of the machine that a render may use. It does not affect the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Threads, at least 1.
+    /// Number of threads, at least 1.
     pub threads: usize,
-    /// Pixels that are held in memory at once when rows go straight to the file, see [`Picture::with_bands`].
+    /// Number of pixels held in memory when rows are written directly to a file, see
+    /// [`Picture::with_bands`].
     pub band_pixels: u64,
 }
 
-/// The memory of a render: an upper bound of the most that it holds at once, first while its world is built, then
-/// while rays are traced.
+/// Upper bound of a render's peak memory, first while its world is built, then while rays are
+/// traced.
 ///
 /// ```
 /// use juggler::memory::Memory;
 /// use juggler::prelude::*;
 ///
 /// let scene = Scene::new().size(20_000, 20_000).add(Object::new(Sphere::default()));
-/// let memory = Memory::of(&scene, &Settings::default())?;
+/// let memory = Memory::estimate(&scene, &Settings::default())?;
 /// let effort = memory.fit(64 << 20, 4).unwrap();
 /// assert!(effort.threads == 4 && memory.bytes(&effort) <= 64 << 20);
 /// assert!(memory.fit(10 << 20, 4).is_err());
@@ -63,50 +64,51 @@ pub struct Effort {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Memory {
-    building: Vec<Part>,
-    /// What stays of that.
-    world: Vec<Part>,
-    /// What else rendering takes, but bands and threads.
-    rendering: Vec<Part>,
+    building: Vec<MemoryPart>,
+    /// Components of the built world.
+    world: Vec<MemoryPart>,
+    /// Other components while rendering, without bands and threads.
+    rendering: Vec<MemoryPart>,
     /// Bytes of the scene's texts.
     text: u64,
     /// Bytes of one thread's queues.
     thread: u64,
     region: Rect,
     samples: u32,
-    /// Whether rows go straight to the file.
+    /// Whether rows are written directly to the file.
     in_bands: bool,
-    /// What a film keeps beside radiance.
-    layers: Layers,
+    /// AOVs that the film stores.
+    film_aovs: FilmAovs,
 }
 
 impl Memory {
-    /// Of a scene before its files are read and its world is built. A file's part is told from its size and head.
-    pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+    /// Estimates the memory of a scene before its files are read and its world is built, from sizes
+    /// and headers of the files.
+    pub fn estimate(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         let needs = scene.needs();
-        let mut building = vec![part("the program", PROGRAM), part("the scene", of_scene(&needs))];
+        let mut building = vec![part("the program", PROGRAM), part("the scene", scene_bytes(&needs))];
         let mut world = building.clone();
-        // One after the other: only one is on its way from a file to a mesh.
+        // Files are read one after the other, so only the largest temporary counts.
         let mut most = 0;
         for file in &needs.files {
-            // A file that cannot be read is reported by who reads it.
+            // The reader reports a file that cannot be read.
             let estimate = import::estimate(file).unwrap_or_default();
-            most = most.max(estimate.peak.saturating_sub(estimate.kept));
+            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
             let name = file.file_name().unwrap_or_default().to_string_lossy();
-            world.push(part(format!("the mesh `{name}`"), estimate.kept));
+            world.push(part(format!("the mesh `{name}`"), estimate.resident_bytes));
         }
         let pictures = needs.pictures.iter().map(|file| (file, estimate_picture(file)));
         let panoramas = needs.panoramas.iter().map(|file| (file, estimate_panorama(file)));
         for (file, estimate) in pictures.chain(panoramas) {
-            most = most.max(estimate.peak.saturating_sub(estimate.kept));
+            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
             let name = file.file_name().unwrap_or_default().to_string_lossy();
-            world.push(part(format!("the picture `{name}`"), estimate.kept));
+            world.push(part(format!("the picture `{name}`"), estimate.resident_bytes));
         }
         if needs.images > 0 {
             world.push(part("images in memory", needs.images));
         }
-        let more = frames::more_worlds(scene, &settings.aovs);
-        world.push(part(BESIDE, more.saturating_mul(of_scene(&needs))));
+        let more = neighbor_scenes::extra_worlds(scene, &settings.aovs);
+        world.push(part(NEIGHBOR_WORLDS, more.saturating_mul(scene_bytes(&needs))));
         building.extend_from_slice(world.get(2..).unwrap_or_default());
         building.push(part("reading files and building trees", most));
         Ok(Self {
@@ -118,107 +120,111 @@ impl Memory {
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),
             in_bands: true,
-            layers: LayerSet::new(&settings.aovs, settings.denoiser, &Names::of(&scene.description)).layers().clone(),
+            film_aovs: AovSet::new(&settings.aovs, settings.denoiser, &Names::from_scene(&scene.description))
+                .film_aovs()
+                .clone(),
         })
     }
 
-    /// With numbers that are known when the world is built.
+    /// Replaces estimates by the sizes of the built world.
     #[must_use]
-    pub fn of_built(mut self, picture: &Picture) -> Self {
-        let geometry = picture.world().geometry();
+    pub fn with_world(mut self, picture: &Picture) -> Self {
+        let geometry = picture.world().geometry_stats();
         let world = [part("the scene", self.text), part("shapes", geometry.geometry_bytes as u64)];
         self.world.truncate(1);
         self.world.extend(world);
         self.world.push(part("trees", geometry.bvh_bytes as u64));
         self.world.push(part("emitters", geometry.emitter_bytes as u64));
-        // Meshes that keep their shape are held once; they are counted here all the same.
-        let more = picture.worlds_beside().saturating_mul(geometry.geometry_bytes.saturating_add(geometry.bvh_bytes));
-        self.world.push(part(BESIDE, more as u64));
+        // Meshes that do not deform are shared; the upper bound counts them nonetheless.
+        let more = picture.neighbor_worlds().saturating_mul(geometry.geometry_bytes.saturating_add(geometry.bvh_bytes));
+        self.world.push(part(NEIGHBOR_WORLDS, more as u64));
         self.world.push(part("textures", geometry.texture_bytes as u64));
         self.world.push(part("the background", geometry.background_bytes as u64));
         self.building.clear();
         self
     }
 
-    /// With something else that is held while rendering, such as what writes the file.
+    /// Adds a component that is held while rendering, such as a file writer.
     #[must_use]
-    pub fn and(mut self, what: impl Into<String>, bytes: u64) -> Self {
+    pub fn with_part(mut self, what: impl Into<String>, bytes: u64) -> Self {
         self.rendering.push(part(what, bytes));
         self
     }
 
-    /// With a film that is kept: one of `shards` of the pixels `crop`, or of all, with the `samples`, or all.
+    /// Adds a film that is kept: one of `shards` shards of the pixels in `crop` and of `samples`;
+    /// `None` takes all.
     #[must_use]
-    pub fn on_film(mut self, crop: Option<Rect>, samples: Option<Range<u32>>, shards: u32) -> Self {
+    pub fn with_film(mut self, crop: Option<Rect>, samples: Option<Range<u32>>, shards: u32) -> Self {
         const UNIT: u64 = 160;
-        let tile = u64::from(TILE * TILE);
+        let tile = u64::from(TILE_EDGE * TILE_EDGE);
         let area = crop.map_or(self.region, |crop| crop.intersection(&self.region)).area();
         let (tiles, shards) = (area.div_ceil(tile), u64::from(shards.max(1)));
         let pixels = (area / shards).saturating_add(2 * tile).min(area.max(tile));
-        // Where tiles are few, their samples are dealt out too.
-        let runs = juggler_render::most_runs(&samples.unwrap_or(0..self.samples)) + usize::from(tiles < 8 * shards);
+        // Few tiles are split by samples too.
+        let runs = juggler_render::max_runs(&samples.unwrap_or(0..self.samples)) + usize::from(tiles < 8 * shards);
         let dealing = tiles.max(16 * shards).saturating_mul(UNIT);
-        let row = u64::from(self.region.width) * u64::from(TILE) * 16;
+        let row = u64::from(self.region.width) * u64::from(TILE_EDGE) * 16;
         self.in_bands = false;
-        let film = Film::bytes(pixels, runs, Extras::bytes_a_pixel(self.layers.planes.len(), self.layers.masks));
-        self.and("the film", film.saturating_add(dealing).saturating_add(row))
+        let film =
+            Film::max_bytes(pixels, runs, AovSums::bytes_per_pixel(self.film_aovs.planes.len(), self.film_aovs.masks));
+        self.with_part("the film", film.saturating_add(dealing).saturating_add(row))
     }
 
-    /// The pixels of the whole picture.
+    /// Returns the pixels of the rendered region.
     pub fn region(&self) -> Rect {
         self.region
     }
 
-    fn building_with(&self, effort: &Effort) -> Vec<Part> {
+    fn building_with(&self, effort: &Effort) -> Vec<MemoryPart> {
         let threads = part("threads", THREAD.saturating_mul(effort.threads as u64));
         self.building.iter().cloned().chain([threads]).collect()
     }
 
-    fn rendering_with(&self, effort: &Effort) -> Vec<Part> {
+    fn rendering_with(&self, effort: &Effort) -> Vec<MemoryPart> {
         let band = if self.in_bands { juggler_render::band_bytes(self.region, effort.band_pixels) } else { 0 };
         let queues = self.thread.saturating_mul(effort.threads as u64);
         let rest = [part("finished rows", band), part("threads and their queues of rays", queues)];
         self.world.iter().chain(&self.rendering).cloned().chain(rest).collect()
     }
 
-    /// What is held at the worst moment, what takes nothing left out.
-    pub fn parts(&self, effort: &Effort) -> Vec<Part> {
+    /// Returns the components at the peak, without empty ones.
+    pub fn parts(&self, effort: &Effort) -> Vec<MemoryPart> {
         let steps = [self.building_with(effort), self.rendering_with(effort)];
         let mut worst = steps.into_iter().max_by_key(|parts| sum(parts)).unwrap_or_default();
         worst.retain(|part| part.bytes > 0);
         worst
     }
 
-    /// The most that is held at once, in bytes.
+    /// Returns the peak memory in bytes.
     pub fn bytes(&self, effort: &Effort) -> u64 {
         sum(&self.building_with(effort)).max(sum(&self.rendering_with(effort)))
     }
 
-    /// The effort of up to `threads` threads that takes no more than `most` bytes: smaller bands are tried first, then
-    /// fewer threads. What takes how much at least, when nothing helps.
-    pub fn fit(&self, most: u64, threads: usize) -> Result<Effort, Vec<Part>> {
+    /// Returns an effort of up to `threads` threads whose peak is at most `most` bytes; it reduces
+    /// the bands first, then the threads. Fails with the components of the smallest effort.
+    pub fn fit(&self, most: u64, threads: usize) -> Result<Effort, Vec<MemoryPart>> {
         let least = |threads| Effort { threads, band_pixels: 0 };
         let fits = |threads: &usize| self.bytes(&least(*threads)) <= most;
         let Some(threads) = (1..=threads.max(1)).rev().find(fits) else { return Err(self.parts(&least(1))) };
-        // Bands are halved: their heights are whole rows of tiles anyway.
+        // Halve the bands; their heights are rounded to whole rows of tiles anyway.
         let sizes = std::iter::successors(Some(BAND_PIXELS), |pixels| (*pixels > 1).then_some(pixels / 2));
         let efforts = sizes.map(|band_pixels| Effort { threads, band_pixels });
         Ok(efforts.into_iter().find(|effort| self.bytes(effort) <= most).unwrap_or(least(threads)))
     }
 }
 
-fn of_scene(needs: &Needs) -> u64 {
+fn scene_bytes(needs: &Needs) -> u64 {
     let objects = needs.objects.saturating_mul(OBJECT);
     let triangles = needs.triangles.saturating_mul(TRIANGLE);
     let emitters = needs.emitters.saturating_mul(EMITTER);
     [objects, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
 }
 
-fn part(what: impl Into<String>, bytes: u64) -> Part {
-    Part { what: what.into(), bytes }
+fn part(what: impl Into<String>, bytes: u64) -> MemoryPart {
+    MemoryPart { what: what.into(), bytes }
 }
 
-/// Bytes of all parts.
-pub fn sum(parts: &[Part]) -> u64 {
+/// Returns the bytes of all components.
+pub fn sum(parts: &[MemoryPart]) -> u64 {
     parts.iter().map(|part| part.bytes).fold(0, u64::saturating_add)
 }

@@ -1,14 +1,14 @@
-//! One picture, from the scene to the file: what the program, Rust and all other users share.
+//! Rendering of one image, from the scene to the file.
 
-use crate::frames::FramesBeside;
-use crate::{Error, LayerSet, Limit, Settings};
-use juggler_camera::film::{Digest, Filter, Rect, Summary};
-use juggler_camera::{AnyCamera, Perspective, Shot};
-use juggler_film::counts::Spread;
-use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
+use crate::neighbor_scenes::NeighborScenes;
+use crate::{AovSet, Error, Limit, RenderStats, Settings};
+use juggler_camera::film::{FilmDigest, FilmSummary, FilterSampler, Rect};
+use juggler_camera::{AnyCamera, Perspective, ShutterCamera};
+use juggler_film::counts::SampleCountStats;
+use juggler_imaging::{Header, ImageFormat, Options, RowWriter, Tone};
 use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
-use juggler_render::{BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
+use juggler_render::{BAND_PIXELS, Cancelled, Control, Job, Schedule, Scheduler};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_world::{SimdLevel, World};
@@ -16,90 +16,84 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The program as files name it.
+/// Name of the program in files.
 pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
 
-/// A scene compiled for one picture: every number is settled.
+/// Scene compiled for rendering one image, with all settings resolved.
 #[derive(Clone)]
 pub struct Picture {
     pub(crate) compiled: Compiled,
-    shot: Shot,
+    shutter_camera: ShutterCamera,
     region: Rect,
     tone: Tone,
     limit: Limit,
     fingerprint: Fingerprint,
-    /// The scene's part of it.
-    of_scene: Fingerprint,
+    /// Part of the fingerprint that the scene determines.
+    scene_fingerprint: Fingerprint,
     band_pixels: u64,
-    layers: Arc<LayerSet>,
-    beside: FramesBeside,
+    aovs: Arc<AovSet>,
+    neighbors: NeighborScenes,
 }
 
-/// From where a world is looked at, and how: all that can change without building it anew.
+/// Camera and settings that can change without rebuilding the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// From where.
+    /// Camera.
     pub camera: AnyCamera,
-    /// Size, samples, integrator and the like; without an integrator the picture keeps its own.
+    /// Size, samples, integrator and the like. Without an integrator the picture's is kept.
     pub render: Render,
-    /// From linear light to what files keep.
+    /// Conversion from linear radiance to pixels of files.
     pub tone: Tone,
 }
 
-/// What is to be known about a render besides its pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
-    /// Hash and mean of the linear pixels.
-    pub film: Summary,
-    /// Samples per pixel.
-    pub samples: Spread,
-    /// Rays traced.
-    pub rays: Rays,
-    /// Time spent on tracing rays.
-    pub render: Duration,
-    /// Time spent on taking the noise out.
-    pub denoise: Duration,
-    /// Time spent on encoding and writing.
-    pub write: Duration,
-}
-
 impl Picture {
-    /// Builds the world for a scene and what is wished for beyond it.
+    /// Compiles a scene with settings and builds its world.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let wished = settings.apply(scene)?;
-        let compiled = wished.compile()?;
-        Self::of(scene, &wished, settings, compiled)
+        let adjusted = settings.apply(scene)?;
+        let compiled = adjusted.compile()?;
+        Self::from_compiled(scene, &adjusted, settings, compiled)
     }
 
-    /// The same, with what still serves of this picture's world, which was made of the scene `before`
-    /// ([`Scene::compile_after`]).
+    /// Compiles an edited scene; the world of `before` is reused ([`Scene::compile_after`]).
     pub fn after(&self, before: &Scene, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let (wished, before) = (settings.apply(scene)?, settings.apply(before)?);
-        let compiled = wished.compile_after(&before, &self.compiled)?;
-        Self::of(scene, &wished, settings, compiled)
+        let (adjusted, before) = (settings.apply(scene)?, settings.apply(before)?);
+        let compiled = adjusted.compile_after(&before, &self.compiled)?;
+        Self::from_compiled(scene, &adjusted, settings, compiled)
     }
 
-    /// `scene` is as it is wished for, and `compiled` what became of it; `plain` is what it was.
-    fn of(plain: &Scene, scene: &Scene, settings: &Settings, mut compiled: Compiled) -> Result<Self, Error> {
+    /// Completes a picture of `plain`, which the settings turned into `scene`.
+    fn from_compiled(plain: &Scene, scene: &Scene, settings: &Settings, mut compiled: Compiled) -> Result<Self, Error> {
         compiled.integrator.reason = reason(plain, settings);
         let [width, height] = scene.description.render.size;
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
-        let shot = compiled.shot(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let (tone, limit, mut of_scene) = ((*scene.description.tone).clone(), settings.limit, scene.fingerprint());
-        of_scene.set_camera(&camera.1, &compiled.course);
-        let fingerprint = of_scene.clone();
-        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser, &compiled.names));
-        layers.check()?;
-        let beside = FramesBeside::of(plain, settings, &compiled, &shot, &layers)?;
+        let shutter_camera =
+            compiled.shutter_camera(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
+        let (tone, limit, mut scene_fingerprint) =
+            ((*scene.description.tone).clone(), settings.limit, scene.fingerprint());
+        scene_fingerprint.set_camera(&camera.1, &compiled.camera_keys);
+        let fingerprint = scene_fingerprint.clone();
+        let aovs = Arc::new(AovSet::new(&settings.aovs, settings.denoiser, &compiled.names));
+        aovs.check()?;
+        let neighbors = NeighborScenes::build(plain, settings, &compiled, &shutter_camera, &aovs)?;
         let band_pixels = BAND_PIXELS;
-        let mut picture =
-            Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers, beside };
+        let mut picture = Self {
+            shutter_camera,
+            region,
+            tone,
+            limit,
+            fingerprint,
+            scene_fingerprint,
+            compiled,
+            band_pixels,
+            aovs,
+            neighbors,
+        };
         picture.complete_fingerprint();
         Ok(picture)
     }
 
-    /// How its world is looked at.
+    /// Returns the current view.
     pub fn view(&self) -> View {
         let camera = self.compiled.cameras.first().map(|(_, camera)| camera.clone());
         View {
@@ -109,8 +103,8 @@ impl Picture {
         }
     }
 
-    /// The same world looked at otherwise: all of it, until its samples are there. The camera's name stays. Layers that tell where
-    /// things go are those of a camera that stands still.
+    /// Returns another view of the same world, without crop and limits. The camera's name is kept;
+    /// motion vectors assume a static camera.
     pub fn seen(&self, mut view: View) -> Result<Self, Error> {
         let integrator = view.render.integrator.get_or_insert_with(|| self.integrator().clone()).clone();
         let mut scene = Scene::new();
@@ -125,19 +119,19 @@ impl Picture {
         let [width, height] = view.render.size;
         let mut picture = self.clone();
         if view.camera != self.view().camera {
-            picture.compiled.course.clear();
+            picture.compiled.camera_keys.clear();
         }
         picture.region = Rect { x: 0, y: 0, width, height };
         (picture.tone, picture.limit) = (view.tone, Limit::Samples);
         if let Some((_, camera)) = picture.compiled.cameras.first_mut() {
             *camera = view.camera.clone();
         }
-        let shot = picture.compiled.shot(UVec2::new(width, height));
-        picture.shot = shot.map_err(|error| Error::Settings(error.to_string()))?;
-        picture.beside = self.beside.seen_from(&picture.shot);
-        picture.of_scene = self.of_scene.seen_as(&scene.fingerprint());
-        picture.of_scene.set_camera(&view.camera, &picture.compiled.course);
-        picture.fingerprint = picture.of_scene.clone();
+        let shutter_camera = picture.compiled.shutter_camera(UVec2::new(width, height));
+        picture.shutter_camera = shutter_camera.map_err(|error| Error::Settings(error.to_string()))?;
+        picture.neighbors = self.neighbors.with_camera(&picture.shutter_camera);
+        picture.scene_fingerprint = self.scene_fingerprint.with_view_of(&scene.fingerprint());
+        picture.scene_fingerprint.set_camera(&view.camera, &picture.compiled.camera_keys);
+        picture.fingerprint = picture.scene_fingerprint.clone();
         picture.compiled.settings = view.render;
         if integrator != *self.integrator() {
             picture.compiled.integrator = IntegratorChoice { integrator, reason: IntegratorReason::Settings };
@@ -146,7 +140,7 @@ impl Picture {
         Ok(picture)
     }
 
-    /// Whether all samples of both are the same, so that a film of one can go on as one of the other.
+    /// Returns whether the samples of both are equal, so that one can continue the other's film.
     pub fn shares_samples(&self, other: &Self) -> bool {
         let (a, b) = (self.job(), other.job());
         Arc::ptr_eq(self.world(), other.world())
@@ -155,86 +149,90 @@ impl Picture {
             && a.filter == b.filter
             && self.integrator() == other.integrator()
             && (a.samples == 1) == (b.samples == 1)
-            && a.layers == b.layers
+            && a.aovs == b.aovs
     }
 
-    /// The same picture for another vector unit than the best of this machine: for tests and measurements.
+    /// Selects the vector instructions; for tests and benchmarks.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.compiled.world = Arc::new(Arc::unwrap_or_clone(self.compiled.world).with_simd_level(level));
         self
     }
 
-    /// Has fewer or more pixels in memory at once when rows go straight to their file, rounded to whole rows of tiles;
-    /// without, some four million. No picture depends on it.
+    /// Sets how many pixels are in memory when rows are written directly to a file, rounded to
+    /// whole rows of tiles. The default is 2^22; the image does not depend on it.
     #[must_use]
     pub fn with_bands(mut self, pixels: u64) -> Self {
         self.band_pixels = pixels;
         self
     }
 
-    /// Width and height of what is rendered: of the crop when there is one.
+    /// Returns width and height of the rendered region: the crop's, if there is one.
     pub fn size(&self) -> [u32; 2] {
         [self.region.width, self.region.height]
     }
 
-    /// Samples per pixel.
+    /// Returns the number of samples per pixel.
     pub fn samples(&self) -> u32 {
         self.compiled.settings.samples
     }
 
-    /// Samples of all pixels.
+    /// Returns the number of samples of all pixels.
     pub fn total_samples(&self) -> u64 {
         self.region.area().saturating_mul(u64::from(self.samples()))
     }
 
-    /// What can be seen.
+    /// Returns the world.
     pub fn world(&self) -> &Arc<World> {
         &self.compiled.world
     }
 
-    /// The integrator that makes it; [`Compiled::integrator`] says why.
+    /// Returns the integrator; [`Compiled::integrator`] gives the reason of its choice.
     pub fn integrator(&self) -> &AnyIntegrator {
         &self.compiled.integrator.integrator
     }
 
-    /// World, cameras and settings.
+    /// Returns world, cameras and settings.
     pub fn compiled(&self) -> &Compiled {
         &self.compiled
     }
 
-    /// Everything that decides the pixels. Pictures with the same can be extended and joined.
+    /// Returns the fingerprint of everything that determines the pixels. Films of equal
+    /// fingerprints can be continued and merged.
     pub fn fingerprint(&self) -> &Fingerprint {
         &self.fingerprint
     }
 
-    /// The scene's fingerprint says nothing of the program, nor of patterns that follow from the number of samples.
+    /// Adds program version and sampling pattern, which the scene's fingerprint lacks.
     fn complete_fingerprint(&mut self) {
-        let Job { pattern, filter, samples, layers, .. } = self.job();
-        let grid =
-            if let Filter::Juggler(side) = filter { format!(", filter for {side} x {side}") } else { String::new() };
+        let Job { pattern, filter, samples, aovs, .. } = self.job();
+        let grid = if let FilterSampler::Juggler(side) = filter {
+            format!(", filter for {side} x {side}")
+        } else {
+            String::new()
+        };
         let single = if samples == 1 { ", one through the centre" } else { "" };
-        let halves = if layers.has_halves() { ", halves apart" } else { "" };
+        let halves = if aovs.has_halves() { ", halves apart" } else { "" };
         self.fingerprint.insert("juggler", env!("CARGO_PKG_VERSION"));
         self.fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}{halves}"));
     }
 
-    /// What ends it.
+    /// Returns the stop condition.
     pub fn limit(&self) -> &Limit {
         &self.limit
     }
 
-    /// The pixels that are rendered.
+    /// Returns the rendered region, in pixels.
     pub fn region(&self) -> Rect {
         self.region
     }
 
-    /// From linear light to what files keep.
+    /// Returns the conversion from linear radiance to pixels of files.
     pub fn tone(&self) -> &Tone {
         &self.tone
     }
 
-    /// The head of its file; the texts say which program made it, and the fingerprint, seed and
-    /// samples, if their number ends the picture.
+    /// Returns the header of the image file. Its metadata give program, fingerprint and seed, and
+    /// the number of samples unless noise or time decides it.
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
@@ -243,7 +241,7 @@ impl Picture {
             text("Fingerprint", &self.fingerprint.hash()),
             text("Seed", &self.compiled.settings.seed.to_string()),
         ];
-        // How many samples noise or time will allow is known in the end.
+        // The final number of samples is unknown under a noise or time limit.
         if self.limit == Limit::Samples {
             metadata.push(text("Samples", &self.samples().to_string()));
         }
@@ -257,63 +255,62 @@ impl Picture {
         Header { tone: self.tone.clone(), options, metadata, viewpoint, ..Header::new(width, height) }
     }
 
-    /// What is asked for beside it.
-    pub fn layers(&self) -> &LayerSet {
-        &self.layers
+    /// Returns the AOVs.
+    pub fn layers(&self) -> &AovSet {
+        &self.aovs
     }
 
-    /// A hash of what the scene is at the frames beside, where its layers tell of that and it changes; else empty.
-    pub(crate) fn beside(&self) -> &str {
-        &self.beside.fingerprint
+    /// Returns a hash of the neighboring frames; empty if no AOV needs them or nothing changes.
+    pub(crate) fn neighbor_fingerprint(&self) -> &str {
+        &self.neighbors.fingerprint
     }
 
-    /// How many worlds it holds but its own.
-    pub(crate) fn worlds_beside(&self) -> usize {
-        self.beside.frames.as_ref().map_or(0, |frames| frames.worlds_beside(self.world()))
+    /// Returns the number of worlds in addition to the picture's own.
+    pub(crate) fn neighbor_worlds(&self) -> usize {
+        self.neighbors.frames.as_ref().map_or(0, |frames| frames.count_other_worlds(self.world()))
     }
 
-    /// The engine's view of it.
+    /// Returns the render job for the engine.
     pub fn job(&self) -> Job<'_> {
         let settings = &self.compiled.settings;
-        let samples = self.limit.spread_over(settings.samples);
-        let layers = self.layers.layers();
-        let of_stream = if layers.has_halves() { samples.div_ceil(2) } else { samples };
+        let samples = self.limit.pattern_samples(settings.samples);
+        let aovs = self.aovs.film_aovs();
+        let of_stream = if aovs.has_halves() { samples.div_ceil(2) } else { samples };
         Job {
             world: &self.compiled.world,
-            camera: &self.shot,
+            camera: &self.shutter_camera,
             integrator: &**self.integrator(),
-            filter: settings.filter.filter(samples),
-            pattern: settings.sampler.pattern(of_stream),
+            filter: settings.filter.sampler(samples),
+            pattern: settings.sampler.point_set(of_stream),
             samples,
             seed: settings.seed,
-            layers,
-            frames: self.beside.frames.as_ref(),
+            aovs,
+            frames: self.neighbors.frames.as_ref(),
         }
     }
 
-    /// Renders and hands whole finished rows to `rows`, from top to bottom; only a band of them is in memory
-    /// at once.
-    pub fn render<E: From<Stopped>>(
+    /// Renders and passes finished rows to `rows`, from the top; memory holds one band at a time.
+    pub fn render<E: From<Cancelled>>(
         &self,
         scheduler: Scheduler,
         control: &Control,
         mut rows: impl FnMut(&[Rgb]) -> Result<(), E>,
-    ) -> Result<Summary, E> {
+    ) -> Result<FilmSummary, E> {
         let [width, height] = self.size();
-        let mut digest = Digest::new(width, height);
+        let mut digest = FilmDigest::new(width, height);
         let schedule = Schedule { scheduler, band_pixels: self.band_pixels };
         juggler_render::render(&self.job(), self.region, schedule, control, |band| {
             digest.update(&band);
             rows(&band)
         })
         .map(|clamped| {
-            digest.clamp(clamped);
+            digest.add_clamped(clamped);
             digest.finish()
         })
     }
 
-    /// Renders into a file, or whatever else the writer writes to.
-    pub fn write(&self, mut writer: Box<dyn RowWriter>, control: &Control) -> Result<Outcome, Error> {
+    /// Renders to the destination of `writer`.
+    pub fn write(&self, mut writer: Box<dyn RowWriter>, control: &Control) -> Result<RenderStats, Error> {
         let start = Instant::now();
         let mut write = Duration::ZERO;
         let film = self.render(Scheduler::default(), control, |rows| {
@@ -326,12 +323,12 @@ impl Picture {
         let finish = Instant::now();
         writer.finish()?;
         let (denoise, write) = (Duration::ZERO, write + finish.elapsed());
-        let samples = Spread::even(self.samples());
-        Ok(Outcome { film, samples, rays: control.rays(), render, denoise, write })
+        let samples = SampleCountStats::uniform(self.samples());
+        Ok(RenderStats { film, samples, rays: control.rays(), render, denoise, write })
     }
 
     /// Renders into memory.
-    pub fn image(&self, control: &Control) -> Result<Image, Stopped> {
+    pub fn image(&self, control: &Control) -> Result<Image, Cancelled> {
         let [width, height] = self.size();
         let mut image = Image::filled(width, height, Rgb::BLACK);
         let mut rest = image.pixels_mut();
@@ -339,7 +336,7 @@ impl Picture {
             let (these, others) = std::mem::take(&mut rest).split_at_mut(rows.len());
             these.copy_from_slice(rows);
             rest = others;
-            Ok::<(), Stopped>(())
+            Ok::<(), Cancelled>(())
         })?;
         Ok(image)
     }
@@ -359,17 +356,17 @@ pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
     Ok(Picture::new(scene, settings)?.image(&Control::default())?)
 }
 
-/// Renders a scene into a file of any size, row by row; the ending picks the format. An existing file is
-/// replaced when the new one is complete.
-pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<Outcome, Error> {
+/// Renders a scene to a file of any size, row by row; the extension selects the format. The file
+/// replaces an existing one once it is complete.
+pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<RenderStats, Error> {
     let path = path.as_ref();
-    let format = Format::from_path(path)?;
+    let format = ImageFormat::from_path(path)?;
     let picture = Picture::new(scene, settings)?;
     let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
     picture.write(writer, &Control::default())
 }
 
-/// Why a scene is rendered with its integrator, with these settings beside it.
+/// Returns the reason for the choice of the integrator under these settings.
 fn reason(scene: &Scene, settings: &Settings) -> IntegratorReason {
     if settings.integrator.is_some() { IntegratorReason::Settings } else { scene.integrator_choice().reason }
 }
@@ -388,9 +385,9 @@ mod tests {
             let few = Settings { camera: name.clone(), ..Settings::default() };
             let many = Settings { samples: Some(7), camera: name, ..Settings::default() };
             let picture = Picture::new(&scene, &few).unwrap();
-            let wanted = Picture::new(&scene, &many).unwrap();
-            let seen = picture.seen(View { render: wanted.view().render, ..picture.view() }).unwrap();
-            assert_eq!(seen.fingerprint(), wanted.fingerprint());
+            let expected = Picture::new(&scene, &many).unwrap();
+            let seen = picture.seen(View { render: expected.view().render, ..picture.view() }).unwrap();
+            assert_eq!(seen.fingerprint(), expected.fingerprint());
             let other = Perspective { vertical_fov_degrees: Some(50.0), ..Perspective::default() };
             let moved = picture.seen(View { camera: other.into(), ..picture.view() }).unwrap();
             assert_ne!(moved.fingerprint(), picture.fingerprint());

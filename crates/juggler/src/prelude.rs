@@ -1,10 +1,10 @@
-//! What most programs need: `use juggler::prelude::*;`
+//! Common items of most programs: `use juggler::prelude::*;`
 //!
-//! Textures and backgrounds stay behind their modules' names: `texture::Gradient`, `background::Gradient`.
+//! Textures and backgrounds keep their modules' names: `texture::Gradient`, `background::Gradient`.
 
 pub use crate::{Error, ImageExt, Picture, Settings, View};
 pub use juggler_camera::*;
-pub use juggler_imaging::{AnyCurve, Format, Tone};
+pub use juggler_imaging::{AnyCurve, ImageFormat, Tone};
 pub use juggler_integrator as integrator;
 pub use juggler_light::*;
 pub use juggler_material::*;

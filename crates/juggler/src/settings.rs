@@ -1,105 +1,107 @@
-//! What a picture is asked for beyond what its scene says.
+//! Settings that override values of a scene.
 
 use crate::kinds::{by_name, check_name};
 use crate::{Aov, Denoiser, Error};
-use juggler_camera::film::{BLOCK, Rect};
+use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_imaging::{Primaries, Tone, WhiteBalance};
 use juggler_integrator::AnyIntegrator;
-use juggler_render::Stop;
+use juggler_render::StopCriterion;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
 use juggler_scene::{IntegratorChoice, Scene};
 
-/// Most samples of a pixel when the noise stays and nobody says.
-const MOST_FOR_NOISE: u32 = 1 << 16;
-/// Most samples of a pixel in any case.
-const MOST: u32 = 1 << 24;
+/// Default maximum number of samples per pixel under a noise limit.
+const MAX_SAMPLES_NOISE: u32 = 1 << 16;
+/// Default maximum number of samples per pixel under a time limit.
+const MAX_SAMPLES_TIME: u32 = 1 << 24;
 
-/// What ends a picture.
+/// Stop condition of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Limit {
-    /// When all pixels have their samples.
+    /// Stops when all pixels have their samples.
     #[default]
     Samples,
-    /// When the relative error of each block of 16 × 16 pixels is at most this: the root mean square over its pixels,
-    /// estimated from the picture's own samples (see [`Stop::Noise`]).
+    /// Stops when the relative error of each tile of 16 x 16 pixels is at most this value: the root
+    /// mean square over its pixels, estimated from the samples (see [`StopCriterion::Noise`]).
     Noise(f32),
-    /// When somebody calls [`Control::finish`](juggler_render::Control::finish), which is to be
+    /// Stops when the caller invokes [`Control::finish`](juggler_render::Control::finish), normally
     /// after some time.
     Time {
-        /// How long it is to take.
+        /// Intended duration, in seconds.
         seconds: f64,
     },
 }
 
 impl Limit {
-    /// When a tile has enough.
-    pub fn stop(&self) -> Stop {
+    /// Returns the stop condition of a tile.
+    pub fn stop(&self) -> StopCriterion {
         match self {
-            Self::Noise(level) => Stop::Noise(*level),
-            Self::Samples => Stop::Samples,
-            Self::Time { .. } => Stop::Evenly,
+            Self::Noise(level) => StopCriterion::Noise(*level),
+            Self::Samples => StopCriterion::Samples,
+            Self::Time { .. } => StopCriterion::Evenly,
         }
     }
 
-    /// The most samples of a pixel when nobody says.
-    fn most(&self, of_scene: u32) -> u32 {
+    /// Returns the default maximum number of samples per pixel.
+    fn max_samples(&self, of_scene: u32) -> u32 {
         match self {
             Self::Samples => of_scene,
-            Self::Noise(_) => MOST_FOR_NOISE,
-            Self::Time { .. } => MOST,
+            Self::Noise(_) => MAX_SAMPLES_NOISE,
+            Self::Time { .. } => MAX_SAMPLES_TIME,
         }
     }
 
-    /// The number of samples by which samplers choose their pattern. Where the end is open, each block is to be well
-    /// spread.
-    pub(crate) fn spread_over(&self, samples: u32) -> u32 {
-        if *self == Self::Samples { samples } else { BLOCK }
+    /// Returns the number of samples for which samplers choose their pattern. With an open end,
+    /// each block of samples is well distributed.
+    pub(crate) fn pattern_samples(&self, samples: u32) -> u32 {
+        if *self == Self::Samples { samples } else { BLOCK_SAMPLES }
     }
 }
 
-/// Wishes that come before what the scene file says. What is `None` stays as the scene has it.
+/// Settings that override those of the scene; `None` keeps the scene's value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Width and height in pixels.
     pub size: Option<[u32; 2]>,
-    /// Samples per pixel; the most of them when the picture ends by noise or time.
+    /// Samples per pixel; their maximum under a noise or time limit.
     pub samples: Option<u32>,
-    /// What ends it.
+    /// Stop condition.
     pub limit: Limit,
-    /// Name of an integrator. The scene's own numbers are kept when it is the scene's own integrator.
+    /// Name of an integrator, with default parameters; the scene's parameters are kept if it is the
+    /// scene's own integrator.
     pub integrator: Option<String>,
-    /// Name of a sampler; the scene's own numbers are kept likewise.
+    /// Name of a sampler; the scene's parameters are kept likewise.
     pub sampler: Option<String>,
-    /// Maximum number of mirror and glass bounces under the integrator `classic`, 0 to 1000, and of
-    /// path segments under `path`, 1 to 10,000.
+    /// Maximum number of specular bounces under the integrator `classic`, 0 to 1000, and of path
+    /// segments under `path`, 1 to 10,000.
     pub max_depth: Option<u32>,
     /// Name of one of the scene's cameras.
     pub camera: Option<String>,
-    /// When the shutter opens and closes, in frames from the frame's own time.
+    /// Times at which the shutter opens and closes, in frames relative to the current frame.
     pub shutter: Option<[f64; 2]>,
-    /// Another seed, another noise.
+    /// Seed of the sampler; another seed gives another noise pattern.
     pub seed: Option<u64>,
-    /// The part of the picture that is rendered; all of it without.
+    /// Region to render, in pixels; `None` renders the whole image.
     pub crop: Option<Rect>,
-    /// Name of a tone curve, for files that do not keep linear light.
+    /// Name of a tone curve, for files that do not store linear radiance.
     pub curve: Option<String>,
-    /// Photographic stops, likewise: each doubles the light.
+    /// Exposure in photographic stops, for such files; each stop doubles the brightness.
     pub exposure_stops: Option<f32>,
-    /// What is asked for beside the picture.
+    /// Arbitrary output variables to render.
     pub aovs: Vec<Aov>,
-    /// What takes the noise out, if anything is to.
+    /// Denoiser; `None` keeps the noise.
     pub denoiser: Option<Denoiser>,
-    /// Which light is to look white, likewise.
+    /// Color of the light that appears white, for such files.
     pub white_balance: Option<WhiteBalance>,
-    /// The primaries of the file.
+    /// Color primaries of the file.
     pub primaries: Option<Primaries>,
-    /// Whether levels of 8 bits are dithered.
+    /// Whether 8-bit levels are dithered.
     pub dither: Option<bool>,
 }
 
 impl Settings {
-    /// The scene as it is wished for.
+    /// Returns the scene with these settings applied. Fails for unknown names and values out of
+    /// range.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
         let mut scene = scene.clone();
         let description = &mut scene.description;
@@ -109,16 +111,17 @@ impl Settings {
             description.render.camera = Some(CameraName(name.clone()));
         }
         if self.max_depth.is_some() && self.integrator.is_none() {
-            description.render.integrator = Some(IntegratorChoice::of(description).integrator);
+            description.render.integrator = Some(IntegratorChoice::for_scene(description).integrator);
         }
         self.apply_to(&mut description.render, &mut description.tone)?;
         Ok(scene)
     }
 
-    /// The same for a scene's settings and tone alone; cameras are left. A wish for a depth needs `render.integrator`.
+    /// Applies the settings other than the camera to render settings and tone. `max_depth` needs
+    /// `render.integrator`.
     pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
         render.size = self.size.unwrap_or(render.size);
-        render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
+        render.samples = self.samples.unwrap_or(self.limit.max_samples(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);
         render.seed = self.seed.unwrap_or(render.seed);
         let named = render.integrator.as_ref().map(AnyIntegrator::name);
@@ -141,17 +144,17 @@ impl Settings {
         Ok(())
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height, in pixels.
     pub fn size_of(&self, scene: &Scene) -> [u32; 2] {
         self.size.unwrap_or(scene.description.render.size)
     }
 
-    /// Samples of a pixel, or the most of them.
+    /// Returns the number of samples per pixel, or their maximum.
     pub fn samples_of(&self, scene: &Scene) -> u32 {
-        self.samples.unwrap_or(self.limit.most(scene.description.render.samples))
+        self.samples.unwrap_or(self.limit.max_samples(scene.description.render.samples))
     }
 
-    /// The part of a picture of this size that is rendered.
+    /// Returns the rendered region of an image of this size. Fails if the crop reaches beyond it.
     pub fn region(&self, [width, height]: [u32; 2]) -> Result<Rect, Error> {
         let Some(crop) = self.crop else { return Ok(Rect { x: 0, y: 0, width, height }) };
         let inside =
@@ -164,19 +167,19 @@ impl Settings {
     }
 }
 
-/// Sets the depth of an integrator that has one, within what the scene format allows.
+/// Sets the maximum depth of an integrator that has one, within the range of the scene format.
 fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
     let (place, range) = match integrator {
         AnyIntegrator::Classic(classic) => (&mut classic.max_depth, 0..=1000),
         AnyIntegrator::Path(path) => (&mut path.max_depth, 1..=10_000),
         other => {
             let name = other.name();
-            return Err(Error::Settings(format!("the integrator `{name}` follows no path whose depth has a limit")));
+            return Err(Error::Settings(format!("the integrator `{name}` has no maximum depth")));
         }
     };
     if !range.contains(&depth) {
         let (least, most) = (range.start(), range.end());
-        return Err(Error::Settings(format!("a depth of {depth} is none of {least} to {most}")));
+        return Err(Error::Settings(format!("a maximum depth of {depth} is out of range: {least} to {most}")));
     }
     *place = depth;
     Ok(())
@@ -213,8 +216,9 @@ mod tests {
     #[test]
     fn depths_are_those_of_the_integrator() {
         let apply = |integrator: &str, depth| {
-            let wish = Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
-            wish.apply(&scene()).map(|scene| scene.description.render.integrator.clone())
+            let settings =
+                Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
+            settings.apply(&scene()).map(|scene| scene.description.render.integrator.clone())
         };
         assert_eq!(apply("path", 4).unwrap(), Some(Path { max_depth: 4, ..Path::default() }.into()));
         assert!(apply("classic", 0).is_ok() && apply("path", 10_000).is_ok());
@@ -228,8 +232,8 @@ mod tests {
         let mut scene = scene();
         scene.description.tone.exposure_stops = 1.5;
         scene.description.tone.white_balance = Some(WhiteBalance::default());
-        let wish = Settings { primaries: Some(Primaries::Rec2020), dither: Some(false), ..Settings::default() };
-        let tone = wish.apply(&scene).unwrap().description.tone;
+        let settings = Settings { primaries: Some(Primaries::Rec2020), dither: Some(false), ..Settings::default() };
+        let tone = settings.apply(&scene).unwrap().description.tone;
         let expected = Tone { primaries: Primaries::Rec2020, dither: false, ..(*scene.description.tone).clone() };
         assert_eq!(tone, expected);
     }
@@ -249,7 +253,7 @@ mod tests {
 
     #[test]
     fn cameras_are_known_by_name() {
-        let wish = Settings { camera: Some("top".into()), ..Settings::default() };
-        assert!(wish.apply(&scene()).is_err());
+        let settings = Settings { camera: Some("top".into()), ..Settings::default() };
+        assert!(settings.apply(&scene()).is_err());
     }
 }

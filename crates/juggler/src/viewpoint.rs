@@ -1,18 +1,18 @@
-//! From where a picture is taken, for its file.
+//! Viewpoint metadata of image files.
 
 use crate::Picture;
-use juggler_camera::{Finder, Matrix};
+use juggler_camera::{Matrix, WorldToFilm};
 use juggler_imaging::{Matrix4, Viewpoint};
 
-/// Of the time that the shutter is open, where the camera is told to stand: half way.
-const MIDDLE: f32 = 0.5;
+/// Shutter time of the viewpoint, from 0 (open) to 1 (closed).
+const SHUTTER_CENTER: f32 = 0.5;
 
 impl Picture {
-    /// From where it is taken, half way between opening and closing of the shutter. Its pixels are those of the file: of the crop when
-    /// there is one.
+    /// Returns the camera matrices at the middle of the shutter interval, relative to the rendered
+    /// region. `None` for a camera without finite matrices.
     pub fn viewpoint(&self) -> Option<Viewpoint> {
-        let (projection, region) = (self.job().camera.at(MIDDLE), self.region());
-        let mut matrix = Finder::new(&projection)?.matrix();
+        let (projection, region) = (self.job().camera.projection_at(SHUTTER_CENTER), self.region());
+        let mut matrix = WorldToFilm::new(&projection)?.matrix();
         for row in &mut matrix {
             row[0] = (row[0] - row[3] * f64::from(region.x)) / f64::from(region.width);
             row[1] = (row[1] - row[3] * f64::from(region.y)) / f64::from(region.height);
@@ -24,6 +24,6 @@ impl Picture {
 }
 
 fn rounded(matrix: Matrix) -> Matrix4 {
-    // Nothing is below nothing: zeros have no sign.
+    // Adding 0 turns negative zeros positive.
     matrix.map(|row| row.map(|number| number as f32 + 0.0))
 }

@@ -1,4 +1,4 @@
-//! Time of light trees: nanoseconds a pick, a chance, and a light that is built into one.
+//! Benchmark of light trees: nanoseconds per sample, per probability, and per light for the build.
 //! `cargo bench -p juggler-light --bench light_tree`.
 #![allow(clippy::print_stdout)]
 
@@ -18,7 +18,7 @@ fn point(i: u32, k: u32) -> Vec3 {
     vec3(unit(i, k), unit(i, k + 1), unit(i, k + 2)) * 2.0 - Vec3::ONE
 }
 
-/// Small surfaces that face anywhere, and some bulbs.
+/// Small surfaces with random orientations, and some point lights.
 fn light(i: u32) -> LightBounds {
     let (center, bulb) = (point(i, 0), i.is_multiple_of(4));
     let cos_theta_o = if bulb { -1.0 } else { 1.0 };
@@ -27,7 +27,7 @@ fn light(i: u32) -> LightBounds {
     LightBounds { bounds, axis, cos_theta_o, cos_theta_e: 0.0, power: unit(i, 6) + 0.1, two_sided: false }
 }
 
-/// The least time of some runs, in nanoseconds a query.
+/// Minimum time of [`RUNS`] runs, in nanoseconds per query.
 fn nanoseconds(mut query: impl FnMut(u32) -> f32) -> f64 {
     let run = |_| {
         let start = Instant::now();
@@ -51,11 +51,11 @@ fn main() {
             let (at, normal) = place(i);
             tree.sample(at, normal, unit(i, 16)).map_or(0.0, |pick| pick.probability)
         });
-        let chance = nanoseconds(|i| {
+        let probability = nanoseconds(|i| {
             let (at, normal) = place(i);
             tree.probability(at, normal, (unit(i, 16) * count as f32) as u32)
         });
         let bytes = tree.heap_bytes() as f64 / f64::from(count);
-        println!("{count:>9} {:>9.1} {:>9.1} {build:>9.1} {bytes:>9.1}", pick - empty, chance - empty);
+        println!("{count:>9} {:>9.1} {:>9.1} {build:>9.1} {bytes:>9.1}", pick - empty, probability - empty);
     }
 }

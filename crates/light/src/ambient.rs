@@ -1,4 +1,4 @@
-//! Light that is everywhere, from nowhere.
+//! Ambient light: constant incident radiance from all directions.
 //!
 //! ```json
 //! {"ambient": {"color": [1, 1, 1], "intensity": 0.1}}
@@ -9,13 +9,14 @@ use juggler_math::{Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Light that is everywhere, from nowhere; each material says how much of it it takes.
+/// Ambient light: constant incident radiance at every surface, scaled by each material's ambient
+/// reflectance. Only the classic integrator uses it; with path tracing, use a background instead.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Ambient {
-    /// Its colour.
+    /// Color of the light, linear RGB.
     pub color: Rgb,
-    /// Factor on the colour.
+    /// Factor on `color`.
     #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
 }
@@ -39,7 +40,7 @@ impl Light for Ambient {
         self.color * self.intensity
     }
 
-    fn is_point(&self) -> bool {
+    fn is_delta(&self) -> bool {
         true
     }
 
@@ -50,7 +51,7 @@ impl Light for Ambient {
 
 #[cfg(any(test, feature = "testing"))]
 impl Ambient {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }

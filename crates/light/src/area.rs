@@ -1,15 +1,17 @@
 //! A surface that emits light: a rectangle, a disk or a sphere.
 //!
 //! ```json
-//! {"area": {"shape": {"rectangle": {"size": [1.2, 0.6]}}, "position": [0, 2.4, 0], "direction": [0, -1, 0], "power": 60}}
+//! {"area": {"shape": {"rectangle": {"size": [1.2, 0.6]}}, "position": [0, 2.4, 0],
+//!     "direction": [0, -1, 0], "power": 60}}
 //! ```
 //!
-//! The front emits the same radiance L from every point in every direction (a Lambertian emitter). A front of area A then
-//! emits the radiant flux Φ = π A L, so `power` gives L = Φ / (π A) (PBR 4th ed., section 12.4). Paths sample the light as
-//! they sample an `emissive` shape, and the camera and mirrors see it. The classic integrator samples it too: there it
-//! lights diffuse surfaces as much as along paths.
+//! The front emits the same radiance L from every point in every direction (a Lambertian emitter).
+//! A front of area A then emits the radiant flux Φ = π A L, so `power` gives L = Φ / (π A) (PBR 4th
+//! ed., section 12.4). Path tracing samples the light like an `emissive` shape, and camera rays and
+//! reflected rays hit it. The classic integrator samples it too, with the same irradiance on
+//! surfaces.
 
-use super::{InvalidLight, Light, LightSample, check_direction, check_position, either, strength::Strength};
+use super::{InvalidLight, Light, LightSample, check_direction, check_exclusive, check_position, strength::Strength};
 use crate::emitter::{AreaEmitter, DiskEmitter, LightBounds, RectangleEmitter, SphereEmitter};
 use juggler_math::{Mat3, Rgb, Transform, Vec2, Vec3};
 use juggler_shape::{AnyShape, Disk, Rectangle, Sphere};
@@ -26,28 +28,28 @@ pub struct Area {
     /// Center of the surface, world space.
     #[schemars(with = "[f32; 3]")]
     pub position: Vec3,
-    /// Direction that the front faces, any length; straight down without it and without `look_at`. A sphere has no
-    /// front.
+    /// Direction that the front faces, of any length. Without it and without `look_at`, the front
+    /// faces straight down. A sphere has no front.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub direction: Option<Vec3>,
-    /// A point that the front faces, instead of `direction`.
+    /// Point that the front faces, in world space; replaces `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub look_at: Option<Vec3>,
-    /// Color of the light, a factor on `radiance` or `power`.
+    /// Color of the light, linear RGB; a factor on `radiance` or `power`.
     pub color: Rgb,
-    /// Radiance of the front in watts per square scene unit and steradian, times `color`: how bright the surface looks.
-    /// 1 without it and without `power`.
+    /// Radiance of the front in watts per square scene unit and steradian, times `color`. It
+    /// determines how bright the surface looks. The default is 1, unless `power` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub radiance: Option<f32>,
-    /// Radiant flux of the whole surface in watts per channel, times `color`, instead of `radiance`: a larger surface
-    /// of the same power is less bright.
+    /// Radiant flux of the whole surface in watts per channel, times `color`; replaces `radiance`.
+    /// At the same power, a larger surface has a lower radiance.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub power: Option<f32>,
-    /// Light group: its light is written to an AOV of its own.
+    /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
 }
@@ -58,7 +60,7 @@ pub struct Area {
 pub enum AreaShape {
     /// A rectangle that emits to one side.
     Rectangle {
-        /// Width and height in scene units. The width lies level.
+        /// Width and height in scene units. The width is horizontal.
         #[schemars(extend("items" = {"type": "number", "format": "float", "exclusiveMinimum": 0}))]
         size: [f32; 2],
     },
@@ -98,7 +100,7 @@ impl Default for Area {
 }
 
 impl AreaShape {
-    /// The shape around the origin, its front up.
+    /// Shape centered at the origin with its front along +Y.
     fn shape(self) -> AnyShape {
         match self {
             Self::Rectangle { size } => Rectangle { size }.into(),
@@ -116,8 +118,8 @@ impl AreaShape {
         }
     }
 
-    /// Radius of a ball around it.
-    fn extent(self) -> f32 {
+    /// Radius of the bounding sphere.
+    fn bounding_radius(self) -> f32 {
         match self {
             Self::Rectangle { size: [width, height] } => 0.5 * (width * width + height * height).sqrt(),
             Self::Disk { radius } | Self::Sphere { radius } => radius,
@@ -131,7 +133,7 @@ impl AreaShape {
             Self::Sphere { radius } => ("shape.sphere.radius", [radius; 2]),
         };
         let name = field.rsplit('.').next().unwrap_or(field);
-        // The area and its inverse must be numbers that a radiance can be computed from.
+        // Keep the area and its inverse in a range from which a radiance can be computed.
         let fits = sizes.iter().all(|size| *size > 0.0) && self.area() >= 1e-30 && self.area() <= 1e30;
         let message = || format!("`{name}` must be above 0, and neither too small nor too large for an area");
         if fits { Ok(()) } else { Err(InvalidLight { field, message: message() }) }
@@ -145,13 +147,14 @@ impl Area {
         self.color * self.power.map_or(self.radiance.unwrap_or(1.0), of_power)
     }
 
-    /// The surface in its own space and its place in the world; `None` for an area light that [`Light::check`] refuses.
-    pub fn placed(&self) -> Option<(AnyShape, Transform)> {
+    /// Shape in object space and its transform to world space; `None` for an area light that
+    /// [`Light::check`] rejects.
+    pub fn shape_and_transform(&self) -> Option<(AnyShape, Transform)> {
         let normal = self.normal()?;
-        // The width lies level.
+        // Keep the width horizontal.
         let side = Vec3::Y.cross(normal).try_normalize().unwrap_or(Vec3::X);
-        let turn = Mat3::from_cols(side, normal, side.cross(normal));
-        Some((self.shape.shape(), Transform::new(turn, self.position)?))
+        let rotation = Mat3::from_cols(side, normal, side.cross(normal));
+        Some((self.shape.shape(), Transform::new(rotation, self.position)?))
     }
 
     /// Unit normal of the front.
@@ -164,8 +167,8 @@ impl Area {
         let normal = self.normal()?;
         Some(match self.shape {
             AreaShape::Rectangle { size: [width, height] } => {
-                let (_, place) = self.placed()?;
-                let (along, up) = (place.vector(Vec3::X * width), place.vector(Vec3::NEG_Z * height));
+                let (_, transform) = self.shape_and_transform()?;
+                let (along, up) = (transform.vector(Vec3::X * width), transform.vector(Vec3::NEG_Z * height));
                 RectangleEmitter::new(self.position - (along + up) * 0.5, [along, up])?.into()
             }
             AreaShape::Disk { radius } => DiskEmitter::new(self.position, normal, radius)?.into(),
@@ -184,11 +187,11 @@ impl Light for Area {
         if let Some(point) = self.look_at {
             let towards = (point - self.position).length_squared();
             let usable = (f32::MIN_POSITIVE..f32::INFINITY).contains(&towards);
-            let message = || "`look_at` must be finite, and another point than `position`".to_owned();
+            let message = || "`look_at` must be finite and differ from `position`".to_owned();
             usable.then_some(()).ok_or_else(|| InvalidLight { field: "look_at", message: message() })?;
         }
-        either(("look_at", self.look_at.is_some()), ("direction", self.direction.is_some()))?;
-        let strength = Strength { name: "radiance", value: self.radiance, power: self.power };
+        check_exclusive(("look_at", self.look_at.is_some()), ("direction", self.direction.is_some()))?;
+        let strength = Strength { field: "radiance", value: self.radiance, power: self.power };
         strength.check(self.color, self.radiance())
     }
 
@@ -199,7 +202,7 @@ impl Light for Area {
         arrives.then_some(LightSample { wi: sample.wi, distance: sample.distance, radiance, pdf: 1.0 })
     }
 
-    fn is_point(&self) -> bool {
+    fn is_delta(&self) -> bool {
         false
     }
 
@@ -207,8 +210,8 @@ impl Light for Area {
         true
     }
 
-    fn ball(&self) -> Option<(Vec3, f32)> {
-        Some((self.position, self.shape.extent()))
+    fn bounding_sphere(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, self.shape.bounding_radius()))
     }
 
     fn bounds(&self, _world_radius: f32) -> Option<LightBounds> {
@@ -226,9 +229,9 @@ impl Light for Area {
 
 #[cfg(any(test, feature = "testing"))]
 impl Area {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let lamp = Self { position: Vec3::new(0.5, 2.4, -1.0), power: Some(60.0), ..Self::default() };
+        let ceiling = Self { position: Vec3::new(0.5, 2.4, -1.0), power: Some(60.0), ..Self::default() };
         let window = Self {
             shape: AreaShape::Disk { radius: 0.5 },
             position: Vec3::new(-3.0, 1.0, 0.0),
@@ -238,7 +241,7 @@ impl Area {
             ..Self::default()
         };
         let globe = Self { shape: AreaShape::Sphere { radius: 0.5 }, power: Some(10.0), ..Self::default() };
-        vec![Self { shape: AreaShape::Rectangle { size: [1.2, 0.6] }, ..Self::default() }, lamp, window, globe]
+        vec![Self { shape: AreaShape::Rectangle { size: [1.2, 0.6] }, ..Self::default() }, ceiling, window, globe]
     }
 }
 
@@ -249,36 +252,36 @@ mod tests {
 
     #[test]
     fn it_faces_where_it_is_told_its_width_level() {
-        let facing = |area: &Area| area.placed().unwrap().1.normal(Vec3::Y);
+        let facing = |area: &Area| area.shape_and_transform().unwrap().1.normal(Vec3::Y);
         assert_eq!(facing(&Area::default()), Vec3::NEG_Y);
         let along = Area { direction: Some(Vec3::new(0.0, 0.0, 5.0)), ..Area::default() };
         assert_eq!(facing(&along), Vec3::Z);
         let position = Vec3::new(1.0, 2.0, 3.0);
         let at = Area { position, look_at: Some(Vec3::new(1.0, -2.0, 0.0)), ..Area::default() };
         assert!((facing(&at) - Vec3::new(0.0, -0.8, -0.6)).length() < 1e-6);
-        let place = at.placed().unwrap().1;
-        assert!(place.vector(Vec3::X).y.abs() < 1e-6 && (place.matrix().determinant() - 1.0).abs() < 1e-6);
-        assert_eq!(place.point(Vec3::ZERO), position);
+        let transform = at.shape_and_transform().unwrap().1;
+        assert!(transform.vector(Vec3::X).y.abs() < 1e-6 && (transform.matrix().determinant() - 1.0).abs() < 1e-6);
+        assert_eq!(transform.point(Vec3::ZERO), position);
     }
 
     #[test]
     fn nothing_arrives_behind() {
-        let (lamp, mut random) = (Area { position: Vec3::Y, ..Area::default() }, Random::new(71));
+        let (ceiling, mut random) = (Area { position: Vec3::Y, ..Area::default() }, Random::new(71));
         for _ in 0..1000 {
-            assert_eq!(lamp.sample(Vec3::new(0.3, 1.5, 0.1), random.vec2()), None);
-            assert!(lamp.sample(Vec3::new(0.3, 0.5, 0.1), random.vec2()).is_some());
+            assert_eq!(ceiling.sample(Vec3::new(0.3, 1.5, 0.1), random.vec2()), None);
+            assert!(ceiling.sample(Vec3::new(0.3, 0.5, 0.1), random.vec2()).is_some());
         }
     }
 
-    /// The irradiance under the middle of a square of side 2 at distance 1 is 4 L (x / √(1 + x²)) atan(1 / √(1 + x²))
-    /// with x = 1: four corner views of the textbook's configuration factor.
+    /// Irradiance below the center of a square of side 2 at distance 1: 4 L (x / √(1 + x²)) atan(1
+    /// / √(1 + x²)) with x = 1, the sum of four corner configuration factors.
     #[test]
     fn irradiance_under_a_square_is_the_closed_form() {
         let shape = AreaShape::Rectangle { size: [2.0, 2.0] };
-        let lamp = Area { shape, position: Vec3::Y, radiance: Some(3.0), ..Area::default() };
+        let ceiling = Area { shape, position: Vec3::Y, radiance: Some(3.0), ..Area::default() };
         let (mut random, count, mut sum) = (Random::new(72), 200_000, 0.0f64);
         for _ in 0..count {
-            let sample = lamp.sample(Vec3::ZERO, random.vec2()).unwrap();
+            let sample = ceiling.sample(Vec3::ZERO, random.vec2()).unwrap();
             sum += f64::from(sample.radiance.g * sample.wi.y);
         }
         let (x, root) = (1.0f64, 2f64.sqrt());

@@ -1,25 +1,25 @@
-//! What every light must keep, and the shadows of those with a size.
+//! Contract tests of all lights, and the soft shadows of lights with an extent.
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared, chi_squared_directions, close, close3};
 use juggler_math::warp;
 
-/// One in a thousand for all tests of this file together.
+/// Significance level of each test: 1e-3 for both tests of this file together.
 const SIGNIFICANCE: f64 = 5e-4;
 
 fn point(position: Vec3, extent: Extent) -> Point {
     Point { position, extent: Some(extent), ..Point::default() }
 }
 
-/// The place of the light that a sample goes to.
-fn place(from: Vec3, sample: &LightSample) -> Vec3 {
+/// Point of the light that a sample hits.
+fn sampled_point(from: Vec3, sample: &LightSample) -> Vec3 {
     from + sample.wi * sample.distance
 }
 
 #[test]
 fn samples_are_finite_and_unit_wherever_they_are_asked() {
     let mut random = Random::new(91);
-    for light in ready() {
+    for light in prepared_examples() {
         light.check().unwrap();
         assert!(light.ambient().is_finite() && light.shadow_samples() >= 1);
         for size in [0.0, 1e-30, 1e-3, 1.0, 300.0, 1e6, 1e18, 1e30] {
@@ -28,23 +28,23 @@ fn samples_are_finite_and_unit_wherever_they_are_asked() {
                 let Some(sample) = light.sample(from, random.vec2()) else { continue };
                 assert!(close(sample.wi.length(), 1.0, 1e-6), "{light:?} {from} {sample:?}");
                 assert!(sample.radiance.is_finite() && !sample.radiance.is_black() && sample.distance > 0.0);
-                if let Some((centre, radius)) = light.ball().filter(|_| size <= 300.0) {
-                    let off = (place(from, &sample) - centre).length();
-                    assert!(off <= radius + 1e-5 * (size + 1000.0), "{light:?}: {off} from its centre");
+                if let Some((center, radius)) = light.bounding_sphere().filter(|_| size <= 300.0) {
+                    let off = (sampled_point(from, &sample) - center).length();
+                    assert!(off <= radius + 1e-5 * (size + 1000.0), "{light:?}: {off} from its center");
                 }
             }
         }
     }
 }
 
-/// The examples as a world holds them.
-fn ready() -> Vec<AnyLight> {
+/// Examples after [`Light::prepare`], as a world stores them.
+fn prepared_examples() -> Vec<AnyLight> {
     let mut lights = AnyLight::examples();
     lights.iter_mut().for_each(|light| light.prepare());
     lights
 }
 
-/// The flux of a light that states it, its color's luminance counted.
+/// Luminance of the radiant flux, for a light with a given `power`.
 fn watts(light: &AnyLight) -> Option<f32> {
     let (power, color) = match light {
         AnyLight::Point(point) => (point.power, point.color),
@@ -58,7 +58,7 @@ fn watts(light: &AnyLight) -> Option<f32> {
 #[test]
 fn power_is_the_integral_over_directions() {
     let mut random = Random::new(92);
-    for (mut light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
+    for (mut light, center) in AnyLight::examples().into_iter().filter_map(|light| match &light {
         AnyLight::Point(point) => Some((light.clone(), point.position)),
         AnyLight::Spot(spot) => Some((light.clone(), spot.position)),
         AnyLight::Area(area) => Some((light.clone(), area.position)),
@@ -68,7 +68,7 @@ fn power_is_the_integral_over_directions() {
         light.prepare();
         let (stated, mut sum) = (f64::from(light.power(radius)), 0.0);
         for _ in 0..count {
-            let from = centre + warp::uniform_sphere(random.vec2()) * radius;
+            let from = center + warp::uniform_sphere(random.vec2()) * radius;
             sum += light.sample(from, random.vec2()).map_or(0.0, |sample| f64::from(sample.radiance.luminance()));
         }
         let power = sum / f64::from(count) * f64::from(warp::UNIFORM_SPHERE_PDF.recip() * radius * radius);
@@ -83,30 +83,30 @@ fn power_is_the_integral_over_directions() {
 
 #[test]
 fn places_of_a_sphere_lie_on_its_facing_half_evenly() {
-    let (centre, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, 40.0));
-    let light = point(centre, Extent::Sphere { radius: 5.0 });
+    let (center, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, 40.0));
+    let light = point(center, Extent::Sphere { radius: 5.0 });
     let direction = |u| {
-        let offset = place(from, &light.sample(from, u)?) - centre;
+        let offset = sampled_point(from, &light.sample(from, u)?) - center;
         assert!(close(offset.length(), 5.0, 1e-5) && offset.z > -1e-4, "{offset}");
         Some(offset / 5.0)
     };
     let half = |w: Vec3| if w.z >= 0.0 { warp::uniform_hemisphere_pdf(w) } else { 0.0 };
     chi_squared_directions(direction, half, 1_000_000, SIGNIFICANCE).unwrap();
-    // From inside too.
-    let sample = light.sample(centre + Vec3::X, Vec2::new(0.3, 0.8)).unwrap();
-    assert!(close(place(centre + Vec3::X, &sample).distance(centre), 5.0, 1e-5));
+    // Also from a point inside.
+    let sample = light.sample(center + Vec3::X, Vec2::new(0.3, 0.8)).unwrap();
+    assert!(close(sampled_point(center + Vec3::X, &sample).distance(center), 5.0, 1e-5));
 }
 
 #[test]
 fn places_of_a_square_lie_on_it_evenly() {
     let mut random = Random::new(93);
-    let (centre, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 7.0, 1.0));
-    let light = point(centre, Extent::Square { side: 2.0 });
-    let axis = (centre - from).normalize();
+    let (center, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 7.0, 1.0));
+    let light = point(center, Extent::Square { side: 2.0 });
+    let axis = (center - from).normalize();
     let frame = juggler_math::Frame::around(-axis);
     let mut observed = [0.0; 64];
     for _ in 0..1_000_000 {
-        let offset = place(from, &light.sample(from, random.vec2()).unwrap()) - centre;
+        let offset = sampled_point(from, &light.sample(from, random.vec2()).unwrap()) - center;
         assert!(offset.dot(axis).abs() < 1e-5);
         let cell = |v: f32| (((v + 1.0) * 4.0) as usize).min(7);
         observed[cell(offset.dot(frame.tangent)) * 8 + cell(offset.dot(frame.bitangent))] += 1.0;
@@ -129,9 +129,9 @@ fn a_size_changes_directions_but_not_the_light_that_arrives() {
     assert!(close3(a.wi, b.wi, 1e-6) && close(a.distance, b.distance, 1e-6));
 }
 
-/// Share of a light ten units above the origin that is seen past a half-plane five units up, which covers
-/// all x below `edge`.
-fn visible(extent: Extent, edge: f32) -> f64 {
+/// Visible fraction of a light ten units above the origin, behind a half-plane five units up that
+/// covers all x below `edge`.
+fn visible_fraction(extent: Extent, edge: f32) -> f64 {
     let light = point(Vec3::new(0.0, 10.0, 0.0), extent);
     let mut random = Random::new(95);
     let count = 40_000;
@@ -144,54 +144,60 @@ fn visible(extent: Extent, edge: f32) -> f64 {
 
 #[test]
 fn penumbra_of_a_square_is_linear() {
-    for (edge, share) in [(-1.1f32, 1.0), (-0.5, 0.75), (0.0, 0.5), (0.25, 0.375), (0.9, 0.05), (1.1, 0.0)] {
-        // The edge's shadow on the square of side 4 lies at twice its x.
-        let seen = visible(Extent::Square { side: 4.0 }, edge);
-        assert!((seen - share).abs() < 0.01, "{edge}: {seen}");
+    for (edge, expected) in [(-1.1f32, 1.0), (-0.5, 0.75), (0.0, 0.5), (0.25, 0.375), (0.9, 0.05), (1.1, 0.0)] {
+        // The projection of the edge onto the square of side 4 lies at twice the edge's x.
+        let visible = visible_fraction(Extent::Square { side: 4.0 }, edge);
+        assert!((visible - expected).abs() < 0.01, "{edge}: {visible}");
     }
 }
 
 #[test]
 fn penumbra_of_a_sphere_is_a_cap() {
-    // Places c + r h with h in the lower half sphere are seen where 5 h_x - edge h_y >= edge 10 / r: a cap of the
-    // half sphere, of share 1 - τ where it does not reach over the rim, with τ = 2.5 edge / √(25 + edge²).
+    // A point c + r h, with h in the lower hemisphere, is visible where 5 h_x - edge h_y >= edge 10
+    // / r. These points form a cap with the fraction 1 - τ of the hemisphere, if the cap does not
+    // cross the rim, where τ = 2.5 edge / √(25 + edge²).
     let tau = |edge: f64| 2.5 * edge / (25.0 + edge * edge).sqrt();
-    for (edge, share) in [(0.0, 0.5), (2.1, 1.0 - tau(2.1)), (-2.1, tau(2.1)), (2.2, 0.0), (-2.2, 1.0)] {
-        let seen = visible(Extent::Sphere { radius: 4.0 }, edge as f32);
-        assert!((seen - share).abs() < 0.01, "{edge}: {seen} {share}");
+    for (edge, expected) in [(0.0, 0.5), (2.1, 1.0 - tau(2.1)), (-2.1, tau(2.1)), (2.2, 0.0), (-2.2, 1.0)] {
+        let visible = visible_fraction(Extent::Sphere { radius: 4.0 }, edge as f32);
+        assert!((visible - expected).abs() < 0.01, "{edge}: {visible} {expected}");
     }
 }
 
-/// What arrives from a light must be possible by its bounds, and weigh no more.
+/// Light arrives only where the bounds allow it, with no more than the power of the bounds.
 #[test]
 fn bounds_hold_all_light() {
     use crate::emitter::LightTree;
     let mut random = Random::new(96);
-    for light in ready() {
-        assert_eq!(light.bounds(9.0).is_some(), light.ball().is_some());
+    for light in prepared_examples() {
+        assert_eq!(light.bounds(9.0).is_some(), light.bounding_sphere().is_some());
         let Some(bounds) = light.bounds(9.0) else { continue };
         let tree = LightTree::build(&[bounds]);
         for _ in 0..2000 {
             let from = bounds.bounds.center() + random.unit_vector() * 9.0 + random.point(0.5);
             let Some(sample) = light.sample(from, random.vec2()) else { continue };
-            assert!(bounds.bounds.grown(1e-3 + bounds.bounds.center().length() * 1e-6).contains(place(from, &sample)));
+            assert!(
+                bounds
+                    .bounds
+                    .grown(1e-3 + bounds.bounds.center().length() * 1e-6)
+                    .contains(sampled_point(from, &sample))
+            );
             assert!(tree.probability(from, Vec3::ZERO, 0) > 0.0, "{light:?} {from}");
             assert!(tree.probability(from, sample.wi, 0) > 0.0, "{light:?} {from}");
         }
-        // The strongest that arrives anywhere at that radius is what 4 π of it would be.
+        // The largest irradiance at that radius, times 4π radius², equals the power of the bounds.
         let arrives = |_| {
             let from = bounds.bounds.center() + random.unit_vector() * 9.0;
             light.sample(from, random.vec2()).map_or(0.0, |sample| sample.radiance.luminance())
         };
-        let greatest = (0..20_000).map(arrives).fold(0.0, f32::max) * 81.0 * 4.0 * std::f32::consts::PI;
-        assert!((greatest / bounds.power - 1.0).abs() < 0.05, "{light:?}: {greatest} {}", bounds.power);
+        let max_power = (0..20_000).map(arrives).fold(0.0, f32::max) * 81.0 * 4.0 * std::f32::consts::PI;
+        assert!((max_power / bounds.power - 1.0).abs() < 0.05, "{light:?}: {max_power} {}", bounds.power);
     }
 }
 
 #[test]
 fn json_goes_round() {
     for mut light in AnyLight::examples() {
-        // What a file holds is not part of it.
+        // The JSON does not contain the photometric data of the file.
         if let Some(ies) = light.ies() {
             *ies = Ies::from_file("lamp.ies");
         }

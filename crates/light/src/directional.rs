@@ -1,38 +1,41 @@
-//! Light from infinitely far away and everywhere the same: a sun with or without size.
+//! Directional light: an infinitely distant light such as the sun, a point or a disk.
 //!
 //! ```json
-//! {"directional": {"direction": [1, -2, -1], "color": [1, 0.9, 0.8], "intensity": 1, "angle_degrees": 0.53}}
+//! {"directional": {"direction": [1, -2, -1], "color": [1, 0.9, 0.8], "intensity": 1,
+//!     "angle_degrees": 0.53}}
 //! ```
 //!
-//! An angle gives soft shadows and nothing else: every place of the disk gives the same light, as much in all as without.
+//! `angle_degrees` gives soft shadows and changes nothing else: all points of the disk emit the
+//! same radiance, and the irradiance does not depend on the angle.
 
 use super::{InvalidLight, Light, LightSample, check_color, check_direction, in_range};
 use juggler_math::{Frame, Rgb, Vec2, Vec3, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Light from infinitely far away.
+/// Infinitely distant light with the same direction everywhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Directional {
-    /// The direction in which the light travels, any length.
+    /// Direction in which the light travels, in world space, of any length.
     #[schemars(with = "[f32; 3]")]
     pub direction: Vec3,
-    /// Its colour.
+    /// Color of the light, linear RGB.
     pub color: Rgb,
-    /// Factor on the colour.
+    /// Factor on `color`. The product is the irradiance on a surface that faces the light.
     #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
-    /// Under which angle its disk is seen, from rim to rim, for soft shadows: 0.53 for the sun;
-    /// 0, as without it, for hard shadows.
+    /// Angular diameter of the light's disk, in degrees. Larger angles give softer shadows; the sun
+    /// has 0.53. The default, 0, gives hard shadows.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 180))]
     pub angle_degrees: f32,
-    /// How many places of the disk are asked per sample of the picture; 1 without it.
+    /// Number of shadow rays per shading point, sampled over the disk. Only the classic integrator
+    /// uses it. More samples give less noise in penumbras. Without an angle it has no effect.
     #[serde(skip_serializing_if = "is_one")]
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
-    /// The group of lights that it is kept apart with in layers.
+    /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
 }
@@ -80,10 +83,10 @@ impl Light for Directional {
     }
 
     fn shadow_samples(&self) -> u32 {
-        if self.is_point() { 1 } else { self.samples }
+        if self.is_delta() { 1 } else { self.samples }
     }
 
-    fn is_point(&self) -> bool {
+    fn is_delta(&self) -> bool {
         self.angle_degrees == 0.0
     }
 
@@ -94,7 +97,7 @@ impl Light for Directional {
 
 #[cfg(any(test, feature = "testing"))]
 impl Directional {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let sun = Self { angle_degrees: 0.53, samples: 4, ..Self::default() };
         vec![Self::default(), Self { direction: Vec3::new(1.0, 1.0, -0.5), ..Self::default() }, sun]
@@ -104,7 +107,7 @@ impl Directional {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_math::fun;
+    use juggler_math::portable;
     use juggler_math::testing::{Random, chi_squared};
 
     #[test]
@@ -128,7 +131,7 @@ mod tests {
         }
         chi_squared(&observed, &[15_625.0; 64], 1e-3).unwrap();
         let rim = sample(Vec2::new(1f32.next_down(), 0.3)).unwrap();
-        assert!((fun::acos(rim.dot(axis)).to_degrees() - 20.0).abs() < 1e-3);
-        assert!(!light.is_point() && Directional { samples: 9, ..Directional::default() }.shadow_samples() == 1);
+        assert!((portable::acos(rim.dot(axis)).to_degrees() - 20.0).abs() < 1e-3);
+        assert!(!light.is_delta() && Directional { samples: 9, ..Directional::default() }.shadow_samples() == 1);
     }
 }

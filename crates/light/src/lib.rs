@@ -1,4 +1,4 @@
-//! Lights: what arrives at a point, and from where.
+//! Lights, backgrounds and emitters, and the sampling of their light at a point.
 
 use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3, range};
@@ -9,10 +9,10 @@ mod area;
 pub mod background;
 mod directional;
 pub mod emitter;
+mod finite_light;
 mod ies;
 mod photometry;
 mod point;
-mod source;
 mod spot;
 mod strength;
 
@@ -20,80 +20,87 @@ mod strength;
 mod contract;
 
 pub use area::AreaShape;
-pub use ies::{Ies, Profile};
+pub use finite_light::{Attenuation, Extent};
+pub use ies::{Ies, IesProfile};
 pub use photometry::InvalidIes;
-pub use source::{Attenuation, Extent};
 
-/// Light that would arrive at a point if nothing stood in the way.
+/// Sample of the light that arrives at a point without occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Unit direction towards the light.
     pub wi: Vec3,
-    /// How far the light is; infinite for a directional one.
+    /// Distance of the sampled point of the light, in scene units; infinite for a directional
+    /// light.
     pub distance: f32,
-    /// What arrives there, before the surface's own factors: the classic intensity, attenuation included.
+    /// Incident light per channel, attenuation included, without the BSDF and the cosine at the
+    /// surface. With a `pdf` of 1 it is the irradiance on a plane perpendicular to `wi`.
     pub radiance: Rgb,
-    /// What to divide by, so that the mean over samples is the light that arrives: the density per steradian
-    /// with which `wi` was chosen. 1 for the classic lights, whose places all count the same.
+    /// Density per steradian of `wi`, by which the estimator divides `radiance`. 1 for lights whose
+    /// points all have the same weight.
     pub pdf: f32,
 }
 
-/// Why a light cannot be: the field at fault and what it should be.
+/// Error in a light's description: the field at fault and its valid values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct InvalidLight {
-    /// The field, as in the scene file.
+    /// Name of the field in the scene file.
     pub field: &'static str,
-    /// What is wrong, and what would be right.
+    /// Message that states the error and the valid values.
     pub message: String,
 }
 
-/// A source of light.
+/// Light as the scene describes it.
 pub trait Light: Send + Sync {
-    /// Checks the numbers; called once, before the light is used.
+    /// Checks the fields; called once before any other method.
     fn check(&self) -> Result<(), InvalidLight>;
-    /// Light from one place of the source, chosen by `u` in the unit square; `None` when nothing arrives.
+    /// Samples the light at point `from`, both in world space, with `u` in the unit square. `None`
+    /// if no light arrives.
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample>;
-    /// How many places of the source the classic integrator asks per sample: more than 1 for soft shadows.
+    /// Number of shadow rays per shading point in the classic integrator; above 1 for soft shadows.
     fn shadow_samples(&self) -> u32 {
         1
     }
-    /// Whether it shines from a single place or direction, so that [`Light::sample`] asks nothing of `u`.
-    fn is_point(&self) -> bool;
-    /// Whether it is a surface, which paths meet and sample as a shape of the world; [`LightSample::radiance`] then is what
-    /// arrives in physical units.
+    /// Whether the light is a single point or direction, so that [`Light::sample`] ignores `u`.
+    fn is_delta(&self) -> bool;
+    /// Whether the light is a surface, which paths hit and sample as a shape of the world.
+    /// [`LightSample::radiance`] is then in physical units.
     fn is_surface(&self) -> bool {
         false
     }
-    /// Works out once what every sample would work out anew: an intensity from a power.
+    /// Precomputes values that all samples share, such as the intensity of a given power.
     fn prepare(&mut self) {}
-    /// Centre and radius of a ball that holds all places it shines from; `None` for one without a place.
-    fn ball(&self) -> Option<(Vec3, f32)> {
+    /// Center and radius of a sphere around all points of the light, in world space; `None` for an
+    /// infinite or ambient light.
+    fn bounding_sphere(&self) -> Option<(Vec3, f32)> {
         None
     }
-    /// Its bounds in a light tree; `None` for one without a place. `world_radius` bounds the scene, as in [`Light::power`].
+    /// Bounds for the light tree; `None` for an infinite or ambient light. `world_radius` bounds
+    /// the scene, as in [`Light::power`].
     fn bounds(&self, _world_radius: f32) -> Option<LightBounds> {
         None
     }
-    /// The photometric file that it shines by, to be loaded.
+    /// Photometric file of the light, which the caller loads.
     fn ies(&mut self) -> Option<&mut Ies> {
         None
     }
-    /// The group of lights that it is kept apart with in layers.
+    /// Name of the light group whose AOV receives this light.
     fn light_group(&self) -> Option<&str> {
         None
     }
-    /// Light that is everywhere, from nowhere.
+    /// Ambient radiance, which arrives at every point from all directions without occlusion.
     fn ambient(&self) -> Rgb {
         Rgb::BLACK
     }
-    /// Total power (its luminance), for choosing among many; `world_radius` bounds the scene. A light that
-    /// does not fall off with the square of the distance counts by what arrives at that radius.
+    /// Luminance of the emitted power, for light selection. `world_radius` is the radius of a
+    /// sphere around the scene; a light without inverse-square falloff counts by the power through
+    /// that sphere.
     fn power(&self, world_radius: f32) -> f32;
 }
 
 juggler_math::closed_set! {
-    /// Every light. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1], "intensity": 60}}`.
+    /// Enumeration of all lights. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1],
+    /// "intensity": 60}}`.
     pub enum AnyLight: Light {
         ambient::Ambient,
         area::Area,
@@ -103,20 +110,23 @@ juggler_math::closed_set! {
     }
 }
 
-/// Refuses a number outside `low..=high`, and what is no number.
+/// Rejects numbers outside `low..=high` and NaN.
 fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidLight> {
-    let wrong = range::outside(field, value, low, high);
+    let wrong = range::range_error(field, value, low, high);
     wrong.map_or(Ok(()), |message| Err(InvalidLight { field, message }))
 }
 
-/// Refuses two fields that say the same.
-fn either((field, has): (&'static str, bool), (other, has_other): (&'static str, bool)) -> Result<(), InvalidLight> {
-    let message = || format!("`{field}` stands in place of `{other}`: write one of them, not both");
+/// Rejects two fields that exclude each other.
+fn check_exclusive(
+    (field, has): (&'static str, bool),
+    (other, has_other): (&'static str, bool),
+) -> Result<(), InvalidLight> {
+    let message = || format!("`{field}` replaces `{other}`: write one of them, not both");
     if has && has_other { Err(InvalidLight { field, message: message() }) } else { Ok(()) }
 }
 
 fn check_color(color: Rgb, intensity: f32) -> Result<(), InvalidLight> {
-    Strength { name: "intensity", value: Some(intensity), power: None }.check(color, color * intensity)
+    Strength { field: "intensity", value: Some(intensity), power: None }.check(color, color * intensity)
 }
 
 fn check_position(position: Vec3) -> Result<(), InvalidLight> {
@@ -131,6 +141,6 @@ fn check_direction(direction: Vec3) -> Result<(), InvalidLight> {
     if squared >= f32::MIN_POSITIVE && squared.is_finite() {
         return Ok(());
     }
-    let message = format!("`direction` must have a length, neither zero nor without end; it is {direction}");
+    let message = format!("`direction` must have a finite length above 0; it is {direction}");
     Err(InvalidLight { field: "direction", message })
 }

@@ -1,16 +1,17 @@
-//! A light that shines the same in every direction, from a point or from something with a size.
+//! Light that emits uniformly in all directions, from a point or from a sphere or square.
 //!
 //! ```json
 //! {"point": {"position": [-564, 686, 147], "color": [1, 1, 1], "intensity": 1,
 //!     "attenuation": {"constant": 1}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
 //! ```
 //!
-//! A light of radiant intensity I (watts per steradian) emits the radiant flux Φ = 4π I, so `power` gives I = Φ / 4π, times
-//! `color` per channel.
+//! A light of radiant intensity I (watts per steradian) emits the radiant flux Φ = 4π I, so `power`
+//! gives I = Φ / 4π, times `color` per channel.
 //!
-//! With a photometric file it shines as a luminaire was measured: `"ies": {"file": "lamp.ies"}`.
+//! A photometric file gives the light the measured distribution of a luminaire:
+//! `"ies": {"file": "lamp.ies"}`.
 
-use super::source::{self, Attenuation, Extent};
+use super::finite_light::{self, Attenuation, Extent};
 use super::strength::Strength;
 use super::{Ies, InvalidLight, Light, LightSample};
 use crate::emitter::LightBounds;
@@ -19,37 +20,40 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 
-/// A light that shines the same in every direction.
+/// Light that emits uniformly in all directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Point {
-    /// Where its centre is, world space.
+    /// Center of the light, in world space.
     #[schemars(with = "[f32; 3]")]
     pub position: Vec3,
-    /// Its colour.
+    /// Color of the light, linear RGB.
     pub color: Rgb,
-    /// Radiant intensity in watts per steradian, a factor on the color: what arrives at distance 1 with the default
-    /// attenuation. 1 without it and without `power`.
+    /// Radiant intensity in watts per steradian, times `color`. It equals the irradiance of a
+    /// facing surface at distance 1 with the default attenuation. The default is 1, unless `power`
+    /// is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub intensity: Option<f32>,
-    /// Radiant flux in watts per channel, a factor on the color, instead of `intensity`: the intensity is
-    /// power / 4π. With a photometric file its distribution keeps the same flux.
+    /// Radiant flux in watts per channel, times `color`; replaces `intensity`. The intensity is
+    /// power / 4π. A photometric file distributes the same flux over directions.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub power: Option<f32>,
-    /// How its light falls off with distance.
+    /// Falloff with distance.
     pub attenuation: Attenuation,
-    /// A size, for soft shadows; without it shadows are hard.
+    /// Size of the light, for soft shadows. The default is a point, which casts hard shadows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub extent: Option<Extent>,
-    /// How many places of the extent are asked per sample of the picture.
+    /// Number of shadow rays per shading point, sampled over the extent. Only the classic
+    /// integrator uses it. More samples give less noise in penumbras. Without an extent it has no
+    /// effect.
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
-    /// A photometric file that says how strongly it shines into each direction.
+    /// Photometric file with the measured distribution of intensity over directions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ies: Option<Ies>,
-    /// The group of lights that it is kept apart with in layers.
+    /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
 }
@@ -71,21 +75,21 @@ impl Default for Point {
 }
 
 impl Point {
-    /// Factor on the color.
+    /// Radiant intensity in watts per steradian, without the color.
     fn intensity(&self) -> f32 {
         self.power.map_or(self.intensity.unwrap_or(1.0), |power| {
-            let mean = self.mean_share();
+            let mean = self.mean_ies_factor();
             if mean > 0.0 { power / (4.0 * PI * mean) } else { 0.0 }
         })
     }
 
-    /// Mean over all directions of the photometric file's factor.
-    fn mean_share(&self) -> f32 {
-        self.ies.as_ref().map_or(1.0, |ies| source::mean(|leaving| ies.share(leaving, Vec3::NEG_Y)))
+    /// Mean factor of the photometric file over all directions; 1 without a file.
+    fn mean_ies_factor(&self) -> f32 {
+        self.ies.as_ref().map_or(1.0, |ies| finite_light::mean_over_sphere(|leaving| ies.factor(leaving, Vec3::NEG_Y)))
     }
 
-    /// Power without a photometric file.
-    fn reach(&self, world_radius: f32) -> f32 {
+    /// Power without the photometric file; see [`Light::power`].
+    fn power_without_ies(&self, world_radius: f32) -> f32 {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
         4.0 * PI * at_radius * (self.color * self.intensity()).luminance()
     }
@@ -97,20 +101,20 @@ impl Light for Point {
     }
 
     fn check(&self) -> Result<(), InvalidLight> {
-        let strength = Strength { name: "intensity", value: self.intensity, power: self.power };
+        let strength = Strength { field: "intensity", value: self.intensity, power: self.power };
         strength.check(self.color, self.color * self.intensity())?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;
-        source::check(self.position, self.extent, &self.attenuation, self.samples)
+        finite_light::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
-        let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
-        let mut radiance = self.color * (self.intensity() * arrival.factor);
+        let point = finite_light::sample_extent(self.position, self.extent, &self.attenuation, from, u)?;
+        let mut radiance = self.color * (self.intensity() * point.falloff);
         if let Some(ies) = &self.ies {
-            radiance = radiance * ies.share(-arrival.towards_centre, Vec3::NEG_Y);
+            radiance = radiance * ies.factor(-point.towards_center, Vec3::NEG_Y);
         }
         let arrives = radiance.is_finite() && !radiance.is_black();
-        arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
+        arrives.then_some(LightSample { wi: point.wi, distance: point.distance, radiance, pdf: 1.0 })
     }
 
     fn shadow_samples(&self) -> u32 {
@@ -121,7 +125,7 @@ impl Light for Point {
         (self.intensity, self.power) = (Some(self.intensity()), None);
     }
 
-    fn is_point(&self) -> bool {
+    fn is_delta(&self) -> bool {
         self.extent.is_none()
     }
 
@@ -129,23 +133,23 @@ impl Light for Point {
         self.ies.as_mut()
     }
 
-    fn ball(&self) -> Option<(Vec3, f32)> {
+    fn bounding_sphere(&self) -> Option<(Vec3, f32)> {
         Some((self.position, self.extent.map_or(0.0, Extent::radius)))
     }
 
     fn power(&self, world_radius: f32) -> f32 {
-        self.reach(world_radius) * self.mean_share()
+        self.power_without_ies(world_radius) * self.mean_ies_factor()
     }
 
     fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
-        let power = self.reach(world_radius) * self.ies.as_ref().map_or(1.0, Ies::greatest);
-        Some(source::bounds(self.position, self.extent, power))
+        let power = self.power_without_ies(world_radius) * self.ies.as_ref().map_or(1.0, Ies::max_factor);
+        Some(finite_light::bounds(self.position, self.extent, power))
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Point {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let juggler = Self {
             position: Vec3::new(-564.0, 686.0, 147.0),
@@ -164,7 +168,7 @@ impl Point {
             ies: None,
             light_group: None,
         };
-        let measured = Self { ies: Some(super::ies::tests::lamp()), ..Self::default() };
+        let measured = Self { ies: Some(super::ies::tests::luminaire()), ..Self::default() };
         let bulb = Self { power: Some(60.0), ..measured.clone() };
         vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured, bulb]
     }

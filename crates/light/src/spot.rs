@@ -1,73 +1,79 @@
-//! A point light that shines into a cone.
+//! Point light that emits into a cone.
 //!
 //! ```json
-//! {"spot": {"position": [240, 240, 200], "direction": [-2.4, -2.4, -1], "color": [1, 1, 1], "intensity": 0.5,
-//!     "attenuation": {"constant": 1, "linear": 4e-6, "quadratic": 4e-6}, "beam_degrees": 30, "cutoff_degrees": 90}}
+//! {"spot": {"position": [240, 240, 200], "direction": [-2.4, -2.4, -1], "color": [1, 1, 1],
+//!     "intensity": 0.5, "attenuation": {"constant": 1, "linear": 4e-6, "quadratic": 4e-6},
+//!     "beam_degrees": 30, "cutoff_degrees": 90}}
 //! ```
 //!
-//! With θ the angle between the axis and the direction from the light's centre, light is full up to
-//! `beam_degrees`, falls linearly with θ to nothing at `cutoff_degrees`, and is multiplied by
-//! max(0, cos θ)^`beam_exponent`. (The teaching engine's fall-off angle is the difference of the two; its first
-//! formula has an exponent of 1 and no edge: both angles 90.)
+//! With θ the angle between the axis and the direction from the light's center, the intensity is
+//! constant up to `beam_degrees`, falls linearly with θ to 0 at `cutoff_degrees`, and is multiplied
+//! by max(0, cos θ)^`beam_exponent`. (The teaching engine's falloff angle is the difference of the
+//! two angles. Its first formula has an exponent of 1 and no edge: both angles are 90.)
 //!
-//! With this falloff f, a light of radiant intensity I on its axis emits the radiant flux Φ = I ∫ f dω, so `power` gives
-//! I = Φ / ∫ f dω, the integral taken numerically; for a sharp cone of half angle c it is 2π (1 - cos c). (Blender keeps the
-//! intensity of the whole sphere when a cone cuts it; pbrt's `power` divides as is done here.)
+//! With this falloff f, a light of radiant intensity I on its axis emits the radiant flux Φ = I ∫ f
+//! dω, so `power` gives I = Φ / ∫ f dω. The integral is numerical; for a sharp cone of half angle c
+//! it is 2π (1 - cos c). (Blender keeps the intensity of the whole sphere when a cone restricts it;
+//! pbrt's `power` divides by the integral, as here.)
 
-use super::source::{self, Attenuation, Extent};
+use super::finite_light::{self, Attenuation, Extent};
 use super::strength::Strength;
 use super::{Ies, InvalidLight, Light, LightSample, check_direction, in_range};
 use crate::emitter::LightBounds;
-use juggler_math::{Rgb, Vec2, Vec3, fun};
+use juggler_math::{Rgb, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A point light that shines into a cone.
+/// Point light that emits into a cone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Spot {
-    /// Where its centre is, world space.
+    /// Center of the light, in world space.
     #[schemars(with = "[f32; 3]")]
     pub position: Vec3,
-    /// Where it shines, any length.
+    /// Axis of the cone, in world space, of any length.
     #[schemars(with = "[f32; 3]")]
     pub direction: Vec3,
-    /// Its colour.
+    /// Color of the light, linear RGB.
     pub color: Rgb,
-    /// Radiant intensity on the axis in watts per steradian, a factor on the color: what arrives there at distance 1
-    /// with the default attenuation. 1 without it and without `power`.
+    /// Radiant intensity on the axis in watts per steradian, times `color`. It equals the
+    /// irradiance of a facing surface on the axis at distance 1 with the default attenuation. The
+    /// default is 1, unless `power` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub intensity: Option<f32>,
-    /// Radiant flux of the whole cone in watts per channel, a factor on the color, instead of `intensity`: a
-    /// narrower cone of the same power is brighter.
+    /// Radiant flux of the whole cone in watts per channel, times `color`; replaces `intensity`. At
+    /// the same power, a narrower cone is brighter.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
     pub power: Option<f32>,
-    /// How its light falls off with distance.
+    /// Falloff with distance.
     pub attenuation: Attenuation,
-    /// Angle from the axis up to which it shines in full, in degrees. Between `beam_degrees` and
-    /// `cutoff_degrees` intensity falls linearly with the angle itself, not with its cosine, and
-    /// without a smooth step.
+    /// Angle from the axis up to which the intensity is constant, in degrees. Between
+    /// `beam_degrees` and `cutoff_degrees` the intensity falls linearly with the angle itself, not
+    /// with its cosine, and without a smooth step.
     #[schemars(range(min = 0, max = 180))]
     pub beam_degrees: f32,
-    /// Cut-off angle: the angle from the axis beyond which it does not shine, in degrees;
+    /// Cut-off angle: the angle from the axis beyond which the light emits nothing, in degrees;
     /// `beam_degrees` or more.
     #[schemars(range(min = 0, max = 180))]
     pub cutoff_degrees: f32,
-    /// Exponent of the cosine of the angle from the axis: gathers light around the axis; 0 leaves it even.
+    /// Exponent of the cosine of the angle from the axis. Larger values concentrate the light
+    /// around the axis; 0 has no effect.
     #[schemars(range(min = 0))]
     pub beam_exponent: f32,
-    /// A size, for soft shadows; without it shadows are hard.
+    /// Size of the light, for soft shadows. The default is a point, which casts hard shadows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub extent: Option<Extent>,
-    /// How many places of the extent are asked per sample of the picture.
+    /// Number of shadow rays per shading point, sampled over the extent. Only the classic
+    /// integrator uses it. More samples give less noise in penumbras. Without an extent it has no
+    /// effect.
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
-    /// A photometric file that says how strongly it shines into each direction.
+    /// Photometric file with the measured distribution of intensity over directions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ies: Option<Ies>,
-    /// The group of lights that it is kept apart with in layers.
+    /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
 }
@@ -93,9 +99,9 @@ impl Default for Spot {
 }
 
 impl Spot {
-    /// The share of light at an angle with cosine `cos` from the axis.
-    fn share(&self, cos: f32) -> f32 {
-        let angle = fun::acos(cos.clamp(-1.0, 1.0));
+    /// Falloff of the intensity at an angle with cosine `cos` from the axis, 0 to 1.
+    fn angular_falloff(&self, cos: f32) -> f32 {
+        let angle = portable::acos(cos.clamp(-1.0, 1.0));
         let (beam, cutoff) = (self.beam_degrees.to_radians(), self.cutoff_degrees.to_radians());
         let edge = if angle <= beam {
             1.0
@@ -104,29 +110,31 @@ impl Spot {
         } else {
             return 0.0;
         };
-        if self.beam_exponent == 0.0 { edge } else { edge * fun::powf(cos.max(0.0), self.beam_exponent) }
+        if self.beam_exponent == 0.0 { edge } else { edge * portable::powf(cos.max(0.0), self.beam_exponent) }
     }
 
-    /// Factor on the color.
+    /// Radiant intensity on the axis in watts per steradian, without the color.
     fn intensity(&self) -> f32 {
         self.power.map_or(self.intensity.unwrap_or(1.0), |power| {
-            let integral = self.integral();
+            let integral = self.falloff_integral();
             if integral > 0.0 { power / integral } else { 0.0 }
         })
     }
 
-    /// Integral over all directions of the share of light, in steradians.
-    fn integral(&self) -> f32 {
+    /// Integral of the falloff over all directions, in steradians.
+    fn falloff_integral(&self) -> f32 {
         const STEPS: u16 = 512;
         if let Some(ies) = &self.ies {
             let axis = self.direction.normalize_or_zero();
-            let mean = source::mean(|leaving| self.share(leaving.dot(axis)) * ies.share(leaving, axis));
+            let mean = finite_light::mean_over_sphere(|leaving| {
+                self.angular_falloff(leaving.dot(axis)) * ies.factor(leaving, axis)
+            });
             return 2.0 * std::f32::consts::TAU * mean;
         }
-        // Over bands of equal solid angle within the cut-off, by midpoints.
-        let size = 1.0 - fun::cos(self.cutoff_degrees.to_radians());
-        let share = |i: u16| self.share(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
-        let mean = (0..STEPS).map(share).sum::<f32>() / f32::from(STEPS);
+        // Integrate over bands of equal solid angle within the cut-off by the midpoint rule.
+        let size = 1.0 - portable::cos(self.cutoff_degrees.to_radians());
+        let falloff = |i: u16| self.angular_falloff(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
+        let mean = (0..STEPS).map(falloff).sum::<f32>() / f32::from(STEPS);
         std::f32::consts::TAU * size * mean
     }
 }
@@ -142,20 +150,20 @@ impl Light for Spot {
         in_range("beam_degrees", self.beam_degrees, 0.0, 180.0)?;
         in_range("cutoff_degrees", self.cutoff_degrees, self.beam_degrees, 180.0)?;
         in_range("beam_exponent", self.beam_exponent, 0.0, f32::MAX)?;
-        let strength = Strength { name: "intensity", value: self.intensity, power: self.power };
+        let strength = Strength { field: "intensity", value: self.intensity, power: self.power };
         strength.check(self.color, self.color * self.intensity())?;
-        source::check(self.position, self.extent, &self.attenuation, self.samples)
+        finite_light::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
-        let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
-        let cos = -arrival.towards_centre.dot(self.direction.normalize_or_zero());
-        let mut radiance = self.color * (self.intensity() * arrival.factor * self.share(cos));
+        let point = finite_light::sample_extent(self.position, self.extent, &self.attenuation, from, u)?;
+        let cos = -point.towards_center.dot(self.direction.normalize_or_zero());
+        let mut radiance = self.color * (self.intensity() * point.falloff * self.angular_falloff(cos));
         if let Some(ies) = &self.ies {
-            radiance = radiance * ies.share(-arrival.towards_centre, self.direction);
+            radiance = radiance * ies.factor(-point.towards_center, self.direction);
         }
         let arrives = radiance.is_finite() && !radiance.is_black();
-        arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
+        arrives.then_some(LightSample { wi: point.wi, distance: point.distance, radiance, pdf: 1.0 })
     }
 
     fn shadow_samples(&self) -> u32 {
@@ -166,7 +174,7 @@ impl Light for Spot {
         (self.intensity, self.power) = (Some(self.intensity()), None);
     }
 
-    fn is_point(&self) -> bool {
+    fn is_delta(&self) -> bool {
         self.extent.is_none()
     }
 
@@ -174,23 +182,23 @@ impl Light for Spot {
         self.ies.as_mut()
     }
 
-    fn ball(&self) -> Option<(Vec3, f32)> {
+    fn bounding_sphere(&self) -> Option<(Vec3, f32)> {
         Some((self.position, self.extent.map_or(0.0, Extent::radius)))
     }
 
     fn power(&self, world_radius: f32) -> f32 {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
-        self.integral() * at_radius * (self.color * self.intensity()).luminance()
+        self.falloff_integral() * at_radius * (self.color * self.intensity()).luminance()
     }
 
     fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
-        let shares = self.ies.as_ref().map_or(1.0, Ies::greatest);
-        let power = 2.0 * std::f32::consts::TAU * shares * at_radius * (self.color * self.intensity()).luminance();
-        // Full up to the beam's angle, and something for the rest of the way to the cut-off.
-        let beam = fun::cos(self.beam_degrees.to_radians());
-        let edge = fun::cos((self.cutoff_degrees - self.beam_degrees).to_radians());
-        let bounds = source::bounds(self.position, self.extent, power);
+        let ies_factor = self.ies.as_ref().map_or(1.0, Ies::max_factor);
+        let power = 2.0 * std::f32::consts::TAU * ies_factor * at_radius * (self.color * self.intensity()).luminance();
+        // Bound: constant up to the beam angle, some light from there to the cut-off angle.
+        let beam = portable::cos(self.beam_degrees.to_radians());
+        let edge = portable::cos((self.cutoff_degrees - self.beam_degrees).to_radians());
+        let bounds = finite_light::bounds(self.position, self.extent, power);
         Some(LightBounds {
             axis: self.direction.normalize_or(Vec3::NEG_Y),
             cos_theta_o: beam,
@@ -202,7 +210,7 @@ impl Light for Spot {
 
 #[cfg(any(test, feature = "testing"))]
 impl Spot {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let chess = Self {
             position: Vec3::new(240.0, 240.0, 200.0),
@@ -220,7 +228,7 @@ impl Spot {
             samples: 4,
             ..Self::default()
         };
-        let measured = Self { ies: Some(super::ies::tests::lamp()), cutoff_degrees: 70.0, ..Self::default() };
+        let measured = Self { ies: Some(super::ies::tests::luminaire()), cutoff_degrees: 70.0, ..Self::default() };
         let stage = Self { power: Some(100.0), beam_degrees: 10.0, cutoff_degrees: 25.0, ..Self::default() };
         vec![Self::default(), chess, cosine, measured, stage]
     }
@@ -230,17 +238,17 @@ impl Spot {
 mod tests {
     use super::*;
 
-    /// What arrives one unit away, `degrees` off the axis.
+    /// Red channel of the light at distance 1, `degrees` from the axis.
     fn at(spot: &Spot, degrees: f32) -> f32 {
-        let (sin, cos) = fun::sin_cos(degrees.to_radians());
+        let (sin, cos) = portable::sin_cos(degrees.to_radians());
         spot.sample(Vec3::new(sin, -cos, 0.0), Vec2::ZERO).map_or(0.0, |sample| sample.radiance.r)
     }
 
     #[test]
     fn full_in_the_beam_then_linear_then_nothing() {
         let spot = Spot { beam_degrees: 30.0, cutoff_degrees: 90.0, ..Spot::default() };
-        for (degrees, share) in [(0.0, 1.0), (29.99, 1.0), (45.0, 0.75), (60.0, 0.5), (75.0, 0.25), (89.4, 0.01)] {
-            assert!((at(&spot, degrees) - share).abs() < 1e-5, "{degrees}: {}", at(&spot, degrees));
+        for (degrees, expected) in [(0.0, 1.0), (29.99, 1.0), (45.0, 0.75), (60.0, 0.5), (75.0, 0.25), (89.4, 0.01)] {
+            assert!((at(&spot, degrees) - expected).abs() < 1e-5, "{degrees}: {}", at(&spot, degrees));
         }
         assert_eq!([90.01, 120.0, 180.0].map(|degrees| at(&spot, degrees)), [0.0; 3]);
         let sharp = Spot { beam_degrees: 20.0, cutoff_degrees: 20.0, ..Spot::default() };
@@ -250,8 +258,8 @@ mod tests {
     #[test]
     fn the_exponent_gathers_light_around_the_axis() {
         let spot = Spot { beam_degrees: 180.0, cutoff_degrees: 180.0, beam_exponent: 2.0, ..Spot::default() };
-        for (degrees, share) in [(0.0, 1.0), (45.0, 0.5), (60.0, 0.25), (100.0, 0.0), (180.0, 0.0)] {
-            assert!((at(&spot, degrees) - share).abs() < 1e-6, "{degrees}");
+        for (degrees, expected) in [(0.0, 1.0), (45.0, 0.5), (60.0, 0.25), (100.0, 0.0), (180.0, 0.0)] {
+            assert!((at(&spot, degrees) - expected).abs() < 1e-6, "{degrees}");
         }
     }
 
@@ -265,17 +273,21 @@ mod tests {
         assert!((power(90.0, 90.0, 3.0) / (TAU / 4.0) - 1.0).abs() < 1e-4);
         // Linear from b to c: 2π (1 - cos b + cos b - (sin c - sin b) / (c - b)).
         let (b, c) = (30f32.to_radians(), 90f32.to_radians());
-        assert!((power(30.0, 90.0, 0.0) / (TAU * (1.0 - (fun::sin(c) - fun::sin(b)) / (c - b))) - 1.0).abs() < 1e-4);
+        assert!(
+            (power(30.0, 90.0, 0.0) / (TAU * (1.0 - (portable::sin(c) - portable::sin(b)) / (c - b))) - 1.0).abs()
+                < 1e-4
+        );
     }
 
-    /// Φ = I ∫ f dω: of a sharp cone 2π (1 - cos c), of a cosine over the half space π.
+    /// Φ = I ∫ f dω; the integral is 2π (1 - cos c) for a sharp cone and π for a cosine over the
+    /// hemisphere.
     #[test]
     fn power_is_shared_by_the_cone() {
         let on_axis = |spot: &Spot| spot.sample(Vec3::NEG_Y, Vec2::ZERO).unwrap().radiance.g;
         let power = Some(100.0);
         for degrees in [5.0f32, 30.0, 90.0, 180.0] {
             let spot = Spot { power, beam_degrees: degrees, cutoff_degrees: degrees, ..Spot::default() };
-            let solid_angle = std::f32::consts::TAU * (1.0 - fun::cos(degrees.to_radians()));
+            let solid_angle = std::f32::consts::TAU * (1.0 - portable::cos(degrees.to_radians()));
             assert!((on_axis(&spot) * solid_angle / 100.0 - 1.0).abs() < 1e-4, "{degrees}: {}", on_axis(&spot));
         }
         let cosine = Spot { power, beam_degrees: 90.0, cutoff_degrees: 90.0, beam_exponent: 1.0, ..Spot::default() };

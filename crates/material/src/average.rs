@@ -1,22 +1,23 @@
-//! What a material gives off and lets by on average, over all that is there by chance: what lights and shadows ask for.
+//! Expected emission and opacity over all random choices inside a material, for light sampling and
+//! shadow rays.
 
-use super::{Compiled, MaterialId, MaterialTable, View};
+use super::{CompiledMaterial, MaterialId, MaterialTable, ShadingView};
 use juggler_math::Rgb;
 
-/// Mixes in each other that are averaged; of those that lie deeper `View::pick` chooses, as there might be more than time
-/// to look at them.
-const MOST_MIXES: u32 = 6;
+/// Maximum depth of nested mixes that are averaged. In deeper mixes `ShadingView::u_choice`
+/// chooses, since the time grows exponentially with the depth.
+const MAX_AVERAGED_MIXES: u32 = 6;
 
-/// A material at a point on average.
+/// Expected emission and opacity of a material at a point.
 #[derive(Clone, Copy, Debug)]
-struct Average {
-    /// Radiance towards the viewer, holes counted as dark.
+struct MeanShading {
+    /// Radiance towards the viewer, weighted by opacity.
     radiance: Rgb,
-    /// Share of light that meets it.
+    /// Opacity, 0 to 1.
     opacity: f32,
 }
 
-impl Average {
+impl MeanShading {
     const DARK: Self = Self { radiance: Rgb::BLACK, opacity: 1.0 };
 
     fn lerp(self, other: Self, amount: f32) -> Self {
@@ -26,42 +27,42 @@ impl Average {
 }
 
 impl MaterialTable {
-    /// Radiance that material `id` gives off towards the viewer, on average over what is there by chance.
-    pub fn radiance(&self, id: MaterialId, view: &View) -> Rgb {
-        self.average(id, view, MOST_MIXES).radiance
+    /// Radiance that material `id` emits towards the viewer, averaged over its random choices.
+    pub fn radiance(&self, id: MaterialId, view: &ShadingView) -> Rgb {
+        self.average(id, view, MAX_AVERAGED_MIXES).radiance
     }
 
-    /// Share of light that meets material `id`, on average over what is there by chance.
-    pub(super) fn opacity(&self, id: MaterialId, view: &View) -> f32 {
-        self.average(id, view, MOST_MIXES).opacity
+    /// Opacity of material `id`, averaged over its random choices.
+    pub(super) fn opacity(&self, id: MaterialId, view: &ShadingView) -> f32 {
+        self.average(id, view, MAX_AVERAGED_MIXES).opacity
     }
 
-    /// Every part is an earlier material, so this ends.
-    fn average(&self, id: MaterialId, view: &View, mixes: u32) -> Average {
-        let of = |part: MaterialId| self.average(part, view, mixes);
+    /// Averages a material. The recursion ends, since nested materials have smaller ids.
+    fn average(&self, id: MaterialId, view: &ShadingView, mixes: u32) -> MeanShading {
+        let mean = |part: MaterialId| self.average(part, view, mixes);
         match self.compiled(id) {
-            Some(Compiled::Phong(phong)) => {
-                Average { radiance: phong.eval(self.textures(), || view.lookup()).emission, ..Average::DARK }
+            Some(CompiledMaterial::Phong(phong)) => {
+                MeanShading { radiance: phong.eval(self.textures(), || view.lookup()).emission, ..MeanShading::DARK }
             }
-            Some(Compiled::Scattering(_)) | None => Average::DARK,
-            Some(Compiled::Boundary(_)) => Average { opacity: 0.0, ..Average::DARK },
-            Some(Compiled::Checkerboard(board)) => of(board.pick(view.surface)),
-            Some(Compiled::NormalMap(map)) => of(map.material),
-            Some(Compiled::BumpMap(map)) => of(map.material),
-            Some(Compiled::Mix(mix)) if mixes == 0 => of(mix.pick(self.textures(), view).0),
-            Some(Compiled::Mix(mix)) => {
+            Some(CompiledMaterial::Scattering(_)) | None => MeanShading::DARK,
+            Some(CompiledMaterial::Boundary(_)) => MeanShading { opacity: 0.0, ..MeanShading::DARK },
+            Some(CompiledMaterial::Checkerboard(board)) => mean(board.pick(view.surface)),
+            Some(CompiledMaterial::NormalMap(map)) => mean(map.material),
+            Some(CompiledMaterial::BumpMap(map)) => mean(map.material),
+            Some(CompiledMaterial::Mix(mix)) if mixes == 0 => mean(mix.pick(self.textures(), view).0),
+            Some(CompiledMaterial::Mix(mix)) => {
                 let [a, b] = mix.choices().map(|part| self.average(part, view, mixes - 1));
                 a.lerp(b, mix.amount(self.textures(), view))
             }
-            Some(Compiled::Mask(mask)) => {
+            Some(CompiledMaterial::Mask(mask)) => {
                 let opacity = mask.opacity(self.textures(), view);
-                let inner = of(mask.material);
-                Average { radiance: inner.radiance * opacity, opacity: inner.opacity * opacity }
+                let inner = mean(mask.material);
+                MeanShading { radiance: inner.radiance * opacity, opacity: inner.opacity * opacity }
             }
-            Some(Compiled::Emissive(emissive)) => {
-                let inner = of(emissive.material);
+            Some(CompiledMaterial::Emissive(emissive)) => {
+                let inner = mean(emissive.material);
                 let own = emissive.emission(self.textures(), view) * inner.opacity;
-                Average { radiance: inner.radiance + own, ..inner }
+                MeanShading { radiance: inner.radiance + own, ..inner }
             }
         }
     }

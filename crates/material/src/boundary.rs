@@ -1,33 +1,36 @@
-//! No surface at all, only what is behind it: fog, smoke, a cloud in the form of any solid.
+//! Interface without a BSDF, around a participating medium: fog, smoke or a cloud in the shape of
+//! any solid.
 //!
 //! ```json
 //! {"boundary": {"medium": {"scattering": 0.3, "anisotropy": 0.5}}}
 //! ```
 
-use super::{Compiled, Material, MaterialError, Resolver};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver};
 use crate::medium::{Interior, Medium};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// No surface, only what is behind it.
+/// Interface without a BSDF: light enters the medium inside the solid without reflection or
+/// refraction. Use it for fog, smoke and clouds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Boundary {
-    /// What fills the solid.
+    /// Medium inside the solid.
     pub medium: Medium,
-    /// Where solids overlap, the one with the highest priority is there.
+    /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
+    /// and Budge 2002), among equals the one that a path entered last.
     pub priority: i32,
 }
 
 impl Material for Boundary {
-    fn compile(&self, _resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        let medium = checked(&self.medium)?;
-        Ok(Compiled::Boundary(Interior { ior: 1.0, priority: self.priority, medium }))
+    fn compile(&self, _resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        let medium = compile_medium(&self.medium)?;
+        Ok(CompiledMaterial::Boundary(Interior { ior: 1.0, priority: self.priority, medium }))
     }
 }
 
-/// A medium ready to be asked.
-pub(super) fn checked(medium: &Medium) -> Result<Medium, MaterialError> {
+/// Checks a medium and converts its `color` to absorption.
+pub(super) fn compile_medium(medium: &Medium) -> Result<Medium, MaterialError> {
     match medium.check() {
         Ok(()) => Ok(medium.resolved()),
         Err((field, message)) => Err(MaterialError::Invalid { field, message }.within("medium")),
@@ -36,7 +39,7 @@ pub(super) fn checked(medium: &Medium) -> Result<Medium, MaterialError> {
 
 #[cfg(any(test, feature = "testing"))]
 impl Boundary {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let fog = Medium { scattering: juggler_math::Rgb::splat(0.3), anisotropy: 0.6, ..Medium::default() };
         vec![Self::default(), Self { medium: fog, priority: 1 }]

@@ -1,39 +1,41 @@
-//! Two whole materials in alternating cells of a plane of the object's own space.
+//! Checkerboard of two materials in a coordinate plane of object space.
 //!
 //! ```json
-//! {"checkerboard": {"size": 107, "even": {"phong": {"diffuse": [1, 1, 0]}}, "odd": {"phong": {"diffuse": [0, 1, 0]}}}}
+//! {"checkerboard": {"size": 107, "even": {"phong": {"diffuse": [1, 1, 0]}},
+//! "odd": {"phong": {"diffuse": [0, 1, 0]}}}}
 //! ```
 //!
-//! A point belongs to the even cells where ⌊x / size⌋ + ⌊z / size⌋ is even.
+//! In the plane `xz`, a point belongs to the even cells if ⌊x / size⌋ + ⌊z / size⌋ is even.
 
 use super::error::in_range;
-use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Phong, Resolver};
+use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialRef, MaterialResolver, Phong};
 use juggler_math::Rgb;
 use juggler_shape::surface::Surface;
 use juggler_texture::is_odd_cell;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Two whole materials in alternating cells.
+/// Checkerboard of two materials in a coordinate plane of object space. Use the texture `checker`
+/// for two colors of one material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Checkerboard {
-    /// Edge of one cell, in the object's units.
+    /// Edge length of a cell, in units of object space.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub size: f32,
-    /// The plane of object space that the cells divide.
+    /// Coordinate plane of the cells. The pattern is constant along the third axis.
     pub plane: Plane,
     /// Material of the cell on the positive side of the origin.
     pub even: MaterialRef,
-    /// Material of its neighbours.
+    /// Material of the adjacent cells.
     pub odd: MaterialRef,
 }
 
-/// A plane of coordinates.
+/// Coordinate plane of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Plane {
-    /// Level ground.
+    /// Horizontal ground.
     #[default]
     Xz,
     /// A wall that faces z.
@@ -44,12 +46,12 @@ pub enum Plane {
 
 impl Default for Checkerboard {
     fn default() -> Self {
-        let grey = |v| Phong { diffuse: Rgb::splat(v).into(), ..Phong::default() }.into();
-        Self { size: 1.0, plane: Plane::Xz, even: grey(0.8), odd: grey(0.2) }
+        let gray = |v| Phong { diffuse: Rgb::splat(v).into(), ..Phong::default() }.into();
+        Self { size: 1.0, plane: Plane::Xz, even: gray(0.8), odd: gray(0.2) }
     }
 }
 
-/// A [`Checkerboard`] with its names looked up.
+/// A [`Checkerboard`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledCheckerboard {
     size: f32,
@@ -59,20 +61,20 @@ pub struct CompiledCheckerboard {
 }
 
 impl Material for Checkerboard {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         in_range("size", self.size, f32::MIN_POSITIVE, f32::MAX)?;
         let even = resolver.material("even", &self.even)?;
         let odd = resolver.material("odd", &self.odd)?;
-        Ok(Compiled::Checkerboard(CompiledCheckerboard { size: self.size, plane: self.plane, even, odd }))
+        Ok(CompiledMaterial::Checkerboard(CompiledCheckerboard { size: self.size, plane: self.plane, even, odd }))
     }
 
-    fn parts(&self) -> Vec<&MaterialRef> {
+    fn nested_materials(&self) -> Vec<&MaterialRef> {
         vec![&self.even, &self.odd]
     }
 }
 
 impl CompiledCheckerboard {
-    /// Which of the two stands at this point.
+    /// Material at a point.
     pub fn pick(&self, surface: &Surface) -> MaterialId {
         let at = surface.local;
         let (a, b) = match self.plane {
@@ -91,7 +93,7 @@ impl CompiledCheckerboard {
 
 #[cfg(any(test, feature = "testing"))]
 impl Checkerboard {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let named = Self { even: MaterialRef::Name("red".into()), plane: Plane::Xy, ..Self::default() };
         vec![Self::default(), named, Self { size: 107.0, even: Self::default().into(), ..Self::default() }]
@@ -130,7 +132,7 @@ mod tests {
 
     #[test]
     fn huge_coordinates_keep_their_parity() {
-        // By whole numbers: coordinates of 25 bits and more, cells of edge 3.
+        // Compare with integer arithmetic: coordinates of 25 bits and more, cells of edge length 3.
         let mut random = Random::new(81);
         for _ in 0..1000 {
             let cell = |v: f32| (v as i64).div_euclid(3);
@@ -138,7 +140,7 @@ mod tests {
             let expected = if (cell(x) + cell(z)) % 2 == 0 { EVEN } else { ODD };
             assert_eq!(pick(3.0, Plane::Xz, Vec3::new(x, 0.0, z)), expected, "{x} {z}");
         }
-        // Beyond what can be told apart, any answer, but one.
+        // Beyond the precision of `f32` any cell will do, but always the same one.
         for far in [f32::MAX, f32::MIN, f32::INFINITY, f32::NAN] {
             let first = pick(1e-30, Plane::Xz, Vec3::new(far, 0.0, 1.0));
             assert_eq!(pick(1e-30, Plane::Xz, Vec3::new(far, 0.0, 1.0)), first);

@@ -1,4 +1,4 @@
-//! What descriptions become: all names looked up.
+//! Compiled materials: descriptions with all names resolved.
 
 use super::bump_map::CompiledBumpMap;
 use super::checkerboard::CompiledCheckerboard;
@@ -7,43 +7,42 @@ use super::mask::CompiledMask;
 use super::mix::CompiledMix;
 use super::normal_map::CompiledNormalMap;
 use super::phong::CompiledPhong;
-use super::{MaterialId, View};
+use super::{MaterialId, ShadingView};
 use crate::medium::Interior;
 use juggler_bsdf::Bsdf;
 use juggler_texture::TextureTable;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A material with all its names looked up.
+/// Material with all its names resolved.
 #[derive(Clone, Debug)]
-pub enum Compiled {
+pub enum CompiledMaterial {
     /// The classic model.
     Phong(CompiledPhong),
-    /// A scattering function alone.
+    /// A BSDF alone.
     Scattering(Arc<dyn ScatteringMaterial>),
     /// Two materials in alternating cells.
     Checkerboard(CompiledCheckerboard),
-    /// One of two by chance.
+    /// Two materials, of which each sample chooses one at random.
     Mix(CompiledMix),
-    /// Another one with holes.
+    /// Another material with an opacity.
     Mask(CompiledMask),
-    /// Another one with normals from a texture.
+    /// Another material with normals from a texture.
     NormalMap(CompiledNormalMap),
-    /// Another one raised by a texture.
+    /// Another material with a bump map.
     BumpMap(CompiledBumpMap),
-    /// Gives off light.
+    /// Emission over another material.
     Emissive(CompiledEmissive),
-    /// No surface, only what is behind it.
+    /// Interface without a BSDF.
     Boundary(Interior),
 }
 
-/// A material that is nothing but a scattering function, with its names looked up.
+/// Material that consists of a BSDF alone, with its names resolved.
 pub trait ScatteringMaterial: Debug + Send + Sync {
-    /// Adds the lobes at a point to `bsdf`: in place, because a scattering function is large to
-    /// return.
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf);
+    /// Adds the lobes at a point to `bsdf`, in place, because a BSDF is large to return.
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf);
 
-    /// Whether the lobes differ from point to point.
+    /// Whether the lobes vary over the surface.
     fn is_textured(&self) -> bool;
 
     /// Whether light passes through the surface.
@@ -51,39 +50,39 @@ pub trait ScatteringMaterial: Debug + Send + Sync {
         false
     }
 
-    /// Medium behind the surface, whose inside and outside then differ.
+    /// Interior of the solid behind the surface; `None` if the surface has no inside.
     fn interior(&self) -> Option<Interior> {
         None
     }
 
-    /// Rotation of the shading frame from u towards v, in whole turns; `None` where the rotation
-    /// makes no difference.
-    fn turns(&self, _textures: &TextureTable, _view: &View) -> Option<f32> {
+    /// Rotation of the shading frame from u towards v, in full turns; `None` if the rotation has no
+    /// effect.
+    fn rotation_turns(&self, _textures: &TextureTable, _view: &ShadingView) -> Option<f32> {
         None
     }
 
     /// Whether scattering depends on the directions of u and v.
-    fn is_stretched(&self) -> bool {
+    fn is_anisotropic(&self) -> bool {
         false
     }
 }
 
-impl Compiled {
-    /// Wraps a scattering function.
+impl CompiledMaterial {
+    /// Wraps a BSDF.
     pub fn scattering(scattering: impl ScatteringMaterial + 'static) -> Self {
         Self::Scattering(Arc::new(scattering))
     }
 
-    /// Whether it must know how the surface runs along its coordinates, the materials in it not counted.
+    /// Whether shading needs the surface's tangents, nested materials not counted.
     pub fn needs_tangents(&self) -> bool {
         match self {
-            Self::Scattering(scattering) => scattering.is_stretched(),
+            Self::Scattering(scattering) => scattering.is_anisotropic(),
             Self::NormalMap(_) | Self::BumpMap(_) => true,
             _ => false,
         }
     }
 
-    /// Whether it differs from place to place, the materials in it not counted.
+    /// Whether shading varies over the surface, nested materials not counted.
     pub fn is_textured(&self) -> bool {
         match self {
             Self::NormalMap(_) | Self::BumpMap(_) => true,
@@ -96,7 +95,7 @@ impl Compiled {
         }
     }
 
-    /// What is behind its surface, the materials in it not counted.
+    /// Interior behind the surface, nested materials not counted.
     pub fn interior(&self) -> Option<Interior> {
         match self {
             Self::Boundary(interior) => Some(*interior),
@@ -105,8 +104,8 @@ impl Compiled {
         }
     }
 
-    /// The materials that it is made of.
-    pub fn parts(&self) -> Vec<MaterialId> {
+    /// Nested materials.
+    pub fn nested_materials(&self) -> Vec<MaterialId> {
         match self {
             Self::Phong(_) | Self::Scattering(_) | Self::Boundary(_) => Vec::new(),
             Self::Checkerboard(board) => board.choices().to_vec(),

@@ -1,17 +1,17 @@
-//! From named descriptions to a table of numbers.
+//! Compiles material descriptions into a [`MaterialTable`].
 
 use super::phong::CompiledPhong;
-use super::{AnyMaterial, Compiled, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver};
+use super::{AnyMaterial, CompiledMaterial, MaterialError, MaterialId, MaterialRef, MaterialResolver, MaterialTable};
 use juggler_texture::TextureTable;
 use std::collections::BTreeMap;
 
-/// How deep materials may lie in each other.
+/// Maximum depth of materials nested in each other.
 pub const MAX_NESTING: usize = 64;
 
-/// Compiles a scene's materials: each named one once, those written in place as they come.
+/// Compiles a scene's materials: each named material once, inline materials where they occur.
 ///
-/// Ask for materials through [`Resolver::material`] (or [`MaterialCompiler::compile`]), then
-/// [`MaterialCompiler::finish`].
+/// Compile materials with [`MaterialResolver::material`] or [`MaterialCompiler::compile`], then
+/// call [`MaterialCompiler::finish`].
 #[derive(Debug)]
 pub struct MaterialCompiler {
     table: MaterialTable,
@@ -28,18 +28,18 @@ enum State {
 }
 
 impl MaterialCompiler {
-    /// Takes the scene's textures and named materials.
+    /// Compiler for a scene's textures and named materials.
     pub fn new(textures: TextureTable, named: impl IntoIterator<Item = (String, AnyMaterial)>) -> Self {
         let named = named.into_iter().map(|(name, material)| (name, State::Waiting(Box::new(material)))).collect();
         Self { table: MaterialTable::new(textures), named, errors: Vec::new(), depth: 0 }
     }
 
-    /// The names of all named materials, in order: for "did you mean".
+    /// Names of all named materials in sorted order, for suggestions in messages.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.named.keys().map(String::as_str)
     }
 
-    /// The named materials that were asked for so far, with their numbers.
+    /// Named materials that are compiled so far, with their ids.
     pub fn compiled(&self) -> impl Iterator<Item = (&str, MaterialId)> {
         self.named.iter().filter_map(|(name, state)| match state {
             State::Done(id) => Some((name.as_str(), *id)),
@@ -47,7 +47,7 @@ impl MaterialCompiler {
         })
     }
 
-    /// Compiles one description. The error's path starts with the material's kind.
+    /// Compiles one material. The path of an error starts with the material's kind.
     pub fn compile(&mut self, material: &AnyMaterial) -> Result<MaterialId, MaterialError> {
         self.depth += 1;
         let compiled = if self.depth > MAX_NESTING { Err(MaterialError::TooDeep) } else { material.compile(self) };
@@ -55,12 +55,14 @@ impl MaterialCompiler {
         Ok(self.table.push(compiled.map_err(|error| error.within(material.name()))?))
     }
 
-    /// Compiles the named materials that nobody has asked for yet, and gives the table; or, for every named
-    /// material that is wrong, its name and what is wrong with it.
+    /// Compiles the remaining named materials and returns the table.
+    ///
+    /// # Errors
+    /// Names and errors of all named materials that are invalid.
     pub fn finish(mut self) -> Result<MaterialTable, Vec<(String, MaterialError)>> {
         let names: Vec<String> = self.named.keys().cloned().collect();
         for name in names {
-            // The only possible error is that a name is unknown or in progress: neither can be here.
+            // Only an unknown name or a cycle would fail here, and neither is possible.
             let _ = self.by_name("", &name);
         }
         if self.errors.is_empty() {
@@ -70,7 +72,8 @@ impl MaterialCompiler {
         Err(self.errors)
     }
 
-    /// An error inside a named material is charged to that material, once, not to those who use it.
+    /// Id of a named material, which is compiled on first use. An error inside it is reported once,
+    /// for the material itself and not for its users.
     fn by_name(&mut self, field: &'static str, name: &str) -> Result<MaterialId, MaterialError> {
         let Some(state) = self.named.get_mut(name) else {
             return Err(MaterialError::UnknownMaterial { field, name: name.to_owned() });
@@ -85,14 +88,14 @@ impl MaterialCompiler {
         };
         let id = self.compile(&material).unwrap_or_else(|error| {
             self.errors.push((name.to_owned(), error));
-            self.table.push(Compiled::Phong(CompiledPhong::BLACK))
+            self.table.push(CompiledMaterial::Phong(CompiledPhong::BLACK))
         });
         self.named.insert(name.to_owned(), State::Done(id));
         Ok(id)
     }
 }
 
-impl Resolver for MaterialCompiler {
+impl MaterialResolver for MaterialCompiler {
     fn textures(&self) -> &TextureTable {
         self.table.textures()
     }
@@ -104,7 +107,7 @@ impl Resolver for MaterialCompiler {
         }
     }
 
-    fn within(&mut self, compiled: Compiled) -> MaterialId {
+    fn add_nested(&mut self, compiled: CompiledMaterial) -> MaterialId {
         self.table.push(compiled)
     }
 }

@@ -1,51 +1,58 @@
-//! Metals.
+//! Metals, smooth or rough.
 //!
 //! ```json
 //! {"conductor": {"metal": "gold", "roughness": 0.3}}
 //! ```
 //!
-//! Or by measured numbers, `eta` and `k`, or by colours, `reflectance` (head on) and `edge_tint`.
+//! Other descriptions are measured indices, `eta` and `k`, and colors, `reflectance` (at normal
+//! incidence) with `edge_tint` or `grazing`.
 
 use super::error::in_range;
-use super::input::{check_share, share};
+use super::input::{check_unit_color, unit_color};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::metals::Metal;
 use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
 use juggler_math::Rgb;
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
 
-/// A metal, polished or rough, the same from both sides.
+/// Metal, smooth or rough (GGX microfacets), the same from both sides. `metal` takes precedence
+/// over `eta` and `k`, and these over `reflectance`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Conductor {
-    /// A metal by name, such as `gold`, in place of `eta` and `k` or `reflectance`.
+    /// Name of a metal, such as `gold`, in place of `eta` and `k` or `reflectance`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub metal: Option<MetalName>,
-    /// Index of refraction per channel, together with `k`, in place of a name.
+    /// Real part of the complex index of refraction per channel, 0.001 to 1000. Requires `k`;
+    /// replaces `reflectance`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eta: Option<Rgb>,
-    /// Coefficient of extinction per channel.
+    /// Extinction coefficient per channel, the imaginary part of the complex index of refraction,
+    /// from 0 to 1000. Requires `eta`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<Rgb>,
-    /// Colour of a mirror seen head on, where neither a name nor indices are given.
+    /// Reflectance at normal incidence, 0 to 1 per channel. Ignored with `metal` or `eta` and `k`.
     pub reflectance: Input<Rgb>,
-    /// Colour that it takes on at 82 degrees, on its way to white at grazing angles: relative to the one that it would
-    /// have there by itself.
+    /// Factor on the reflectance of Schlick's curve at 82 degrees, 0 to 1 per channel; at 90
+    /// degrees the reflectance stays white. White keeps Schlick's curve. Ignored with `grazing`.
     pub edge_tint: Input<Rgb>,
-    /// Colour at grazing angles in place of white; the same as `reflectance` for a mirror that is the same all round.
+    /// Reflectance at grazing angles in Schlick's curve, 0 to 1 per channel, in place of white. The
+    /// value of `reflectance` makes the reflectance independent of the angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grazing: Option<Rgb>,
-    /// 0 for a mirror, 1 for the roughest; the width of GGX is its square.
+    /// Roughness, 0 (mirror) to 1. The alpha of GGX is its square.
     pub roughness: Input<f32>,
-    /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
+    /// Anisotropy of the roughness, -1 to 1: positive values elongate highlights along the
+    /// surface's u, negative values along v.
     pub anisotropy: Input<f32>,
-    /// Turns that direction from u towards v, in whole turns.
+    /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     pub anisotropy_rotation: Input<f32>,
-    /// Gives back what light loses between the grooves of a rough surface: white metal stays white. Off, as most
-    /// renderers have it, rough metal is darker.
+    /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017):
+    /// rough white metal stays white. Set it to `false` to match renderers with single scattering
+    /// only, where rough metal is darker.
     pub energy_compensation: bool,
 }
 
@@ -113,15 +120,15 @@ impl Default for Conductor {
     }
 }
 
-/// A [`Conductor`] with its names looked up.
+/// A [`Conductor`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledConductor {
     color: Color,
-    /// Of its surface.
+    /// Roughness of the surface.
     pub roughness: Roughness,
     compensated: bool,
-    /// What holds everywhere, where nothing is a texture.
-    fixed: Option<ConductorLobe>,
+    /// Lobe at all points, if no input is a texture.
+    constant_lobe: Option<ConductorLobe>,
 }
 
 #[derive(Clone, Debug)]
@@ -132,22 +139,22 @@ enum Color {
 }
 
 impl Material for Conductor {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_share("reflectance", &self.reflectance)?;
-        check_share("edge_tint", &self.edge_tint)?;
-        check_share("grazing", &self.grazing.unwrap_or_default().into())?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_unit_color("reflectance", &self.reflectance)?;
+        check_unit_color("edge_tint", &self.edge_tint)?;
+        check_unit_color("grazing", &self.grazing.unwrap_or_default().into())?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
         let mut compiled = CompiledConductor {
             color: self.color(textures)?,
             roughness: Roughness::new(textures, roughness)?,
             compensated: self.energy_compensation,
-            fixed: None,
+            constant_lobe: None,
         };
         if !compiled.is_textured() {
-            compiled.fixed = Some(compiled.at(textures, &Lookup::default()));
+            compiled.constant_lobe = Some(compiled.at(textures, &TextureLookup::default()));
         }
-        Ok(Compiled::scattering(compiled))
+        Ok(CompiledMaterial::scattering(compiled))
     }
 }
 
@@ -163,26 +170,26 @@ impl Conductor {
                 Ok(Color::Measured(Fresnel::Complex { eta, k }))
             }
             (None, None) => {
-                let head_on = textures.resolve("reflectance", &self.reflectance)?;
+                let f0 = textures.resolve("reflectance", &self.reflectance)?;
                 Ok(match self.grazing {
-                    Some(grazing) => Color::Schlick(head_on, grazing),
-                    None => Color::Tinted(head_on, textures.resolve("edge_tint", &self.edge_tint)?),
+                    Some(grazing) => Color::Schlick(f0, grazing),
+                    None => Color::Tinted(f0, textures.resolve("edge_tint", &self.edge_tint)?),
                 })
             }
             (eta, _) => {
                 let field = if eta.is_some() { "k" } else { "eta" };
-                Err(MaterialError::Invalid { field, message: "`eta` and `k` belong together".into() })
+                Err(MaterialError::Invalid { field, message: "`eta` and `k` must be given together".into() })
             }
         }
     }
 }
 
 impl CompiledConductor {
-    fn at(&self, textures: &TextureTable, at: &Lookup) -> ConductorLobe {
+    fn at(&self, textures: &TextureTable, at: &TextureLookup) -> ConductorLobe {
         let fresnel = match &self.color {
             Color::Measured(fresnel) => *fresnel,
-            Color::Tinted(head_on, edge) => Fresnel::tinted(share(textures, head_on, at), share(textures, edge, at)),
-            Color::Schlick(head_on, f90) => Fresnel::Schlick { f0: share(textures, head_on, at), f90: *f90 },
+            Color::Tinted(f0, edge) => Fresnel::tinted(unit_color(textures, f0, at), unit_color(textures, edge, at)),
+            Color::Schlick(f0, f90) => Fresnel::Schlick { f0: unit_color(textures, f0, at), f90: *f90 },
         };
         let alpha = self.roughness.alpha(textures, at);
         if self.compensated { ConductorLobe::compensated(fresnel, alpha) } else { ConductorLobe::new(fresnel, alpha) }
@@ -191,9 +198,9 @@ impl CompiledConductor {
 
 impl ScatteringMaterial for CompiledConductor {
     #[inline]
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        match self.fixed {
-            Some(fixed) => bsdf.push(fixed),
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+        match self.constant_lobe {
+            Some(constant_lobe) => bsdf.push(constant_lobe),
             None => bsdf.push(self.at(textures, &view.lookup())),
         }
     }
@@ -201,18 +208,18 @@ impl ScatteringMaterial for CompiledConductor {
     fn is_textured(&self) -> bool {
         let colors = match &self.color {
             Color::Measured(_) => false,
-            Color::Tinted(head_on, edge) => head_on.is_texture() || edge.is_texture(),
-            Color::Schlick(head_on, _) => head_on.is_texture(),
+            Color::Tinted(f0, edge) => f0.is_texture() || edge.is_texture(),
+            Color::Schlick(f0, _) => f0.is_texture(),
         };
         colors || self.roughness.is_textured()
     }
 
-    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        self.roughness.turns(textures, view)
+    fn rotation_turns(&self, textures: &TextureTable, view: &ShadingView) -> Option<f32> {
+        self.roughness.rotation_turns(textures, view)
     }
 
-    fn is_stretched(&self) -> bool {
-        self.roughness.is_stretched()
+    fn is_anisotropic(&self) -> bool {
+        self.roughness.is_anisotropic()
     }
 }
 
@@ -243,7 +250,7 @@ impl MetalName {
 
 #[cfg(any(test, feature = "testing"))]
 impl Conductor {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let gold = Self { metal: Some(MetalName::Gold), roughness: 0.4.into(), ..Self::default() };
         let indices = Self {

@@ -1,7 +1,7 @@
-//! The classic material's numbers, and what every material must keep.
+//! Contract of all materials, and values of the classic material.
 
 use super::*;
-use juggler_bsdf::{Cone, Highlight, Phong as PhongLobe};
+use juggler_bsdf::{Highlight, PhongParameters, RayCone};
 use juggler_math::{Frame, Rgb, Vec2, Vec3};
 use juggler_shape::surface::Tangents;
 use juggler_texture::AnyTexture;
@@ -30,13 +30,13 @@ fn compile(json: &str) -> Result<(MaterialTable, MaterialId), MaterialError> {
     Ok((compiler.finish().unwrap(), id))
 }
 
-fn lobe(json: &str, x: f32) -> PhongLobe {
+fn lobe(json: &str, x: f32) -> PhongParameters {
     let (table, id) = compile(json).unwrap();
     *table.phong(id, &at(x)).unwrap()
 }
 
 #[test]
-fn weights_and_colours_multiply() {
+fn weights_and_colors_multiply() {
     let lobe = lobe(
         r#"{"phong": {"ambient": [0.5, 1, 2], "diffuse": [0.2, 0.4, 0.6], "diffuse_weight": 2, "specular": 3,
             "highlight_color": [0.1, 0.2, 0.3], "shininess": 53, "highlight": "phong_cosine", "reflection": 0.25,
@@ -53,8 +53,8 @@ fn weights_and_colours_multiply() {
     assert!(near(lobe.transparency, [0.0, 0.5, 1.0]));
     assert_eq!((lobe.shininess, lobe.highlight, lobe.occlusion), (53.0, Highlight::PhongCosine, 0.5));
     assert_eq!((lobe.ior, lobe.fresnel, lobe.both_sides), (1.5, true, true));
-    assert_eq!(lobe.glossy, Cone { half_angle_radians: std::f32::consts::FRAC_PI_6, rays: 64 });
-    assert_eq!(lobe.blurry, Cone { half_angle_radians: std::f32::consts::FRAC_PI_4, rays: 1 });
+    assert_eq!(lobe.glossy, RayCone { half_angle_radians: std::f32::consts::FRAC_PI_6, rays: 64 });
+    assert_eq!(lobe.blurry, RayCone { half_angle_radians: std::f32::consts::FRAC_PI_4, rays: 1 });
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn the_early_steps_of_the_article_divide_diffuse_light_by_pi() {
 }
 
 #[test]
-fn textures_are_asked_at_each_point() {
+fn textures_are_evaluated_at_each_point() {
     let json = r#"{"phong": {"diffuse": "tiles", "ambient": 0.5, "specular": "tiles", "transparency": "tiles"}}"#;
     let (table, id) = compile(json).unwrap();
     let (even, odd) = (*table.phong(id, &at(0.5)).unwrap(), *table.phong(id, &at(1.5)).unwrap());
@@ -75,7 +75,10 @@ fn textures_are_asked_at_each_point() {
     assert_eq!((even.diffuse, even.ambient), (tile, tile * 0.5));
     assert_eq!(even.specular, Rgb::splat(tile.luminance()));
     assert!(odd.diffuse.is_black() && odd.ambient.is_black() && odd.specular.is_black());
-    assert_eq!((table.filter(id, &at(0.5)), table.filter(id, &at(1.5))), (tile, Rgb::BLACK));
+    assert_eq!(
+        (table.shadow_transmittance(id, &at(0.5)), table.shadow_transmittance(id, &at(1.5))),
+        (tile, Rgb::BLACK)
+    );
     assert!(table.is_transparent(id));
 }
 
@@ -89,17 +92,17 @@ fn transparency_is_found_through_checkerboards() {
     assert!(!table.is_transparent(id));
     let (table, id) = board(r#"{"transparency": [0, 0, 0.1]}"#);
     assert!(table.is_transparent(id));
-    // Even on the outside; odd on the inside would need another cell: both share the same cells here.
-    assert_eq!(table.filter(id, &at(0.0)), Rgb::BLACK);
+    // This point lies in an even cell of both checkerboards, which is opaque.
+    assert_eq!(table.shadow_transmittance(id, &at(0.0)), Rgb::BLACK);
 }
 
 #[test]
 fn numbers_that_are_no_material_are_black() {
     let (table, id) = compile(r#"{"phong": {}}"#).unwrap();
     let missing = MaterialId(id.0 + 1);
-    assert_eq!(*table.phong(missing, &at(0.0)).unwrap(), PhongLobe::BLACK);
-    assert!(table.filter(missing, &at(0.0)).is_black() && !table.is_transparent(missing));
-    assert_eq!(*MaterialTable::default().phong(id, &at(0.0)).unwrap(), PhongLobe::BLACK);
+    assert_eq!(*table.phong(missing, &at(0.0)).unwrap(), PhongParameters::BLACK);
+    assert!(table.shadow_transmittance(missing, &at(0.0)).is_black() && !table.is_transparent(missing));
+    assert_eq!(*MaterialTable::default().phong(id, &at(0.0)).unwrap(), PhongParameters::BLACK);
 }
 
 #[test]
@@ -129,7 +132,7 @@ fn json_goes_round() {
 }
 
 #[test]
-fn inputs_are_numbers_colours_or_names() {
+fn inputs_are_numbers_colors_or_names() {
     let phong = |json: &str| serde_json::from_str::<Phong>(json).unwrap();
     use juggler_texture::Input;
     assert_eq!(phong(r#"{"reflection": 0.5}"#).reflection, Input::Value(Rgb::splat(0.5)));
@@ -137,7 +140,7 @@ fn inputs_are_numbers_colours_or_names() {
     assert_eq!(phong(r#"{"diffuse": "wood"}"#).diffuse, Input::Texture("wood".into()));
     assert_eq!(phong(r#"{"specular": "wood"}"#).specular, Input::Texture("wood".into()));
     let error = serde_json::from_str::<Phong>(r#"{"diffuse": {}}"#).unwrap_err().to_string();
-    assert!(error.contains("a number, a colour or the name of a texture"), "{error}");
+    assert!(error.contains("a number, a color or the name of a texture"), "{error}");
     let error = serde_json::from_str::<AnyMaterial>(r#"{"checkerboard": {"even": {"phong": {"ior": "x"}}}}"#);
     assert!(error.unwrap_err().to_string().contains("f32"));
 }

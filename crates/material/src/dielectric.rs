@@ -1,46 +1,52 @@
-//! Glass, water, jewels: what light goes through.
+//! Dielectrics: glass, water, gems.
 //!
 //! ```json
-//! {"dielectric": {"ior": 1.5, "roughness": 0.1, "medium": {"color": [0.5, 0.9, 0.6], "distance": 2}}}
+//! {"dielectric": {"ior": 1.5, "roughness": 0.1,
+//! "medium": {"color": [0.5, 0.9, 0.6], "distance": 2}}}
 //! ```
 
 use super::error::in_range;
-use super::input::{check_share, share};
+use super::input::{check_unit_color, unit_color};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Dielectric as DielectricLobe, ThinDielectric};
 use juggler_math::Rgb;
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The surface of glass, water or a jewel, clear or frosted, and what is inside.
+/// Dielectric interface, smooth or rough (GGX microfacets), with a medium inside. Use it for glass,
+/// water and gems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Dielectric {
     /// Index of refraction inside: 1.33 for water, 1.5 for glass, 2.42 for diamond.
     #[schemars(range(min = 0.1, max = 10))]
     pub ior: f32,
-    /// 0 for clear glass, up to 1 for frosted; the width of GGX is its square.
+    /// Roughness, 0 (clear) to 1 (frosted). The alpha of GGX is its square.
     pub roughness: Input<f32>,
-    /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
+    /// Anisotropy of the roughness, -1 to 1: positive values elongate highlights along the
+    /// surface's u, negative values along v.
     pub anisotropy: Input<f32>,
-    /// Turns that direction from u towards v, in whole turns.
+    /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     pub anisotropy_rotation: Input<f32>,
-    /// Filter of what is mirrored: white in nature.
+    /// Tint of reflected light, 0 to 1 per channel. White is physical.
     pub reflection_tint: Input<Rgb>,
-    /// Filter of what goes through the surface: white in nature, where colour comes from the `medium`.
+    /// Tint of transmitted light, 0 to 1 per channel. White is physical; use the `medium` for
+    /// colored glass.
     pub transmission_tint: Input<Rgb>,
-    /// A thin pane or bubble, whose two sides are one surface: light goes straight through, and there is no inside.
+    /// Makes the surface a thin pane or bubble: light passes straight through, and there is no
+    /// interior, so `medium` and `priority` have no effect.
     pub thin: bool,
-    /// What fills it.
+    /// Medium inside the solid.
     pub medium: Medium,
-    /// Where solids overlap, the one with the highest priority is there: let a drink reach a little into its glass, and
-    /// give the glass the higher number.
+    /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
+    /// and Budge 2002), among equals the one that a path entered last. Let a drink reach slightly
+    /// into its glass, and give the glass the higher priority.
     pub priority: i32,
-    /// Gives back what light loses between the grooves of a rough surface. Off, as most renderers have it, rough glass is
-    /// darker.
+    /// Adds the energy that single scattering between microfacets loses. Set it to `false` to match
+    /// renderers with single scattering only, where rough glass is darker.
     pub energy_compensation: bool,
 }
 
@@ -61,28 +67,28 @@ impl Default for Dielectric {
     }
 }
 
-/// A [`Dielectric`] with its names looked up.
+/// A [`Dielectric`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledDielectric {
     ior: f32,
-    /// Of its surface.
+    /// Roughness of the surface.
     pub roughness: Roughness,
     reflection: Slot<Rgb>,
     transmission: Slot<Rgb>,
     compensated: bool,
-    /// What is inside; nothing for a thin one.
+    /// Interior of the solid; `None` for a thin surface.
     pub interior: Option<Interior>,
 }
 
 impl Material for Dielectric {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         in_range("ior", self.ior, 0.1, 10.0)?;
-        check_share("reflection_tint", &self.reflection_tint)?;
-        check_share("transmission_tint", &self.transmission_tint)?;
-        let medium = super::boundary::checked(&self.medium)?;
+        check_unit_color("reflection_tint", &self.reflection_tint)?;
+        check_unit_color("transmission_tint", &self.transmission_tint)?;
+        let medium = super::boundary::compile_medium(&self.medium)?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
-        Ok(Compiled::scattering(CompiledDielectric {
+        Ok(CompiledMaterial::scattering(CompiledDielectric {
             ior: self.ior,
             roughness: Roughness::new(textures, roughness)?,
             reflection: textures.resolve("reflection_tint", &self.reflection_tint)?,
@@ -95,18 +101,18 @@ impl Material for Dielectric {
 
 impl ScatteringMaterial for CompiledDielectric {
     #[inline]
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+        let at = if self.is_textured() { view.lookup() } else { TextureLookup::default() };
         let alpha = self.roughness.alpha(textures, &at);
         let (reflection, transmission) =
-            (share(textures, &self.reflection, &at), share(textures, &self.transmission, &at));
+            (unit_color(textures, &self.reflection, &at), unit_color(textures, &self.transmission, &at));
         if self.interior.is_none() {
             let thin = if self.compensated { ThinDielectric::compensated } else { ThinDielectric::new };
             bsdf.push(thin(self.ior, alpha).tinted(reflection, transmission));
             return;
         }
-        let border = if self.compensated { DielectricLobe::compensated } else { DielectricLobe::new };
-        bsdf.push(border(self.ior / view.around_ior, alpha).tinted(reflection, transmission));
+        let interface = if self.compensated { DielectricLobe::compensated } else { DielectricLobe::new };
+        bsdf.push(interface(self.ior / view.outside_ior, alpha).tinted(reflection, transmission));
     }
 
     fn is_textured(&self) -> bool {
@@ -114,12 +120,12 @@ impl ScatteringMaterial for CompiledDielectric {
         colors || self.roughness.is_textured()
     }
 
-    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        self.roughness.turns(textures, view)
+    fn rotation_turns(&self, textures: &TextureTable, view: &ShadingView) -> Option<f32> {
+        self.roughness.rotation_turns(textures, view)
     }
 
-    fn is_stretched(&self) -> bool {
-        self.roughness.is_stretched()
+    fn is_anisotropic(&self) -> bool {
+        self.roughness.is_anisotropic()
     }
 
     fn is_transmissive(&self) -> bool {
@@ -133,7 +139,7 @@ impl ScatteringMaterial for CompiledDielectric {
 
 #[cfg(any(test, feature = "testing"))]
 impl Dielectric {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let medium = Medium { color: Rgb::new(0.3, 0.9, 0.5), ..Medium::default() };
         let frosted = Self { roughness: 0.5.into(), medium, priority: 3, ..Self::default() };

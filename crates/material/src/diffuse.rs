@@ -1,24 +1,25 @@
-//! A matte surface.
+//! Diffuse surface, smooth or rough.
 //!
 //! ```json
 //! {"diffuse": {"reflectance": [0.8, 0.2, 0.1], "roughness": 0.3}}
 //! ```
 
-use super::input::{check_number, check_share, fraction, share};
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::input::{check_number, check_unit_color, unit_color, unit_number};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, Lambert};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A matte surface, the same from both sides.
+/// Diffuse surface, the same from both sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Diffuse {
-    /// Share of light that it gives back, per channel, 0 to 1.
+    /// Reflectance, 0 to 1 per channel. Roughness lowers it slightly, except for white.
     pub reflectance: Input<Rgb>,
-    /// 0 for Lambert's law, up to 1 for dust and plaster, which look flatter (Oren-Nayar, energy-preserving).
+    /// Roughness, 0 (Lambert's law) to 1 (energy-preserving Oren-Nayar model). Larger values
+    /// flatten the shading, as on dust and plaster.
     pub roughness: Input<f32>,
 }
 
@@ -28,7 +29,7 @@ impl Default for Diffuse {
     }
 }
 
-/// A [`Diffuse`] with its names looked up.
+/// A [`Diffuse`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledDiffuse {
     reflectance: Slot<Rgb>,
@@ -36,24 +37,28 @@ pub struct CompiledDiffuse {
 }
 
 impl Material for Diffuse {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_share("reflectance", &self.reflectance)?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_unit_color("reflectance", &self.reflectance)?;
         check_number("roughness", &self.roughness, 0.0, 1.0)?;
         let textures = resolver.textures();
         let reflectance = textures.resolve("reflectance", &self.reflectance)?;
         let roughness = textures.resolve("roughness", &self.roughness)?;
-        Ok(Compiled::scattering(CompiledDiffuse { reflectance, roughness }))
+        Ok(CompiledMaterial::scattering(CompiledDiffuse { reflectance, roughness }))
     }
 }
 
 impl ScatteringMaterial for CompiledDiffuse {
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
         if let (Slot::Value(albedo), Slot::Value(0.0)) = (self.reflectance, self.roughness) {
             bsdf.push(Lambert { albedo });
             return;
         }
         let at = view.lookup();
-        bsdf.push_diffuse(share(textures, &self.reflectance, &at), fraction(textures, &self.roughness, &at), 1.0);
+        bsdf.push_diffuse(
+            unit_color(textures, &self.reflectance, &at),
+            unit_number(textures, &self.roughness, &at),
+            1.0,
+        );
     }
 
     fn is_textured(&self) -> bool {
@@ -63,7 +68,7 @@ impl ScatteringMaterial for CompiledDiffuse {
 
 #[cfg(any(test, feature = "testing"))]
 impl Diffuse {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let rough = Self { roughness: 0.7.into(), reflectance: Input::Texture("tiles".into()) };
         vec![Self::default(), rough]

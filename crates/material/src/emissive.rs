@@ -1,40 +1,41 @@
-//! A surface that gives off light: a lamp for the path tracer, whatever its shape.
+//! Emissive surface: an area light of any shape for the path tracer.
 //!
 //! ```json
 //! {"emissive": {"radiance": [17, 12, 4], "sides": "front"}}
 //! ```
 
-use super::input::{check_light, light};
-use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Resolver, View};
+use super::input::{check_emission, emitted_color};
+use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialRef, MaterialResolver, ShadingView};
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A surface that gives off light, the same in every direction, and may scatter as another material does.
+/// Emissive surface: the same radiance in all directions, optionally over another material that
+/// scatters light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Emissive {
-    /// Radiance given off.
+    /// Emitted radiance, 0 to 1e30 per channel, also after multiplication by `scale`.
     pub radiance: Input<Rgb>,
     /// Factor on the radiance.
     #[schemars(range(min = 0, max = 1e30))]
     pub scale: f32,
-    /// From which sides it shines.
+    /// Sides of the surface that emit light.
     pub sides: Sides,
-    /// What it is made of besides; black when nothing is said.
+    /// Material that scatters light. Without it, the surface is black.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialRef>,
 }
 
-/// From which sides a surface shines.
+/// Sides of a surface that emit light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sides {
-    /// From the side to which its normals point: the outside of a solid, the upper side of a rectangle.
+    /// The side of the surface normals: the outside of a solid, the upper side of a rectangle.
     #[default]
     Front,
-    /// From both.
+    /// Both sides.
     Both,
 }
 
@@ -44,96 +45,96 @@ impl Default for Emissive {
     }
 }
 
-/// An [`Emissive`] with its names looked up.
+/// An [`Emissive`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledEmissive {
     radiance: Slot<Rgb>,
     scale: f32,
     sides: Sides,
-    /// What it is made of besides.
+    /// Material that scatters light.
     pub material: MaterialId,
 }
 
 impl Material for Emissive {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_light("radiance", &self.radiance, "scale", self.scale)?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_emission("radiance", &self.radiance, "scale", self.scale)?;
         let radiance = resolver.textures().resolve("radiance", &self.radiance)?;
         let material = match &self.material {
             Some(material) => resolver.material("material", material)?,
             None => MaterialId::NONE,
         };
-        Ok(Compiled::Emissive(CompiledEmissive::new(radiance, self.scale, self.sides, material)))
+        Ok(CompiledMaterial::Emissive(CompiledEmissive::new(radiance, self.scale, self.sides, material)))
     }
 
-    fn parts(&self) -> Vec<&MaterialRef> {
+    fn nested_materials(&self) -> Vec<&MaterialRef> {
         self.material.iter().collect()
     }
 
-    fn is_emitter(&self) -> bool {
+    fn is_area_light(&self) -> bool {
         true
     }
 }
 
 impl CompiledEmissive {
-    /// Of numbers that have been checked.
+    /// Emission of checked values over a material.
     pub fn new(radiance: Slot<Rgb>, scale: f32, sides: Sides, material: MaterialId) -> Self {
         Self { radiance, scale, sides, material }
     }
 
-    /// Radiance towards the viewer.
-    pub fn emission(&self, textures: &TextureTable, view: &View) -> Rgb {
+    /// Radiance emitted towards the viewer.
+    pub fn emission(&self, textures: &TextureTable, view: &ShadingView) -> Rgb {
         if self.sides == Sides::Front && !view.is_outside() {
             return Rgb::BLACK;
         }
         let radiance = match &self.radiance {
             Slot::Value(radiance) => *radiance,
-            slot => light(textures, slot, &view.lookup()),
+            slot => emitted_color(textures, slot, &view.lookup()),
         };
         (radiance * self.scale).map(|channel| channel.min(MAX_LIGHT))
     }
 
-    /// How it shines as a whole.
-    pub fn glow(&self) -> Glow {
+    /// Emission of the whole surface.
+    pub fn surface_emission(&self) -> SurfaceEmission {
         let radiance = match self.radiance {
             Slot::Value(radiance) => Some(radiance * self.scale),
             Slot::Texture(_) => None,
         };
-        Glow { radiance, sides: self.sides }
+        SurfaceEmission { radiance, sides: self.sides }
     }
 
-    /// Whether it differs from place to place.
+    /// Whether emission varies over the surface.
     pub fn is_textured(&self) -> bool {
         self.radiance.is_texture()
     }
 }
 
-/// How a surface shines as a whole.
+/// Emission of a whole surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Glow {
-    /// Radiance, where it is the same everywhere.
+pub struct SurfaceEmission {
+    /// Radiance, if it is constant over the surface.
     pub radiance: Option<Rgb>,
-    /// From which sides.
+    /// Sides that emit light.
     pub sides: Sides,
 }
 
-impl Glow {
-    /// Two that shine in one place or another.
+impl SurfaceEmission {
+    /// Emission of a surface that has both emissions at different points.
     #[must_use]
-    pub fn and(self, other: Self) -> Self {
+    pub fn union(self, other: Self) -> Self {
         let sides = if self.sides == other.sides { self.sides } else { Sides::Both };
         Self { radiance: self.radiance.filter(|_| self.radiance == other.radiance), sides }
     }
 
-    /// The same, but here and not there: whoever wants to know asks at each place.
+    /// The same emission with a radiance that varies over the surface.
     #[must_use]
-    pub fn somewhere(self) -> Self {
+    pub fn with_varying_radiance(self) -> Self {
         Self { radiance: None, ..self }
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Emissive {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let screen = Self {
             radiance: Input::Texture("tiles".into()),

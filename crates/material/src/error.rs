@@ -1,39 +1,39 @@
-//! What can be wrong with a material, and where.
+//! Errors in materials, with the path of the field at fault.
 
 use juggler_math::range;
 use juggler_texture::UnknownTexture;
 
-/// Why a material cannot be compiled.
+/// Error in a material's description.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
-    /// A texture that the scene has not.
+    /// The scene has no texture of this name.
     #[error(transparent)]
     UnknownTexture(#[from] UnknownTexture),
-    /// A material that the scene has not.
+    /// The scene has no material of this name.
     #[error("no material is called `{name}`")]
     UnknownMaterial {
-        /// The field that names it.
+        /// Field that contains the name.
         field: &'static str,
         /// The name.
         name: String,
     },
-    /// Checkerboards within checkerboards without end.
+    /// A material contains itself.
     #[error("the material `{name}` contains itself")]
     Cycle {
-        /// The field that closes the circle.
+        /// Field that closes the cycle.
         field: &'static str,
         /// The name.
         name: String,
     },
-    /// Checkerboards within checkerboards, too many.
-    #[error("materials lie more than {} deep in each other here", super::MAX_NESTING)]
+    /// Materials are nested deeper than [`MAX_NESTING`](super::MAX_NESTING).
+    #[error("materials are nested more than {} deep here", super::MAX_NESTING)]
     TooDeep,
-    /// A number that cannot be.
+    /// A value is invalid.
     #[error("{message}")]
     Invalid {
         /// The field.
         field: &'static str,
-        /// What is wrong, and what would be right.
+        /// Message about the error and the valid values.
         message: String,
     },
     /// An error inside a field.
@@ -41,13 +41,14 @@ pub enum MaterialError {
     Within {
         /// The field.
         field: &'static str,
-        /// What is wrong there.
+        /// Error in the field.
         error: Box<MaterialError>,
     },
 }
 
 impl MaterialError {
-    /// Path of the field at fault, as in the scene file, from what was compiled: `even.phong.ior`.
+    /// Path of the field at fault, relative to the compiled material, as in the scene file:
+    /// `even.phong.ior`.
     pub fn path(&self) -> String {
         match self {
             Self::UnknownTexture(UnknownTexture { field, .. })
@@ -62,7 +63,7 @@ impl MaterialError {
         }
     }
 
-    /// Whether all that is wrong is a name that the scene has not.
+    /// Whether the error is an unknown name.
     pub fn is_unknown_name(&self) -> bool {
         match self {
             Self::UnknownTexture(_) | Self::UnknownMaterial { .. } => true,
@@ -76,8 +77,8 @@ impl MaterialError {
     }
 }
 
-/// Refuses a number outside `low..=high`, and what is no number.
+/// Rejects a number outside `low..=high`, and NaN.
 pub(super) fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), MaterialError> {
-    let wrong = range::outside(field, value, low, high);
+    let wrong = range::range_error(field, value, low, high);
     wrong.map_or(Ok(()), |message| Err(MaterialError::Invalid { field, message }))
 }

@@ -1,7 +1,7 @@
-//! Materials: recipes that textures fill in, compiled once into tables without names.
+//! Materials: descriptions with textures, which are compiled once into a table without names.
 
 use juggler_shape::surface::Surface;
-use juggler_texture::{Lookup, TextureTable};
+use juggler_texture::{TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -26,7 +26,7 @@ mod phong;
 mod plastic;
 mod principled;
 mod roughness;
-mod shade;
+mod shading;
 mod table;
 mod tangent;
 mod translucent;
@@ -35,24 +35,24 @@ mod velvet;
 #[cfg(test)]
 mod contract;
 
-pub use compiled::{Compiled, ScatteringMaterial};
+pub use compiled::{CompiledMaterial, ScatteringMaterial};
 pub use compiler::{MAX_NESTING, MaterialCompiler};
-pub use emissive::{Glow, Sides};
+pub use emissive::{Sides, SurfaceEmission};
 pub use error::MaterialError;
 pub use phong::{DiffuseNormalization, Spread};
-pub use shade::{Shade, View};
+pub use shading::{Shading, ShadingView};
 pub use table::MaterialTable;
 
-/// A material's place in the [`MaterialTable`].
+/// Index of a material in the [`MaterialTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialId(pub u32);
 
 impl MaterialId {
-    /// No material at all: black.
+    /// No material, which shades black.
     pub const NONE: Self = Self(u32::MAX);
 }
 
-/// A material written in place, or the name of one of the scene's.
+/// Inline material, or the name of one of the scene's materials.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum MaterialRef {
@@ -74,7 +74,8 @@ impl<M: Into<AnyMaterial>> From<M> for MaterialRef {
     }
 }
 
-/// By hand, so that an error inside a material names its field (an untagged enum would not).
+/// Implemented by hand, so that an error inside a material names its field (an untagged enum would
+/// not).
 impl<'de> Deserialize<'de> for MaterialRef {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Visitor;
@@ -94,43 +95,45 @@ impl<'de> Deserialize<'de> for MaterialRef {
     }
 }
 
-/// Looks up what a material names while it is compiled.
-pub trait Resolver {
+/// Resolves the names in a material's description while it is compiled.
+pub trait MaterialResolver {
     /// The scene's textures.
     fn textures(&self) -> &TextureTable;
     /// Compiles (once) the material that `field` refers to.
     fn material(&mut self, field: &'static str, material: &MaterialRef) -> Result<MaterialId, MaterialError>;
-    /// Takes what lies within the one that is being compiled and has no description of its own.
-    fn within(&mut self, compiled: Compiled) -> MaterialId;
+    /// Adds a material that is part of the one being compiled and has no description of its own.
+    fn add_nested(&mut self, compiled: CompiledMaterial) -> MaterialId;
 }
 
-/// A recipe.
+/// Description of a material.
 pub trait Material: Send + Sync {
-    /// Looks up every name, once.
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError>;
+    /// Checks the description and resolves its names.
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError>;
 
-    /// Materials that this one is made of.
-    fn parts(&self) -> Vec<&MaterialRef> {
+    /// Materials nested in this one.
+    fn nested_materials(&self) -> Vec<&MaterialRef> {
         Vec::new()
     }
 
-    /// Whether surfaces of the material are emitters, its parts not counted.
-    fn is_emitter(&self) -> bool {
+    /// Whether the material emits light in path tracers by design, nested materials not counted.
+    /// The emission of a classic material does not count.
+    fn is_area_light(&self) -> bool {
         false
     }
 
-    /// Whether the material shows light of its own, its parts not counted.
+    /// Whether the material emits light, nested materials not counted.
     fn has_emission(&self) -> bool {
-        self.is_emitter()
+        self.is_area_light()
     }
 
-    /// Whether the material is of the classic model, which the integrator `classic` shades as a
-    /// whole.
+    /// Whether the material belongs to the classic model, which the integrator `classic` shades as
+    /// a whole.
     fn is_classic(&self) -> bool {
         false
     }
 
-    /// Number of rays that the classic integrator traces from a point for glossy reflections.
+    /// Number of rays that the classic integrator traces from a point for glossy reflection and
+    /// blurry refraction.
     fn glossy_rays(&self) -> u64 {
         0
     }
@@ -158,9 +161,9 @@ juggler_math::closed_set! {
     }
 }
 
-/// Where textures are asked at a point of a surface.
-fn lookup(surface: &Surface) -> Lookup {
-    Lookup {
+/// Texture lookup at a point of a surface.
+fn lookup(surface: &Surface) -> TextureLookup {
+    TextureLookup {
         uv: surface.uv,
         local: surface.local,
         world: surface.point,
@@ -169,6 +172,6 @@ fn lookup(surface: &Surface) -> Lookup {
         footprint: surface.footprint.world,
         local_footprint: surface.footprint.local,
         uv_footprint: surface.footprint.uv,
-        sharp: false,
+        unfiltered: false,
     }
 }

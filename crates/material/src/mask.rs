@@ -1,27 +1,28 @@
-//! Holes: where a texture says so, a material is not there.
+//! Opacity of another material, from a texture: leaves, fences, lace.
 //!
 //! ```json
 //! {"mask": {"opacity": "leaf outline", "material": "leaf"}}
 //! ```
 
 use super::error::in_range;
-use super::input::{check_number, fraction};
-use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Resolver, View};
+use super::input::{check_number, unit_number};
+use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialRef, MaterialResolver, ShadingView};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A material with holes: light passes where the opacity is 0, and passes by chance where it is between 0 and 1.
+/// Opacity of another material: light passes straight through where the opacity is 0, and with
+/// probability 1 - opacity elsewhere. Use it to cut leaves out of a rectangle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mask {
-    /// 1 where the material is, 0 where it is not.
+    /// Opacity, 0 (absent) to 1 (present).
     pub opacity: Input<f32>,
-    /// Makes edges sharp: what is less opaque is not there at all, and what is as opaque or more is there wholly.
+    /// Threshold that makes opacity binary: smaller opacities count as 0, all others as 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub cutoff: Option<f32>,
-    /// The material.
+    /// Material that has this opacity.
     pub material: MaterialRef,
 }
 
@@ -31,57 +32,57 @@ impl Default for Mask {
     }
 }
 
-/// A [`Mask`] with its names looked up.
+/// A [`Mask`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledMask {
     opacity: Slot<f32>,
     cutoff: Option<f32>,
-    /// The material.
+    /// Material that has this opacity.
     pub material: MaterialId,
 }
 
 impl Material for Mask {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
         in_range("cutoff", self.cutoff.unwrap_or_default(), 0.0, 1.0)?;
         let opacity = resolver.textures().resolve("opacity", &self.opacity)?;
         let material = resolver.material("material", &self.material)?;
-        Ok(Compiled::Mask(CompiledMask::new(opacity, self.cutoff, material)))
+        Ok(CompiledMaterial::Mask(CompiledMask::new(opacity, self.cutoff, material)))
     }
 
-    fn parts(&self) -> Vec<&MaterialRef> {
+    fn nested_materials(&self) -> Vec<&MaterialRef> {
         vec![&self.material]
     }
 }
 
 impl CompiledMask {
-    /// Of numbers that have been checked.
+    /// Opacity of a material, from checked values.
     pub fn new(opacity: Slot<f32>, cutoff: Option<f32>, material: MaterialId) -> Self {
-        let sharp = |opacity: f32| cutoff.map_or(opacity, |cutoff| f32::from(opacity >= cutoff));
+        let cut_off = |opacity: f32| cutoff.map_or(opacity, |cutoff| f32::from(opacity >= cutoff));
         let opacity = match opacity {
-            Slot::Value(opacity) => Slot::Value(sharp(opacity)),
+            Slot::Value(opacity) => Slot::Value(cut_off(opacity)),
             texture => texture,
         };
         Self { opacity, cutoff, material }
     }
 
-    /// Share of light that meets the material.
-    pub fn opacity(&self, textures: &TextureTable, view: &View) -> f32 {
+    /// Opacity at a point, 0 to 1.
+    pub fn opacity(&self, textures: &TextureTable, view: &ShadingView) -> f32 {
         match &self.opacity {
             Slot::Value(opacity) => *opacity,
             slot => {
-                let opacity = fraction(textures, slot, &view.lookup());
+                let opacity = unit_number(textures, slot, &view.lookup());
                 self.cutoff.map_or(opacity, |cutoff| f32::from(opacity >= cutoff))
             }
         }
     }
 
-    /// Whether it lets nothing by anywhere.
-    pub fn is_solid(&self) -> bool {
+    /// Whether the material is fully opaque everywhere.
+    pub fn is_opaque(&self) -> bool {
         matches!(self.opacity, Slot::Value(1.0))
     }
 
-    /// Whether it differs from place to place.
+    /// Whether opacity varies over the surface.
     pub fn is_textured(&self) -> bool {
         self.opacity.is_texture()
     }
@@ -89,7 +90,7 @@ impl CompiledMask {
 
 #[cfg(any(test, feature = "testing"))]
 impl Mask {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let leaf = Self { opacity: Input::Texture("tiles".into()), ..Self::default() };
         vec![Self::default(), Self { cutoff: Some(0.3), ..leaf.clone() }, leaf]

@@ -1,24 +1,24 @@
-//! Two materials in one place, each for its share of the light.
+//! Mixture of two materials.
 //!
 //! ```json
 //! {"mix": {"amount": "rust map", "a": "steel", "b": "rust"}}
 //! ```
 
-use super::input::{check_number, fraction};
-use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Resolver, View};
+use super::input::{check_number, unit_number};
+use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialRef, MaterialResolver, ShadingView};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Two materials in one place: a sample meets one of them by chance, so that their light is mixed.
+/// Mixture of two materials: each sample chooses one of them at random.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mix {
-    /// Share of `b`, 0 to 1; the rest is `a`.
+    /// Weight of `b`, 0 to 1; `a` has the rest.
     pub amount: Input<f32>,
-    /// One material.
+    /// First material.
     pub a: MaterialRef,
-    /// The other.
+    /// Second material.
     pub b: MaterialRef,
 }
 
@@ -28,7 +28,7 @@ impl Default for Mix {
     }
 }
 
-/// A [`Mix`] with its names looked up.
+/// A [`Mix`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledMix {
     amount: Slot<f32>,
@@ -37,35 +37,36 @@ pub struct CompiledMix {
 }
 
 impl Material for Mix {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         check_number("amount", &self.amount, 0.0, 1.0)?;
         let amount = resolver.textures().resolve("amount", &self.amount)?;
         let (a, b) = (resolver.material("a", &self.a)?, resolver.material("b", &self.b)?);
-        Ok(Compiled::Mix(CompiledMix { amount, a, b }))
+        Ok(CompiledMaterial::Mix(CompiledMix { amount, a, b }))
     }
 
-    fn parts(&self) -> Vec<&MaterialRef> {
+    fn nested_materials(&self) -> Vec<&MaterialRef> {
         vec![&self.a, &self.b]
     }
 }
 
 impl CompiledMix {
-    /// The material that `view.pick` meets, and that number stretched to the unit interval again.
-    pub fn pick(&self, textures: &TextureTable, view: &View) -> (MaterialId, f32) {
+    /// Material that `view.u_choice` chooses, and that number rescaled to [0, 1) for further
+    /// choices.
+    pub fn pick(&self, textures: &TextureTable, view: &ShadingView) -> (MaterialId, f32) {
         let amount = self.amount(textures, view);
         let below_one = |u: f32| u.min(1f32.next_down());
-        if view.pick < amount {
-            (self.b, below_one(view.pick / amount))
+        if view.u_choice < amount {
+            (self.b, below_one(view.u_choice / amount))
         } else {
-            (self.a, below_one((view.pick - amount) / (1.0 - amount)))
+            (self.a, below_one((view.u_choice - amount) / (1.0 - amount)))
         }
     }
 
-    /// Share of the second.
-    pub fn amount(&self, textures: &TextureTable, view: &View) -> f32 {
+    /// Weight of `b` at a point.
+    pub fn amount(&self, textures: &TextureTable, view: &ShadingView) -> f32 {
         match &self.amount {
             Slot::Value(amount) => *amount,
-            slot => fraction(textures, slot, &view.lookup()),
+            slot => unit_number(textures, slot, &view.lookup()),
         }
     }
 
@@ -77,7 +78,7 @@ impl CompiledMix {
 
 #[cfg(any(test, feature = "testing"))]
 impl Mix {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { amount: Input::Texture("tiles".into()), ..Self::default() }]
     }

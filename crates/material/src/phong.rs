@@ -1,82 +1,89 @@
-//! The classic material: ambient, diffuse and specular light (Phong 1975), mirrors and glass (Whitted 1980),
-//! glossy and blurry ones (Cook, Porter and Carpenter 1984).
+//! Classic material: ambient, diffuse and specular reflection (Phong 1975), mirror reflection and
+//! refraction (Whitted 1980), also over cones of rays (Cook, Porter and Carpenter 1984).
 //!
 //! ```json
 //! {"phong": {"diffuse": "#c02020", "specular": 1, "shininess": 20, "reflection": 0.2}}
 //! ```
 //!
-//! With n the normal, l the direction to a light of radiance L, v the direction to the viewer, r = l mirrored
-//! at n, the light given off is
+//! With n the normal, l the direction to a light of radiance L, v the direction to the viewer, and
+//! r the reflection of l at n, the radiance towards the viewer is
 //!
-//! emission + `ambient` · `diffuse` · ambient light
-//! \+ Σ L (`diffuse_weight` · `diffuse` · (n · l) + `specular` · `highlight_color` · (r · v)^`shininess`)
-//! \+ `reflection` · mirrored ray + `transparency` · ray that goes through.
+//! `emission` + `ambient` · `diffuse` · ambient light
+//! \+ Σ L (`diffuse_weight` · `diffuse` · (n · l)
+//! \+ `specular` · `highlight_color` · (r · v)^`shininess`)
+//! \+ `reflection` · radiance of the reflected ray
+//! \+ `transparency` · radiance of the refracted ray.
 //!
-//! The Juggler's reflection weight and colour are one product here, as are the teaching engine's kR, kT (numbers
-//! or colours per channel); its kD stands in `diffuse`, its kS in `highlight_color` with `specular` 1.
+//! `reflection` is the product of the Juggler's reflection weight and color, and of the teaching
+//! engine's kR; `transparency` is its kT, `diffuse` its kD, `highlight_color` with `specular` 1 its
+//! kS.
 
 use super::error::in_range;
-use super::{Compiled, Glow, Material, MaterialError, Resolver, Sides};
-use juggler_bsdf::{Cone, Highlight, Phong as PhongLobe};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, Sides, SurfaceEmission};
+use juggler_bsdf::{Highlight, PhongParameters, RayCone};
 use juggler_math::{MAX_LIGHT, Rgb};
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// The classic material.
+/// Classic model of Phong and Whitted: ambient, diffuse and specular reflection, mirror reflection
+/// and refraction. The integrator `classic` follows it exactly, path tracers approximate it by a
+/// physically based BSDF.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Phong {
-    /// Light given off, whatever falls on it.
+    /// Emitted radiance, 0 or more per channel.
     pub emission: Input<Rgb>,
-    /// Share of the ambient light; a factor on `diffuse`.
+    /// Weight of ambient light, 0 or more per channel; a factor on `diffuse`.
     pub ambient: Input<Rgb>,
-    /// Share of the ambient light that nearby geometry takes away, where the integrator looks for it.
+    /// Share of the ambient light that nearby geometry may occlude. Takes effect if the integrator
+    /// has an `occlusion_distance`.
     #[schemars(range(min = 0, max = 1))]
     pub occlusion: f32,
-    /// Colour of ambient and diffuse light.
+    /// Color of ambient and diffuse reflection, 0 or more per channel.
     pub diffuse: Input<Rgb>,
-    /// Weight of diffuse light.
+    /// Weight of diffuse reflection.
     #[schemars(range(min = 0, max = 1e30))]
     pub diffuse_weight: f32,
-    /// A further factor on diffuse light.
+    /// Normalization of diffuse reflection.
     pub diffuse_normalization: DiffuseNormalization,
-    /// Weight of the highlight.
+    /// Weight of the specular highlight, 0 or more.
     pub specular: Input<f32>,
-    /// Colour of the highlight.
+    /// Color of the specular highlight, 0 or more per channel.
     pub highlight_color: Input<Rgb>,
-    /// Exponent of the highlight: the larger, the smaller.
+    /// Exponent of the specular highlight. Larger values make it smaller.
     #[schemars(range(min = 0))]
     pub shininess: f32,
-    /// How the highlight is weighted.
+    /// Formula of the specular highlight.
     pub highlight: Highlight,
-    /// Share of mirrored light, per channel.
+    /// Weight of mirror reflection, 0 or more per channel.
     pub reflection: Input<Rgb>,
-    /// Spreads the mirrored ray.
+    /// Cone of reflected rays, for glossy reflection.
     pub glossy: Spread,
-    /// Share of light that goes through, per channel; shadows keep the same share.
+    /// Weight of refraction, 0 or more per channel; also the transmittance for shadow rays.
     pub transparency: Input<Rgb>,
-    /// Spreads the ray that goes through.
+    /// Cone of refracted rays, for blurry refraction.
     pub blurry: Spread,
-    /// Index of refraction inside over outside; 1 goes straight on, glass has 1.5.
+    /// Index of refraction inside over outside. 1 leaves rays straight, glass has 1.5.
     #[schemars(range(min = 0.01, max = 100))]
     pub ior: f32,
-    /// Shares light between `reflection` and `transparency` by Fresnel's equations: at a flat angle a window
-    /// is a mirror.
+    /// Weights `reflection` and `transparency` by Fresnel's equations: at grazing angles,
+    /// reflection dominates.
     pub fresnel: bool,
-    /// Lit from either side, whoever looks: for paper-thin surfaces.
+    /// Lights the surface from both sides, whichever side is seen. Use it for surfaces as thin as
+    /// paper.
     pub both_sides: bool,
 }
 
-/// A further factor on diffuse light.
+/// Normalization of diffuse reflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DiffuseNormalization {
-    /// None: light of radiance 1 that falls straight on a white surface makes it white.
+    /// Factor 1: a light of radiance 1 at normal incidence makes a white surface white.
     #[default]
     One,
-    /// 1/π: light is measured as irradiance.
+    /// Factor 1/π: light is measured as irradiance.
     InversePi,
 }
 
@@ -89,14 +96,14 @@ impl DiffuseNormalization {
     }
 }
 
-/// Spreads a ray into a bundle.
+/// Cone of rays around a reflected or refracted direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Spread {
-    /// Half of the cone's opening angle; 0 for a sharp image.
+    /// Half of the cone's opening angle, in degrees. 0 gives sharp images, larger values blur more.
     #[schemars(range(min = 0, max = 90))]
     pub half_angle_degrees: f32,
-    /// Rays per sample.
+    /// Rays per sample in the integrator `classic`. More rays reduce noise.
     #[schemars(range(min = 1, max = 10_000))]
     pub rays: u32,
 }
@@ -131,16 +138,16 @@ impl Default for Phong {
     }
 }
 
-/// A [`Phong`] with its names looked up.
+/// A [`Phong`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledPhong {
-    /// All that does not change from point to point; without textures, everything.
-    fixed: PhongLobe,
-    /// What textures are part of; boxed, for most materials have none.
+    /// Values that hold at all points; without textures, all values.
+    fixed: PhongParameters,
+    /// Inputs, if one of them is a texture; boxed, since most materials have none.
     textured: Option<Box<Slots>>,
 }
 
-/// The inputs that may be textures.
+/// Inputs that may be textures.
 #[derive(Clone, Debug)]
 struct Slots {
     emission: Slot<Rgb>,
@@ -154,11 +161,11 @@ struct Slots {
 }
 
 impl Material for Phong {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         self.check()?;
         let textures = resolver.textures();
         let slots = self.slots(textures)?;
-        let mut fixed = PhongLobe {
+        let mut fixed = PhongParameters {
             albedo_scale: 1.0 / self.diffuse_normalization.factor(),
             occlusion: self.occlusion,
             shininess: self.shininess,
@@ -168,11 +175,11 @@ impl Material for Phong {
             blurry: self.blurry.cone(),
             ior: self.ior,
             fresnel: self.fresnel,
-            ..PhongLobe::BLACK
+            ..PhongParameters::BLACK
         };
-        slots.fill(&mut fixed, textures, &Lookup::default());
+        slots.fill(&mut fixed, textures, &TextureLookup::default());
         let textured = slots.any_texture().then(|| Box::new(slots));
-        Ok(Compiled::Phong(CompiledPhong { fixed, textured }))
+        Ok(CompiledMaterial::Phong(CompiledPhong { fixed, textured }))
     }
 
     fn has_emission(&self) -> bool {
@@ -232,13 +239,13 @@ impl Phong {
 }
 
 impl Spread {
-    fn cone(self) -> Cone {
-        Cone { half_angle_radians: self.half_angle_degrees.to_radians(), rays: self.rays }
+    fn cone(self) -> RayCone {
+        RayCone { half_angle_radians: self.half_angle_degrees.to_radians(), rays: self.rays }
     }
 }
 
 impl Slots {
-    fn fill(&self, lobe: &mut PhongLobe, textures: &TextureTable, at: &Lookup) {
+    fn fill(&self, lobe: &mut PhongParameters, textures: &TextureTable, at: &TextureLookup) {
         let diffuse = textures.color(&self.diffuse, at);
         lobe.emission = textures.color(&self.emission, at);
         lobe.ambient = textures.color(&self.ambient, at) * diffuse;
@@ -256,42 +263,42 @@ impl Slots {
 }
 
 impl CompiledPhong {
-    /// Takes all light and gives none back.
-    pub const BLACK: Self = Self { fixed: PhongLobe::BLACK, textured: None };
+    /// Absorbs all light.
+    pub const BLACK: Self = Self { fixed: PhongParameters::BLACK, textured: None };
 
-    /// The numbers at a point.
+    /// Parameters at a point.
     #[inline]
-    pub fn eval(&self, textures: &TextureTable, at: impl FnOnce() -> Lookup) -> Cow<'_, PhongLobe> {
+    pub fn eval(&self, textures: &TextureTable, at: impl FnOnce() -> TextureLookup) -> Cow<'_, PhongParameters> {
         let Some(slots) = &self.textured else { return Cow::Borrowed(&self.fixed) };
         let mut lobe = self.fixed;
         slots.fill(&mut lobe, textures, &at());
         Cow::Owned(lobe)
     }
 
-    /// What a shadow ray keeps at a point.
-    pub fn filter(&self, textures: &TextureTable, at: impl FnOnce() -> Lookup) -> Rgb {
+    /// Transmittance for shadow rays at a point.
+    pub fn shadow_transmittance(&self, textures: &TextureTable, at: impl FnOnce() -> TextureLookup) -> Rgb {
         match &self.textured {
             Some(slots) => textures.color(&slots.transparency, &at()),
             None => self.fixed.transparency,
         }
     }
 
-    /// How it shines, if it does: to both sides.
-    pub fn glow(&self) -> Option<Glow> {
+    /// Emission of the surface, on both sides; `None` if it is black.
+    pub fn surface_emission(&self) -> Option<SurfaceEmission> {
         let radiance = match self.textured.as_ref().map(|slots| &slots.emission) {
             Some(Slot::Texture(_)) => None,
             _ if self.fixed.emission.is_black() => return None,
             _ => Some(self.fixed.emission),
         };
-        Some(Glow { radiance, sides: Sides::Both })
+        Some(SurfaceEmission { radiance, sides: Sides::Both })
     }
 
-    /// Whether it differs from place to place.
+    /// Whether the parameters vary over the surface.
     pub fn is_textured(&self) -> bool {
         self.textured.is_some()
     }
 
-    /// Whether light gets through anywhere.
+    /// Whether the surface transmits light anywhere.
     pub fn is_transparent(&self) -> bool {
         let by_texture = self.textured.as_ref().is_some_and(|slots| slots.transparency.is_texture());
         by_texture || !self.fixed.transparency.is_black()
@@ -300,7 +307,7 @@ impl CompiledPhong {
 
 #[cfg(any(test, feature = "testing"))]
 impl Phong {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let glass = Self {
             diffuse: Rgb::BLACK.into(),

@@ -1,40 +1,42 @@
-//! A matte body under a clear coat: plastic, varnished wood, glazed tiles.
+//! Diffuse base under a dielectric coating: plastic, varnished wood, glazed tiles.
 //!
 //! ```json
 //! {"plastic": {"reflectance": [0.7, 0.1, 0.1], "roughness": 0.2, "ior": 1.5}}
 //! ```
 
 use super::error::in_range;
-use super::input::{check_number, check_share, fraction, share};
+use super::input::{check_number, check_unit_color, unit_color, unit_number};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, Plastic as PlasticLobes};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A matte body under a clear coat, the same from both sides.
+/// Diffuse base under a smooth or rough dielectric coating, the same from both sides. Use it for
+/// plastic, varnished wood and glazed tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Plastic {
-    /// Share of light that the body gives back, per channel, 0 to 1.
+    /// Reflectance of the diffuse base, 0 to 1 per channel.
     pub reflectance: Input<Rgb>,
-    /// Roughness of the body: as for `diffuse`.
+    /// Roughness of the diffuse base, 0 (Lambert's law) to 1: see `diffuse`.
     pub diffuse_roughness: Input<f32>,
-    /// Index of refraction of the coat.
+    /// Index of refraction of the coating.
     #[schemars(range(min = 1, max = 10))]
     pub ior: f32,
-    /// Roughness of the coat: 0 polished, 1 the roughest; the width of GGX is its square.
+    /// Roughness of the coating, 0 (mirror) to 1. The alpha of GGX is its square.
     pub roughness: Input<f32>,
-    /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
+    /// Anisotropy of the roughness, -1 to 1: positive values elongate highlights along the
+    /// surface's u, negative values along v.
     pub anisotropy: Input<f32>,
-    /// Turns that direction from u towards v, in whole turns.
+    /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     pub anisotropy_rotation: Input<f32>,
-    /// Filter of what the coat mirrors: white in nature.
+    /// Tint of the coating's reflection, 0 to 1 per channel. White is physical.
     pub reflection_tint: Input<Rgb>,
-    /// Colours grow deeper, as light that the coat throws back into the body meets its colour again. Off, the body shows
-    /// the colours that are written or painted.
+    /// Simulates multiple reflections between base and coating, which make colors darker and more
+    /// saturated. `false` keeps the colors as they are written or painted.
     pub nonlinear: bool,
 }
 
@@ -53,27 +55,27 @@ impl Default for Plastic {
     }
 }
 
-/// A [`Plastic`] with its names looked up.
+/// A [`Plastic`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledPlastic {
     reflectance: Slot<Rgb>,
     diffuse_roughness: Slot<f32>,
     ior: f32,
-    /// Of the coat.
+    /// Roughness of the coating.
     pub roughness: Roughness,
     reflection: Slot<Rgb>,
     nonlinear: bool,
 }
 
 impl Material for Plastic {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_share("reflectance", &self.reflectance)?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_unit_color("reflectance", &self.reflectance)?;
         check_number("diffuse_roughness", &self.diffuse_roughness, 0.0, 1.0)?;
         in_range("ior", self.ior, 1.0, 10.0)?;
-        check_share("reflection_tint", &self.reflection_tint)?;
+        check_unit_color("reflection_tint", &self.reflection_tint)?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
-        Ok(Compiled::scattering(CompiledPlastic {
+        Ok(CompiledMaterial::scattering(CompiledPlastic {
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
             diffuse_roughness: textures.resolve("diffuse_roughness", &self.diffuse_roughness)?,
             ior: self.ior,
@@ -85,15 +87,15 @@ impl Material for Plastic {
 }
 
 impl ScatteringMaterial for CompiledPlastic {
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
         let at = view.lookup();
         PlasticLobes {
-            albedo: share(textures, &self.reflectance, &at),
-            body_roughness: fraction(textures, &self.diffuse_roughness, &at),
-            // In something denser than itself the coat is not seen.
-            ior: (self.ior / view.around_ior).max(1.0),
+            albedo: unit_color(textures, &self.reflectance, &at),
+            base_roughness: unit_number(textures, &self.diffuse_roughness, &at),
+            // The coating is invisible in a denser medium.
+            ior: (self.ior / view.outside_ior).max(1.0),
             alpha: self.roughness.alpha(textures, &at),
-            reflection: share(textures, &self.reflection, &at),
+            reflection: unit_color(textures, &self.reflection, &at),
             nonlinear: self.nonlinear,
         }
         .add_lobes(bsdf);
@@ -104,18 +106,18 @@ impl ScatteringMaterial for CompiledPlastic {
         colors || self.diffuse_roughness.is_texture() || self.roughness.is_textured()
     }
 
-    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        self.roughness.turns(textures, view)
+    fn rotation_turns(&self, textures: &TextureTable, view: &ShadingView) -> Option<f32> {
+        self.roughness.rotation_turns(textures, view)
     }
 
-    fn is_stretched(&self) -> bool {
-        self.roughness.is_stretched()
+    fn is_anisotropic(&self) -> bool {
+        self.roughness.is_anisotropic()
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Plastic {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let glazed = Self { reflectance: Input::Texture("tiles".into()), nonlinear: true, ..Self::default() };
         let brushed = Self { roughness: 0.5.into(), anisotropy: 0.7.into(), ior: 1.8, ..Self::default() };

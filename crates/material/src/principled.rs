@@ -1,91 +1,103 @@
-//! The material that glTF 2.0 describes: metal or not, by roughness, with its extensions.
+//! Principled material: the metallic-roughness model of glTF 2.0 with its extensions.
 //!
 //! ```json
 //! {"principled": {"base_color": [0.8, 0.1, 0.1], "roughness": 0.4, "clearcoat": 1}}
 //! ```
 //!
-//! Fields are those of glTF and of `KHR_materials_*`, factor and texture in one: clearcoat, transmission, volume, ior,
-//! specular, sheen, anisotropy, iridescence, diffuse_transmission, emissive_strength. What differs is told in
-//! [`juggler_bsdf::principled`].
+//! Fields are those of glTF and `KHR_materials_*`, with factor and texture in one: clearcoat,
+//! transmission, volume, ior, specular, sheen, anisotropy, iridescence, diffuse_transmission,
+//! emissive_strength. [`juggler_bsdf::principled`] states the deviations.
 
 use super::emissive::{CompiledEmissive, Sides};
 use super::error::in_range;
-use super::input::{check_color, check_light, check_number, check_share, fraction, light, share};
+use super::input::{
+    check_color, check_emission, check_number, check_unit_color, emitted_color, unit_color, unit_number,
+};
 use super::mask::CompiledMask;
-use super::roughness::{rotation_slot, turns};
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::roughness::{rotation_slot, rotation_turns};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Principled as PrincipledLobes};
 use juggler_math::{MAX_LIGHT, Rgb};
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What most surfaces are, by a few numbers and colours: glTF's metallic-roughness model and its extensions.
+/// Metallic-roughness model of glTF 2.0 with its extensions: a mixture of metal, glass and plastic
+/// under optional thin film, sheen and clearcoat. It suits most surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Principled {
-    /// Colour of metal head on, of plastic's body, and of light that goes through glass.
+    /// Base color, 0 to 1 per channel: the reflectance of metal at normal incidence, the diffuse
+    /// albedo of plastic, and the tint of light that glass transmits.
     pub base_color: Input<Rgb>,
-    /// Share of metal, 0 to 1.
+    /// Share of metal, 0 to 1. The rest is plastic or glass.
     pub metallic: Input<f32>,
-    /// 0 for a mirror, 1 for the roughest; the width of GGX is its square.
+    /// Roughness, 0 (mirror) to 1. The alpha of GGX is its square.
     pub roughness: Input<f32>,
-    /// Index of refraction of what is not metal.
+    /// Index of refraction of plastic and glass.
     #[schemars(range(min = 1, max = 10))]
     pub ior: f32,
-    /// Weight of what is mirrored by what is not metal.
+    /// Weight of the specular reflection of plastic and glass, 0 to 1.
     pub specular: Input<f32>,
-    /// Its colour head on.
+    /// Color of the specular reflection of plastic and glass at normal incidence, 0 or more per
+    /// channel. The reflectance itself is limited to 1.
     pub specular_color: Input<Rgb>,
-    /// Stretches highlights along the surface's u, 0 to 1.
+    /// Anisotropy of the roughness, 0 to 1. Larger values elongate highlights along the surface's
+    /// u.
     pub anisotropy: Input<f32>,
-    /// Turns that direction from u towards v, in whole turns.
+    /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     pub anisotropy_rotation: Input<f32>,
-    /// Share that a clear coat covers, 0 to 1.
+    /// Coverage by the clearcoat, 0 to 1.
     pub clearcoat: Input<f32>,
-    /// Roughness of the coat.
+    /// Roughness of the clearcoat, 0 (mirror) to 1.
     pub clearcoat_roughness: Input<f32>,
-    /// Index of refraction of the coat.
+    /// Index of refraction of the clearcoat.
     #[schemars(range(min = 1, max = 10))]
     pub clearcoat_ior: f32,
-    /// Colour of fibres on top: black for none.
+    /// Color of the sheen of fibers, 0 to 1 per channel. Black disables the sheen.
     pub sheen_color: Input<Rgb>,
-    /// Roughness of the fibres.
+    /// Roughness of the sheen, 0 to 1. Small values confine the sheen to grazing angles.
     pub sheen_roughness: Input<f32>,
-    /// Share that a thin film covers, 0 to 1.
+    /// Coverage by a thin film that shows interference colors, 0 to 1.
     pub iridescence: Input<f32>,
-    /// Index of refraction of the film.
+    /// Index of refraction of the thin film.
     #[schemars(range(min = 1, max = 10))]
     pub iridescence_ior: f32,
-    /// Thickness of the film in nanometres.
+    /// Thickness of the thin film in nanometers, 0 to 1e6.
     pub iridescence_thickness: Input<f32>,
-    /// Share of glass in what is not metal, 0 to 1.
+    /// Share of glass in the part that is not metal, 0 to 1. The rest is plastic.
     pub transmission: Input<f32>,
-    /// Share of the body's light that comes out on the other side, 0 to 1.
+    /// Share of the diffuse light that is transmitted to the other side, 0 to 1.
     pub diffuse_transmission: Input<f32>,
-    /// Colour of that light.
+    /// Color of the diffusely transmitted light, 0 to 1 per channel.
     pub diffuse_transmission_color: Input<Rgb>,
-    /// A sheet, whose two sides are one surface: light goes straight through, and there is no inside. glTF means that
-    /// with a thickness of 0.
+    /// Makes the surface a thin sheet: light passes straight through, and there is no interior.
+    /// glTF expresses this by a thickness of 0.
     pub thin: bool,
-    /// What is inside, where light comes there: `color` and `distance` are glTF's attenuation.
+    /// Medium inside the solid, if light can enter it. `color` and `distance` are the attenuation
+    /// of glTF.
     pub medium: Medium,
-    /// Where solids overlap, the one with the highest priority is there.
+    /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
+    /// and Budge 2002), among equals the one that a path entered last.
     pub priority: i32,
-    /// Radiance given off to both sides.
+    /// Emitted radiance on both sides, 0 to 1e30 per channel, also after multiplication by
+    /// `emissive_strength`. Black emits nothing.
     pub emissive: Input<Rgb>,
-    /// Factor on that.
+    /// Factor on `emissive`.
     #[schemars(range(min = 0, max = 1e30))]
     pub emissive_strength: f32,
-    /// Share of light that meets the surface, 0 to 1; the rest passes as if nothing were there.
+    /// Opacity, 0 to 1: share of the light that interacts with the surface. The rest passes
+    /// straight through.
     pub opacity: Input<f32>,
-    /// What is less opaque is not there at all, and what is as opaque or more is there wholly: glTF's alpha mode `MASK`.
+    /// Threshold that makes opacity binary: smaller opacities count as 0, all others as 1.
+    /// Corresponds to the alpha mode `MASK` of glTF.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub alpha_cutoff: Option<f32>,
-    /// Gives back what light loses between the grooves of a rough surface. Off, as most renderers have it, rough metal and
-    /// glass are darker.
+    /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017). Set
+    /// it to `false` to match renderers with single scattering only, where rough metal and glass
+    /// are darker.
     pub energy_compensation: bool,
 }
 
@@ -123,55 +135,56 @@ impl Default for Principled {
     }
 }
 
-/// Whether a share is anything but 0 everywhere.
-fn may(input: &Input<f32>) -> bool {
+/// Whether an input differs from 0 anywhere.
+fn may_be_nonzero(input: &Input<f32>) -> bool {
     *input != Input::Value(0.0)
 }
 
-/// The thickest film, nanometres.
-const THICKEST_FILM: f32 = 1e6;
+/// Largest thickness of the thin film, in nanometers.
+const MAX_FILM_THICKNESS_NM: f32 = 1e6;
 
-/// A [`Principled`] with its names looked up, but for what it gives off and its holes.
+/// A [`Principled`] with its names resolved, without emission and opacity.
 #[derive(Clone, Debug)]
 pub struct CompiledPrincipled {
     slots: Slots,
     rotation: Slot<f32>,
-    /// What is the same everywhere.
+    /// Values that hold at all points; without textures, all values.
     fixed: PrincipledLobes,
-    /// What is inside; nothing where light does not come there.
+    /// Interior of the solid; `None` if light cannot enter it.
     pub interior: Option<Interior>,
 }
 
-/// What may be a texture.
+/// Inputs that may be textures.
 #[derive(Clone, Debug)]
 struct Slots {
     colors: [Slot<Rgb>; 3],
     specular_color: Slot<Rgb>,
     numbers: [Slot<f32>; 10],
-    film: Slot<f32>,
+    iridescence_thickness: Slot<f32>,
 }
 
 impl Material for Principled {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         self.check()?;
-        let medium = super::boundary::checked(&self.medium)?;
+        let medium = super::boundary::compile_medium(&self.medium)?;
         let textures = resolver.textures();
         let compiled = self.surface(textures, medium)?;
         let emissive = textures.resolve("emissive", &self.emissive)?;
         let opacity = textures.resolve("opacity", &self.opacity)?;
-        let mut compiled = Compiled::scattering(compiled);
-        if self.is_emitter() {
-            let inner = resolver.within(compiled);
-            compiled = Compiled::Emissive(CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner));
+        let mut compiled = CompiledMaterial::scattering(compiled);
+        if self.is_area_light() {
+            let inner = resolver.add_nested(compiled);
+            compiled =
+                CompiledMaterial::Emissive(CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner));
         }
         if self.opacity != Input::Value(1.0) {
-            let inner = resolver.within(compiled);
-            compiled = Compiled::Mask(CompiledMask::new(opacity, self.alpha_cutoff, inner));
+            let inner = resolver.add_nested(compiled);
+            compiled = CompiledMaterial::Mask(CompiledMask::new(opacity, self.alpha_cutoff, inner));
         }
         Ok(compiled)
     }
 
-    fn is_emitter(&self) -> bool {
+    fn is_area_light(&self) -> bool {
         self.emissive_strength > 0.0 && !matches!(&self.emissive, Input::Value(color) if color.is_black())
     }
 }
@@ -179,22 +192,22 @@ impl Material for Principled {
 impl Principled {
     fn check(&self) -> Result<(), MaterialError> {
         for (field, input) in self.colors() {
-            check_share(field, input)?;
+            check_unit_color(field, input)?;
         }
         for (field, input) in self.numbers() {
             check_number(field, input, 0.0, 1.0)?;
         }
         check_color("specular_color", &self.specular_color, MAX_LIGHT)?;
-        check_number("iridescence_thickness", &self.iridescence_thickness, 0.0, THICKEST_FILM)?;
+        check_number("iridescence_thickness", &self.iridescence_thickness, 0.0, MAX_FILM_THICKNESS_NM)?;
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
-        check_light("emissive", &self.emissive, "emissive_strength", self.emissive_strength)?;
+        check_emission("emissive", &self.emissive, "emissive_strength", self.emissive_strength)?;
         in_range("alpha_cutoff", self.alpha_cutoff.unwrap_or_default(), 0.0, 1.0)?;
         in_range("ior", self.ior, 1.0, 10.0)?;
         in_range("clearcoat_ior", self.clearcoat_ior, 1.0, 10.0)?;
         in_range("iridescence_ior", self.iridescence_ior, 1.0, 10.0)
     }
 
-    /// Colours whose channels are shares, in the order of [`Slots::fill`].
+    /// Colors from 0 to 1 per channel, in the order of [`Slots::fill`].
     fn colors(&self) -> [(&'static str, &Input<Rgb>); 3] {
         [
             ("base_color", &self.base_color),
@@ -203,7 +216,7 @@ impl Principled {
         ]
     }
 
-    /// Numbers that are shares, in the order of [`Slots::fill`].
+    /// Numbers from 0 to 1, in the order of [`Slots::fill`].
     fn numbers(&self) -> [(&'static str, &Input<f32>); 10] {
         [
             ("metallic", &self.metallic),
@@ -219,9 +232,11 @@ impl Principled {
         ]
     }
 
-    /// Whether light may come in: by refraction, or to be scattered or coloured inside.
-    fn has_inside(&self, medium: &Medium) -> bool {
-        !self.thin && (may(&self.transmission) || (may(&self.diffuse_transmission) && !medium.is_clear()))
+    /// Whether light can enter the solid: by refraction, or by diffuse transmission into a medium.
+    fn has_interior(&self, medium: &Medium) -> bool {
+        !self.thin
+            && (may_be_nonzero(&self.transmission)
+                || (may_be_nonzero(&self.diffuse_transmission) && !medium.is_clear()))
     }
 
     fn surface(&self, textures: &TextureTable, medium: Medium) -> Result<CompiledPrincipled, MaterialError> {
@@ -231,16 +246,16 @@ impl Principled {
             clearcoat_ior: self.clearcoat_ior,
             iridescence_ior: self.iridescence_ior,
             thin_walled: self.thin,
-            is_open: [&self.transmission, &self.diffuse_transmission].into_iter().any(may),
-            is_refracting: may(&self.transmission),
+            is_open: [&self.transmission, &self.diffuse_transmission].into_iter().any(may_be_nonzero),
+            is_refracting: may_be_nonzero(&self.transmission),
             single_scattering: !self.energy_compensation,
             ..PrincipledLobes::default()
         };
         if !slots.any_texture() {
-            slots.fill(&mut fixed, textures, &Lookup::default());
+            slots.fill(&mut fixed, textures, &TextureLookup::default());
         }
-        let inside = Interior { ior: self.ior, priority: self.priority, medium };
-        let interior = self.has_inside(&medium).then_some(inside);
+        let interior = Interior { ior: self.ior, priority: self.priority, medium };
+        let interior = self.has_interior(&medium).then_some(interior);
         let rotation = rotation_slot(textures, &self.anisotropy_rotation)?;
         Ok(CompiledPrincipled { slots, rotation, fixed, interior })
     }
@@ -250,7 +265,7 @@ impl Principled {
             colors: [Slot::Value(Rgb::BLACK); 3],
             specular_color: textures.resolve("specular_color", &self.specular_color)?,
             numbers: [Slot::Value(0.0); 10],
-            film: textures.resolve("iridescence_thickness", &self.iridescence_thickness)?,
+            iridescence_thickness: textures.resolve("iridescence_thickness", &self.iridescence_thickness)?,
         };
         for (slot, (field, input)) in slots.colors.iter_mut().zip(self.colors()) {
             *slot = textures.resolve(field, input)?;
@@ -265,14 +280,14 @@ impl Principled {
 impl Slots {
     fn any_texture(&self) -> bool {
         let colors = self.colors.iter().any(Slot::is_texture) || self.specular_color.is_texture();
-        colors || self.numbers.iter().any(Slot::is_texture) || self.film.is_texture()
+        colors || self.numbers.iter().any(Slot::is_texture) || self.iridescence_thickness.is_texture()
     }
 
-    fn fill(&self, lobes: &mut PrincipledLobes, textures: &TextureTable, at: &Lookup) {
-        let number = |slot: Slot<f32>| fraction(textures, &slot, at);
-        let color = |slot: Slot<Rgb>| share(textures, &slot, at);
+    fn fill(&self, lobes: &mut PrincipledLobes, textures: &TextureTable, at: &TextureLookup) {
+        let number = |slot: Slot<f32>| unit_number(textures, &slot, at);
+        let color = |slot: Slot<Rgb>| unit_color(textures, &slot, at);
         [lobes.base_color, lobes.sheen_color, lobes.diffuse_transmission_color] = self.colors.map(color);
-        lobes.specular_color = light(textures, &self.specular_color, at);
+        lobes.specular_color = emitted_color(textures, &self.specular_color, at);
         [
             lobes.metallic,
             lobes.roughness,
@@ -285,13 +300,14 @@ impl Slots {
             lobes.transmission,
             lobes.diffuse_transmission,
         ] = self.numbers.map(number);
-        lobes.iridescence_thickness_nm = textures.number(&self.film, at).clamp(0.0, THICKEST_FILM);
+        lobes.iridescence_thickness_nm =
+            textures.number(&self.iridescence_thickness, at).clamp(0.0, MAX_FILM_THICKNESS_NM);
     }
 }
 
 impl ScatteringMaterial for CompiledPrincipled {
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        let relative_ior = self.fixed.ior / view.around_ior;
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+        let relative_ior = self.fixed.ior / view.outside_ior;
         if !self.is_textured() {
             return self.fixed.add_lobes(relative_ior, bsdf);
         }
@@ -305,13 +321,13 @@ impl ScatteringMaterial for CompiledPrincipled {
         [transmission, diffuse_transmission].iter().any(|slot| !matches!(slot, Slot::Value(0.0)))
     }
 
-    fn is_stretched(&self) -> bool {
+    fn is_anisotropic(&self) -> bool {
         let [_, _, _, anisotropy, ..] = self.slots.numbers;
         !matches!(anisotropy, Slot::Value(0.0))
     }
 
-    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        self.is_stretched().then(|| turns(textures, &self.rotation, view))
+    fn rotation_turns(&self, textures: &TextureTable, view: &ShadingView) -> Option<f32> {
+        self.is_anisotropic().then(|| rotation_turns(textures, &self.rotation, view))
     }
 
     fn is_textured(&self) -> bool {
@@ -325,7 +341,7 @@ impl ScatteringMaterial for CompiledPrincipled {
 
 #[cfg(any(test, feature = "testing"))]
 impl Principled {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let tiles = || Input::Texture("tiles".into());
         let gold = Self { metallic: 1.0.into(), base_color: Rgb::new(1.0, 0.7, 0.3).into(), ..Self::default() };

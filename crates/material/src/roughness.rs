@@ -1,11 +1,11 @@
-//! How wide highlights are, and which way they are stretched: what materials with microfacets have in common.
+//! Roughness and anisotropy of materials with microfacets.
 
-use super::input::{check_number, fraction};
-use super::{MaterialError, View};
+use super::input::{check_number, unit_number};
+use super::{MaterialError, ShadingView};
 use juggler_math::Vec2;
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 
-/// Roughness, anisotropy and its rotation, looked up.
+/// Roughness, anisotropy and its rotation, with names resolved.
 #[derive(Clone, Copy, Debug)]
 pub struct Roughness {
     roughness: Slot<f32>,
@@ -14,7 +14,7 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    /// Checks and looks up the fields `roughness`, `anisotropy` and `anisotropy_rotation`.
+    /// Checks and resolves the fields `roughness`, `anisotropy` and `anisotropy_rotation`.
     pub fn new(textures: &TextureTable, inputs: [&Input<f32>; 3]) -> Result<Self, MaterialError> {
         let [roughness, anisotropy, rotation] = inputs;
         check_number("roughness", roughness, 0.0, 1.0)?;
@@ -26,48 +26,49 @@ impl Roughness {
         })
     }
 
-    /// Widths of GGX along x and y of the frame.
-    pub fn alpha(&self, textures: &TextureTable, at: &Lookup) -> Vec2 {
+    /// Alpha of GGX along x and y of the shading frame.
+    pub fn alpha(&self, textures: &TextureTable, at: &TextureLookup) -> Vec2 {
         let anisotropy = match &self.anisotropy {
             Slot::Value(value) => *value,
             slot => textures.number(slot, at).clamp(-1.0, 1.0),
         };
-        stretched(fraction(textures, &self.roughness, at), anisotropy)
+        anisotropic_alpha(unit_number(textures, &self.roughness, at), anisotropy)
     }
 
-    /// How far the frame is turned from u towards v, in whole turns; `None` where that makes no difference.
-    pub fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        self.is_stretched().then(|| turns(textures, &self.rotation, view))
+    /// Rotation of the shading frame from u towards v, in full turns; `None` for isotropic
+    /// roughness.
+    pub fn rotation_turns(&self, textures: &TextureTable, view: &ShadingView) -> Option<f32> {
+        self.is_anisotropic().then(|| rotation_turns(textures, &self.rotation, view))
     }
 
-    /// Whether it matters which way along the surface is which.
-    pub fn is_stretched(&self) -> bool {
+    /// Whether the roughness may be anisotropic.
+    pub fn is_anisotropic(&self) -> bool {
         !matches!(self.anisotropy, Slot::Value(0.0))
     }
 
-    /// Whether alphas differ from place to place.
+    /// Whether alpha varies over the surface.
     pub fn is_textured(&self) -> bool {
         self.roughness.is_texture() || self.anisotropy.is_texture()
     }
 }
 
-/// Checks and looks up the field `anisotropy_rotation`.
+/// Checks and resolves the field `anisotropy_rotation`.
 pub fn rotation_slot(textures: &TextureTable, rotation: &Input<f32>) -> Result<Slot<f32>, MaterialError> {
     check_number("anisotropy_rotation", rotation, -1e3, 1e3)?;
     Ok(textures.resolve("anisotropy_rotation", rotation)?)
 }
 
-/// A rotation at a point, in turns.
-pub fn turns(textures: &TextureTable, rotation: &Slot<f32>, view: &View) -> f32 {
+/// Rotation of the anisotropy at a point, in full turns.
+pub fn rotation_turns(textures: &TextureTable, rotation: &Slot<f32>, view: &ShadingView) -> f32 {
     match rotation {
         Slot::Value(turns) => *turns,
         slot => textures.number(slot, &view.lookup()).clamp(-1e3, 1e3),
     }
 }
 
-/// Widths of GGX along u and v (Burley, Physically Based Shading at Disney, 2012, section 5.4, with the sign to
-/// tell along from across).
-fn stretched(roughness: f32, anisotropy: f32) -> Vec2 {
+/// Alpha of GGX along u and v (Burley, Physically Based Shading at Disney, 2012, section 5.4).
+/// Negative anisotropy exchanges u and v.
+fn anisotropic_alpha(roughness: f32, anisotropy: f32) -> Vec2 {
     let alpha = roughness * roughness;
     if anisotropy == 0.0 {
         return Vec2::splat(alpha);

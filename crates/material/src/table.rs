@@ -1,45 +1,51 @@
-//! All materials of a world, ready to be asked.
+//! All materials of a world, compiled.
 
-use super::shade::facing_normal;
-use super::{Compiled, Glow, MaterialId, ScatteringMaterial, Shade, View, lookup, tangent};
+use super::shading::facing_normal;
+use super::{CompiledMaterial, MaterialId, ScatteringMaterial, Shading, ShadingView, SurfaceEmission, lookup, tangent};
 use crate::medium::{Interior, InteriorId};
-use juggler_bsdf::Phong as PhongLobe;
+use juggler_bsdf::PhongParameters;
 use juggler_math::{Frame, Rgb};
 use juggler_shape::surface::Surface;
-use juggler_texture::{Lookup, TextureTable};
+use juggler_texture::{TextureLookup, TextureTable};
 use std::borrow::Cow;
 
-/// All materials of a world by number, with the textures they use. Made by a
+/// All materials of a world by id, with their textures. Built by a
 /// [`MaterialCompiler`](super::MaterialCompiler).
 #[derive(Clone, Debug, Default)]
 pub struct MaterialTable {
-    /// A material refers only to earlier ones.
-    materials: Vec<Compiled>,
-    facts: Vec<Facts>,
+    /// Materials by id. A material refers only to earlier ones.
+    materials: Vec<CompiledMaterial>,
+    properties: Vec<MaterialProperties>,
     interiors: Vec<Interior>,
     textures: TextureTable,
 }
 
-/// What holds for a material wherever it is asked.
+/// Properties of a material that hold at all points.
 #[derive(Clone, Copy, Debug)]
-struct Facts {
-    /// The classic integrator's shadow rays may come through somewhere.
+struct MaterialProperties {
+    /// Whether shadow rays of the classic integrator pass somewhere.
     transparent: bool,
-    /// Light may pass as if nothing were there.
-    holes: bool,
-    /// It differs from place to place.
+    /// Whether opacity is below 1 somewhere.
+    has_opacity: bool,
+    /// Whether shading varies over the surface.
     textured: bool,
-    /// It must know how the surface runs along its coordinates.
+    /// Whether shading needs the surface's tangents.
     tangents: bool,
-    /// How it shines, if it does.
-    glow: Option<Glow>,
-    /// What is behind it.
+    /// Emission, if any.
+    emission: Option<SurfaceEmission>,
+    /// Interior behind the surface, if any.
     interior: Option<InteriorId>,
 }
 
-impl Facts {
-    const NONE: Self =
-        Self { transparent: false, holes: false, textured: false, tangents: false, glow: None, interior: None };
+impl MaterialProperties {
+    const NONE: Self = Self {
+        transparent: false,
+        has_opacity: false,
+        textured: false,
+        tangents: false,
+        emission: None,
+        interior: None,
+    };
 }
 
 impl MaterialTable {
@@ -47,249 +53,254 @@ impl MaterialTable {
         Self { textures, ..Self::default() }
     }
 
-    pub(super) fn push(&mut self, compiled: Compiled) -> MaterialId {
-        let parts = compiled.parts();
-        let any = |fact: fn(&Facts) -> bool| parts.iter().any(|part| fact(&self.facts(*part)));
-        let holes = match &compiled {
-            Compiled::Mask(material) => !material.is_solid(),
-            Compiled::Boundary(_) => true,
+    pub(super) fn push(&mut self, compiled: CompiledMaterial) -> MaterialId {
+        let nested = compiled.nested_materials();
+        let any = |property: fn(&MaterialProperties) -> bool| nested.iter().any(|id| property(&self.properties(*id)));
+        let has_opacity = match &compiled {
+            CompiledMaterial::Mask(material) => !material.is_opaque(),
+            CompiledMaterial::Boundary(_) => true,
             _ => false,
         };
-        let classic = matches!(&compiled, Compiled::Phong(material) if material.is_transparent());
-        let holes = holes || any(|part| part.holes);
-        let tangents = compiled.needs_tangents() || any(|part| part.tangents);
-        let facts = Facts {
-            transparent: holes || classic || any(|part| part.transparent),
-            holes,
-            // Tangents are found by the point in object space, which is left out where nothing differs.
-            textured: tangents || compiled.is_textured() || any(|part| part.textured),
+        let classic = matches!(&compiled, CompiledMaterial::Phong(material) if material.is_transparent());
+        let has_opacity = has_opacity || any(|properties| properties.has_opacity);
+        let tangents = compiled.needs_tangents() || any(|properties| properties.tangents);
+        let properties = MaterialProperties {
+            transparent: has_opacity || classic || any(|properties| properties.transparent),
+            has_opacity,
+            // Tangents are computed from the point in object space, which untextured surfaces lack.
+            textured: tangents || compiled.is_textured() || any(|properties| properties.textured),
             tangents,
-            // What shines has the same radiance everywhere only where it is there for sure.
-            glow: self.glow_of(&compiled).map(|glow| if holes { glow.somewhere() } else { glow }),
+            // Radiance is constant only where the material is fully opaque.
+            emission: self
+                .emission_of(&compiled)
+                .map(|emission| if has_opacity { emission.with_varying_radiance() } else { emission }),
             interior: None,
         };
-        let interior = self.interior_of(&compiled, &parts);
-        self.facts.push(Facts { interior, ..facts });
+        let interior = self.interior_of(&compiled, &nested);
+        self.properties.push(MaterialProperties { interior, ..properties });
         self.materials.push(compiled);
         MaterialId(u32::try_from(self.materials.len() - 1).unwrap_or(u32::MAX))
     }
 
-    /// The textures that its materials use.
+    /// Textures of the materials.
     #[inline]
     pub fn textures(&self) -> &TextureTable {
         &self.textures
     }
 
-    /// What a material has become; `None` for a number that is no material.
-    pub(super) fn compiled(&self, id: MaterialId) -> Option<&Compiled> {
+    /// Compiled material; `None` for an unknown id.
+    pub(super) fn compiled(&self, id: MaterialId) -> Option<&CompiledMaterial> {
         self.materials.get(id.0 as usize)
     }
 
-    fn facts(&self, id: MaterialId) -> Facts {
-        self.facts.get(id.0 as usize).copied().unwrap_or(Facts::NONE)
+    fn properties(&self, id: MaterialId) -> MaterialProperties {
+        self.properties.get(id.0 as usize).copied().unwrap_or(MaterialProperties::NONE)
     }
 
-    /// What is behind a material: of several, what the first has.
-    fn interior_of(&mut self, compiled: &Compiled, parts: &[MaterialId]) -> Option<InteriorId> {
+    /// Interior of a material: its own, or the first of its nested materials.
+    fn interior_of(&mut self, compiled: &CompiledMaterial, nested: &[MaterialId]) -> Option<InteriorId> {
         if let Some(interior) = compiled.interior() {
             let id = InteriorId::new(self.interiors.len())?;
             self.interiors.push(interior);
             return Some(id);
         }
-        parts.iter().find_map(|part| self.facts(*part).interior)
+        nested.iter().find_map(|id| self.properties(*id).interior)
     }
 
-    /// What is behind material `id`, if light comes there.
+    /// Interior behind material `id`; `None` if light cannot enter it.
     #[inline]
     pub fn interior(&self, id: MaterialId) -> Option<InteriorId> {
-        self.facts(id).interior
+        self.properties(id).interior
     }
 
-    /// All that is behind materials.
+    /// Interiors of all materials.
     #[inline]
     pub fn interiors(&self) -> &[Interior] {
         &self.interiors
     }
 
-    fn glow_of(&self, compiled: &Compiled) -> Option<Glow> {
-        let glows = || compiled.parts().into_iter().filter_map(|part| self.facts(part).glow);
+    fn emission_of(&self, compiled: &CompiledMaterial) -> Option<SurfaceEmission> {
+        let emissions = || compiled.nested_materials().into_iter().filter_map(|id| self.properties(id).emission);
         match compiled {
-            Compiled::Phong(phong) => phong.glow(),
-            Compiled::Scattering(_) | Compiled::Boundary(_) => None,
-            Compiled::Emissive(emissive) => match glows().next() {
-                None => Some(emissive.glow()).filter(|glow| glow.radiance.is_none_or(|light| !light.is_black())),
-                Some(other) => Some(emissive.glow().and(other).somewhere()),
+            CompiledMaterial::Phong(phong) => phong.surface_emission(),
+            CompiledMaterial::Scattering(_) | CompiledMaterial::Boundary(_) => None,
+            CompiledMaterial::Emissive(emissive) => match emissions().next() {
+                None => Some(emissive.surface_emission())
+                    .filter(|emission| emission.radiance.is_none_or(|light| !light.is_black())),
+                Some(other) => Some(emissive.surface_emission().union(other).with_varying_radiance()),
             },
-            Compiled::NormalMap(_) | Compiled::BumpMap(_) => glows().next(),
-            Compiled::Checkerboard(_) | Compiled::Mix(_) | Compiled::Mask(_) => {
-                glows().reduce(Glow::and).map(Glow::somewhere)
+            CompiledMaterial::NormalMap(_) | CompiledMaterial::BumpMap(_) => emissions().next(),
+            CompiledMaterial::Checkerboard(_) | CompiledMaterial::Mix(_) | CompiledMaterial::Mask(_) => {
+                emissions().reduce(SurfaceEmission::union).map(SurfaceEmission::with_varying_radiance)
             }
         }
     }
 
-    /// How material `id` shines, if it does anywhere.
-    pub fn glow(&self, id: MaterialId) -> Option<Glow> {
-        self.facts(id).glow
+    /// Emission of material `id`, if it emits anywhere.
+    pub fn emission(&self, id: MaterialId) -> Option<SurfaceEmission> {
+        self.properties(id).emission
     }
 
-    /// The numbers of the classic material `id` at a point of a surface (world space, normals as the shape gives them), its
-    /// patterns as sharp as they are;
-    /// `None` for a material of another kind, black for a number that is no material.
+    /// Parameters of the classic material `id` at a point of a surface (world space, normals of the
+    /// shape), without filtering of procedural textures. Returns `None` for a material of another
+    /// kind, black for an unknown id.
     #[inline]
-    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Option<Cow<'_, PhongLobe>> {
-        match self.leaf(id, surface) {
-            Some(Compiled::Phong(phong)) => {
-                Some(phong.eval(&self.textures, || Lookup { sharp: true, ..lookup(surface) }))
+    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Option<Cow<'_, PhongParameters>> {
+        match self.resolve_checkerboards(id, surface) {
+            Some(CompiledMaterial::Phong(phong)) => {
+                Some(phong.eval(&self.textures, || TextureLookup { unfiltered: true, ..lookup(surface) }))
             }
             Some(_) => None,
-            None => Some(Cow::Borrowed(&PhongLobe::BLACK)),
+            None => Some(Cow::Borrowed(&PhongParameters::BLACK)),
         }
     }
 
-    /// Material `id` at a point; black for a number that is no material.
+    /// Shading of material `id` at a point; black for an unknown id.
     #[inline(always)]
-    pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let mut shade = Shade::black();
-        self.fill(id, view, &mut shade);
-        shade
+    pub fn shade(&self, id: MaterialId, view: &ShadingView) -> Shading {
+        let mut shading = Shading::black();
+        self.shade_into(id, view, &mut shading);
+        shading
     }
 
-    /// [`MaterialTable::shade`] into a black `shade`, which is too large to be handed on by value.
+    /// Writes [`MaterialTable::shade`] into a black `shading`, which is too large to return by
+    /// value.
     #[inline]
-    pub fn fill(&self, id: MaterialId, view: &View, shade: &mut Shade) {
+    pub fn shade_into(&self, id: MaterialId, view: &ShadingView, shading: &mut Shading) {
         let (mut id, first, mut view) = (id, view, *view);
-        // Every part is an earlier material, so this ends.
+        // The loop ends, since nested materials have smaller ids.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
             id = match compiled {
-                Compiled::Phong(phong) => {
-                    Self::classic(&phong.eval(&self.textures, || view.lookup()), &view, shade);
+                CompiledMaterial::Phong(phong) => {
+                    Self::fill_classic(&phong.eval(&self.textures, || view.lookup()), &view, shading);
                     return;
                 }
-                Compiled::Scattering(scattering) => {
-                    self.fill_scattering(&**scattering, &view, shade);
+                CompiledMaterial::Scattering(scattering) => {
+                    self.fill_scattering(&**scattering, &view, shading);
                     return;
                 }
-                Compiled::NormalMap(map) => {
-                    view.normal = map.turned(&self.textures, &view);
+                CompiledMaterial::NormalMap(map) => {
+                    view.normal = map.shading_normal(&self.textures, &view);
                     map.material
                 }
-                Compiled::BumpMap(map) => {
-                    view.normal = map.turned(&self.textures, &view);
+                CompiledMaterial::BumpMap(map) => {
+                    view.normal = map.shading_normal(&self.textures, &view);
                     map.material
                 }
-                Compiled::Checkerboard(board) => board.pick(view.surface),
-                Compiled::Mix(mix) => {
-                    (id, view.pick) = mix.pick(&self.textures, &view);
+                CompiledMaterial::Checkerboard(board) => board.pick(view.surface),
+                CompiledMaterial::Mix(mix) => {
+                    (id, view.u_choice) = mix.pick(&self.textures, &view);
                     continue;
                 }
-                Compiled::Mask(mask) => {
-                    shade.opacity *= mask.opacity(&self.textures, &view);
+                CompiledMaterial::Mask(mask) => {
+                    shading.opacity *= mask.opacity(&self.textures, &view);
                     mask.material
                 }
-                Compiled::Boundary(_) => {
-                    shade.opacity = 0.0;
+                CompiledMaterial::Boundary(_) => {
+                    shading.opacity = 0.0;
                     break;
                 }
-                Compiled::Emissive(emissive) => {
-                    shade.emission += emissive.emission(&self.textures, &view);
+                CompiledMaterial::Emissive(emissive) => {
+                    shading.emission += emissive.emission(&self.textures, &view);
                     emissive.material
                 }
             };
         }
-        shade.frame = Frame::around(facing_normal(first, first.normal));
+        shading.frame = Frame::around(facing_normal(first, first.normal));
     }
 
-    /// What is nothing but a scattering function, in its frame.
-    fn fill_scattering(&self, material: &dyn ScatteringMaterial, view: &View, shade: &mut Shade) {
+    /// Fills in the BSDF of a scattering material, with its frame.
+    fn fill_scattering(&self, material: &dyn ScatteringMaterial, view: &ShadingView, shading: &mut Shading) {
         let mut normal = facing_normal(view, view.normal);
         let is_mapped = view.normal != view.surface.shading_normal;
         if material.interior().is_some() {
             let outwards = if view.is_outside() { normal } else { -normal };
             normal = if is_mapped { outwards } else { view.normal };
         }
-        shade.frame = tangent::frame(view, normal, material.turns(&self.textures, view));
-        material.add_lobes(&self.textures, view, &mut shade.bsdf);
-        shade.transmissive = material.is_transmissive();
+        shading.frame = tangent::frame(view, normal, material.rotation_turns(&self.textures, view));
+        material.add_lobes(&self.textures, view, &mut shading.bsdf);
+        shading.transmissive = material.is_transmissive();
         if is_mapped {
-            shade.set_geometric_normal(view.surface.normal);
+            shading.set_geometric_normal(view.surface.normal);
         }
     }
 
-    /// The classic material as physics would have it.
-    fn classic(lobe: &PhongLobe, view: &View, shade: &mut Shade) {
-        shade.frame = Frame::around(facing_normal(view, view.normal));
-        shade.emission += lobe.emission;
-        lobe.add_lobes(view.is_outside(), &mut shade.bsdf);
-        shade.lamp_scale = lobe.lamp_scale();
+    /// Fills in the physically based approximation of the classic material.
+    fn fill_classic(lobe: &PhongParameters, view: &ShadingView, shading: &mut Shading) {
+        shading.frame = Frame::around(facing_normal(view, view.normal));
+        shading.emission += lobe.emission;
+        lobe.add_lobes(view.is_outside(), &mut shading.bsdf);
+        shading.light_scale = lobe.light_scale();
         if view.normal != view.surface.shading_normal {
-            shade.set_geometric_normal(view.surface.normal);
+            shading.set_geometric_normal(view.surface.normal);
         }
     }
 
-    /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its
-    /// transparency.
+    /// Transmittance of material `id` at a point for shadow rays of the classic integrator.
     #[inline]
-    pub fn filter(&self, id: MaterialId, surface: &Surface) -> Rgb {
-        match self.leaf(id, surface) {
-            Some(Compiled::Phong(phong)) => phong.filter(&self.textures, || lookup(surface)),
-            Some(Compiled::Mask(mask)) => {
-                let opacity = mask.opacity(&self.textures, &View::of(surface));
-                self.filter(mask.material, surface) * opacity + Rgb::splat(1.0 - opacity)
+    pub fn shadow_transmittance(&self, id: MaterialId, surface: &Surface) -> Rgb {
+        match self.resolve_checkerboards(id, surface) {
+            Some(CompiledMaterial::Phong(phong)) => phong.shadow_transmittance(&self.textures, || lookup(surface)),
+            Some(CompiledMaterial::Mask(mask)) => {
+                let opacity = mask.opacity(&self.textures, &ShadingView::along_normal(surface));
+                self.shadow_transmittance(mask.material, surface) * opacity + Rgb::splat(1.0 - opacity)
             }
-            Some(Compiled::Boundary(_)) => Rgb::WHITE,
-            Some(Compiled::Emissive(emissive)) => self.filter(emissive.material, surface),
-            Some(Compiled::NormalMap(map)) => self.filter(map.material, surface),
-            Some(Compiled::BumpMap(map)) => self.filter(map.material, surface),
+            Some(CompiledMaterial::Boundary(_)) => Rgb::WHITE,
+            Some(CompiledMaterial::Emissive(emissive)) => self.shadow_transmittance(emissive.material, surface),
+            Some(CompiledMaterial::NormalMap(map)) => self.shadow_transmittance(map.material, surface),
+            Some(CompiledMaterial::BumpMap(map)) => self.shadow_transmittance(map.material, surface),
             _ => Rgb::BLACK,
         }
     }
 
-    /// Share of light that passes material `id` at this point as if nothing were there.
+    /// Share of light that passes straight through material `id` at a point: 1 - opacity.
     #[inline]
-    pub fn gap(&self, id: MaterialId, surface: &Surface) -> f32 {
-        if !self.has_holes(id) {
+    pub fn straight_transmittance(&self, id: MaterialId, surface: &Surface) -> f32 {
+        if !self.has_opacity(id) {
             return 0.0;
         }
-        1.0 - self.opacity(id, &View::of(surface))
+        1.0 - self.opacity(id, &ShadingView::along_normal(surface))
     }
 
-    /// Whether [`MaterialTable::filter`] is anything but black anywhere.
+    /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.
     #[inline]
     pub fn is_transparent(&self, id: MaterialId) -> bool {
-        self.facts(id).transparent
+        self.properties(id).transparent
     }
 
-    /// Whether [`MaterialTable::gap`] is anything but 0 anywhere.
+    /// Whether [`MaterialTable::straight_transmittance`] is above 0 anywhere.
     #[inline]
-    pub fn has_holes(&self, id: MaterialId) -> bool {
-        self.facts(id).holes
+    pub fn has_opacity(&self, id: MaterialId) -> bool {
+        self.properties(id).has_opacity
     }
 
-    /// Whether shading material `id` asks for [`View::tangents`]. Such a material is textured, too.
+    /// Whether shading material `id` needs [`ShadingView::tangents`]. Such a material also counts
+    /// as textured.
     #[inline]
     pub fn needs_tangents(&self, id: MaterialId) -> bool {
-        self.facts(id).tangents
+        self.properties(id).tangents
     }
 
-    /// Whether material `id` is a surface of its own, not made of others.
+    /// Whether material `id` is a BSDF or a classic material, without nested materials.
     #[inline]
     pub fn is_simple(&self, id: MaterialId) -> bool {
-        self.compiled(id).is_some_and(|compiled| matches!(compiled, Compiled::Phong(_) | Compiled::Scattering(_)))
+        self.compiled(id)
+            .is_some_and(|compiled| matches!(compiled, CompiledMaterial::Phong(_) | CompiledMaterial::Scattering(_)))
     }
 
-    /// Whether material `id` differs from place to place.
+    /// Whether shading material `id` varies over the surface.
     #[inline]
     pub fn is_textured(&self, id: MaterialId) -> bool {
-        self.facts(id).textured
+        self.properties(id).textured
     }
 
-    /// The material that stands at this point once all checkerboards have chosen. Every choice is an
-    /// earlier material, so this ends.
+    /// Material at a point, after all checkerboards have chosen. The loop ends, since nested
+    /// materials have smaller ids.
     #[inline]
-    fn leaf(&self, mut id: MaterialId, surface: &Surface) -> Option<&Compiled> {
+    fn resolve_checkerboards(&self, mut id: MaterialId, surface: &Surface) -> Option<&CompiledMaterial> {
         loop {
             match self.materials.get(id.0 as usize)? {
-                Compiled::Checkerboard(board) => id = board.pick(surface),
+                CompiledMaterial::Checkerboard(board) => id = board.pick(surface),
                 other => return Some(other),
             }
         }

@@ -1,25 +1,26 @@
-//! Thin sheets that light seeps through: paper, leaves, lampshades.
+//! Thin sheets that transmit light diffusely: paper, leaves, lampshades.
 //!
 //! ```json
 //! {"translucent": {"reflectance": [0.2, 0.5, 0.1], "transmittance": [0.2, 0.4, 0.05]}}
 //! ```
 
-use super::input::{check_share, share};
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::input::{check_unit_color, unit_color};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, DiffuseTransmission};
 use juggler_math::Rgb;
-use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A matte sheet that some of the light comes through, spread as evenly as what is given back; the same from both sides.
+/// Thin sheet that reflects and transmits light diffusely, the same from both sides. Use it for
+/// paper, leaves and lampshades.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Translucent {
-    /// Share of light that it gives back, per channel, 0 to 1.
+    /// Diffuse reflectance, 0 to 1 per channel.
     pub reflectance: Input<Rgb>,
-    /// Share of light that comes out on the other side. Both together are 1 at most; what textures give beyond is
-    /// taken from both alike.
+    /// Diffuse transmittance, 0 to 1 per channel. The sum with `reflectance` is at most 1 per
+    /// channel; larger sums of texture values are scaled to 1.
     pub transmittance: Input<Rgb>,
 }
 
@@ -29,7 +30,7 @@ impl Default for Translucent {
     }
 }
 
-/// A [`Translucent`] with its names looked up.
+/// A [`Translucent`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledTranslucent {
     reflectance: Slot<Rgb>,
@@ -37,12 +38,12 @@ pub struct CompiledTranslucent {
 }
 
 impl Material for Translucent {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_share("reflectance", &self.reflectance)?;
-        check_share("transmittance", &self.transmittance)?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_unit_color("reflectance", &self.reflectance)?;
+        check_unit_color("transmittance", &self.transmittance)?;
         if let (Input::Value(back), Input::Value(through)) = (&self.reflectance, &self.transmittance) {
             let most = (*back + *through).max_channel();
-            // Numbers such as 0.7 and 0.3 may come to a rounding more.
+            // Rounding may lift the sum of numbers such as 0.7 and 0.3 slightly above 1.
             if most > 1.0 + 1e-6 {
                 let message = format!("`reflectance` and `transmittance` together must be 1 or less, they are {most}");
                 return Err(MaterialError::Invalid { field: "transmittance", message });
@@ -51,14 +52,15 @@ impl Material for Translucent {
         let textures = resolver.textures();
         let reflectance = textures.resolve("reflectance", &self.reflectance)?;
         let transmittance = textures.resolve("transmittance", &self.transmittance)?;
-        Ok(Compiled::scattering(CompiledTranslucent { reflectance, transmittance }))
+        Ok(CompiledMaterial::scattering(CompiledTranslucent { reflectance, transmittance }))
     }
 }
 
 impl ScatteringMaterial for CompiledTranslucent {
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
-        let (back, through) = (share(textures, &self.reflectance, &at), share(textures, &self.transmittance, &at));
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+        let at = if self.is_textured() { view.lookup() } else { TextureLookup::default() };
+        let (back, through) =
+            (unit_color(textures, &self.reflectance, &at), unit_color(textures, &self.transmittance, &at));
         let scale = (back + through).map(|both| 1.0 / both.max(1.0));
         bsdf.push(DiffuseTransmission { reflectance: back * scale, transmittance: through * scale, ior: 1.0 });
     }
@@ -74,7 +76,7 @@ impl ScatteringMaterial for CompiledTranslucent {
 
 #[cfg(any(test, feature = "testing"))]
 impl Translucent {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let leaf = Self { transmittance: Input::Texture("tiles".into()), reflectance: Rgb::splat(0.9).into() };
         vec![Self::default(), leaf]

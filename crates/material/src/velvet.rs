@@ -1,28 +1,31 @@
-//! Cloth: fibres that stand upright and shine along edges.
+//! Cloth with a sheen at grazing angles (Estevez and Kulla 2017) over a diffuse base.
 //!
 //! ```json
-//! {"velvet": {"sheen_color": [0.9, 0.3, 0.4], "sheen_roughness": 0.4, "reflectance": [0.2, 0.02, 0.05]}}
+//! {"velvet": {"sheen_color": [0.9, 0.3, 0.4], "sheen_roughness": 0.4,
+//! "reflectance": [0.2, 0.02, 0.05]}}
 //! ```
 
-use super::input::{check_number, check_share, fraction, share};
-use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
+use super::input::{check_number, check_unit_color, unit_color, unit_number};
+use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, Sheen};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Fibres over a matte ground, the same from both sides.
+/// Cloth: a sheen of upright fibers over a diffuse base, the same from both sides. Use it for
+/// velvet and other fabrics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Velvet {
-    /// Colour of the fibres, 0 to 1.
+    /// Color of the sheen, 0 to 1 per channel.
     pub sheen_color: Input<Rgb>,
-    /// 0 for fibres that stand straight and shine at the very edge only, 1 for tousled ones.
+    /// Roughness of the sheen, 0 to 1. Small values confine the sheen to grazing angles, large
+    /// values spread it over the surface.
     pub sheen_roughness: Input<f32>,
-    /// Share of light that the ground gives back, per channel, 0 to 1; black for fibres alone.
+    /// Reflectance of the diffuse base, 0 to 1 per channel. Black leaves the sheen alone.
     pub reflectance: Input<Rgb>,
-    /// Roughness of the ground: as for `diffuse`.
+    /// Roughness of the diffuse base, 0 (Lambert's law) to 1: see `diffuse`.
     pub roughness: Input<f32>,
 }
 
@@ -37,7 +40,7 @@ impl Default for Velvet {
     }
 }
 
-/// A [`Velvet`] with its names looked up.
+/// A [`Velvet`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledVelvet {
     sheen_color: Slot<Rgb>,
@@ -47,13 +50,13 @@ pub struct CompiledVelvet {
 }
 
 impl Material for Velvet {
-    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_share("sheen_color", &self.sheen_color)?;
+    fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
+        check_unit_color("sheen_color", &self.sheen_color)?;
         check_number("sheen_roughness", &self.sheen_roughness, 0.0, 1.0)?;
-        check_share("reflectance", &self.reflectance)?;
+        check_unit_color("reflectance", &self.reflectance)?;
         check_number("roughness", &self.roughness, 0.0, 1.0)?;
         let textures = resolver.textures();
-        Ok(Compiled::scattering(CompiledVelvet {
+        Ok(CompiledMaterial::scattering(CompiledVelvet {
             sheen_color: textures.resolve("sheen_color", &self.sheen_color)?,
             sheen_roughness: textures.resolve("sheen_roughness", &self.sheen_roughness)?,
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
@@ -63,13 +66,13 @@ impl Material for Velvet {
 }
 
 impl ScatteringMaterial for CompiledVelvet {
-    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
         let at = view.lookup();
-        let roughness = fraction(textures, &self.sheen_roughness, &at);
-        let ground = share(textures, &self.reflectance, &at);
-        bsdf.push_layer(Sheen::new(share(textures, &self.sheen_color, &at), roughness * roughness), 1.0);
+        let roughness = unit_number(textures, &self.sheen_roughness, &at);
+        let ground = unit_color(textures, &self.reflectance, &at);
+        bsdf.push_layer(Sheen::new(unit_color(textures, &self.sheen_color, &at), roughness * roughness), 1.0);
         if !ground.is_black() {
-            bsdf.push_diffuse(ground, fraction(textures, &self.roughness, &at), 1.0);
+            bsdf.push_diffuse(ground, unit_number(textures, &self.roughness, &at), 1.0);
         }
     }
 
@@ -81,7 +84,7 @@ impl ScatteringMaterial for CompiledVelvet {
 
 #[cfg(any(test, feature = "testing"))]
 impl Velvet {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let red = Self { reflectance: Rgb::new(0.3, 0.02, 0.02).into(), roughness: 0.8.into(), ..Self::default() };
         let woven = Self { sheen_color: Input::Texture("tiles".into()), sheen_roughness: 0.2.into(), ..red.clone() };

@@ -1,59 +1,59 @@
-//! Axis-aligned boxes.
+//! Axis-aligned bounding boxes.
 
 use crate::Ray;
 use glam::Vec3;
 
-/// An axis-aligned box; empty when a `min` is above its `max`.
+/// An axis-aligned bounding box; empty if any component of `min` exceeds that of `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Least corner.
+    /// Minimum corner.
     pub min: Vec3,
-    /// Greatest corner.
+    /// Maximum corner.
     pub max: Vec3,
 }
 
 impl Aabb {
-    /// The box of no point at all: the neutral element of [`Aabb::union`].
+    /// The empty box: the neutral element of [`Aabb::union`].
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-    /// The box of every point.
+    /// The box that contains every point.
     pub const INFINITE: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
-    /// The smallest box around the points.
+    /// Smallest box that contains all points.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::with_point)
     }
 
-    /// The box grown to hold `point`.
+    /// Smallest box that contains `self` and `point`.
     pub fn with_point(self, point: Vec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The smallest box around both.
+    /// Smallest box that contains both boxes.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether no point is inside.
+    /// Whether the box contains no point.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
 
-    /// Whether all corners are finite (an empty box is not).
+    /// Whether both corners are finite. False for [`Aabb::EMPTY`].
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// Whether the point lies inside or on the border.
+    /// Whether the point lies inside or on the boundary.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// The middle of a finite box.
+    /// Center of a finite box.
     pub fn center(&self) -> Vec3 {
         self.min * 0.5 + self.max * 0.5
     }
 
-    /// Edge lengths; negative somewhere when empty.
+    /// Edge lengths; at least one is negative for an empty box.
     pub fn extent(&self) -> Vec3 {
         self.max - self.min
     }
@@ -64,7 +64,7 @@ impl Aabb {
         2.0 * (e.x * e.y + e.y * e.z + e.z * e.x)
     }
 
-    /// Every side moved outwards by `by`.
+    /// The box with each face moved outward by `by`.
     pub fn grown(self, by: f32) -> Self {
         Self { min: self.min - Vec3::splat(by), max: self.max + Vec3::splat(by) }
     }
@@ -75,9 +75,10 @@ impl Aabb {
         std::array::from_fn(|i| Vec3::new(pick(i, 0, 0), pick(i, 1, 1), pick(i, 2, 2)))
     }
 
-    /// Where the ray enters and leaves, clipped to its own range; `None` when it misses. The scalar
-    /// reference for every faster test (slabs: Kay and Kajiya 1986; the far side widened by 4 ulp so that
-    /// rounding never loses a hit: Ize 2013).
+    /// Interval of `t` in which the ray is inside the box, clipped to the ray's own interval;
+    /// `None` for a miss. Scalar reference for the SIMD tests of the acceleration structures
+    /// (slabs: Kay and Kajiya 1986; far distances enlarged by 4 ulps so that rounding never loses a
+    /// hit: Ize 2013).
     pub fn clip(&self, ray: &Ray) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (ray.t_min, ray.t_max);
         for axis in 0..3 {
@@ -85,7 +86,8 @@ impl Aabb {
             let a = (self.min[axis] - ray.origin[axis]) * inverse;
             let b = (self.max[axis] - ray.origin[axis]) * inverse;
             let (near, far) = if inverse < 0.0 { (b, a) } else { (a, b) };
-            // A NaN (0 · infinity: origin on a slab's plane, ray inside it) must not shrink the range.
+            // A NaN (0 · infinity: the origin lies in a slab's plane and the ray is parallel to it)
+            // leaves the interval unchanged.
             if near > enter {
                 enter = near;
             }
@@ -122,7 +124,7 @@ mod tests {
         if ray.direction == Vec3::ZERO { Ray::new(ray.origin, Vec3::X) } else { ray }
     }
 
-    /// Slabs in f64, one after the other, without reciprocals.
+    /// Slab test in double precision with divisions in place of reciprocals.
     fn reference(aabb: &Aabb, ray: &Ray, grow: f64) -> Option<(f64, f64)> {
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for axis in 0..3 {
@@ -168,7 +170,7 @@ mod tests {
         let ray = Ray::new(Vec3::new(-1.0, 0.0, 0.5), Vec3::X);
         let (near, far) = unit.clip(&ray).expect("a ray in a face touches the box");
         assert!(near == 1.0 && close(far, 2.0, 1e-6));
-        assert_eq!(unit.clip(&ray.up_to(0.5)), None);
+        assert_eq!(unit.clip(&ray.with_t_max(0.5)), None);
         assert_eq!(unit.clip(&Ray { t_min: 1.5, ..ray }).map(|r| r.0), Some(1.5));
         assert_eq!(Aabb::EMPTY.clip(&ray), None);
         assert_eq!(Aabb::INFINITE.clip(&ray), Some((0.0, f32::INFINITY)));

@@ -1,18 +1,19 @@
-//! The macro of closed families of kinds, such as shapes: one kind is one file and two lines.
+//! The macro that declares closed families of kinds, such as shapes: a kind is one file and two
+//! lines.
 
-/// Declares a family of kinds: an enum with a variant a kind, its conversions, and the dispatch of
-/// methods.
+/// Declares a family of kinds: an enum with one variant per kind, its conversions, and method
+/// dispatch.
 ///
-/// `pub enum AnyShape: Shape { sphere::Sphere, ... }` declares descriptions, which scene files hold:
-/// the enum has JSON and a schema, and its methods are those of the trait `Shape`, called through
-/// `dyn Shape`. So a new method needs no line here. `name` is a kind's name in JSON.
+/// `pub enum AnyShape: Shape { sphere::Sphere, ... }` declares descriptions, as scene files hold
+/// them. The enum has JSON, a schema and the methods of the trait `Shape`, called through
+/// `dyn Shape`, so a new method of the trait needs no line here. `name` is the kind's name in JSON.
 ///
-/// `pub enum Lobe: static ScatteringLobe { lambert::Lambert, ... } fn ...;` declares values of the
-/// inner loops: the enum has the methods that follow the list of kinds, each a `match` that calls
-/// the trait's method without a pointer in between.
+/// `pub enum Lobe: static ScatteringLobe { lambert::Lambert, ... } fn ...;` declares values for
+/// inner loops. The methods listed after the kinds dispatch statically: each is a `match` that
+/// calls the trait's method.
 ///
-/// `{ sobol::Sobol => SobolPoints, ... }` declares both at once: descriptions, and what they become
-/// in the inner loops.
+/// `{ sobol::Sobol => SobolPoints, ... }` declares both at once: descriptions, and the values that
+/// they compile to.
 #[macro_export]
 macro_rules! closed_set {
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: static $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }
@@ -113,7 +114,7 @@ macro_rules! closed_set {
         #[cfg(any(test, feature = "testing"))]
         #[allow(dead_code, reason = "families without contract tests do not ask")]
         impl $Set {
-            /// At least one of each kind: what the contract tests run over.
+            /// At least one example of each kind, for the contract tests.
             pub fn examples() -> Vec<Self> {
                 [$($Kind::examples().into_iter().map(Self::from).collect::<Vec<_>>()),+].concat()
             }
@@ -121,7 +122,7 @@ macro_rules! closed_set {
     };
 }
 
-/// Name of a type in snake case, such as `"thin_lens"` of `ThinLens`: a constant.
+/// Name of a type in snake case, as a constant: `"thin_lens"` for `ThinLens`.
 #[macro_export]
 macro_rules! kind_name {
     ($Kind:ident) => {{
@@ -148,7 +149,7 @@ pub const fn snake_case_length(name: &str) -> usize {
     length
 }
 
-/// `name`, a type's name in ASCII, in snake case.
+/// Converts `name`, an ASCII type name, to snake case.
 #[doc(hidden)]
 pub const fn snake_case<const LENGTH: usize>(name: &str) -> [u8; LENGTH] {
     let bytes = name.as_bytes();

@@ -1,11 +1,11 @@
-//! Linear RGB (primaries and white of sRGB) and the sRGB curve.
+//! Linear RGB with the primaries and white point of sRGB, and the sRGB transfer function.
 
 mod json;
 
-use crate::fun;
+use crate::portable;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
 
-/// Linear light in three channels; scene-referred, so values above 1 are ordinary.
+/// Linear RGB color with sRGB primaries. Scene-referred: channels may exceed 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rgb {
     /// Red.
@@ -17,22 +17,22 @@ pub struct Rgb {
 }
 
 impl Rgb {
-    /// No light.
+    /// Zero in every channel.
     pub const BLACK: Self = Self::splat(0.0);
     /// One in every channel.
     pub const WHITE: Self = Self::splat(1.0);
 
-    /// From channels.
+    /// Constructs a color from its channels.
     pub const fn new(r: f32, g: f32, b: f32) -> Self {
         Self { r, g, b }
     }
 
-    /// The same value in each channel.
+    /// Constructs a gray with `v` in every channel.
     pub const fn splat(v: f32) -> Self {
         Self { r: v, g: v, b: v }
     }
 
-    /// Channels in order.
+    /// Channels in the order red, green, blue.
     pub const fn to_array(self) -> [f32; 3] {
         [self.r, self.g, self.b]
     }
@@ -42,7 +42,7 @@ impl Rgb {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// The largest channel.
+    /// Largest of the three channels.
     pub fn max_channel(self) -> f32 {
         self.r.max(self.g).max(self.b)
     }
@@ -56,11 +56,11 @@ impl Rgb {
     /// Whether no channel is NaN or infinite.
     #[inline]
     pub fn is_finite(self) -> bool {
-        // Zero times anything finite is zero; times the rest it is NaN, which no sum heals.
+        // Zero times a finite number is zero; times infinity or NaN it is NaN, and so is the sum.
         self.r * 0.0 + self.g * 0.0 + self.b * 0.0 == 0.0
     }
 
-    /// From `self` at 0 to `other` at 1.
+    /// Interpolates linearly: `self` at `t = 0`, `other` at `t = 1`.
     pub fn lerp(self, other: Self, t: f32) -> Self {
         self + (other - self) * t
     }
@@ -124,12 +124,13 @@ impl Div<f32> for Rgb {
     }
 }
 
-/// Linear value → sRGB-encoded value, both 0..1 (IEC 61966-2-1); values outside are clamped.
+/// Encodes a linear value with the sRGB transfer function (IEC 61966-2-1). Domain and range are 0
+/// to 1; the argument is clamped.
 pub fn srgb_encode(linear: f32) -> f32 {
     srgb_encode_f64(f64::from(linear)) as f32
 }
 
-/// sRGB-encoded value → linear value, both 0..1; values outside are clamped.
+/// Decodes an sRGB-encoded value to linear. Domain and range are 0 to 1; the argument is clamped.
 pub fn srgb_decode(encoded: f32) -> f32 {
     srgb_decode_f64(f64::from(encoded)) as f32
 }
@@ -137,23 +138,23 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 /// [`srgb_encode`] in double precision.
 pub fn srgb_encode_f64(linear: f64) -> f64 {
     let v = linear.clamp(0.0, 1.0);
-    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * fun::pow_f64(v, 1.0 / 2.4) - 0.055 }
+    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * portable::pow_f64(v, 1.0 / 2.4) - 0.055 }
 }
 
 /// [`srgb_decode`] in double precision.
 pub fn srgb_decode_f64(encoded: f64) -> f64 {
     let v = encoded.clamp(0.0, 1.0);
-    if v <= 0.040_45 { v / 12.92 } else { fun::pow_f64((v + 0.055) / 1.055, 2.4) }
+    if v <= 0.040_45 { v / 12.92 } else { portable::pow_f64((v + 0.055) / 1.055, 2.4) }
 }
 
 impl Rgb {
-    /// From `#rrggbb`, or `#rgb` where the digits of each channel are the same, in sRGB; `None` for any other text.
+    /// Parses `#rrggbb`, or `#rgb` with each digit doubled, as sRGB; `None` for any other text.
     pub fn from_hex(text: &str) -> Option<Self> {
         let digits = text.strip_prefix('#').filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
         let value = u32::from_str_radix(digits, 16).ok()?;
         let levels = match digits.len() {
             6 => [value >> 16, value >> 8 & 0xff, value & 0xff],
-            // A digit d stands for dd.
+            // Double each digit: `d` becomes `dd`.
             3 => [value >> 8, value >> 4 & 0xf, value & 0xf].map(|digit| 0x11 * digit),
             _ => return None,
         };
@@ -167,7 +168,7 @@ mod tests {
 
     #[test]
     fn srgb_agrees_with_the_standard() {
-        // Values of IEC 61966-2-1's own formula, computed with 50 digits.
+        // Reference values: the formula of IEC 61966-2-1 evaluated with 50 digits.
         for (encoded, linear) in [
             (10.0 / 255.0, 0.003_035_27),
             (11.0 / 255.0, 0.003_346_536),
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn hexadecimal_colours() {
+    fn hexadecimal_colors() {
         assert_eq!(Rgb::from_hex("#ff0000"), Some(Rgb::new(1.0, 0.0, 0.0)));
         assert_eq!(Rgb::from_hex("#00800A").map(|c| c.g), Some(srgb_decode(128.0 / 255.0)));
         assert_eq!(Rgb::from_hex("#f0A"), Rgb::from_hex("#ff00aa"));
@@ -222,7 +223,7 @@ mod tests {
         assert_eq!((a + b, a - b, a * b), ([4.5, 1.25, 3.0].into(), [-3.5, 0.75, 1.0].into(), [2.0, 0.25, 2.0].into()));
         assert_eq!(a.lerp(b, 0.5).to_array(), [2.25, 0.625, 1.5]);
         assert_eq!((a.max_channel(), Rgb::WHITE.luminance()), (2.0, 1.0));
-        // The mean of n equal colours is that colour.
+        // The mean of n equal colors is that color.
         for n in 1..1000 {
             assert_eq!(Rgb::splat(n as f32 * 0.75) / n as f32, Rgb::splat(0.75));
         }

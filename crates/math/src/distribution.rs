@@ -1,40 +1,41 @@
-//! Piecewise constant densities over [0, 1) and [0, 1)², to sample environment maps and tables
-//! (Pharr, Jakob, Humphreys, PBR 4th ed., section 14.3.6 and appendix A.4), searched from where a table of cut points
-//! says (Chen and Asau, On Generating Random Variates from an Empirical Distribution, 1974).
+//! Piecewise constant densities over [0, 1) and [0, 1)², to importance-sample environment maps and
+//! tables (Pharr, Jakob, Humphreys, PBR 4th ed., section 14.3.6 and appendix A.4). The CDF is
+//! searched by the cutpoint method (Chen and Asau, On Generating Random Variates from an Empirical
+//! Distribution, 1974).
 
 use crate::Vec2;
 
-/// A density over [0, 1), constant in cells of equal width.
+/// Piecewise constant density over [0, 1) with cells of equal width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution1D {
-    /// One more than there are, so that each has a next one.
+    /// Cells, followed by a sentinel with `cdf = 1`.
     cells: Vec<Cell>,
-    /// `guide[k]`: how many cells have at most the chance k / 2^n before them; 2^n + 1 of them. A search starts there,
-    /// and mostly ends in the same cache line.
-    guide: Vec<u32>,
-    /// Mean of the weights it was made from.
+    /// Cutpoint table of length 2^n + 1: `cutpoints[k]` counts the cells with `cdf <= k / 2^n`. A
+    /// search starts there and mostly ends in the same cache line.
+    cutpoints: Vec<u32>,
+    /// Mean of the weights.
     mean: f32,
 }
 
-/// A cell of a density.
+/// A cell of the density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
-    /// Chance of the cells before it: 0 of the first, exactly 1 of the one behind the last.
-    before: f32,
-    /// Density within; the mean is 1.
+    /// CDF at the lower edge: 0 in the first cell, exactly 1 in the sentinel.
+    cdf: f32,
+    /// Density within the cell; the mean over all cells is 1.
     density: f32,
 }
 
-/// Cells that share a cut point, about.
+/// Approximate number of cells per entry of the cutpoint table.
 const CELLS_PER_CUT: usize = 4;
 
-/// Where the searches for numbers between two cut points begin and end. There are a power of two and one of them, so that no
-/// product rounds.
-fn guide(cells: &[Cell]) -> Vec<u32> {
+/// Builds the cutpoint table. Its number of intervals is a power of two, so that products with it
+/// are exact.
+fn build_cutpoints(cells: &[Cell]) -> Vec<u32> {
     let cuts = (cells.len() / CELLS_PER_CUT).next_power_of_two().min(1 << 24);
     let mut count = 0;
     let at_most = |cut: f32| {
-        while cells.get(count).is_some_and(|cell| cell.before <= cut) {
+        while cells.get(count).is_some_and(|cell| cell.cdf <= cut) {
             count += 1;
         }
         count as u32
@@ -43,8 +44,8 @@ fn guide(cells: &[Cell]) -> Vec<u32> {
 }
 
 impl Distribution1D {
-    /// From weights, one a cell; what is negative, NaN or infinite counts as zero. Uniform when all are zero;
-    /// `None` when there is none.
+    /// Constructs a density from one weight per cell. Negative, NaN and infinite weights count as
+    /// zero. All-zero weights give a uniform density; no weights give `None`.
     pub fn new(weights: &[f32]) -> Option<Self> {
         if weights.is_empty() {
             return None;
@@ -53,17 +54,17 @@ impl Distribution1D {
         let total: f64 = weights.iter().map(|&w| usable(w)).sum();
         let weight = |w: f32| if total > 0.0 { usable(w) } else { 1.0 };
         let sum = if total > 0.0 { total } else { weights.len() as f64 };
-        // Rounding must leave no gap below 1, and no sample for the empty cells at the end.
+        // Rounding must leave no gap below 1 and no probability for the empty cells at the end.
         let last = weights.iter().rposition(|&w| weight(w) > 0.0).unwrap_or(0);
         let mut running = 0.0;
         let cell = |(i, &w): (usize, &f32)| {
-            let before = if i > last { 1.0 } else { (running / sum).min(1.0) as f32 };
+            let cdf = if i > last { 1.0 } else { (running / sum).min(1.0) as f32 };
             running += weight(w);
-            Cell { before, density: (weight(w) * weights.len() as f64 / sum) as f32 }
+            Cell { cdf, density: (weight(w) * weights.len() as f64 / sum) as f32 }
         };
         let mut cells: Vec<Cell> = weights.iter().enumerate().map(cell).collect();
-        cells.push(Cell { before: 1.0, density: 0.0 });
-        Some(Self { guide: guide(&cells), cells, mean: (total / weights.len() as f64) as f32 })
+        cells.push(Cell { cdf: 1.0, density: 0.0 });
+        Some(Self { cutpoints: build_cutpoints(&cells), cells, mean: (total / weights.len() as f64) as f32 })
     }
 
     /// Mean of the weights.
@@ -71,23 +72,24 @@ impl Distribution1D {
         self.mean
     }
 
-    /// Cells.
+    /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells.len() - 1
     }
 
-    /// Never: there is at least one cell.
+    /// Always `false`: there is at least one cell.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// A place in [0, 1), its density and its cell.
+    /// Samples a position in [0, 1). Returns the position, its density and the index of its cell.
     pub fn sample(&self, u: f32) -> (f32, f32, usize) {
         let cell = self.at_most(u).clamp(1, self.len()) - 1;
-        let (Cell { before: low, density }, high) = (self.cells[cell], self.cells[cell + 1].before);
+        let (Cell { cdf: low, density }, high) = (self.cells[cell], self.cells[cell + 1].cdf);
         let inside = if high > low { ((u - low) / (high - low)).min(1f32.next_down()) } else { 0.5 };
         let mut x = ((cell as f32 + inside) / self.len() as f32).min(1f32.next_down());
-        // Rounding at a border must not carry the place into the next cell, which may be empty.
+        // Rounding at a cell boundary must not move the sample into the next cell, which may be
+        // empty.
         while self.cell(x) < cell {
             x = x.next_up();
         }
@@ -97,12 +99,12 @@ impl Distribution1D {
         (x, density, cell)
     }
 
-    /// How many cells have at most `u` in [0, 1) before them.
+    /// Number of cells whose `cdf` is at most `u`, which lies in [0, 1).
     fn at_most(&self, u: f32) -> usize {
-        let cuts = self.guide.len() - 1;
+        let cuts = self.cutpoints.len() - 1;
         let cut = ((u * cuts as f32) as usize).min(cuts - 1);
-        let (from, to) = (self.guide[cut] as usize, self.guide[cut + 1] as usize);
-        from + self.cells[from..to].partition_point(|cell| cell.before <= u)
+        let (from, to) = (self.cutpoints[cut] as usize, self.cutpoints[cut + 1] as usize);
+        from + self.cells[from..to].partition_point(|cell| cell.cdf <= u)
     }
 
     /// Density at `x` in [0, 1).
@@ -110,7 +112,7 @@ impl Distribution1D {
         self.cells[self.cell(x)].density
     }
 
-    /// The chance of a cell, to pick one of a list; 0 for a cell that there is not.
+    /// Probability of a cell, for discrete sampling; 0 for an index out of range.
     pub fn probability(&self, cell: usize) -> f32 {
         self.cells.get(cell).map_or(0.0, |cell| cell.density / self.len() as f32)
     }
@@ -120,17 +122,18 @@ impl Distribution1D {
     }
 }
 
-/// A density over the unit square, constant in the cells of a grid.
+/// Piecewise constant density over the unit square on a regular grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution2D {
-    /// Density along x, given the row.
+    /// Conditional density of x for each row.
     rows: Vec<Distribution1D>,
-    /// Density of the rows.
+    /// Marginal density of the rows.
     marginal: Distribution1D,
 }
 
 impl Distribution2D {
-    /// From weights, row by row; `None` when they are not `width` times a whole number above zero.
+    /// Constructs a density from row-major weights; `None` unless their number is a positive
+    /// multiple of `width`.
     pub fn new(width: usize, weights: &[f32]) -> Option<Self> {
         if width == 0 || !weights.len().is_multiple_of(width) {
             return None;
@@ -145,7 +148,7 @@ impl Distribution2D {
         self.marginal.mean()
     }
 
-    /// A place in the unit square and its density per unit area.
+    /// Samples a point of the unit square. Returns the point and its density per unit area.
     pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
         let (y, marginal, row) = self.marginal.sample(u.y);
         let (x, conditional, _) = self.rows[row].sample(u.x);
@@ -163,7 +166,7 @@ mod tests {
     use super::*;
     use crate::testing::{Random, chi_squared};
 
-    /// One in a thousand for all tests of this file together.
+    /// Significance level of each test: one in a thousand for all tests of this file together.
     const SIGNIFICANCE: f64 = 1e-3 / 3.0;
 
     #[test]
@@ -173,7 +176,7 @@ mod tests {
         let mut random = Random::new(31);
         let mut observed = [0.0; 10];
         for i in 0..1_000_000 {
-            // The ends of the range are where rounding would leak.
+            // Rounding errors would show at the ends of the range.
             let u = [0.0, 1f32.next_down()].get(i).copied().unwrap_or_else(|| random.f32());
             let (x, pdf, cell) = distribution.sample(u);
             assert_eq!((pdf, cell), (distribution.pdf(x), (x * 10.0) as usize), "{u}");
@@ -191,8 +194,8 @@ mod tests {
             let weights: Vec<f32> =
                 (0..cells).map(|_| if random.f32() < 0.3 { 0.0 } else { random.f32().powi(9) }).collect();
             let distribution = Distribution1D::new(&weights).unwrap();
-            let cuts = (distribution.guide.len() - 1) as f32;
-            let sums: Vec<f32> = distribution.cells.iter().map(|cell| cell.before).collect();
+            let cuts = (distribution.cutpoints.len() - 1) as f32;
+            let sums: Vec<f32> = distribution.cells.iter().map(|cell| cell.cdf).collect();
             let borders = sums
                 .clone()
                 .into_iter()

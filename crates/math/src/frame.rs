@@ -1,23 +1,24 @@
-//! An orthonormal frame around a normal.
+//! Orthonormal shading frames.
 
 use glam::Vec3;
 
-/// Three unit vectors at right angles, right-handed: `tangent × bitangent = normal`. Local z is the normal.
+/// A right-handed orthonormal basis, `tangent × bitangent = normal`. Local z is the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Local x.
+    /// Local x axis.
     pub tangent: Vec3,
-    /// Local y.
+    /// Local y axis.
     pub bitangent: Vec3,
-    /// Local z.
+    /// Local z axis.
     pub normal: Vec3,
 }
 
 impl Frame {
-    /// The axes themselves.
+    /// The basis of the coordinate axes.
     pub const AXES: Self = Self { tangent: Vec3::X, bitangent: Vec3::Y, normal: Vec3::Z };
 
-    /// Any frame around a unit normal (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017).
+    /// Constructs a frame around a unit normal (Duff et al., Building an Orthonormal Basis,
+    /// Revisited, JCGT 2017). The tangent's direction is arbitrary.
     pub fn around(n: Vec3) -> Self {
         let sign = 1f32.copysign(n.z);
         let a = -1.0 / (sign + n.z);
@@ -29,12 +30,12 @@ impl Frame {
         }
     }
 
-    /// Local → world.
+    /// Transforms a vector from local to world space.
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal * v.z
     }
 
-    /// World → local.
+    /// Transforms a vector from world to local space.
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
     }

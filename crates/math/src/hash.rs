@@ -1,7 +1,7 @@
-//! Counter-based randomness: a number is a pure function of its address.
+//! Hashes for counter-based random numbers: each number is a pure function of its index.
 
-/// Mixes 32 bits so that each input bit reaches every output bit (the `lowbias32` constants of Chris
-/// Wellons' hash-prospector search, 2018).
+/// Bijective 32-bit mixer in which each input bit affects every output bit (constants of
+/// `lowbias32` from Chris Wellons' hash-prospector, 2018).
 #[inline]
 pub const fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
@@ -11,13 +11,13 @@ pub const fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// A hash of a pair that depends on the order.
+/// Hash of an ordered pair.
 #[inline]
 pub const fn combine(a: u32, b: u32) -> u32 {
     mix(a ^ mix(b.wrapping_add(0x9e37_79b9)).wrapping_add(a << 6))
 }
 
-/// 24 random bits as a float in [0, 1).
+/// Maps the upper 24 bits to a float in [0, 1).
 #[inline]
 pub fn unit_f32(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
     use crate::testing::{Random, chi_squared};
 
-    /// Each input bit must flip each output bit half of the time.
+    /// Checks that each input bit flips each output bit with probability 1/2.
     fn avalanche(f: impl Fn(u32) -> u32) {
         const TRIALS: u32 = 20_000;
         let mut random = Random::new(61);
@@ -59,7 +59,7 @@ mod tests {
         let mut hashes: Vec<u32> = (0..512 * 512).map(|i| combine(i / 512, i % 512)).collect();
         hashes.sort_unstable();
         hashes.dedup();
-        // n²/2^33 = 8 collisions are expected among 262,144 random numbers.
+        // A random function has n²/2^33 = 8 expected collisions among 262,144 numbers.
         assert!(512 * 512 - hashes.len() < 25, "{}", 512 * 512 - hashes.len());
     }
 

@@ -1,8 +1,8 @@
-//! A picture in memory.
+//! An RGB image in memory.
 
 use crate::Rgb;
 
-/// `width × height` pixels of linear RGB, row by row from the top left.
+/// `width × height` pixels of linear RGB, row-major from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     width: u32,
@@ -11,43 +11,43 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture of one colour.
+    /// Constructs an image with all pixels of one color.
     pub fn filled(width: u32, height: u32, color: Rgb) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
-    /// From pixels, row by row from the top left; `None` when there are not `width × height` of them.
+    /// Constructs an image from row-major pixels, top left first; `None` unless `pixels.len()` is
+    /// `width × height`.
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<Rgb>) -> Option<Self> {
         (pixels.len() == width as usize * height as usize).then_some(Self { width, height, pixels })
     }
 
-    /// Pixels in a row.
+    /// Width in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Height in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// All pixels, row by row.
+    /// All pixels, row-major.
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
     }
 
-    /// All pixels, to change them.
+    /// All pixels, row-major, mutable.
     pub fn pixels_mut(&mut self) -> &mut [Rgb] {
         &mut self.pixels
     }
 
-    /// The pixel in column `x`, counted from the left, of row `y`, counted from the top; `None`
-    /// outside of the image.
+    /// Pixel in column `x` from the left and row `y` from the top; `None` outside the image.
     pub fn pixel(&self, x: u32, y: u32) -> Option<Rgb> {
         if x < self.width { self.row(y)?.get(x as usize).copied() } else { None }
     }
 
-    /// The pixels of row `y`, counted from the top; `None` below the last row.
+    /// Pixels of row `y` from the top; `None` below the last row.
     pub fn row(&self, y: u32) -> Option<&[Rgb]> {
         if y >= self.height {
             return None;
@@ -57,13 +57,12 @@ impl Image {
         self.pixels.get(start..start + width)
     }
 
-    /// Linear red, green and blue of all pixels, row by row: an array of the shape
-    /// (height, width, 3).
+    /// Linear red, green and blue of all pixels, row-major: an array of shape (height, width, 3).
     pub fn to_floats(&self) -> Vec<f32> {
         self.pixels.iter().flat_map(|pixel| pixel.to_array()).collect()
     }
 
-    /// The pixels, row by row.
+    /// Converts the image into its pixels, row-major.
     pub fn into_pixels(self) -> Vec<Rgb> {
         self.pixels
     }

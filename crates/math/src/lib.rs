@@ -1,8 +1,9 @@
-//! The words that every other crate speaks: points and directions, rays, boxes, transforms, colour, text of messages,
-//! and the few functions whose results must be the same bits on every machine.
+//! Shared foundations of all crates: vectors, rays, bounding boxes, transforms, color, message
+//! texts, and elementary functions with the same bits on every platform.
 //!
-//! Only scalar [`glam`] types are used (`Vec3`, not `Vec3A`): their sums and products run in one fixed
-//! order on every platform and are never fused. Sine, logarithm and friends come from [`fun`].
+//! Only scalar [`glam`] types are used (`Vec3`, not `Vec3A`): their sums and products are evaluated
+//! in one fixed order on every platform and never fused. Sine, logarithm and other elementary
+//! functions come from [`portable`].
 
 #[doc(hidden)]
 pub mod closed_set;
@@ -11,11 +12,11 @@ pub mod aabb;
 pub mod color;
 pub mod distribution;
 pub mod frame;
-pub mod fun;
 pub mod hash;
 pub mod image;
 pub mod message;
 pub mod motion;
+pub mod portable;
 pub mod quaternion;
 pub mod range;
 pub mod ray;

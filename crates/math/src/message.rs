@@ -1,12 +1,14 @@
-//! Text of files and command lines inside messages: short, and without characters that a terminal obeys.
+//! Sanitizes text from files and command lines for messages: bounded length, no terminal control
+//! characters.
 
-/// Maximum number of characters of a name that a message quotes. File paths of usual length stay whole.
+/// Maximum number of characters of a name that a message quotes. File paths of usual length stay
+/// whole.
 pub const MAX_QUOTE: usize = 200;
 /// Maximum number of characters of a line of a message.
 pub const MAX_LINE: usize = 4000;
 
-/// Excerpt of at most `max` characters, on one line. A longer text loses its middle, which becomes `…`.
-/// Characters that a terminal obeys become U+FFFD.
+/// Excerpt of at most `max` characters on one line. A longer text is cut in the middle, which
+/// becomes `…`. Control and bidirectional formatting characters become U+FFFD.
 pub fn excerpt(text: &str, max: usize) -> String {
     let length = text.chars().count();
     if length <= max {
@@ -18,11 +20,11 @@ pub fn excerpt(text: &str, max: usize) -> String {
     text.chars().take(head).chain(middle).chain(text.chars().skip(length - tail)).map(printable).collect()
 }
 
-/// Line of a message: names between backticks keep [`MAX_QUOTE`] characters, the whole line [`MAX_LINE`]; characters
-/// that a terminal obeys, line breaks too, become U+FFFD.
+/// Sanitizes one line of a message: names between backticks keep [`MAX_QUOTE`] characters, the
+/// whole line [`MAX_LINE`]. Control characters, line breaks included, become U+FFFD.
 pub fn line(text: &str) -> String {
     let pieces: Vec<&str> = text.split('`').collect();
-    // A backtick that nothing closes opens no quote.
+    // An unmatched backtick opens no quote.
     let is_quote = |number: usize| number % 2 == 1 && number + 1 < pieces.len();
     let pieces = pieces.iter().enumerate();
     let pieces =
@@ -30,18 +32,18 @@ pub fn line(text: &str) -> String {
     excerpt(&pieces.collect::<Vec<String>>().join("`"), MAX_LINE)
 }
 
-/// Message of several lines, each as [`line()`] has it.
+/// Sanitizes each line of a message by [`line()`]; line breaks stay.
 pub fn lines(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Whole text with U+FFFD in place of the characters that a terminal obeys. Lines stay lines.
+/// Replaces control characters by U+FFFD in a text of any length; line breaks stay.
 pub fn printable_lines(text: &str) -> String {
     text.chars().map(|character| if character == '\n' { character } else { printable(character) }).collect()
 }
 
-/// The character, or U+FFFD where a terminal would obey it: control characters, and those that turn the direction of
-/// writing, which make a name look like another.
+/// Replaces control characters, and bidirectional formatting characters that make a name look like
+/// another, by U+FFFD.
 fn printable(character: char) -> char {
     let turns = matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     if character.is_control() || turns { char::REPLACEMENT_CHARACTER } else { character }

@@ -1,20 +1,21 @@
-//! Rounding: error bounds, origins of follow-up rays, a quadratic that does not cancel.
+//! Rounding error bounds and ray origins that avoid self-intersection.
 
 use glam::Vec3;
 
-/// Bound on the relative error of `n` rounded operations in a row (Higham 2002, section 3.1).
+/// Bound on the relative error of `n` successive rounded operations (Higham 2002, section 3.1).
 pub const fn gamma(n: u32) -> f32 {
     let e = n as f32 * (f32::EPSILON * 0.5);
     e / (1.0 - e)
 }
 
-/// Start of a ray that leaves a surface: `point` moved off it along the unit `normal`, to the side that
-/// `direction` goes to. `error` bounds how far each coordinate of `point` may be from the true surface
-/// (Pharr, Jakob, Humphreys, PBR 4th ed., section 6.8.6).
+/// Offsets the origin of a ray that leaves a surface, along the unit `normal` and to the side of
+/// `direction`. `error` bounds the error of each coordinate of `point` (Pharr, Jakob, Humphreys,
+/// PBR 4th ed., section 6.8.6).
 #[inline]
 pub fn offset_origin(point: Vec3, error: f32, normal: Vec3, direction: Vec3) -> Vec3 {
     let n = normal.abs();
-    // The sum is rounded too, each coordinate by half a unit in its last place: that must not undo the move.
+    // Each coordinate of the sum is rounded by half an ulp: gamma(2) keeps that from undoing the
+    // offset.
     let distance = error * (n.x + n.y + n.z) + gamma(2) * point.abs().dot(n);
     let signed = if direction.dot(normal) < 0.0 { -distance } else { distance };
     point + normal * signed
@@ -33,12 +34,13 @@ mod tests {
                 let (point, normal, direction) = (random.point(scale), random.unit_vector(), random.unit_vector());
                 let error = random.range(0.0, 1e-5) * scale;
                 let moved = offset_origin(point, error, normal, direction);
-                // The true surface may lie anywhere in the error box: its farthest corner along the normal.
+                // The surface may lie anywhere in the error box: measure to its farthest corner
+                // along the normal.
                 let side = f64::from(direction.dot(normal)).signum();
                 let distance = (moved.as_dvec3() - point.as_dvec3()).dot(normal.as_dvec3()) * side;
                 let n = normal.abs().as_dvec3();
                 assert!(distance >= f64::from(error) * (n.x + n.y + n.z) * (1.0 - 1e-6), "{point} {normal}");
-                // ...but not much farther: light must not leak through thin walls.
+                // The offset must stay small, or light leaks through thin walls.
                 let far = 3.0 * (f64::from(error) + f64::from(scale) * f64::from(f32::EPSILON));
                 assert!(distance <= far, "{distance} {far}");
             }

@@ -1,6 +1,7 @@
 //! Suggestions for misspelled names.
 
-/// Known name nearest to `name`, if it is near enough to be a misspelling.
+/// Known name nearest to `name` by edit distance, ignoring case. `None` if more than a third of the
+/// characters, and more than one, differ, or if `name` is longer than 64 bytes.
 pub fn closest<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     if name.len() > 64 {
         return None;
@@ -11,13 +12,14 @@ pub fn closest<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Opti
     (nearest.0 <= allowed).then_some(nearest.1)
 }
 
-/// Question that suggests a name.
+/// Question that suggests `name`.
 pub fn did_you_mean(name: &str) -> String {
     format!("did you mean `{name}`?")
 }
 
-/// Question that suggests the nearest known name, else a list of the known names.
-pub fn meant_or_all<'n>(name: &str, known: impl IntoIterator<Item = &'n str> + Clone) -> Option<String> {
+/// Question that suggests the nearest known name, or else a list of the first 20 known names;
+/// `None` if there are none.
+pub fn did_you_mean_or_list<'n>(name: &str, known: impl IntoIterator<Item = &'n str> + Clone) -> Option<String> {
     if let Some(name) = closest(name, known.clone()) {
         return Some(did_you_mean(name));
     }

@@ -1,13 +1,13 @@
-//! Help for tests of this and other crates (feature `testing`): random inputs from a fixed seed, and
-//! statistical tests with a stated significance.
+//! Test support for this and other crates (feature `testing`): random inputs from a fixed seed, and
+//! statistical tests with a stated significance level.
 
-use crate::{Ray, Rgb, Transform, Vec2, Vec3, fun};
+use crate::{Ray, Rgb, Transform, Vec2, Vec3, portable};
 use glam::Mat3;
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Reports that a test checks nothing on this machine, with the reason: on standard error, and as a line of the file that
-/// `JUGGLER_SKIPPED` names, which `check.sh` counts and prints at its end.
+/// Reports why a test checks nothing on this machine: on standard error, and as a line appended to
+/// the file that `JUGGLER_SKIPPED` names, which `check.sh` prints at its end.
 #[expect(clippy::print_stderr, reason = "a skipped test is reported to the person who runs it")]
 pub fn skipped(reason: &str) {
     eprintln!("SKIPPED: {reason}");
@@ -18,19 +18,19 @@ pub fn skipped(reason: &str) {
     }
 }
 
-/// Random numbers from a seed (SplitMix64: Steele, Lea, Flood 2014). The same on every platform, forever.
+/// Pseudorandom numbers (SplitMix64: Steele, Lea, Flood 2014), the same on every platform.
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// A stream of its own for each seed.
+    /// Constructs a generator whose sequence depends on `seed` only.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// 64 random bits.
+    /// The next 64 random bits.
     pub fn bits64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -38,7 +38,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// 32 random bits.
+    /// The next 32 random bits.
     pub fn bits(&mut self) -> u32 {
         (self.bits64() >> 32) as u32
     }
@@ -53,27 +53,27 @@ impl Random {
         (low + (high - low) * self.f32()).min(high.next_down())
     }
 
-    /// A whole number in 0..count; 0 when count is 0.
+    /// A uniform integer in 0..count; 0 when count is 0.
     pub fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.bits64()) * count as u128) >> 64) as usize
     }
 
-    /// A point in the unit square [0, 1)².
+    /// A uniform point in the unit square [0, 1)².
     pub fn vec2(&mut self) -> Vec2 {
         Vec2::new(self.f32(), self.f32())
     }
 
-    /// A point in the unit cube [0, 1)³.
+    /// A uniform point in the unit cube [0, 1)³.
     pub fn vec3(&mut self) -> Vec3 {
         Vec3::new(self.f32(), self.f32(), self.f32())
     }
 
-    /// A colour with channels in [0, 1).
+    /// A color with channels in [0, 1).
     pub fn rgb(&mut self) -> Rgb {
         Rgb::new(self.f32(), self.f32(), self.f32())
     }
 
-    /// A direction, uniform over the sphere (by rejection: independent of the maps under test).
+    /// A uniform direction, by rejection sampling and so independent of the mappings under test.
     pub fn unit_vector(&mut self) -> Vec3 {
         loop {
             let v = self.vec3() * 2.0 - 1.0;
@@ -84,24 +84,24 @@ impl Random {
         }
     }
 
-    /// A point in the cube of half edge `radius` around the origin.
+    /// A uniform point in the cube of half edge `radius` around the origin.
     pub fn point(&mut self, radius: f32) -> Vec3 {
         (self.vec3() * 2.0 - 1.0) * radius
     }
 
-    /// An endless ray from within the cube of half edge `radius`, in any direction.
+    /// An unbounded ray from within the cube of half edge `radius`, in a uniform direction.
     pub fn ray(&mut self, radius: f32) -> Ray {
         let origin = self.point(radius);
         Ray::new(origin, self.unit_vector())
     }
 
-    /// A rotation about any axis.
+    /// A rotation about a uniform axis.
     pub fn rotation(&mut self) -> Transform {
         let (axis, angle) = (self.unit_vector(), self.range(-3.2, 3.2));
         Transform::rotation(axis, angle).unwrap_or(Transform::IDENTITY)
     }
 
-    /// Any invertible map of moderate condition: sheared, mirrored every other time, moved.
+    /// A random affine transform with |det| > 0.2; half of them are reflections.
     pub fn transform(&mut self) -> Transform {
         loop {
             let matrix = Mat3::from_cols(self.point(1.5), self.point(1.5), self.point(1.5));
@@ -124,12 +124,12 @@ pub fn close3(a: Vec3, b: Vec3, tolerance: f32) -> bool {
     a == b || (a - b).abs().max_element() <= tolerance * a.length().max(b.length()).max(1.0)
 }
 
-/// Cells are pooled until at least this many events are expected in each.
+/// Minimum expected count of a cell; cells of lower expectation are pooled.
 const LEAST_EXPECTED: f64 = 5.0;
 
-/// Pearson's chi-squared test: do counts follow their expectations? An error (with the statistic) when such
-/// a difference, or a larger one, had a chance below `significance`. Cells with few expected events are
-/// pooled; the sums need not be equal when events may also be lost (give the loss as one more cell).
+/// Pearson's chi-squared test of observed against expected counts. Returns an error with the
+/// statistic if the p-value is below `significance`. Cells of low expectation are pooled. The sums
+/// need not be equal; events that may be lost are given as one more cell.
 pub fn chi_squared(observed: &[f64], expected: &[f64], significance: f64) -> Result<(), String> {
     if observed.len() != expected.len() || observed.is_empty() {
         return Err(format!("{} cells observed, {} expected", observed.len(), expected.len()));
@@ -161,18 +161,18 @@ pub fn chi_squared(observed: &[f64], expected: &[f64], significance: f64) -> Res
     Err(format!("chi-squared {statistic:.2} with {freedom} degrees of freedom: p = {chance:.3e} < {significance}"))
 }
 
-/// Chance of a chi-squared statistic above `statistic`, with `freedom` degrees of freedom.
+/// Probability that a chi-squared variable with `freedom` degrees of freedom exceeds `statistic`.
 pub fn chi_squared_tail(statistic: f64, freedom: usize) -> f64 {
     upper_gamma(freedom as f64 / 2.0, statistic / 2.0)
 }
 
-/// Regularised upper incomplete gamma function Q(a, x): series below a + 1, continued fraction (Lentz)
-/// above (Abramowitz and Stegun 6.5.29 and 6.5.31).
+/// Regularized upper incomplete gamma function Q(a, x): series below a + 1, continued fraction
+/// (Lentz) above (Abramowitz and Stegun 6.5.29 and 6.5.31).
 fn upper_gamma(a: f64, x: f64) -> f64 {
     if x <= 0.0 {
         return 1.0;
     }
-    let front = fun::exp_f64(a * fun::ln_f64(x) - x - libm::lgamma(a));
+    let front = portable::exp_f64(a * portable::ln_f64(x) - x - libm::lgamma(a));
     if x < a + 1.0 {
         let (mut term, mut sum, mut n) = (1.0 / a, 1.0 / a, a);
         while term > sum * 1e-16 {
@@ -199,9 +199,8 @@ fn upper_gamma(a: f64, x: f64) -> f64 {
     front * fraction
 }
 
-/// Z-test of a mean: are the values' mean and `expected` equal, as far as `values` can tell? An error when
-/// such a difference, or a larger one, had a chance below `significance` (two-sided; many values, so that
-/// their mean is normal).
+/// Two-sided z-test of the mean of `values` against `expected`. Returns an error if the p-value is
+/// below `significance`. Needs enough values for their mean to be normally distributed.
 pub fn z_test(values: &[f64], expected: f64, significance: f64) -> Result<(), String> {
     let n = values.len() as f64;
     if values.len() < 2 {
@@ -209,7 +208,7 @@ pub fn z_test(values: &[f64], expected: f64, significance: f64) -> Result<(), St
     }
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
-    // Rounding of single-precision values may differ from the truth even where nothing varies.
+    // Lower bound: single-precision rounding biases the mean even where the variance is 0.
     let spread = (variance / n).sqrt().max(1e-6 * expected.abs()).max(1e-12);
     let z = (mean - expected).abs() / spread;
     let chance = libm::erfc(z / std::f64::consts::SQRT_2);
@@ -219,9 +218,10 @@ pub fn z_test(values: &[f64], expected: f64, significance: f64) -> Result<(), St
     Err(format!("mean {mean} of {n} values, expected {expected}: {z:.2} deviations, p = {chance:.3e} < {significance}"))
 }
 
-/// Standard errors by which the mean of one of `cases` is off with a chance of 1 %, both tails (Šidák 1967).
+/// Two-sided critical value, in standard errors, at which `cases` independent tests together have a
+/// false alarm rate of 1 % (Šidák 1967).
 pub fn family_wise_deviations(cases: usize) -> f64 {
-    let level = 1.0 - fun::pow_f64(0.99, 1.0 / cases.max(1) as f64);
+    let level = 1.0 - portable::pow_f64(0.99, 1.0 / cases.max(1) as f64);
     let (mut low, mut high) = (0.0, 40.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -230,41 +230,43 @@ pub fn family_wise_deviations(cases: usize) -> f64 {
     high
 }
 
-/// Bands around z, and sectors of each: cells of equal solid angle.
+/// Grid over the sphere: bands in z times sectors in azimuth, cells of equal solid angle.
 const Z_CELLS: usize = 16;
 const TURN_CELLS: usize = 32;
 
-/// The integral of a density over a cell, by the midpoints of `steps` by `steps` parts.
+/// Integral of a density over a cell by the midpoint rule with `steps` × `steps` points.
 fn by_midpoints(pdf: &impl Fn(Vec3) -> f32, cell: usize, steps: usize) -> f64 {
     let share = |i: usize, k: usize, cells: usize| (i as f32 + (k as f32 + 0.5) / steps as f32) / cells as f32;
     let mut sum = 0.0;
     for k in 0..steps * steps {
         let z = share(cell / TURN_CELLS, k / steps, Z_CELLS) * 2.0 - 1.0;
-        let (sin, cos) = fun::sin_cos_turns(share(cell % TURN_CELLS, k % steps, TURN_CELLS));
+        let (sin, cos) = portable::sin_cos_turns(share(cell % TURN_CELLS, k % steps, TURN_CELLS));
         let radius = (1.0 - z * z).max(0.0).sqrt();
         sum += f64::from(pdf(Vec3::new(radius * cos, radius * sin, z)));
     }
     sum * 4.0 * std::f64::consts::PI / (Z_CELLS * TURN_CELLS * steps * steps) as f64
 }
 
-/// How many of `count` events a cell should get: in ever finer steps, until a step changes the statistic of the test by next
-/// to nothing. Where there were events, the density is not taken for 0 before the finest has been tried.
-fn expected_in(pdf: &impl Fn(Vec3) -> f32, cell: usize, count: f64, was_met: bool) -> f64 {
-    // Not by twos, so that what lies between two rows of one lies beside those of the next.
+/// Expected number of `count` events in a cell. Refines the midpoint rule until a step barely
+/// changes the test statistic. A zero integral of a cell with observed events is accepted only at
+/// the finest step.
+fn expected_in(pdf: &impl Fn(Vec3) -> f32, cell: usize, count: f64, was_observed: bool) -> f64 {
+    // Step ratios other than 2 avoid midpoints in the same blind spots.
     let (mut steps, mut last) = (17, by_midpoints(pdf, cell, 10) * count);
     loop {
         let next = by_midpoints(pdf, cell, steps) * count;
         let is_steady = (next - last) * (next - last) <= 0.02 * next.max(LEAST_EXPECTED);
-        if steps >= 250 || is_steady && (next > 0.0 || !was_met) {
+        if steps >= 250 || is_steady && (next > 0.0 || !was_observed) {
             return next;
         }
         (steps, last) = (steps * 5 / 3, next);
     }
 }
 
-/// Chi-squared test of a map to directions against its density per steradian: `sample` gives a direction
-/// for a point of the unit square (or `None` when it declines), `pdf` the density of one. Cells of equal
-/// solid angle; the density is integrated by midpoints, as finely as it takes.
+/// Chi-squared test of a direction sampling routine against its density per steradian. `sample`
+/// maps a point of the unit square to a direction, or to `None` when it rejects the sample; `pdf`
+/// returns the density of a direction. Cells have equal solid angle; the density is integrated
+/// adaptively by the midpoint rule.
 pub fn chi_squared_directions(
     mut sample: impl FnMut(Vec2) -> Option<Vec3>,
     pdf: impl Fn(Vec3) -> f32,
@@ -276,7 +278,7 @@ pub fn chi_squared_directions(
     let index = |v: f32, cells: usize| ((v * cells as f32) as usize).min(cells - 1);
     for _ in 0..count {
         let cell = sample(random.vec2()).map_or(Z_CELLS * TURN_CELLS, |w| {
-            let turn = (fun::atan2(w.y, w.x) / std::f32::consts::TAU).rem_euclid(1.0);
+            let turn = (portable::atan2(w.y, w.x) / std::f32::consts::TAU).rem_euclid(1.0);
             index(w.z * 0.5 + 0.5, Z_CELLS) * TURN_CELLS + index(turn, TURN_CELLS)
         });
         observed[cell] += 1.0;
@@ -288,15 +290,15 @@ pub fn chi_squared_directions(
     if total > f64::from(count) * 1.01 {
         return Err(format!("the density integrates to {}", total / f64::from(count)));
     }
-    // What the density leaves open is the share of declined samples, as closely as the integral of a tabulated density tells;
-    // where nothing is declined, rounding of the integral is none.
-    let (met, declined) = (observed[Z_CELLS * TURN_CELLS], f64::from(count) - total);
-    let is_close = (met - declined).abs() < f64::from(count) * 5e-4;
-    if is_close || met == 0.0 && declined.abs() < f64::from(count) * 0.01 {
+    // One minus the integral of the density is the expected share of rejected samples. Drop that
+    // cell where both agree to the accuracy of the integral, or where nothing is rejected.
+    let (rejected, expected_rejected) = (observed[Z_CELLS * TURN_CELLS], f64::from(count) - total);
+    let is_close = (rejected - expected_rejected).abs() < f64::from(count) * 5e-4;
+    if is_close || rejected == 0.0 && expected_rejected.abs() < f64::from(count) * 0.01 {
         observed.pop();
         expected.pop();
     } else {
-        expected[Z_CELLS * TURN_CELLS] = declined.max(0.0);
+        expected[Z_CELLS * TURN_CELLS] = expected_rejected.max(0.0);
     }
     chi_squared(&observed, &expected, significance)
 }
@@ -340,7 +342,7 @@ mod tests {
         chi_squared(&[1.0], &[1.0, 2.0], 0.01).unwrap_err();
     }
 
-    /// Under the hypothesis itself, p-values below 5 % come in 5 % of all trials.
+    /// Under the null hypothesis, p-values below 5 % occur in 5 % of all trials.
     #[test]
     fn false_alarms_are_as_frequent_as_promised() {
         let mut random = Random::new(2);

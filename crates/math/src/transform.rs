@@ -1,9 +1,9 @@
-//! Affine maps with their inverses: from a shape's own (local, object) space to the world and back.
+//! Invertible affine transforms between object (local) space and world space.
 
 use crate::{Aabb, Ray};
 use glam::{Mat3, Vec3};
 
-/// An invertible affine map `p ↦ matrix · p + translation`, kept with its inverse.
+/// An invertible affine transform `p ↦ matrix · p + translation`, stored with its inverse matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     matrix: Mat3,
@@ -12,41 +12,41 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// Leaves everything where it is.
+    /// The identity.
     pub const IDENTITY: Self = Self { matrix: Mat3::IDENTITY, translation: Vec3::ZERO, inverse_matrix: Mat3::IDENTITY };
 
-    /// From a linear part (columns: images of the axes) and a translation; `None` when it cannot be
-    /// inverted or holds numbers that are not finite.
+    /// Constructs a transform from a matrix (columns: images of the axes) and a translation; `None`
+    /// if the matrix is singular or an entry is not finite.
     pub fn new(matrix: Mat3, translation: Vec3) -> Option<Self> {
         let inverse_matrix = inverse(&matrix)?;
         (matrix.is_finite() && translation.is_finite()).then_some(Self { matrix, translation, inverse_matrix })
     }
 
-    /// Moves by `by`.
+    /// Translation by `by`.
     pub fn translation(by: Vec3) -> Self {
         Self { translation: by, ..Self::IDENTITY }
     }
 
-    /// Scales along the axes; `None` when a factor is zero.
+    /// Scaling along the axes; `None` if it is not invertible, as for a factor of zero.
     pub fn scale(by: Vec3) -> Option<Self> {
         Self::new(Mat3::from_diagonal(by), Vec3::ZERO)
     }
 
-    /// Turns by `radians` about the axis through the origin (Rodrigues 1840), right-handed; `None` for a
-    /// zero axis.
+    /// Right-handed rotation by `radians` about an axis through the origin (Rodrigues 1840); `None`
+    /// for a zero axis.
     pub fn rotation(axis: Vec3, radians: f32) -> Option<Self> {
         let axis = axis.try_normalize()?;
-        let (sin, cos) = crate::fun::sin_cos(radians);
-        let turn = |v: Vec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
-        Self::new(Mat3::from_cols(turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z)), Vec3::ZERO)
+        let (sin, cos) = crate::portable::sin_cos(radians);
+        let rotate = |v: Vec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+        Self::new(Mat3::from_cols(rotate(Vec3::X), rotate(Vec3::Y), rotate(Vec3::Z)), Vec3::ZERO)
     }
 
-    /// The same linear part with the local origin at `translation`.
-    pub fn moved_to(&self, translation: Vec3) -> Self {
+    /// The same matrix with another translation.
+    pub fn with_translation(&self, translation: Vec3) -> Self {
         Self { translation, ..*self }
     }
 
-    /// First `self`, then `next`.
+    /// Composition: applies `self` first, then `next`.
     pub fn then(&self, next: &Self) -> Self {
         Self {
             matrix: next.matrix * self.matrix,
@@ -55,52 +55,55 @@ impl Transform {
         }
     }
 
-    /// The linear part; its columns are the images of the axes.
+    /// Linear part; its columns are the images of the axes.
     pub fn matrix(&self) -> Mat3 {
         self.matrix
     }
 
-    /// The linear part of the way back.
+    /// Linear part of the inverse transform.
     pub fn inverse_matrix(&self) -> Mat3 {
         self.inverse_matrix
     }
 
-    /// Where the local origin goes.
+    /// World position of the local origin.
     pub fn origin(&self) -> Vec3 {
         self.translation
     }
 
-    /// A point to the world.
+    /// Transforms a point to world space.
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.matrix * p + self.translation
     }
 
-    /// A direction to the world; its length changes with the map.
+    /// Transforms a vector to world space; its length changes with the transform.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.matrix * v
     }
 
-    /// A normal to the world (inverse transpose), unit length. A mirrored map keeps the outside outside.
+    /// Transforms a normal to world space by the inverse transpose and normalizes it. Under a
+    /// reflection it still points to the outside.
     pub fn normal(&self, n: Vec3) -> Vec3 {
         (self.inverse_matrix.transpose() * n).normalize()
     }
 
-    /// A world point into local space.
+    /// Transforms a point from world to local space.
     pub fn point_to_local(&self, p: Vec3) -> Vec3 {
         self.inverse_matrix * (p - self.translation)
     }
 
-    /// A world direction into local space.
+    /// Transforms a vector from world to local space.
     pub fn vector_to_local(&self, v: Vec3) -> Vec3 {
         self.inverse_matrix * v
     }
 
-    /// A world ray into local space; distances `t` stay the same, so the direction is not unit any more.
+    /// Transforms a ray from world to local space. Parameters `t` keep their meaning, so the local
+    /// direction is not normalized.
     pub fn ray_to_local(&self, ray: &Ray) -> Ray {
         Ray { origin: self.point_to_local(ray.origin), direction: self.vector_to_local(ray.direction), ..*ray }
     }
 
-    /// The world box around a local box (Arvo 1990); an infinite box stays infinite.
+    /// World-space bounds of a local box: the bounds of its eight corners. An infinite box stays
+    /// infinite.
     pub fn aabb(&self, local: &Aabb) -> Aabb {
         if !local.is_finite() {
             return if local.is_empty() { Aabb::EMPTY } else { Aabb::INFINITE };
@@ -108,11 +111,12 @@ impl Transform {
         Aabb::from_points(local.corners().map(|c| self.point(c)))
     }
 
-    /// The factor of a map that only turns, moves and scales evenly; `None` for any other.
+    /// Scale factor of a similarity (rotation or reflection, translation, uniform scale); `None`
+    /// for any other transform.
     pub fn uniform_scale(&self) -> Option<f32> {
         let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis];
         let squared = x.length_squared();
-        // Composed rotations of single precision are even up to a few units in the last place.
+        // Products of single-precision rotations deviate by a few ulps.
         let tolerance = 1e-5 * squared;
         let even =
             (y.length_squared() - squared).abs() <= tolerance && (z.length_squared() - squared).abs() <= tolerance;
@@ -120,15 +124,16 @@ impl Transform {
         (even && square).then(|| squared.sqrt())
     }
 
-    /// How much the map can lengthen a vector, at most (Frobenius norm, an upper bound).
-    pub fn max_stretch(&self) -> f32 {
+    /// Upper bound on the factor by which the transform lengthens a vector (Frobenius norm).
+    pub fn max_scale(&self) -> f32 {
         let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis];
         (x.length_squared() + y.length_squared() + z.length_squared()).sqrt()
     }
 }
 
-/// Inverse by cofactors in f64: a matrix of small entries (a model in millimetres) is as invertible as one
-/// of large ones. `None` when singular to working precision.
+/// Inverse by cofactors in double precision, with a tolerance relative to the column lengths, so
+/// that a matrix of small entries (a model in millimeters) is as invertible as one of large
+/// entries. `None` if singular to working precision.
 fn inverse(m: &Mat3) -> Option<Mat3> {
     let d = m.as_dmat3();
     let [x, y, z] = [d.x_axis, d.y_axis, d.z_axis];
@@ -164,9 +169,10 @@ mod tests {
             for _ in 0..20 {
                 let p = random.point(3.0);
                 let stretch_back = t.inverse_matrix().to_cols_array().iter().map(|v| v * v).sum::<f32>().sqrt();
-                let condition = t.max_stretch() * stretch_back;
+                let condition = t.max_scale() * stretch_back;
                 assert!(close3(t.vector_to_local(t.vector(p)), p, 4e-7 * condition), "{t:?}");
-                // A point also suffers from the rounding of the translation, which a tiny scale magnifies.
+                // A point also carries the rounding error of the translation, which a small scale
+                // magnifies.
                 let tolerance = 4e-7 * (condition + t.origin().length() * stretch_back);
                 assert!(close3(t.point_to_local(t.point(p)), p, tolerance), "{t:?}");
             }
@@ -211,8 +217,8 @@ mod tests {
         assert!(close3(quarter.point(Vec3::Z), Vec3::X, 1e-6) && close3(quarter.point(Vec3::X), -Vec3::Z, 1e-6));
         let mut random = Random::new(96);
         for _ in 0..1000 {
-            let turn = random.rotation().then(&random.rotation());
-            assert!(close(turn.uniform_scale().expect("a rotation is even"), 1.0, 1e-6));
+            let rotation = random.rotation().then(&random.rotation());
+            assert!(close(rotation.uniform_scale().expect("a rotation is even"), 1.0, 1e-6));
         }
     }
 
@@ -226,7 +232,7 @@ mod tests {
         assert_eq!(Transform::scale(Vec3::new(1.0, 1.0, 1.001)).unwrap().uniform_scale(), None);
         for t in samples() {
             let v = random.unit_vector();
-            assert!(t.vector(v).length() <= t.max_stretch() * 1.000_001);
+            assert!(t.vector(v).length() <= t.max_scale() * 1.000_001);
         }
     }
 

@@ -1,20 +1,22 @@
-//! Maps from the unit square to disks, hemispheres, spheres, cones and triangles, each with its density and
-//! its inverse (Shirley and Chiu 1997 for the disk; Pharr, Jakob, Humphreys, PBR 4th ed., appendix A.5).
+//! Sampling of disks, hemispheres, spheres, cones and triangles: mappings from the unit square,
+//! each with its density and its inverse (Shirley and Chiu 1997 for the disk; Pharr, Jakob,
+//! Humphreys, PBR 4th ed., appendix A.5).
 //!
-//! Arguments `u` lie in [0, 1)². Directions are unit vectors around +z; densities are per unit area or per
-//! steradian and zero outside the map's range. Inverses give back `u` up to rounding.
+//! Arguments `u` lie in [0, 1)². Directions are unit vectors around +z. Densities are per unit area
+//! or per steradian, and zero outside the mapping's range unless stated otherwise. Inverses return
+//! `u` up to rounding.
 
-use crate::{Vec2, Vec3, fun};
+use crate::{Vec2, Vec3, portable};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
-/// The angle of (x, y) as a share of a whole turn, in [0, 1).
-fn turn_of(x: f32, y: f32) -> f32 {
-    let turn = fun::atan2(y, x) * (1.0 / TAU);
+/// Azimuth of (x, y) in turns, in [0, 1).
+fn azimuth_turns(x: f32, y: f32) -> f32 {
+    let turn = portable::atan2(y, x) * (1.0 / TAU);
     if turn < 0.0 { (turn + 1.0).min(1f32.next_down()) } else { turn }
 }
 
-/// A point in the unit disk, by equal areas of concentric squares and circles: little distortion, so good
-/// point sets stay good (Shirley and Chiu 1997).
+/// Samples the unit disk uniformly by the concentric mapping, whose low distortion preserves the
+/// stratification of `u` (Shirley and Chiu 1997).
 pub fn concentric_disk(u: Vec2) -> Vec2 {
     let p = u * 2.0 - 1.0;
     if p == Vec2::ZERO {
@@ -22,14 +24,14 @@ pub fn concentric_disk(u: Vec2) -> Vec2 {
     }
     let (radius, turns) =
         if p.x.abs() > p.y.abs() { (p.x, p.y / p.x * 0.125) } else { (p.y, 0.25 - p.x / p.y * 0.125) };
-    let (sin, cos) = fun::sin_cos_turns(turns);
+    let (sin, cos) = portable::sin_cos_turns(turns);
     Vec2::new(radius * cos, radius * sin)
 }
 
-/// The `u` that [`concentric_disk`] maps to `p`.
+/// Inverse of [`concentric_disk`].
 pub fn concentric_disk_inverse(p: Vec2) -> Vec2 {
     let radius = p.length();
-    let eighths = fun::atan2(p.y, p.x) * (8.0 / TAU);
+    let eighths = portable::atan2(p.y, p.x) * (8.0 / TAU);
     let square = if eighths.abs() <= 1.0 {
         Vec2::new(radius, radius * eighths)
     } else if eighths.abs() >= 3.0 {
@@ -43,24 +45,25 @@ pub fn concentric_disk_inverse(p: Vec2) -> Vec2 {
     square * 0.5 + 0.5
 }
 
-/// A point in the unit disk from radius (`u.x`) and angle (`u.y`).
+/// Samples the unit disk uniformly in polar coordinates: `u.x` gives the radius, `u.y` the angle.
 pub fn polar_disk(u: Vec2) -> Vec2 {
     let radius = u.x.sqrt();
-    let (sin, cos) = fun::sin_cos_turns(u.y);
+    let (sin, cos) = portable::sin_cos_turns(u.y);
     Vec2::new(radius * cos, radius * sin)
 }
 
-/// The `u` that [`polar_disk`] maps to `p`.
+/// Inverse of [`polar_disk`].
 pub fn polar_disk_inverse(p: Vec2) -> Vec2 {
-    Vec2::new(p.length_squared(), turn_of(p.x, p.y))
+    Vec2::new(p.length_squared(), azimuth_turns(p.x, p.y))
 }
 
-/// Density of both maps to the unit disk.
+/// Density per unit area of [`concentric_disk`] and [`polar_disk`].
 pub fn disk_pdf(p: Vec2) -> f32 {
     if p.length_squared() <= 1.0 { FRAC_1_PI } else { 0.0 }
 }
 
-/// A direction with density cos θ / π, by lifting [`concentric_disk`] (Malley's method).
+/// Samples a direction with density cos θ / π by projecting [`concentric_disk`] up (Malley's
+/// method).
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let p = concentric_disk(u);
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
@@ -71,12 +74,12 @@ pub fn cosine_hemisphere_pdf(w: Vec3) -> f32 {
     w.z.max(0.0) * FRAC_1_PI
 }
 
-/// The `u` that [`cosine_hemisphere`] maps to `w`.
+/// Inverse of [`cosine_hemisphere`].
 pub fn cosine_hemisphere_inverse(w: Vec3) -> Vec2 {
     concentric_disk_inverse(w.truncate())
 }
 
-/// A direction with z >= 0, all equally likely.
+/// Samples the hemisphere z >= 0 uniformly.
 pub fn uniform_hemisphere(u: Vec2) -> Vec3 {
     uniform_cone(u, 1.0)
 }
@@ -86,12 +89,12 @@ pub fn uniform_hemisphere_pdf(w: Vec3) -> f32 {
     if w.z >= 0.0 { 1.0 / TAU } else { 0.0 }
 }
 
-/// The `u` that [`uniform_hemisphere`] maps to `w`.
+/// Inverse of [`uniform_hemisphere`].
 pub fn uniform_hemisphere_inverse(w: Vec3) -> Vec2 {
     uniform_cone_inverse(w, 1.0)
 }
 
-/// A direction, all equally likely.
+/// Samples the sphere of directions uniformly.
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
     uniform_cone(u, 2.0)
 }
@@ -99,41 +102,41 @@ pub fn uniform_sphere(u: Vec2) -> Vec3 {
 /// Density of [`uniform_sphere`].
 pub const UNIFORM_SPHERE_PDF: f32 = 1.0 / (4.0 * PI);
 
-/// The `u` that [`uniform_sphere`] maps to `w`.
+/// Inverse of [`uniform_sphere`].
 pub fn uniform_sphere_inverse(w: Vec3) -> Vec2 {
     uniform_cone_inverse(w, 2.0)
 }
 
-/// The size of a cone as the `uniform_cone` functions take it, 1 - cos of its half angle (in radians), exact
-/// also for the sun's quarter of a degree, where the cosine itself has lost all digits.
+/// Cone size, as the `uniform_cone` functions take it: 1 - cos of the half angle, which is given in
+/// radians. Accurate also for the sun's quarter of a degree, where 1 - cos would cancel.
 pub fn cone_size(half_angle: f32) -> f32 {
-    let sin = fun::sin(half_angle * 0.5);
+    let sin = portable::sin(half_angle * 0.5);
     2.0 * sin * sin
 }
 
-/// A direction within a cone around +z, all equally likely; `size` is 1 - cos of the half angle, 0 to 2.
+/// Samples a cone around +z uniformly by solid angle; `size` is 1 - cos of the half angle, 0 to 2.
 pub fn uniform_cone(u: Vec2, size: f32) -> Vec3 {
     let below_one = u.x * size;
     let radius = (below_one * (2.0 - below_one)).max(0.0).sqrt();
-    let (sin, cos) = fun::sin_cos_turns(u.y);
+    let (sin, cos) = portable::sin_cos_turns(u.y);
     Vec3::new(radius * cos, radius * sin, 1.0 - below_one)
 }
 
-/// Density of [`uniform_cone`] inside the cone.
+/// Density of [`uniform_cone`] for directions inside the cone.
 pub fn uniform_cone_pdf(size: f32) -> f32 {
     1.0 / (TAU * size)
 }
 
-/// The `u` that [`uniform_cone`] maps to `w`, a direction within the cone.
+/// Inverse of [`uniform_cone`] for a direction inside the cone.
 pub fn uniform_cone_inverse(w: Vec3, size: f32) -> Vec2 {
     let squared = w.x * w.x + w.y * w.y;
-    // 1 - z without cancellation where z is near 1.
+    // Compute 1 - z without cancellation where z is near 1.
     let below_one = if w.z > 0.0 { squared / (1.0 + w.z) } else { 1.0 - w.z };
-    Vec2::new(below_one / size, turn_of(w.x, w.y))
+    Vec2::new(below_one / size, azimuth_turns(w.x, w.y))
 }
 
-/// Barycentric coordinates of a point in a triangle, all equally likely, by folding the square along its
-/// diagonal (Heitz, A Low-Distortion Map Between Triangle and Square, 2019).
+/// Samples a triangle uniformly and returns barycentric coordinates. The mapping folds the square
+/// along its diagonal (Heitz, A Low-Distortion Map Between Triangle and Square, 2019).
 pub fn uniform_triangle(u: Vec2) -> Vec3 {
     let (a, b) = if u.y > u.x {
         let a = u.x * 0.5;
@@ -145,17 +148,17 @@ pub fn uniform_triangle(u: Vec2) -> Vec3 {
     Vec3::new(a, b, (1.0 - a - b).max(0.0))
 }
 
-/// Density of [`uniform_triangle`] on a triangle of that area.
+/// Density of [`uniform_triangle`] on a triangle of area `area`.
 pub fn uniform_triangle_pdf(area: f32) -> f32 {
     1.0 / area
 }
 
-/// The `u` that [`uniform_triangle`] maps to barycentric coordinates `b`.
+/// Inverse of [`uniform_triangle`].
 pub fn uniform_triangle_inverse(b: Vec3) -> Vec2 {
     if b.x > b.y { Vec2::new(b.x + b.y, b.y * 2.0) } else { Vec2::new(b.x * 2.0, b.x + b.y) }
 }
 
-/// A number in [-radius, radius] with the density of a tent: `(radius - |x|) / radius²`.
+/// Samples the tent function `(radius - |x|) / radius²` on [-radius, radius].
 pub fn tent(u: f32, radius: f32) -> f32 {
     let v = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
     v * radius
@@ -166,7 +169,7 @@ pub fn tent_pdf(x: f32, radius: f32) -> f32 {
     (radius - x.abs()).max(0.0) / (radius * radius)
 }
 
-/// The `u` that [`tent`] maps to `x`.
+/// Inverse of [`tent`].
 pub fn tent_inverse(x: f32, radius: f32) -> f32 {
     let below = 1.0 - (x / radius).abs();
     if x < 0.0 { below * below * 0.5 } else { 1.0 - below * below * 0.5 }
@@ -177,7 +180,7 @@ mod tests {
     use super::*;
     use crate::testing::{Random, chi_squared, chi_squared_directions};
 
-    /// One in a thousand for all tests of this file together.
+    /// Significance level of each test: about 1e-3 for all tests of this file together.
     const SIGNIFICANCE: f64 = 1e-4;
     const SAMPLES: u32 = 1_000_000;
 
@@ -186,9 +189,12 @@ mod tests {
         for _ in 0..20_000 {
             let u = random.vec2();
             let back = inverse(map(u));
-            // The angle starts anew at 1, and a float near 0 keeps only what its partner kept.
-            let gap = (back - u).abs();
-            assert!(gap.x < 2e-5 && gap.y.min(1.0 - gap.y) < 2e-5 || u.x < 1e-5, "{name}: {u} came back as {back}");
+            // The angle wraps at 1. Near radius 0 the angle is ill-conditioned.
+            let difference = (back - u).abs();
+            assert!(
+                difference.x < 2e-5 && difference.y.min(1.0 - difference.y) < 2e-5 || u.x < 1e-5,
+                "{name}: {u} came back as {back}"
+            );
         }
     }
 
@@ -218,7 +224,7 @@ mod tests {
         test(&cosine_hemisphere, &cosine_hemisphere_pdf);
         test(&uniform_hemisphere, &uniform_hemisphere_pdf);
         test(&uniform_sphere, &|_| UNIFORM_SPHERE_PDF);
-        // A cone whose rim falls on a cell border, so that midpoints integrate it exactly.
+        // The rim of the cone lies on a cell boundary, so the midpoint rule is exact.
         test(&|u| uniform_cone(u, 0.5), &|w| if w.z >= 0.5 { uniform_cone_pdf(0.5) } else { 0.0 });
     }
 
@@ -246,7 +252,7 @@ mod tests {
             for _ in 0..SAMPLES {
                 let p = map(random.vec2());
                 let ring = ((p.length_squared() * 8.0) as usize).min(7);
-                observed[ring * 16 + (turn_of(p.x, p.y) * 16.0) as usize] += 1.0;
+                observed[ring * 16 + (azimuth_turns(p.x, p.y) * 16.0) as usize] += 1.0;
             }
             chi_squared(&observed, &[f64::from(SAMPLES) / 128.0; 128], SIGNIFICANCE).unwrap();
         }
@@ -256,7 +262,7 @@ mod tests {
     #[test]
     fn triangles_are_uniform() {
         let mut random = Random::new(24);
-        // Sixteen congruent triangles: a 4 × 4 grid of (x, y) below the diagonal, halves told apart.
+        // Sixteen congruent triangles: a 4 × 4 grid in (x, y), each cell split along its diagonal.
         let mut observed = std::collections::BTreeMap::new();
         for _ in 0..SAMPLES {
             let b = uniform_triangle(random.vec2()) * 4.0;

@@ -1,11 +1,11 @@
-//! Stands in for `ffi.rs` on WebAssembly, where shared libraries do not exist: [`open`] always fails, and the types below have
-//! no values, so that no call can be missing.
+//! Replacement for `ffi.rs` on WebAssembly, which has no shared libraries: [`open`] always fails.
+//! The other types have no values, so their methods are unreachable.
 
 use crate::Error;
-use crate::image::Image;
+use crate::image::FilterImage;
 use std::path::Path;
 
-/// An open library; there is none.
+/// Open library; has no values.
 #[derive(Debug)]
 pub(crate) enum Library {}
 
@@ -14,33 +14,33 @@ pub(crate) fn open(_path: &Path) -> Result<Library, String> {
     Err("WebAssembly cannot open libraries".to_owned())
 }
 
-/// The functions of an open library.
+/// Functions of an open library.
 #[derive(Debug)]
 pub(crate) enum Api {}
 
 impl Api {
-    /// Finds the functions of `library`.
+    /// Looks up the functions of `library`.
     pub fn new(library: Library) -> Result<Self, String> {
         match library {}
     }
 
-    /// A device on the processor.
+    /// Creates a CPU device.
     pub fn device(&self) -> Result<Device, Error> {
         match *self {}
     }
 }
 
-/// A device of an open library.
+/// Device of an open library.
 pub(crate) enum Device {}
 
 impl Device {
-    /// 10,000 × major + 100 × minor + patch.
+    /// Version: 10,000 × major + 100 × minor + patch.
     pub fn version(&self) -> u32 {
         match *self {}
     }
 
     /// Runs the filter on `images`.
-    pub fn filter(&self, _images: &[Image], _width: usize, _height: usize) -> Result<Vec<f32>, Error> {
+    pub fn filter(&self, _images: &[FilterImage], _width: usize, _height: usize) -> Result<Vec<f32>, Error> {
         match *self {}
     }
 }

@@ -1,25 +1,26 @@
-//! A picture as Open Image Denoise reads it.
+//! Image in the layout of Open Image Denoise.
 
 use std::ffi::CString;
 
-/// Three numbers a pixel, row by row from the top left.
+/// Image of three numbers per pixel, row by row from the top left.
 #[cfg_attr(target_family = "wasm", allow(dead_code, reason = "nothing reads a picture where no library can be opened"))]
-pub(crate) struct Image {
-    /// The filter's name for it: `color`, `albedo` or `normal`.
+pub(crate) struct FilterImage {
+    /// Name of the image in the filter: `color`, `albedo` or `normal`.
     pub name: CString,
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height in pixels.
     pub height: usize,
     /// Exactly `3 × width × height` numbers; at least one pixel.
     pub numbers: Vec<f32>,
 }
 
-impl Image {
-    /// `None` unless there are three numbers for each of `width × height` pixels, and any.
+impl FilterImage {
+    /// Creates an image; `None` unless there are three numbers for each of `width × height` pixels,
+    /// and at least one pixel.
     pub fn new(name: &str, width: usize, height: usize, numbers: Vec<f32>) -> Option<Self> {
-        let wanted = width.checked_mul(height)?.checked_mul(3)?;
+        let expected = width.checked_mul(height)?.checked_mul(3)?;
         let name = CString::new(name).ok()?;
-        (wanted > 0 && numbers.len() == wanted).then_some(Self { name, width, height, numbers })
+        (expected > 0 && numbers.len() == expected).then_some(Self { name, width, height, numbers })
     }
 }

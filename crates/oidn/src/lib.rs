@@ -1,18 +1,18 @@
-//! Intel Open Image Denoise (<https://www.openimagedenoise.org>, Apache-2.0), version 2, where it is installed: a
-//! neural network that takes the noise out of path traced pictures. The library is opened when somebody asks for it, and is
-//! needed for nothing else. What it gives may differ from machine to machine.
+//! Intel Open Image Denoise (<https://www.openimagedenoise.org>, Apache-2.0), version 2: a neural
+//! network that denoises path-traced pictures. The library is optional and opened only on request.
+//! Its results may differ between machines.
 //!
-//! Whoever names a library lets its code run: a path must come from the user, not from a file that somebody sent.
+//! Opening a library runs its code: a path must come from the user, never from a received file.
 
 #[cfg_attr(target_family = "wasm", path = "absent.rs")]
 mod ffi;
 mod image;
 
-use image::Image;
+use image::FilterImage;
 use juggler_math::{Rgb, Vec3};
 use std::path::{Path, PathBuf};
 
-/// The names under which the system knows the library.
+/// File names of the library on this system, in the order of search.
 pub const NAMES: &[&str] = if cfg!(target_os = "windows") {
     &["OpenImageDenoise.dll"]
 } else if cfg!(target_os = "macos") {
@@ -21,49 +21,50 @@ pub const NAMES: &[&str] = if cfg!(target_os = "windows") {
     &["libOpenImageDenoise.so.2", "libOpenImageDenoise.so"]
 };
 
-/// Why there is no picture without noise.
+/// Error of denoising.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
-    /// There is no such library, or it cannot be opened.
+    /// The library does not exist or cannot be opened.
     #[error("Open Image Denoise was not found: looked for {}", tried.join("; "))]
     NotFound {
-        /// Each name or path, and what the system said of it.
+        /// Each name or path that was tried, with the system's error message.
         tried: Vec<String>,
     },
-    /// A library was opened, but it is none that can be called.
+    /// The opened library is not a supported version of Open Image Denoise.
     #[error("{} is not Open Image Denoise 2: {reason}", path.display())]
-    Unfit {
-        /// What was opened.
+    Unsupported {
+        /// Path of the library.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Reason why it is not supported.
         reason: String,
     },
-    /// A picture has not as many pixels as its size says.
-    #[error("{what} has {found} pixels instead of {width} × {height}")]
+    /// The number of pixels of an image does not match its size.
+    #[error("{image} has {found} pixels instead of {width} × {height}")]
     Size {
-        /// Which picture.
-        what: &'static str,
-        /// How many it has.
+        /// Name of the image: `color`, `albedo` or `normal`.
+        image: &'static str,
+        /// Number of pixels of the image.
         found: usize,
-        /// Pixels in a row.
+        /// Expected width in pixels.
         width: usize,
-        /// Rows.
+        /// Expected height in pixels.
         height: usize,
     },
-    /// The library said so.
+    /// The library reported an error.
     #[error("Open Image Denoise failed: {0}")]
     Failed(String),
 }
 
-/// The library, opened.
+/// Open library.
 #[derive(Debug)]
-pub struct Library {
+pub struct Oidn {
     api: ffi::Api,
     version: [u32; 3],
 }
 
-impl Library {
-    /// Opens the library at `path`, or in it if that is a folder, or the one that the system knows.
+impl Oidn {
+    /// Opens the library at `path`, or in that folder; without a path, the library that the system
+    /// finds under [`NAMES`].
     pub fn open(path: Option<&Path>) -> Result<Self, Error> {
         let candidates: Vec<PathBuf> = match path {
             Some(folder) if folder.is_dir() => NAMES.iter().map(|name| folder.join(name)).collect(),
@@ -73,28 +74,30 @@ impl Library {
         let mut tried = Vec::new();
         for candidate in candidates {
             match ffi::open(&candidate) {
-                Ok(library) => return Self::checked(&candidate, library),
+                Ok(library) => return Self::from_library(&candidate, library),
                 Err(reason) => tried.push(format!("{} ({reason})", candidate.display())),
             }
         }
         Err(Error::NotFound { tried })
     }
 
-    fn checked(path: &Path, library: ffi::Library) -> Result<Self, Error> {
-        let unfit = |reason: String| Error::Unfit { path: path.to_path_buf(), reason };
-        let api = ffi::Api::new(library).map_err(unfit)?;
-        let number = api.device().map_err(|error| unfit(error.to_string()))?.version();
+    fn from_library(path: &Path, library: ffi::Library) -> Result<Self, Error> {
+        let unsupported = |reason: String| Error::Unsupported { path: path.to_path_buf(), reason };
+        let api = ffi::Api::new(library).map_err(unsupported)?;
+        let number = api.device().map_err(|error| unsupported(error.to_string()))?.version();
         let version = [number / 10_000, number / 100 % 100, number % 100];
-        if version[0] == 2 { Ok(Self { api, version }) } else { Err(unfit(format!("its version is {number}"))) }
+        if version[0] == 2 { Ok(Self { api, version }) } else { Err(unsupported(format!("its version is {number}"))) }
     }
 
-    /// Major, minor and patch.
+    /// Version of the library: major, minor and patch.
     pub fn version(&self) -> [u32; 3] {
         self.version
     }
 
-    /// The picture without noise. `color`: linear light without upper bound; `albedo`: 0..1; `normal`: of length 1 or less, in any
-    /// space. All row by row from the top left. What is not finite counts as black.
+    /// Denoises a picture. `color` is linear radiance without upper bound; `albedo` is between 0
+    /// and 1; `normal` has a length of at most 1, in any space. All are row by row from the top
+    /// left. Numbers that are not finite count as 0. Returns an error if a size does not match or
+    /// the library fails.
     pub fn denoise(
         &self,
         width: usize,
@@ -104,21 +107,21 @@ impl Library {
         normal: Option<&[Vec3]>,
     ) -> Result<Vec<Rgb>, Error> {
         let image = |name: &'static str, found: usize, numbers: Vec<f32>| {
-            Image::new(name, width, height, numbers).ok_or(Error::Size { what: name, found, width, height })
+            FilterImage::new(name, width, height, numbers).ok_or(Error::Size { image: name, found, width, height })
         };
-        let mut images = vec![image("color", color.len(), flat(color.iter().map(|c| c.to_array())))?];
+        let mut images = vec![image("color", color.len(), flatten_finite(color.iter().map(|c| c.to_array())))?];
         if let Some(albedo) = albedo {
-            images.push(image("albedo", albedo.len(), flat(albedo.iter().map(|c| c.to_array())))?);
+            images.push(image("albedo", albedo.len(), flatten_finite(albedo.iter().map(|c| c.to_array())))?);
         }
         if let Some(normal) = normal {
-            images.push(image("normal", normal.len(), flat(normal.iter().map(|n| n.to_array())))?);
+            images.push(image("normal", normal.len(), flatten_finite(normal.iter().map(|n| n.to_array())))?);
         }
         let numbers = self.api.device()?.filter(&images, width, height)?;
         Ok(numbers.chunks_exact(3).map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect())
     }
 }
 
-/// Numbers one after the other, those that are none as zero.
-fn flat(pixels: impl Iterator<Item = [f32; 3]>) -> Vec<f32> {
+/// Flattens pixels to numbers and replaces those that are not finite by 0.
+fn flatten_finite(pixels: impl Iterator<Item = [f32; 3]>) -> Vec<f32> {
     pixels.flatten().map(|number| if number.is_finite() { number } else { 0.0 }).collect()
 }

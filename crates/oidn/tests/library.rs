@@ -1,24 +1,25 @@
-//! What is said when the library is missing, and, where `JUGGLER_OIDN` says where one is, what it does.
+//! Tests of the error messages without the library, and of denoising where `JUGGLER_OIDN` gives its
+//! path.
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use juggler_math::testing::skipped;
 use juggler_math::{Rgb, Vec3};
-use juggler_oidn::{Error, Library};
+use juggler_oidn::{Error, Oidn};
 use std::path::Path;
 
-/// The library, if the environment says where it is.
-fn library() -> Option<Library> {
+/// Library at the path in `JUGGLER_OIDN`, if it is set.
+fn library() -> Option<Oidn> {
     let Some(path) = std::env::var_os("JUGGLER_OIDN") else {
         skipped("Open Image Denoise: JUGGLER_OIDN does not say where it is; docs/denoising.md says where to get it");
         return None;
     };
-    Some(Library::open(Some(Path::new(&path))).unwrap())
+    Some(Oidn::open(Some(Path::new(&path))).unwrap())
 }
 
 #[test]
 fn a_library_that_is_not_there_is_an_error_that_names_it() {
-    let error = Library::open(Some(Path::new("no/such/library.so"))).unwrap_err();
+    let error = Oidn::open(Some(Path::new("no/such/library.so"))).unwrap_err();
     assert!(matches!(&error, Error::NotFound { tried } if tried.len() == 1));
     assert!(error.to_string().contains("no/such/library.so"), "{error}");
 }
@@ -26,22 +27,22 @@ fn a_library_that_is_not_there_is_an_error_that_names_it() {
 #[test]
 fn a_folder_without_it_and_a_file_that_is_none_are_errors() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let error = Library::open(Some(folder)).unwrap_err();
+    let error = Oidn::open(Some(folder)).unwrap_err();
     assert!(error.to_string().contains("OpenImageDenoise"), "{error}");
-    let error = Library::open(Some(&folder.join("Cargo.toml"))).unwrap_err();
+    let error = Oidn::open(Some(&folder.join("Cargo.toml"))).unwrap_err();
     assert!(matches!(error, Error::NotFound { .. }), "{error}");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn another_library_is_refused_by_what_it_lacks() {
-    let error = Library::open(Some(Path::new("libc.so.6"))).unwrap_err();
+    let error = Oidn::open(Some(Path::new("libc.so.6"))).unwrap_err();
     assert!(error.to_string().contains("oidnNewDevice"), "{error}");
 }
 
 #[test]
 fn the_names_of_the_system_are_tried_in_turn() {
-    match Library::open(None) {
+    match Oidn::open(None) {
         Ok(library) => assert_eq!(library.version()[0], 2),
         Err(error) => assert!(juggler_oidn::NAMES.iter().all(|name| error.to_string().contains(name)), "{error}"),
     }
@@ -68,9 +69,9 @@ fn wrong_sizes_are_refused_before_the_library_sees_them() {
     let Some(library) = library() else { return };
     let pixels = vec![Rgb::WHITE; 12];
     assert!(library.denoise(4, 3, &pixels, None, None).is_ok());
-    assert!(matches!(library.denoise(4, 4, &pixels, None, None), Err(Error::Size { what: "color", found: 12, .. })));
+    assert!(matches!(library.denoise(4, 4, &pixels, None, None), Err(Error::Size { image: "color", found: 12, .. })));
     let albedo = Some(&pixels[..11]);
-    assert!(matches!(library.denoise(4, 3, &pixels, albedo, None), Err(Error::Size { what: "albedo", .. })));
+    assert!(matches!(library.denoise(4, 3, &pixels, albedo, None), Err(Error::Size { image: "albedo", .. })));
     assert!(matches!(library.denoise(0, 0, &[], None, None), Err(Error::Size { .. })));
     assert!(matches!(library.denoise(usize::MAX, 2, &[], None, None), Err(Error::Size { .. })));
 }

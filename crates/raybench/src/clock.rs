@@ -1,60 +1,60 @@
-//! Two clocks: the wall's, and the time that the processor really gave. Where other programs run too, only the
-//! second says what a piece of work costs.
+//! Wall-clock time and CPU time. Where other programs run too, only CPU time tells the cost of a
+//! computation.
 
 use std::time::{Duration, Instant};
 
-/// Whose time on the processor counts.
+/// Threads whose CPU time counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
-    /// The calling thread's.
+pub enum CpuClock {
+    /// The calling thread.
     Thread,
-    /// That of all threads of this process together.
+    /// All threads of this process together.
     Process,
 }
 
-/// How long something took.
+/// Elapsed time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Elapsed {
-    /// Seconds on the wall's clock.
+    /// Wall-clock time in seconds.
     pub wall: f64,
-    /// Seconds of the processor; where the system does not say (it is no Unix), those of the wall.
+    /// CPU time in seconds; wall-clock time where the system does not report it (not Unix).
     pub cpu: f64,
 }
 
-/// A stopwatch that runs from its making.
+/// A stopwatch that runs from its construction.
 #[derive(Debug)]
 pub struct Stopwatch {
-    of: Of,
+    clock: CpuClock,
     wall: Instant,
     cpu: Option<Duration>,
 }
 
 impl Stopwatch {
-    /// Starts; ask it again from the same thread.
-    pub fn start(of: Of) -> Self {
-        Self { of, wall: Instant::now(), cpu: cpu_time(of) }
+    /// Starts the stopwatch. [`Stopwatch::elapsed`] must be called from the same thread.
+    pub fn start(clock: CpuClock) -> Self {
+        Self { clock, wall: Instant::now(), cpu: cpu_time(clock) }
     }
 
     /// Time since the start.
     pub fn elapsed(&self) -> Elapsed {
-        let cpu = self.cpu.zip(cpu_time(self.of)).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
+        let cpu = self.cpu.zip(cpu_time(self.clock)).map(|(start, now)| now.saturating_sub(start).as_secs_f64());
         let wall = self.wall.elapsed().as_secs_f64();
         Elapsed { wall, cpu: cpu.unwrap_or(wall) }
     }
 }
 
 #[cfg(unix)]
-fn cpu_time(of: Of) -> Option<Duration> {
+fn cpu_time(clock: CpuClock) -> Option<Duration> {
     use rustix::time::{ClockId, clock_gettime};
-    let time = clock_gettime(match of {
-        Of::Thread => ClockId::ThreadCPUTime,
-        Of::Process => ClockId::ProcessCPUTime,
+    let time = clock_gettime(match clock {
+        CpuClock::Thread => ClockId::ThreadCPUTime,
+        CpuClock::Process => ClockId::ProcessCPUTime,
     });
     Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
 }
 
 #[cfg(not(unix))]
-fn cpu_time(_of: Of) -> Option<Duration> {
+fn cpu_time(_clock: CpuClock) -> Option<Duration> {
     None
 }
 
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn sleep_costs_no_processor() {
-        let watch = Stopwatch::start(Of::Thread);
+        let watch = Stopwatch::start(CpuClock::Thread);
         std::thread::sleep(Duration::from_millis(60));
         let Elapsed { wall, cpu } = watch.elapsed();
         assert!(wall >= 0.06, "{wall}");
@@ -78,9 +78,9 @@ mod tests {
 
     #[test]
     fn the_process_counts_what_its_threads_do_and_the_thread_does_not() {
-        let (thread, process) = (Stopwatch::start(Of::Thread), Stopwatch::start(Of::Process));
+        let (thread, process) = (Stopwatch::start(CpuClock::Thread), Stopwatch::start(CpuClock::Process));
         let busy = std::thread::spawn(|| {
-            let watch = Stopwatch::start(Of::Thread);
+            let watch = Stopwatch::start(CpuClock::Thread);
             black_box(work());
             watch.elapsed().cpu
         });

@@ -1,53 +1,54 @@
-//! The ways in which a tree of triangles can be built and asked: what is measured.
+//! Kernels under measurement: ways to build and trace a triangle hierarchy.
 
 use crate::Mesh;
-use crate::measure::Sums;
-use crate::rays::Query;
+use crate::measure::HitSummary;
+use crate::rays::QueryKind;
 use juggler_bvh::{Quality, TriangleBvh, TriangleError, TriangleHit, TriangleTest};
 use juggler_math::Ray;
 
-/// Rays of one call that coherent kernels are given: a tile of pixels.
+/// Number of rays per call of a coherent kernel: a tile of pixels.
 const TILE: usize = 64;
 
 /// A triangle test. A new one is one more line in [`TESTS`].
 #[derive(Clone, Copy, Debug)]
-pub struct Test {
-    /// What it is called.
+pub struct NamedTest {
+    /// Name of the test.
     pub name: &'static str,
-    /// Whether no ray slips between triangles that share an edge; decides what it is compared with.
+    /// Whether no ray passes between triangles that share an edge; only tests of the same kind are
+    /// compared.
     pub watertight: bool,
     test: TriangleTest,
 }
 
 /// All triangle tests.
-pub const TESTS: [Test; 2] = [
-    Test { name: "watertight", watertight: true, test: TriangleTest::Watertight },
-    Test { name: "fast", watertight: false, test: TriangleTest::Fast },
+pub const TESTS: [NamedTest; 2] = [
+    NamedTest { name: "watertight", watertight: true, test: TriangleTest::Watertight },
+    NamedTest { name: "fast", watertight: false, test: TriangleTest::Fast },
 ];
 
-/// Builds the tree of a mesh.
+/// Builds the hierarchy of a mesh.
 pub fn build(mesh: &Mesh, quality: Quality) -> Result<TriangleBvh, TriangleError> {
     TriangleBvh::build(&mesh.positions, &mesh.triangles, quality)
 }
 
-/// The tree with each of the triangle tests: a copy each, because they are traced in turns.
-pub fn with_tests(tree: TriangleBvh) -> [(Test, TriangleBvh); 2] {
+/// The hierarchy with each of the triangle tests: a copy each, since they are traced alternately.
+pub fn with_tests(tree: TriangleBvh) -> [(NamedTest, TriangleBvh); 2] {
     let ([first, second], copy) = (TESTS, tree.clone());
     [(first, tree.with_test(first.test)), (second, copy.with_test(second.test))]
 }
 
-/// A way to ask.
+/// A query kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// One ray a call.
+    /// One ray per call.
     Single,
-    /// Thousands of unrelated rays a call.
+    /// Hundreds of incoherent rays per call.
     Batch,
-    /// Eight neighbours together.
+    /// A tile of coherent rays per call, traced in packets of eight.
     Packet,
 }
 
-/// Memory of one thread that a kernel uses again and again.
+/// Buffers of one thread, reused between calls.
 #[derive(Debug, Default)]
 pub struct Scratch {
     rays: Vec<Ray>,
@@ -56,7 +57,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Rays that a kernel may shorten, and room for their hits.
+    /// Copies of the rays, which a kernel may shorten, and space for their hits.
     fn closest(&mut self, rays: &[Ray]) -> (&mut [Ray], &mut [Option<TriangleHit>]) {
         self.rays.clear();
         self.rays.extend_from_slice(rays);
@@ -71,10 +72,10 @@ impl Scratch {
 }
 
 impl Kernel {
-    /// All of them.
+    /// All kernels.
     pub const ALL: [Self; 3] = [Self::Single, Self::Batch, Self::Packet];
 
-    /// What it is called.
+    /// Name of the kernel.
     pub fn name(self) -> &'static str {
         match self {
             Self::Single => "single",
@@ -83,42 +84,42 @@ impl Kernel {
         }
     }
 
-    /// Traces the rays and adds up what they hit.
-    pub fn trace(self, bvh: &TriangleBvh, query: Query, rays: &[Ray], scratch: &mut Scratch) -> Sums {
+    /// Traces the rays and sums up the hits.
+    pub fn trace(self, bvh: &TriangleBvh, query: QueryKind, rays: &[Ray], scratch: &mut Scratch) -> HitSummary {
         match (self, query) {
-            (Self::Single, Query::Closest) => Sums::of_hits(rays.iter().map(|ray| bvh.closest(ray))),
-            (Self::Single, Query::Any) => Sums::of_occluded(rays.iter().map(|ray| bvh.any(ray))),
-            (Self::Batch, Query::Closest) => {
+            (Self::Single, QueryKind::Closest) => HitSummary::from_hits(rays.iter().map(|ray| bvh.closest(ray))),
+            (Self::Single, QueryKind::Any) => HitSummary::from_occluded(rays.iter().map(|ray| bvh.any(ray))),
+            (Self::Batch, QueryKind::Closest) => {
                 let (rays, hits) = scratch.closest(rays);
                 bvh.closest_batch(rays, hits);
-                Sums::of_hits(hits.iter().copied())
+                HitSummary::from_hits(hits.iter().copied())
             }
-            (Self::Batch, Query::Any) => {
+            (Self::Batch, QueryKind::Any) => {
                 let occluded = scratch.any(rays);
                 bvh.any_batch(rays, occluded);
-                Sums::of_occluded(occluded.iter().copied())
+                HitSummary::from_occluded(occluded.iter().copied())
             }
-            (Self::Packet, Query::Closest) => rays.chunks(TILE).map(|tile| packet(bvh, tile)).sum(),
-            (Self::Packet, Query::Any) => rays.chunks(TILE).map(|tile| packet_any(bvh, tile)).sum(),
+            (Self::Packet, QueryKind::Closest) => rays.chunks(TILE).map(|tile| packet(bvh, tile)).sum(),
+            (Self::Packet, QueryKind::Any) => rays.chunks(TILE).map(|tile| packet_any(bvh, tile)).sum(),
         }
     }
 }
 
-fn packet(bvh: &TriangleBvh, tile: &[Ray]) -> Sums {
+fn packet(bvh: &TriangleBvh, tile: &[Ray]) -> HitSummary {
     let (mut rays, mut hits) = ([NO_RAY; TILE], [None; TILE]);
     let (rays, hits) = (&mut rays[..tile.len()], &mut hits[..tile.len()]);
     rays.copy_from_slice(tile);
     bvh.closest_packet(rays, hits);
-    Sums::of_hits(hits.iter().copied())
+    HitSummary::from_hits(hits.iter().copied())
 }
 
-fn packet_any(bvh: &TriangleBvh, tile: &[Ray]) -> Sums {
+fn packet_any(bvh: &TriangleBvh, tile: &[Ray]) -> HitSummary {
     let mut occluded = [false; TILE];
     let occluded = &mut occluded[..tile.len()];
     bvh.any_packet(tile, occluded);
-    Sums::of_occluded(occluded.iter().copied())
+    HitSummary::from_occluded(occluded.iter().copied())
 }
 
-/// Fills what is not yet a ray.
+/// Initial value of ray buffers.
 const NO_RAY: Ray =
     Ray { origin: juggler_math::Vec3::ZERO, direction: juggler_math::Vec3::Z, t_min: 0.0, t_max: 0.0, time: 0.0 };

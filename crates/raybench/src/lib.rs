@@ -1,14 +1,14 @@
-//! What ray casting is measured with: meshes that are made by rule, sets of rays on them, and a stopwatch that
-//! other programs do not disturb.
+//! Benchmark inputs and tools for ray casting: procedural meshes, sets of rays on them, and a
+//! stopwatch that other programs do not disturb.
 //!
-//! - [`meshes`]: six meshes that stress different things, each with a camera and a light;
+//! - [`meshes`]: six meshes that stress different properties, each with a camera and a light;
 //! - [`rays`]: six kinds of rays on any mesh, from camera rays to second bounces in random order;
-//! - [`kernel`]: the ways in which a [`TriangleBvh`](juggler_bvh::TriangleBvh) can be asked;
-//! - [`measure`]: rates of several tracers, taken in turns;
-//! - [`clock`]: time of the processor beside that of the wall.
+//! - [`kernel`]: ways to trace a [`TriangleBvh`](juggler_bvh::TriangleBvh);
+//! - [`measure`]: rates of several tracers, measured alternately;
+//! - [`clock`]: CPU time and wall-clock time.
 //!
-//! `juggler bench rays` and the benchmark `embree` of `juggler-bvh` are made of these, so that their figures can
-//! be compared. The same name always gives the same mesh and the same rays, bit for bit.
+//! `juggler bench rays` and the benchmark `embree` of `juggler-bvh` both use this crate, so their
+//! figures are comparable. The same name always gives the same mesh and the same rays, bit for bit.
 
 pub mod clock;
 pub mod kernel;

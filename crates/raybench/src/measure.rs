@@ -1,7 +1,7 @@
-//! Rates of tracers. They take turns within every repeat, and who comes first changes: what disturbs the machine
-//! disturbs all alike, so that ratios hold where rates do not.
+//! Rates of tracers. Within every repeat the tracers take turns, in rotating order: disturbances of
+//! the machine affect all alike, so ratios are reliable where rates are not.
 
-use crate::clock::{Elapsed, Of, Stopwatch};
+use crate::clock::{CpuClock, Elapsed, Stopwatch};
 use crate::kernel::Scratch;
 use juggler_bvh::TriangleHit;
 use juggler_math::Ray;
@@ -9,81 +9,82 @@ use std::fmt;
 use std::iter::Sum;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Rays that a thread takes at a time: few, so that threads end together.
+/// Number of rays that a thread takes at a time: few, so that threads finish together.
 const CHUNK: usize = 512;
-/// Seconds of work for each thread that are timed at least; rays are traced again and again until then. Of a few
-/// milliseconds the start of threads would be a part.
-const LEAST: f64 = 0.05;
+/// Minimum work per thread and repeat, in seconds; rays are traced repeatedly until then. In a few
+/// milliseconds the start of the threads would matter.
+const MIN_SECONDS: f64 = 0.05;
 
-/// What rays came to, to see whether tracers agree.
+/// Summary of hits, to check whether tracers agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sums {
-    /// Rays that hit something.
+pub struct HitSummary {
+    /// Number of rays that hit something.
     pub hits: u64,
-    /// Sum of the distances of closest hits.
+    /// Sum of the distances of the closest hits.
     pub distance: f64,
 }
 
-impl Sums {
-    /// Of closest hits.
-    pub fn of_hits(hits: impl Iterator<Item = Option<TriangleHit>>) -> Self {
-        Self::of_distances(hits.map(|hit| hit.map(|hit| hit.t)))
+impl HitSummary {
+    /// Sums up closest hits.
+    pub fn from_hits(hits: impl Iterator<Item = Option<TriangleHit>>) -> Self {
+        Self::from_distances(hits.map(|hit| hit.map(|hit| hit.t)))
     }
 
-    /// Of distances.
-    pub fn of_distances(distances: impl Iterator<Item = Option<f32>>) -> Self {
-        let mut sums = Self::default();
+    /// Sums up distances of closest hits; `None` is a miss.
+    pub fn from_distances(distances: impl Iterator<Item = Option<f32>>) -> Self {
+        let mut summary = Self::default();
         for distance in distances.flatten() {
-            sums.hits += 1;
-            sums.distance += f64::from(distance);
+            summary.hits += 1;
+            summary.distance += f64::from(distance);
         }
-        sums
+        summary
     }
 
-    /// Of answers that know no distance.
-    pub fn of_occluded(occluded: impl Iterator<Item = bool>) -> Self {
+    /// Counts occluded rays; the distance is 0.
+    pub fn from_occluded(occluded: impl Iterator<Item = bool>) -> Self {
         Self { hits: occluded.filter(|hit| *hit).count() as u64, distance: 0.0 }
     }
 
-    /// Whether both say the same, as far as the order of a sum allows.
+    /// Whether hits are equal and distances agree up to the order of summation.
     pub fn agrees(&self, other: &Self) -> bool {
         self.hits == other.hits && (self.distance - other.distance).abs() <= 1e-9 * self.distance.abs()
     }
 }
 
-impl Sum for Sums {
-    fn sum<I: Iterator<Item = Self>>(sums: I) -> Self {
-        sums.fold(Self::default(), |a, b| Self { hits: a.hits + b.hits, distance: a.distance + b.distance })
+impl Sum for HitSummary {
+    fn sum<I: Iterator<Item = Self>>(summaries: I) -> Self {
+        summaries.fold(Self::default(), |a, b| Self { hits: a.hits + b.hits, distance: a.distance + b.distance })
     }
 }
 
-impl fmt::Display for Sums {
+impl fmt::Display for HitSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} hits, distances {:.6e}", self.hits, self.distance)
     }
 }
 
-/// What is measured: traces a few hundred rays. The call costs nothing that shows.
-pub type Trace<'a> = &'a (dyn Fn(&[Ray], &mut Scratch) -> Sums + Sync);
+/// A tracer under measurement: traces a few hundred rays. The dynamic call is negligible.
+pub type Trace<'a> = &'a (dyn Fn(&[Ray], &mut Scratch) -> HitSummary + Sync);
 
-/// Measurements of one tracer, in the order of the repeats.
+/// Measurements of one tracer, repeat by repeat.
 #[derive(Clone, Debug, Default)]
 pub struct Timing {
-    /// How many rays each repeat traced.
+    /// Number of rays per repeat.
     pub rays: usize,
-    /// Time of each repeat: on the wall's clock, and of all threads together on the processor.
+    /// Time of each repeat: wall-clock time, and CPU time of all threads together.
     pub repeats: Vec<Elapsed>,
-    /// What the rays came to.
-    pub sums: Sums,
+    /// Summary of the hits.
+    pub summary: HitSummary,
 }
 
 impl Timing {
-    /// Millions of rays a second of one thread's time on the processor; median, NaN without rays.
+    /// Millions of rays per second of CPU time, median of the repeats; NaN without rays.
     pub fn cpu_rate(&self) -> f64 {
         self.rate(|time| time.cpu)
     }
 
-    /// Millions of rays a second of all threads together, by the wall's clock; median, NaN without rays.
+    /// Millions of rays per second of wall-clock time, all threads together, median of the repeats;
+    /// NaN without rays.
     pub fn wall_rate(&self) -> f64 {
         self.rate(|time| time.wall)
     }
@@ -93,13 +94,13 @@ impl Timing {
         rays * 1e-6 / median(self.repeats.iter().map(seconds))
     }
 
-    /// How many times as fast as the other, by time on the processor: median of the ratios of each repeat.
-    pub fn speed_against(&self, other: &Self) -> f64 {
+    /// Speedup over the other tracer by CPU time: median of the ratios of each repeat.
+    pub fn speedup_over(&self, other: &Self) -> f64 {
         median(self.repeats.iter().zip(&other.repeats).map(|(own, other)| other.cpu / own.cpu))
     }
 }
 
-/// The middle of the values, of two the mean; NaN when there are none.
+/// Median of the values, the mean of the middle two for an even number; NaN without values.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
@@ -107,13 +108,13 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     (at(sorted.len() / 2) + at(sorted.len().saturating_sub(1) / 2)) / 2.0
 }
 
-/// Times every tracer on the same rays, `repeats` times after one that does not count but says how often the rays
-/// must be traced to give the fastest enough to do.
-pub fn in_turns(rays: &[Ray], tracers: &[Trace], threads: usize, repeats: usize) -> Vec<Timing> {
-    let first: Vec<(Elapsed, Sums)> = tracers.iter().map(|trace| run(rays, *trace, threads, 1)).collect();
+/// Measures every tracer on the same rays: a warm-up, which determines the number of passes from
+/// the fastest tracer, then `repeats` repeats.
+pub fn measure_alternately(rays: &[Ray], tracers: &[Trace], threads: usize, repeats: usize) -> Vec<Timing> {
+    let first: Vec<(Elapsed, HitSummary)> = tracers.iter().map(|trace| run(rays, *trace, threads, 1)).collect();
     let fastest = first.iter().map(|(time, _)| time.cpu).fold(f64::INFINITY, f64::min);
-    let passes = (LEAST * threads as f64 / fastest.max(1e-5)).ceil().max(1.0) as usize;
-    let timing = |(_, sums)| Timing { rays: rays.len(), repeats: Vec::new(), sums };
+    let passes = (MIN_SECONDS * threads as f64 / fastest.max(1e-5)).ceil().max(1.0) as usize;
+    let timing = |(_, summary)| Timing { rays: rays.len(), repeats: Vec::new(), summary };
     let mut timings: Vec<Timing> = first.into_iter().map(timing).collect();
     for repeat in 0..repeats {
         for turn in 0..tracers.len() {
@@ -126,38 +127,39 @@ pub fn in_turns(rays: &[Ray], tracers: &[Trace], threads: usize, repeats: usize)
     timings
 }
 
-/// Traces all rays `passes` times; threads take the next few hundred when they have done theirs. Time and sums are
-/// those of one pass.
-fn run(rays: &[Ray], trace: Trace, threads: usize, passes: usize) -> (Elapsed, Sums) {
+/// Traces all rays `passes` times; idle threads take the next chunk. Returns time and sums of one
+/// pass.
+fn run(rays: &[Ray], trace: Trace, threads: usize, passes: usize) -> (Elapsed, HitSummary) {
     let (next, chunks) = (AtomicUsize::new(0), rays.len().div_ceil(CHUNK));
     let work = || {
-        let (watch, mut scratch, mut sums) = (Stopwatch::start(Of::Thread), Scratch::default(), Sums::default());
+        let (watch, mut scratch, mut summary) =
+            (Stopwatch::start(CpuClock::Thread), Scratch::default(), HitSummary::default());
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
             if number >= chunks * passes {
-                return (watch.elapsed().cpu, sums);
+                return (watch.elapsed().cpu, summary);
             }
             let start = number % chunks * CHUNK;
             let chunk = &rays[start..(start + CHUNK).min(rays.len())];
-            sums = [sums, trace(chunk, &mut scratch)].into_iter().sum();
+            summary = [summary, trace(chunk, &mut scratch)].into_iter().sum();
         }
     };
-    let watch = Stopwatch::start(Of::Thread);
+    let watch = Stopwatch::start(CpuClock::Thread);
     let mut cpu = 0.0;
-    let sums: Sums = std::thread::scope(|scope| {
+    let summary: HitSummary = std::thread::scope(|scope| {
         let others: Vec<_> = (1..threads.max(1)).map(|_| scope.spawn(work)).collect();
         let own = work();
-        // A thread that panicked has said so; its rays are then missing from the sums.
+        // A panicked thread has reported its error; its rays are missing from the sums.
         let parts = others.into_iter().filter_map(|thread| thread.join().ok()).chain([own]);
-        let count = |(time, sums)| {
+        let count = |(time, summary)| {
             cpu += time;
-            sums
+            summary
         };
         parts.map(count).sum()
     });
     let one = |all: f64| all / passes as f64;
-    let sums = Sums { hits: sums.hits / passes as u64, distance: one(sums.distance) };
-    (Elapsed { wall: one(watch.elapsed().wall), cpu: one(cpu) }, sums)
+    let summary = HitSummary { hits: summary.hits / passes as u64, distance: one(summary.distance) };
+    (Elapsed { wall: one(watch.elapsed().wall), cpu: one(cpu) }, summary)
 }
 
 #[cfg(test)]

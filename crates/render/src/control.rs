@@ -1,28 +1,28 @@
-//! What goes in and out of a running render from other threads.
+//! Progress and cancellation of a running render, shared with other threads.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// How many rays were traced.
+/// Numbers of rays traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rays {
-    /// From the camera.
+pub struct RayCounts {
+    /// Camera rays.
     pub camera: u64,
-    /// Towards lights, and for ambient occlusion.
+    /// Shadow rays and ambient occlusion rays.
     pub shadow: u64,
-    /// Mirrored, refracted.
+    /// Rays that continue paths: reflected, refracted and scattered ones.
     pub secondary: u64,
-    /// Samples whose radiance was not a finite number and was counted as black.
+    /// Number of samples that were not finite and were counted as black.
     pub not_finite: u64,
 }
 
-impl Rays {
-    /// All rays.
+impl RayCounts {
+    /// Total number of rays.
     pub fn total(&self) -> u64 {
         self.camera + self.shadow + self.secondary
     }
 }
 
-/// Progress out, a wish to stop in.
+/// Progress of a render, and requests to end it. All methods may be called from any thread.
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
@@ -35,34 +35,34 @@ pub struct Control {
 }
 
 impl Control {
-    /// Asks the render to stop soon.
+    /// Requests cancellation. Unfinished tiles are discarded.
     pub fn cancel(&self) {
         self.cancelled.store(true, Relaxed);
     }
 
-    /// Whether somebody asked.
+    /// Whether cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Relaxed)
     }
 
-    /// Asks for no new samples to be begun: what is begun is done, and the render ends as if that had been all.
+    /// Requests an early end: tiles in progress are completed, and no further samples are started.
     pub fn finish(&self) {
         self.finishing.store(true, Relaxed);
     }
 
-    /// Whether somebody asked to finish, or to cancel.
+    /// Whether an early end or cancellation was requested.
     pub fn is_finishing(&self) -> bool {
         self.finishing.load(Relaxed) || self.is_cancelled()
     }
 
-    /// Samples done so far, over all pixels.
+    /// Number of finished samples, over all pixels.
     pub fn samples(&self) -> u64 {
         self.samples.load(Relaxed)
     }
 
-    /// Rays traced so far.
-    pub fn rays(&self) -> Rays {
-        Rays {
+    /// Numbers of rays traced so far.
+    pub fn rays(&self) -> RayCounts {
+        RayCounts {
             camera: self.camera.load(Relaxed),
             shadow: self.shadow.load(Relaxed),
             secondary: self.secondary.load(Relaxed),
@@ -70,7 +70,7 @@ impl Control {
         }
     }
 
-    pub(crate) fn add(&self, samples: u64, rays: &Rays) {
+    pub(crate) fn add(&self, samples: u64, rays: &RayCounts) {
         self.samples.fetch_add(samples, Relaxed);
         self.camera.fetch_add(rays.camera, Relaxed);
         self.shadow.fetch_add(rays.shadow, Relaxed);

@@ -1,84 +1,90 @@
-//! The engine: pixels in, sums of samples out, on every core, the same bits whoever does what.
+//! The rendering engine: sums of samples for the pixels of a picture, on all cores, bit-identical
+//! for any schedule.
 //!
-//! [`Job::render`] is the pure function that everything else schedules: a rectangle of pixels and a range
-//! of samples give a [`Tile`], on any thread or machine.
+//! [`Job::render`] is the pure function behind all schedules: it turns a rectangle of pixels and a
+//! range of samples into a [`Tile`], on any thread or machine.
 
-use juggler_camera::Shot;
-use juggler_camera::film::{Filter, Rect, Run, Tile};
-use juggler_camera::layer::Layers;
-use juggler_camera::sampler::Pattern;
+use juggler_camera::ShutterCamera;
+use juggler_camera::aov::FilmAovs;
+use juggler_camera::film::{FilterSampler, Rect, SampleRun, Tile};
+use juggler_camera::sampler::AnyPointSet;
 use juggler_integrator::Integrator;
 use juggler_world::World;
-use juggler_world::frames::Frames;
+use juggler_world::frames::NeighborFrames;
 use std::ops::Range;
 use std::sync::Arc;
 
+mod camera_rays;
 mod control;
-mod expose;
-mod exposed;
 mod progressive;
 mod rounds;
 mod schedule;
+mod tile_samples;
 mod wavefront;
 
 #[cfg(test)]
 mod tests;
 
-pub use control::{Control, Rays};
-pub use progressive::{Exposure, Hand, NoiseSoFar, expose, is_finished, most_runs, noise_so_far};
-pub use rounds::Stop;
-pub use schedule::{BAND_PIXELS, Schedule, Scheduler, Stopped, band_bytes, render};
-pub use wavefront::{Inspected, LightGain, PathVertex, inspect};
+pub use control::{Control, RayCounts};
+pub use progressive::{
+    NoiseEstimate, ProgressiveRender, Worker, estimate_noise, is_finished, max_runs, render_progressive,
+};
+pub use rounds::StopCriterion;
+pub use schedule::{BAND_PIXELS, Cancelled, Schedule, Scheduler, band_bytes, render};
+pub use wavefront::{InspectedSample, LightContribution, PathVertex, inspect};
 
-/// What a thread, a pass or a machine is given.
+/// Unit of work for a thread, a pass or a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Work {
-    /// Which pixels.
+    /// Pixels.
     pub pixels: Rect,
-    /// Which samples of each.
+    /// Samples of each pixel.
     pub samples: Range<u32>,
-    /// Where the first sample is in the middle of a block of
-    /// [`BLOCK`](juggler_camera::film::BLOCK): for each pixel, the sum of the block's samples
-    /// before it.
-    pub open: Option<Run>,
+    /// If the first sample lies within a block of
+    /// [`BLOCK_SAMPLES`](juggler_camera::film::BLOCK_SAMPLES) samples: the sum of the block's
+    /// earlier samples, for each pixel.
+    pub open_block: Option<SampleRun>,
 }
 
 impl Work {
-    /// The first `samples` samples.
+    /// Samples 0..`samples` of each pixel.
     pub fn first(pixels: Rect, samples: u32) -> Self {
-        Self { pixels, samples: 0..samples, open: None }
+        Self { pixels, samples: 0..samples, open_block: None }
     }
 }
 
-/// A picture to make: everything that decides its pixels.
+/// Everything that determines the pixels of a picture.
 pub struct Job<'w> {
-    /// What can be seen.
+    /// Geometry, materials and lights.
     pub world: &'w World,
-    /// From where.
-    pub camera: &'w Shot,
-    /// How light travels.
+    /// Camera, over the time that the shutter is open.
+    pub camera: &'w ShutterCamera,
+    /// Integrator that estimates the radiance along camera rays.
     pub integrator: &'w dyn Integrator,
-    /// How samples become pixels.
-    pub filter: Filter,
-    /// How samples are spread.
-    pub pattern: Pattern,
-    /// Samples of each pixel of the finished picture. A single one goes through the pixel's centre, half way between
-    /// opening and closing of the shutter.
+    /// Reconstruction filter.
+    pub filter: FilterSampler,
+    /// Sampling pattern.
+    pub pattern: AnyPointSet,
+    /// Samples per pixel of the finished picture. A single sample goes through the pixel's center
+    /// at mid-shutter.
     pub samples: u32,
-    /// Another seed, another noise.
+    /// Seed of the sampling pattern. Another seed gives other noise of the same mean.
     pub seed: u64,
-    /// What is kept beside radiance.
-    pub layers: &'w Layers,
-    /// What the scene is at the frames beside, for
-    /// [`Layer::Motion`](juggler_camera::layer::Layer::Motion); without it nothing is known of
-    /// that.
-    pub frames: Option<&'w Arc<Frames>>,
+    /// AOVs to record.
+    pub aovs: &'w FilmAovs,
+    /// The scene at the previous and next frame, for
+    /// [`FilmAov::Motion`](juggler_camera::aov::FilmAov::Motion). `None` records no motion.
+    pub frames: Option<&'w Arc<NeighborFrames>>,
 }
 
 impl Job<'_> {
-    /// Renders. Pure: any machine, any order, the same bits. The tile holds the work's samples, and the begun block
-    /// before them. An error when `control` is cancelled.
-    pub fn render(&self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
+    /// Renders a piece of work; bit-identical on any machine and in any order. The tile holds the
+    /// work's samples and those of the open block before them.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn render(&self, work: &Work, control: &Control) -> Result<Tile, Cancelled> {
         wavefront::Engine::new(self).render(work, control)
     }
 }

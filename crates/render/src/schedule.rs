@@ -1,40 +1,41 @@
-//! Who renders which pixels when. Nothing here can change a bit of the picture.
+//! Distribution of pixels among threads. It cannot change a bit of the picture.
 
 use super::wavefront::Engine;
 use super::{Control, Job, Work};
-use juggler_camera::film::{Clamped, Rect};
+use juggler_camera::film::{ClampedRadiance, Rect};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// Pixels that are held in memory at once where nobody says, at least a row of tiles of them.
+/// Default number of pixels in a band; at least one row of tiles is held in memory.
 pub const BAND_PIXELS: u64 = 4 << 20;
-/// Samples of a tile that are worth a trip to the scheduler.
+/// Number of samples per tile that amortizes the scheduler's overhead.
 const TILE_SAMPLES: u64 = 1 << 16;
-/// Edge of the largest tile.
+/// Edge of the largest tile, in pixels.
 const MAX_TILE: u32 = 32;
-/// Edge of the smallest tile.
+/// Edge of the smallest tile, in pixels.
 const MIN_TILE: u32 = 4;
 
-/// How pixels are handed out to threads.
+/// Strategy by which threads obtain pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheduler {
-    /// Tiles that idle threads steal from busy ones (ScalaBlitz's point).
+    /// Idle threads steal tiles from busy ones (as in ScalaBlitz).
     #[default]
     WorkStealing,
-    /// A shared counter hands out rows (the Juggler's way).
+    /// Threads take rows from a shared counter (as in the original Juggler).
     RowQueue,
-    /// Each thread gets one block of rows, and that is that.
+    /// Each thread renders one block of rows, without load balancing.
     StaticRows,
 }
 
-/// Who renders which pixels when: nothing that a picture shows.
+/// Scheduling options, which have no influence on the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
-    /// How pixels are handed out.
+    /// Strategy by which threads obtain pixels.
     pub scheduler: Scheduler,
-    /// Pixels that are held in memory at once, rounded down to whole rows of tiles, at least one.
+    /// Maximum number of pixels held in memory at once, rounded down to whole rows of tiles, at
+    /// least one row.
     pub band_pixels: u64,
 }
 
@@ -47,61 +48,67 @@ impl Default for Schedule {
 /// The render was cancelled before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the render was interrupted")]
-pub struct Stopped;
+pub struct Cancelled;
 
-/// Renders `region` with all samples on the threads of the current rayon pool, and hands the finished rows
-/// to `rows` from top to bottom, a band of whole rows at a time: only one band is held in memory. Returns what clamping took
-/// off them.
-pub fn render<E: From<Stopped>>(
+/// Renders all samples of `region` on the threads of the current rayon pool and passes the finished
+/// rows to `rows` from top to bottom, one band of whole rows at a time; only one band is held in
+/// memory. Returns the radiance that clamping removed.
+///
+/// # Errors
+///
+/// [`Cancelled`] if `control` is cancelled, and the errors of `rows`.
+pub fn render<E: From<Cancelled>>(
     job: &Job,
     region: Rect,
     schedule: Schedule,
     control: &Control,
     mut rows: impl FnMut(Vec<Rgb>) -> Result<(), E>,
-) -> Result<Clamped, E> {
-    let (engines, clamped) = (Mutex::new(Vec::new()), Mutex::new(Clamped::default()));
+) -> Result<ClampedRadiance, E> {
+    let (engines, clamped) = (Mutex::new(Vec::new()), Mutex::new(ClampedRadiance::default()));
     for band in bands(region, schedule.band_pixels) {
         let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
-        let draw = |pixels: Rect| {
+        let render_tile = |pixels: Rect| {
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
-            // Nobody waits while means are taken.
+            // Compute the means before locking the film.
             let means = if job.samples == 1 {
                 engine.render_single(pixels, control)
             } else {
                 engine.render(&Work::first(pixels, job.samples), control).map(|tile| (tile.means(), tile.clamped()))
             };
-            if let Ok((means, taken)) = means {
-                pixels.copy(&means, &band, &mut lock(&film));
-                lock(&clamped).add_all(taken);
+            if let Ok((means, removed)) = means {
+                pixels.copy_into(&means, &band, &mut lock(&film));
+                lock(&clamped).add_all(removed);
             }
             lock(&engines).push(engine);
         };
         match schedule.scheduler {
-            Scheduler::WorkStealing => steal(&band, job.samples, draw),
-            Scheduler::RowQueue => row_queue(&band, draw),
-            Scheduler::StaticRows => static_rows(&band, draw),
+            Scheduler::WorkStealing => steal(&band, job.samples, render_tile),
+            Scheduler::RowQueue => row_queue(&band, render_tile),
+            Scheduler::StaticRows => static_rows(&band, render_tile),
         }
         if control.is_cancelled() {
-            return Err(Stopped.into());
+            return Err(Cancelled.into());
         }
         rows(film.into_inner().unwrap_or_else(PoisonError::into_inner))?;
     }
     Ok(*lock(&clamped))
 }
 
-/// Bytes that [`render`] holds at once for bands of `pixels`: the finished ones, and the list of tiles.
+/// Memory that [`render`] holds for a band of `pixels` pixels, in bytes: the band and its list of
+/// tiles.
 pub fn band_bytes(region: Rect, pixels: u64) -> u64 {
     let tile = (size_of::<Rect>() as u64) / u64::from(MIN_TILE * MIN_TILE);
     bands(region, pixels).next().map_or(0, |band| band.area() * (size_of::<Rgb>() as u64 + tile))
 }
 
-/// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
+/// Locks a mutex, poisoned or not: rayon passes on the panic of the other thread.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Cuts a region into bands of whole rows that fit in memory.
+/// Cuts a region into bands of whole rows with at most `pixels` pixels, at least one row of tiles
+/// each.
 fn bands(region: Rect, pixels: u64) -> impl Iterator<Item = Rect> {
     let tile_rows = pixels / (u64::from(region.width.max(1)) * u64::from(MAX_TILE));
     let height = (tile_rows.max(1) * u64::from(MAX_TILE)).min(u64::from(u32::MAX)) as u32;
@@ -109,7 +116,7 @@ fn bands(region: Rect, pixels: u64) -> impl Iterator<Item = Rect> {
     (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
 }
 
-fn steal(band: &Rect, samples: u32, draw: impl Fn(Rect) + Sync + Send) {
+fn steal(band: &Rect, samples: u32, render_tile: impl Fn(Rect) + Sync + Send) {
     let edge = tile_edge(samples);
     let columns: Vec<u32> = (0..band.width).step_by(edge as usize).collect();
     let corners = (0..band.height).step_by(edge as usize).flat_map(|y| columns.iter().map(move |x| (*x, y)));
@@ -121,16 +128,17 @@ fn steal(band: &Rect, samples: u32, draw: impl Fn(Rect) + Sync + Send) {
             height: edge.min(band.height - y),
         })
         .collect();
-    tiles.into_par_iter().with_max_len(1).for_each(draw);
+    tiles.into_par_iter().with_max_len(1).for_each(render_tile);
 }
 
-/// Small tiles when each pixel takes long, so that the last one does not keep everybody waiting.
+/// Edge of the tiles, in pixels: smaller for more samples per pixel, so that threads finish at
+/// about the same time.
 fn tile_edge(samples: u32) -> u32 {
     let pixels = (TILE_SAMPLES / u64::from(samples.max(1))) as u32;
     (pixels.isqrt().max(1).next_power_of_two()).clamp(MIN_TILE, MAX_TILE)
 }
 
-fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
+fn row_queue(band: &Rect, render_tile: impl Fn(Rect) + Sync + Send) {
     let next = AtomicU32::new(0);
     rayon::broadcast(|_| {
         loop {
@@ -138,17 +146,17 @@ fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
             if row >= band.height {
                 return;
             }
-            draw(Rect { y: band.y + row, height: 1, ..*band });
+            render_tile(Rect { y: band.y + row, height: 1, ..*band });
         }
     });
 }
 
-fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
+fn static_rows(band: &Rect, render_tile: impl Fn(Rect) + Sync + Send) {
     rayon::broadcast(|thread| {
         let part = |i: usize| (u64::from(band.height) * i as u64 / thread.num_threads() as u64) as u32;
         let (first, end) = (part(thread.index()), part(thread.index() + 1));
         for row in first..end {
-            draw(Rect { y: band.y + row, height: 1, ..*band });
+            render_tile(Rect { y: band.y + row, height: 1, ..*band });
         }
     });
 }
@@ -157,7 +165,7 @@ fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
 mod tests {
     use super::*;
 
-    type Draw<'a> = &'a (dyn Fn(Rect) + Sync + Send);
+    type RenderTile<'a> = &'a (dyn Fn(Rect) + Sync + Send);
 
     #[test]
     fn bands_cover_every_row_once_and_stay_small() {
@@ -180,7 +188,7 @@ mod tests {
     #[test]
     fn every_scheduler_draws_every_pixel_once() {
         let band = Rect { x: 3, y: 7, width: 70, height: 41 };
-        let seen = |run: &dyn Fn(Draw)| {
+        let seen = |run: &dyn Fn(RenderTile)| {
             let counts = Mutex::new(vec![0; band.area() as usize]);
             run(&|tile: Rect| {
                 for y in tile.y..tile.y + tile.height {
@@ -192,9 +200,9 @@ mod tests {
             counts.into_inner().is_ok_and(|counts| counts.into_iter().all(|count| count == 1))
         };
         for samples in [1, 64, 4096] {
-            assert!(seen(&|draw| steal(&band, samples, draw)), "stealing, {samples} samples");
+            assert!(seen(&|render_tile| steal(&band, samples, render_tile)), "stealing, {samples} samples");
         }
-        assert!(seen(&|draw| row_queue(&band, draw)), "row queue");
-        assert!(seen(&|draw| static_rows(&band, draw)), "static rows");
+        assert!(seen(&|render_tile| row_queue(&band, render_tile)), "row queue");
+        assert!(seen(&|render_tile| static_rows(&band, render_tile)), "static rows");
     }
 }

@@ -1,18 +1,18 @@
-//! The engine as a whole: closed forms, furnaces, and independence from tiles.
+//! Tests of the whole engine: closed forms, furnaces, and independence of tiles.
 
 use super::*;
 use juggler_bsdf::fresnel;
-use juggler_camera::film::{Box as BoxFilter, Reconstruction};
-use juggler_camera::layer::{self, LightGroup};
-use juggler_camera::sampler::{Pattern, Sobol, SobolPoints, Spread};
+use juggler_camera::aov::{self, LightGroup};
+use juggler_camera::film::{Box as BoxFilter, ReconstructionFilter};
+use juggler_camera::sampler::{AnyPointSet, SamplerDescription, Sobol, SobolPoints};
 use juggler_camera::{AnyCamera, Perspective};
-use juggler_integrator::{AnyIntegrator, Classic, Emit, Integrator, PathState};
+use juggler_integrator::{AnyIntegrator, Classic, Integrator, PathState, VertexOutput};
 use juggler_light::AnyLight;
 use juggler_light::background::{AnyBackground, Solid};
 use juggler_material::{AnyMaterial, MaterialCompiler};
 use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use juggler_shape::AnyShape;
-use juggler_texture::{Image, Images, Pyramid, TextureTable};
+use juggler_texture::{Image, Images, MipMap, TextureTable};
 use juggler_world::{Object, Vertex};
 use serde::de::DeserializeOwned;
 
@@ -20,15 +20,15 @@ mod blur;
 mod cancelling;
 mod clamping;
 mod cones;
-mod holes;
 mod inside;
 mod inspecting;
+mod opacity;
 
 pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))
 }
 
-/// A world of objects written as (shape, place, material).
+/// World of objects given as shape, position and material.
 pub fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -> World {
     let objects: Vec<(&str, Motion, &str)> = objects
         .iter()
@@ -37,7 +37,7 @@ pub fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -
     world_in_motion(&objects, lights, background)
 }
 
-/// A world of objects written as (shape, motion, material).
+/// World of objects given as shape, motion and material.
 pub fn world_in_motion(objects: &[(&str, Motion, &str)], lights: &[&str], background: Rgb) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let objects = objects
@@ -54,23 +54,29 @@ pub fn world_in_motion(objects: &[(&str, Motion, &str)], lights: &[&str], backgr
     World::new(objects, compiler.finish().unwrap(), lights, AnyBackground::Solid(Solid { color: background }))
 }
 
-pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Shot {
+pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> ShutterCamera {
     let camera: Perspective = read(&format!(
         r#"{{"eye": [{}, {}, {}], "look_at": [{}, {}, {}], "vertical_fov_degrees": {fov}}}"#,
         eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z
     ));
-    AnyCamera::from(camera).project(size).unwrap().into()
+    AnyCamera::from(camera).projection(size).unwrap().into()
 }
 
-pub fn pixels(world: &World, camera: &Shot, integrator: &AnyIntegrator, size: UVec2, samples: u32) -> Vec<Rgb> {
+pub fn pixels(
+    world: &World,
+    camera: &ShutterCamera,
+    integrator: &AnyIntegrator,
+    size: UVec2,
+    samples: u32,
+) -> Vec<Rgb> {
     let job = job(world, camera, integrator, samples);
     let pixels = Rect { x: 0, y: 0, width: size.x, height: size.y };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }
 
-pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
-    let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
-    assert_eq!(pattern, Pattern::SobolPoints(SobolPoints));
+pub fn job<'w>(world: &'w World, camera: &'w ShutterCamera, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
+    let (pattern, filter) = (Sobol {}.point_set(samples), BoxFilter {}.sampler(samples));
+    assert_eq!(pattern, AnyPointSet::SobolPoints(SobolPoints));
     Job {
         world,
         camera,
@@ -79,7 +85,7 @@ pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator
         pattern,
         samples,
         seed: 1,
-        layers: &layer::NONE,
+        aovs: &aov::NO_AOVS,
         frames: None,
     }
 }
@@ -91,7 +97,8 @@ fn near(a: Rgb, b: Rgb, tolerance: f32) -> bool {
 
 const PIXEL: UVec2 = UVec2::ONE;
 
-/// Mirrors, glossy and blurry bundles, glass, soft shadows, occlusion, and a slot that outgrows its group.
+/// World with mirrors, glossy and blurry ray bundles, glass, soft shadows, ambient occlusion, and
+/// slots of more rays than a group holds.
 pub fn busy() -> World {
     let glossy = r#"{"phong": {"diffuse": [0.2, 0.3, 0.4], "reflection": 0.7, "ambient": 0.3, "occlusion": 1,
         "glossy": {"half_angle_degrees": 20, "rays": 24}}}"#;
@@ -128,7 +135,7 @@ fn tiles_cannot_be_seen() {
 
 #[test]
 fn ambient_furnace_is_white() {
-    // Inside of a white ball, ambient light 1, no other: every pixel is exactly the ambient share.
+    // Inside a white sphere lit by ambient light of 1 alone, every pixel is exactly 1.
     let material = r#"{"phong": {"diffuse": 1, "ambient": 1, "specular": 0}}"#;
     let objects = [(r#"{"sphere": {"radius": 10}}"#, Vec3::ZERO, material)];
     let world = world(&objects, &[r#"{"ambient": {"color": 1, "intensity": 1}}"#], Rgb::BLACK);
@@ -140,7 +147,8 @@ fn ambient_furnace_is_white() {
 
 #[test]
 fn mirror_furnace_keeps_its_filter() {
-    // A mirror of filter f in a field of radiance 1 shows f; ten mirrors in a row would show f^10.
+    // A mirror of reflectance f in a field of radiance 1 has radiance f; ten reflections would give
+    // f^10.
     let material = r#"{"phong": {"diffuse": 0, "ambient": 0, "specular": 0, "reflection": [0.5, 0.25, 1]}}"#;
     let objects = [(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material)];
     let world = world(&objects, &[], Rgb::WHITE);
@@ -163,7 +171,7 @@ fn a_lamp_over_a_floor_obeys_the_inverse_square() {
 
 #[test]
 fn occlusion_of_an_endless_wall_is_a_half() {
-    // In the corner of floor and wall, half of the hemisphere's solid angle is wall.
+    // In the corner of floor and wall, the wall covers half of the hemisphere.
     let material = r#"{"phong": {"diffuse": 1, "ambient": 1, "occlusion": 1, "specular": 0}}"#;
     let objects = [
         (r#"{"plane": {}}"#, Vec3::ZERO, material),
@@ -178,8 +186,8 @@ fn occlusion_of_an_endless_wall_is_a_half() {
 
 #[test]
 fn glass_ball_shows_fresnel_and_bends_light() {
-    // Straight through the centre of a ball of index 1.5 in a white field: (1 − R)² of light comes through
-    // and R is mirrored; what bounces about inside is followed too, so that nothing is lost.
+    // Through the center of a sphere of index 1.5 in a white field: (1 − R)² of the light is
+    // transmitted and R is reflected. Internal reflections are followed, so that no energy is lost.
     let material = r#"{"phong": {"diffuse": 0, "ambient": 0, "specular": 0, "reflection": 1, "transparency": 1,
         "ior": 1.5, "fresnel": true}}"#;
     let objects = [(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material)];
@@ -189,11 +197,11 @@ fn glass_ball_shows_fresnel_and_bends_light() {
     let integrator = Classic { max_depth: 40, min_weight: 1e-6, occlusion_distance: None }.into();
     let all = pixels(&world, &camera, &integrator, size, 4);
     assert!(all.iter().all(|pixel| near(*pixel, Rgb::WHITE, 1e-3)), "{all:?}");
-    assert!((fresnel::dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
+    assert!((fresnel::dielectric_reflectance(1.0, 1.5) - 0.04).abs() < 1e-6);
 }
 
 #[test]
-fn transparent_things_cast_coloured_shadows() {
+fn transparent_things_cast_colored_shadows() {
     let floor = r#"{"phong": {"diffuse": 1, "ambient": 0, "specular": 0}}"#;
     let pane = r#"{"phong": {"diffuse": 0, "ambient": 0, "transparency": [1, 0.5, 0.25]}}"#;
     let objects = [
@@ -210,8 +218,9 @@ fn transparent_things_cast_coloured_shadows() {
 
 #[test]
 fn the_penumbra_of_an_edge_is_the_visible_share() {
-    // A square lamp of side 2 at height 10, an edge at height 5: on the floor the penumbra is 2 wide and the
-    // light falls in it in a straight line (small angles: cosines differ by under one per cent).
+    // A square light of side 2 at height 10 and an edge at height 5 cast a penumbra of width 2 on
+    // the floor, across which the irradiance is linear (the cosines differ by less than one
+    // percent).
     let floor = r#"{"phong": {"diffuse": 1, "ambient": 0, "specular": 0}}"#;
     let objects = [
         (r#"{"plane": {}}"#, Vec3::ZERO, floor),
@@ -227,8 +236,8 @@ fn the_penumbra_of_an_edge_is_the_visible_share() {
 }
 
 #[test]
-fn a_single_sample_looks_through_the_pixels_centre() {
-    // A disk that covers just the centres of a 3 × 3 picture's middle pixel.
+fn a_single_sample_looks_through_the_pixels_center() {
+    // A sphere that covers only the center of the middle pixel of a 3 × 3 picture.
     let material = r#"{"phong": {"emission": 1}}"#;
     let objects = [(r#"{"sphere": {"radius": 0.01}}"#, Vec3::ZERO, material)];
     let world = world(&objects, &[], Rgb::BLACK);
@@ -239,15 +248,15 @@ fn a_single_sample_looks_through_the_pixels_centre() {
     assert_eq!(lit, [4]);
 }
 
-/// An integrator whose light is no number in every third column, and less than nothing in others.
+/// Integrator whose radiance is NaN in every third column and negative in some others.
 struct Broken;
 
 impl Integrator for Broken {
-    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut Emit) {}
+    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut VertexOutput) {}
 
-    fn escape(&self, _: &World, ray: &Ray, _: &PathState, emit: &mut Emit) {
+    fn escape(&self, _: &World, ray: &Ray, _: &PathState, output: &mut VertexOutput) {
         let column = (ray.direction.x * 40.0).floor() as i32;
-        emit.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }), LightGroup::REST);
+        output.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }), LightGroup::REST);
     }
 }
 

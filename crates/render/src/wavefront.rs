@@ -1,100 +1,110 @@
-//! Rays in queues: camera rays of some pixels → nearest hits → what the integrator makes of them → shadow
-//! rays → the rays that go on, until none is left.
+//! Wavefront path tracing: queues of rays pass through intersection, shading and shadow rays, and
+//! the rays that continue form the next queues, until none is left (Laine, Karras, Aila:
+//! Megakernels Considered Harmful, 2013).
 //!
-//! Why the bits cannot depend on tiles: queues are in order of their slots (a slot is one sample of one
-//! pixel), and are only ever cut between slots; a slot whose own rays outgrow [`GROUP`] is cut in pieces of
-//! that size wherever it stands. So the order in which a sample's contributions are added follows from its
-//! own tree of rays alone. The same cuts bound the memory.
+//! The result does not depend on tiles. Queues are in order of their slots (a slot is one sample of
+//! one pixel) and are cut only between slots; a slot with more than [`GROUP_RAYS`] rays is cut into
+//! pieces of that size, independently of its position in the queue. The order in which a sample's
+//! contributions are added thus depends only on its own tree of rays. The same cuts bound the
+//! memory.
 
-use super::expose::{Start, expose, start};
-use super::exposed::Exposed;
-use super::{Control, Job, Rays, Stopped, Work};
-use juggler_camera::film::{Clamped, Rect, Samples, Tile, is_counted};
-use juggler_integrator::{Bent, Clamping, Emit, Harvest, PathState, Queue, Record, ShadowQueue, Way};
+use super::camera_rays::{PathStart, path_start, push_camera_rays};
+use super::tile_samples::TileSamples;
+use super::{Cancelled, Control, Job, RayCounts, Work};
+use juggler_camera::film::{ClampedRadiance, PixelSamples, Rect, Tile, is_counted};
+use juggler_integrator::{
+    AovRecord, BentShadowRay, ClampState, PathBuffers, PathKind, PathState, Queue, ShadowQueue, VertexOutput,
+};
 use juggler_math::{Ray, Rgb};
-use juggler_world::{Shadows, Vertex, WorldHit};
+use juggler_world::{ShadowMode, Vertex, WorldHit};
 use std::ops::Range;
 
 mod inspect;
 
-pub use inspect::{Inspected, LightGain, PathVertex, inspect};
+pub use inspect::{InspectedSample, LightContribution, PathVertex, inspect};
 
-/// Samples in flight at once.
-const PASS: u64 = 1024;
-const _: () = assert!(PASS <= 1 << u16::BITS, "shadow rays keep their sample's number in 16 bits");
-/// Rays of a segment, unless one slot alone has more.
-const SEGMENT: usize = 2048;
-/// Rays of one slot that are followed side by side.
-const GROUP: usize = 256;
-/// Waiting rays at which a segment is left for later, at the next slot.
-const WAITING: usize = 16_384;
+/// Number of samples in flight.
+const PASS_SAMPLES: u64 = 1024;
+const _: () = assert!(PASS_SAMPLES <= 1 << u16::BITS, "shadow rays keep their sample's number in 16 bits");
+/// Maximum number of rays in a segment, unless a single slot has more.
+const SEGMENT_RAYS: usize = 2048;
+/// Maximum number of rays of one slot that are traced together.
+const GROUP_RAYS: usize = 256;
+/// Number of queued rays at which shading of a segment is suspended at the next slot.
+const MAX_QUEUED_RAYS: usize = 16_384;
 
-/// The buffers of one thread.
+/// Renderer of one thread, with its buffers.
 pub struct Engine<'j> {
     job: &'j Job<'j>,
-    /// How paths begin.
-    start: Start,
-    /// Whether vertices are told how wide rays are.
-    measures: bool,
+    /// Initial state of camera paths.
+    start: PathStart,
+    /// Whether vertices receive ray differentials, for texture filtering.
+    has_ray_differentials: bool,
     hits: Vec<WorldHit>,
-    through: Vec<Rgb>,
-    harvest: Harvest,
+    transmittance: Vec<Rgb>,
+    buffers: PathBuffers,
     stack: Vec<Queue>,
     spare: Vec<Queue>,
-    rays: Rays,
+    rays: RayCounts,
 }
 
 impl<'j> Engine<'j> {
     pub fn new(job: &'j Job<'j>) -> Self {
         Self {
             job,
-            start: start(job),
-            measures: job.world.has_pictures() || job.integrator.fades_patterns(),
+            start: path_start(job),
+            has_ray_differentials: job.world.has_image_textures() || job.integrator.filters_textures(),
             hits: Vec::new(),
-            through: Vec::new(),
-            harvest: Harvest {
-                clamping: job.integrator.clamp().map(Clamping::new),
-                record: (!job.layers.is_empty()).then(|| Record::new(job.layers, job.frames)),
-                ..Harvest::default()
+            transmittance: Vec::new(),
+            buffers: PathBuffers {
+                clamping: job.integrator.clamp().map(ClampState::new),
+                record: (!job.aovs.is_empty()).then(|| AovRecord::new(job.aovs, job.frames)),
+                ..PathBuffers::default()
             },
             stack: Vec::new(),
             spare: Vec::new(),
-            rays: Rays::default(),
+            rays: RayCounts::default(),
         }
     }
 
-    /// Renders one piece of work.
-    pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
-        let mut film = Exposed::new(work, self.job.layers);
+    /// Renders a piece of work.
+    pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Cancelled> {
+        let mut film = TileSamples::new(work, self.job.aovs);
         self.passes(work, control, |samples| film.add(samples))?;
         Ok(film.tile())
     }
 
-    /// The pixels of a picture of one sample each, row by row, and what clamping took off them. They need no sums, only
-    /// what a tile's means would be.
-    pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<(Vec<Rgb>, Clamped), Stopped> {
+    /// Renders pixels with a single sample each: the means, row by row, and the radiance that
+    /// clamping removed. Equals the means of a tile, without its sums.
+    pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<(Vec<Rgb>, ClampedRadiance), Cancelled> {
         let mut means = Vec::with_capacity(pixels.area() as usize);
-        let mut taken = Clamped::default();
-        self.passes(&Work::first(pixels, 1), control, |Samples { radiance, clamped, .. }| {
+        let mut removed = ClampedRadiance::default();
+        self.passes(&Work::first(pixels, 1), control, |PixelSamples { radiance, clamped, .. }| {
             let lost = radiance.iter().filter(|sample| !is_counted(**sample)).count() as u64;
             means.extend(radiance.iter().map(|sample| if is_counted(*sample) { *sample } else { Rgb::BLACK }));
             let finite = radiance.iter().zip(clamped).filter(|(sample, _)| is_counted(**sample));
-            finite.for_each(|(_, clamped)| taken.add(f64::from(*clamped)));
+            finite.for_each(|(_, clamped)| removed.add(f64::from(*clamped)));
             lost
         })?;
-        Ok((means, taken))
+        Ok((means, removed))
     }
 
-    /// Traces all samples and hands them to `take` in order; `take` says how many were no finite numbers.
-    fn passes(&mut self, work: &Work, control: &Control, mut take: impl FnMut(Samples) -> u64) -> Result<(), Stopped> {
+    /// Traces all samples and passes them to `consume` in order; `consume` returns how many were not
+    /// finite.
+    fn passes(
+        &mut self,
+        work: &Work,
+        control: &Control,
+        mut consume: impl FnMut(PixelSamples) -> u64,
+    ) -> Result<(), Cancelled> {
         let samples = work.samples.len() as u64;
         let end = work.pixels.area() * samples;
         let mut first = 0;
         while first < end {
-            let slots = first..end.min(first + PASS);
+            let slots = first..end.min(first + PASS_SAMPLES);
             let count = slots.end - slots.start;
             self.pass(work, samples, slots, control)?;
-            self.rays.not_finite += take(self.harvest.samples());
+            self.rays.not_finite += consume(self.buffers.samples());
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
@@ -102,41 +112,42 @@ impl<'j> Engine<'j> {
         Ok(())
     }
 
-    /// Traces the samples `slots` to their ends. One vertex may cost seconds, so every vertex and every queue of shadow rays
-    /// looks whether the render was cancelled.
-    fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>, control: &Control) -> Result<(), Stopped> {
-        self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
+    /// Traces the samples `slots`. Cancellation is tested at every vertex and every shadow queue,
+    /// since a single vertex may take seconds.
+    fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>, control: &Control) -> Result<(), Cancelled> {
+        self.buffers.reset((slots.end - slots.start) as usize, self.job.world.lights().len());
         let mut camera = self.spare.pop().unwrap_or_default();
-        expose(self.job, &self.start, work, samples, slots, &mut camera);
-        let weights = || camera.paths.iter().map(|path| path.weight.r);
-        if let Some(clamping) = &mut self.harvest.clamping {
+        push_camera_rays(self.job, &self.start, work, samples, slots, &mut camera);
+        let weights = || camera.paths.iter().map(|path| path.beta.r);
+        if let Some(clamping) = &mut self.buffers.clamping {
             clamping.begin(weights());
         }
-        if let Some(record) = &mut self.harvest.record {
+        if let Some(record) = &mut self.buffers.record {
             record.begin(weights());
         }
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
             if control.is_cancelled() {
-                return Err(self.stopped());
+                return Err(self.cancelled());
             }
             self.segment(queue, control);
         }
-        if control.is_cancelled() { Err(self.stopped()) } else { Ok(()) }
+        if control.is_cancelled() { Err(self.cancelled()) } else { Ok(()) }
     }
 
-    /// Drops all rays in flight, for the next work to begin anew.
-    fn stopped(&mut self) -> Stopped {
-        let Harvest { shadows, bent, pending, next, .. } = &mut self.harvest;
+    /// Discards all rays in flight.
+    fn cancelled(&mut self) -> Cancelled {
+        let PathBuffers { shadows, bent, pending, next, .. } = &mut self.buffers;
         self.stack.clear();
         next.clear();
         bent.clear();
         *pending = 0;
         shadows.iter_mut().for_each(ShadowQueue::clear);
-        Stopped
+        Cancelled
     }
 
-    /// Takes a queue one step further and stacks what comes of it, so that the first of it is next.
+    /// Advances a queue by one segment and stacks the remaining and continuing rays, the first ones
+    /// on top.
     fn segment(&mut self, mut queue: Queue, control: &Control) {
         self.nearest(&mut queue);
         let done = self.shade(&queue, control);
@@ -158,81 +169,85 @@ impl<'j> Engine<'j> {
         }
     }
 
-    /// Hands each vertex to the integrator; stops between slots when too many rays wait. Returns how many
-    /// rays were done, fewer than there are when the render was cancelled.
+    /// Shades the vertices of a queue. Stops between slots if too many rays are queued, or on
+    /// cancellation. Returns the number of rays processed.
     fn shade(&mut self, queue: &Queue, control: &Control) -> usize {
         for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
             if control.is_cancelled() {
                 return i;
             }
-            meet(self.job, self.measures, &mut self.harvest, ray, path, hit);
+            shade_ray(self.job, self.has_ray_differentials, &mut self.buffers, ray, path, hit);
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
-            if last_of_slot && self.harvest.next.len() + self.harvest.pending > WAITING {
+            if last_of_slot && self.buffers.next.len() + self.buffers.pending > MAX_QUEUED_RAYS {
                 return i + 1;
             }
         }
         queue.len()
     }
 
-    /// Answers the shadow rays, light by light, and adds what comes through.
+    /// Traces the shadow rays, light by light, and adds the unoccluded contributions.
     fn shadows(&mut self, control: &Control) {
-        let Harvest { radiance, clamping, record, shadows, pending, .. } = &mut self.harvest;
+        let PathBuffers { radiance, clamping, record, shadows, pending, .. } = &mut self.buffers;
         *pending = 0;
         let last = shadows.len().saturating_sub(1);
-        let kept = self.job.integrator.shadows();
+        let mode = self.job.integrator.shadows();
         for (number, queue) in shadows.iter_mut().enumerate().take_while(|_| !control.is_cancelled()) {
             self.rays.shadow += queue.rays.len() as u64;
-            self.through.resize(queue.rays.len(), Rgb::BLACK);
-            let (rays, through) = (&queue.rays, &mut self.through);
-            match kept {
-                Shadows::Physical if self.job.world.dims_shadows() => {
-                    let inside = queue.gains.iter().map(|gain| gain.inside);
-                    self.job.world.transmittance_inside(rays, inside, through);
+            self.transmittance.resize(queue.rays.len(), Rgb::BLACK);
+            let (rays, transmittance) = (&queue.rays, &mut self.transmittance);
+            match mode {
+                ShadowMode::Physical if self.job.world.attenuates_shadows() => {
+                    let inside = queue.contributions.iter().map(|contribution| contribution.interiors);
+                    self.job.world.transmittance_inside(rays, inside, transmittance);
                 }
-                _ if number < last => self.job.world.transmittance_packet(rays, kept, through),
-                _ => self.job.world.transmittance_batch(rays, kept, through),
+                _ if number < last => self.job.world.transmittance_packet(rays, mode, transmittance),
+                _ => self.job.world.transmittance_batch(rays, mode, transmittance),
             }
-            for (gain, through) in queue.gains.iter().zip(through) {
-                let (slot, mut more) = (usize::from(gain.slot), gain.radiance * *through);
+            for (contribution, transmittance) in queue.contributions.iter().zip(transmittance) {
+                let (slot, mut more) = (usize::from(contribution.slot), contribution.radiance * *transmittance);
                 if let Some(clamping) = clamping {
-                    more = clamping.limit(slot, gain.way, more);
+                    more = clamping.limit(slot, contribution.path_kind, more);
                 }
                 if let Some(record) = record {
-                    record.light(slot, gain.way, gain.group, more);
+                    record.add_light(slot, contribution.path_kind, contribution.group, more);
                 }
                 radiance[slot] += more;
             }
             queue.clear();
         }
-        self.bent();
+        self.trace_bent_shadow_rays();
     }
 
-    /// Answers the ways around corners: one leg of each after the other, as long as they are free.
-    fn bent(&mut self) {
-        let mut open: Vec<Bent> = std::mem::take(&mut self.harvest.bent);
-        for leg in 0.. {
-            let rays: Vec<Ray> = open.iter().filter_map(|bent| bent.legs.get(leg).copied()).collect();
+    /// Traces the shadow rays of specular paths, one segment of each path after the other, and adds
+    /// the contributions of unoccluded paths.
+    fn trace_bent_shadow_rays(&mut self) {
+        let mut open: Vec<BentShadowRay> = std::mem::take(&mut self.buffers.bent);
+        for segment in 0.. {
+            let rays: Vec<Ray> = open.iter().filter_map(|bent| bent.segments.get(segment).copied()).collect();
             if rays.is_empty() {
                 break;
             }
             self.rays.shadow += rays.len() as u64;
-            self.through.resize(rays.len(), Rgb::BLACK);
-            self.job.world.transmittance_batch(&rays, Shadows::Physical, &mut self.through);
-            let mut through = self.through.iter();
-            open.retain(|bent| bent.legs.len() <= leg || through.next().is_some_and(|through| !through.is_black()));
+            self.transmittance.resize(rays.len(), Rgb::BLACK);
+            self.job.world.transmittance_batch(&rays, ShadowMode::Physical, &mut self.transmittance);
+            let mut transmittance = self.transmittance.iter();
+            open.retain(|bent| {
+                bent.segments.len() <= segment
+                    || transmittance.next().is_some_and(|transmittance| !transmittance.is_black())
+            });
         }
         for bent in open.drain(..) {
-            self.harvest.add(bent.slot as usize, Way::Indirect, bent.group, bent.radiance);
+            self.buffers.add(bent.slot as usize, PathKind::Indirect, bent.group, bent.radiance);
         }
-        self.harvest.bent = open;
+        self.buffers.bent = open;
     }
 
-    /// The rays of a segment that was left early.
+    /// Stacks the rays of a suspended segment.
     fn stack_rest(&mut self, queue: &Queue, done: usize) {
         if done < queue.len() {
             let mut rest = self.spare.pop().unwrap_or_default();
             for i in done..queue.len() {
-                // The hits are found again: a ray keeps no memory of having been traced.
+                // Restore the maximum distance, so that the ray is intersected anew.
                 let ray = Ray { t_max: f32::INFINITY, ..queue.rays[i] };
                 rest.push(ray, queue.paths[i]);
             }
@@ -240,12 +255,12 @@ impl<'j> Engine<'j> {
         }
     }
 
-    /// The rays that go on, cut into segments, the first on top.
+    /// Stacks the rays that continue, cut into segments, the first segment on top.
     fn stack_next(&mut self) {
-        if self.harvest.next.is_empty() {
+        if self.buffers.next.is_empty() {
             return;
         }
-        let mut next = std::mem::replace(&mut self.harvest.next, self.spare.pop().unwrap_or_default());
+        let mut next = std::mem::replace(&mut self.buffers.next, self.spare.pop().unwrap_or_default());
         let segments = cut(&next);
         if segments.len() == 1 {
             self.stack.push(next);
@@ -262,42 +277,43 @@ impl<'j> Engine<'j> {
     }
 }
 
-/// Hands one ray to the integrator; returns what it met.
+/// Passes a ray and its hit to the integrator. Returns the vertex, or `None` if the ray left the
+/// world.
 #[inline(always)]
-fn meet(
+fn shade_ray(
     job: &Job,
-    measures: bool,
-    harvest: &mut Harvest,
+    has_ray_differentials: bool,
+    buffers: &mut PathBuffers,
     ray: &Ray,
     path: &PathState,
     hit: &WorldHit,
 ) -> Option<Vertex> {
     let Job { world, integrator, .. } = job;
-    let mut emit = Emit::new(harvest, path, ray.t_max);
+    let mut output = VertexOutput::new(buffers, path, ray.t_max);
     if !hit.is_some() {
-        integrator.escape(world, ray, path, &mut emit);
+        integrator.escape(world, ray, path, &mut output);
         return None;
     }
     let mut vertex = world.vertex(ray, hit);
-    if measures {
-        world.measure(ray, hit, emit.width(), &mut vertex);
+    if has_ray_differentials {
+        world.ray_differentials(ray, hit, output.width(), &mut vertex);
     }
-    integrator.vertex(world, ray, path, &vertex, &mut emit);
+    integrator.vertex(world, ray, path, &vertex, &mut output);
     Some(vertex)
 }
 
-/// Cuts a queue between slots into segments of at most [`SEGMENT`] rays; a slot of more than [`GROUP`] rays
-/// becomes segments of its own.
+/// Cuts a queue between slots into segments of at most [`SEGMENT_RAYS`] rays. A slot of more than
+/// [`GROUP_RAYS`] rays becomes segments of its own.
 fn cut(queue: &Queue) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     let (mut start, mut at) = (0, 0);
     for group in queue.paths.chunk_by(|a, b| a.slot == b.slot) {
         let end = at + group.len();
-        if group.len() > GROUP {
+        if group.len() > GROUP_RAYS {
             ranges.push(start..at);
-            ranges.extend((at..end).step_by(GROUP).map(|piece| piece..end.min(piece + GROUP)));
+            ranges.extend((at..end).step_by(GROUP_RAYS).map(|piece| piece..end.min(piece + GROUP_RAYS)));
             start = end;
-        } else if end - start > SEGMENT {
+        } else if end - start > SEGMENT_RAYS {
             ranges.push(start..at);
             start = at;
         }

@@ -84,6 +84,11 @@ impl Assets {
         Arc::make_mut(&mut self.0).insert(name, asset);
     }
 
+    /// Assets with their names.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Asset)> {
+        self.0.iter().map(|(name, asset)| (name.as_str(), asset))
+    }
+
     /// Path that stands for an asset, by which caches of loaded files know it: its content's hash
     /// as a folder, and its name.
     pub fn path_of(&self, name: &str) -> Option<PathBuf> {

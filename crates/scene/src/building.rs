@@ -1,8 +1,8 @@
-//! Scenes that are built by programs.
+//! Building of scenes by programs.
 
 use crate::Scene;
 use crate::asset::Asset;
-use crate::description::{Backdrop, Object};
+use crate::description::{BackgroundInput, Object};
 use crate::item::Item;
 use juggler_camera::AnyCamera;
 use juggler_camera::film::AnyFilter;
@@ -46,24 +46,24 @@ impl Scene {
         self
     }
 
-    /// Adds an image in memory under a name, in linear light. Textures and environments show it by
-    /// that name in place of a file's, such as
+    /// Adds an image in memory under a name, in linear light. Textures and environments refer to it
+    /// by that name in place of a file's, such as
     /// [`Image::new`](juggler_texture::Image::new)`("wood")`.
     #[must_use]
     pub fn image(self, name: impl Into<String>, image: impl Into<Arc<juggler_math::Image>>) -> Self {
         self.asset(name, Asset::from_image(image))
     }
 
-    /// Adds an asset under a name: whatever names a file of that name, such as a mesh, a texture,
-    /// an environment or a light profile, takes the asset instead. A program that reads the scene's
-    /// JSON again must add the same assets.
+    /// Adds an asset under a name. Meshes, textures, environments and light profiles whose `file`
+    /// has that name use the asset instead of a file. A program that reads the scene's JSON again
+    /// must add the same assets.
     #[must_use]
     pub fn asset(mut self, name: impl Into<String>, asset: Asset) -> Self {
-        self.library.insert_asset(name.into(), asset);
+        self.asset_cache.insert_asset(name.into(), asset);
         self
     }
 
-    /// Adds a group of objects under a name, to be placed by [`Object::group`].
+    /// Adds a group of objects under a name, for placement by [`Object::group`].
     #[must_use]
     pub fn group(mut self, name: impl Into<String>, objects: impl IntoIterator<Item = Object>) -> Self {
         self.description.groups.insert(name.into(), objects.into_iter().map(Item::from).collect());
@@ -81,39 +81,40 @@ impl Scene {
     /// [`Sky`](juggler_light::background::Sky).
     #[must_use]
     pub fn background(mut self, background: impl Into<AnyBackground>) -> Self {
-        self.description.background = Some(Backdrop::from(background.into()).into());
+        self.description.background = Some(BackgroundInput::from(background.into()).into());
         self
     }
 
-    /// Sets how light is followed.
+    /// Sets the integrator.
     #[must_use]
     pub fn integrator(mut self, integrator: impl Into<AnyIntegrator>) -> Self {
         self.description.render.integrator = Some(integrator.into());
         self
     }
 
-    /// Sets how the samples of a pixel are spread.
+    /// Sets the sampler of pixel samples.
     #[must_use]
     pub fn sampler(mut self, sampler: impl Into<AnySampler>) -> Self {
         self.description.render.sampler = sampler.into();
         self
     }
 
-    /// Sets the filter that turns samples into pixels.
+    /// Sets the reconstruction filter of the film.
     #[must_use]
     pub fn filter(mut self, filter: impl Into<AnyFilter>) -> Self {
         self.description.render.filter = filter.into();
         self
     }
 
-    /// Sets the seed of all random choices: another seed gives another noise.
+    /// Sets the seed of the random numbers. Another seed gives other noise.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.description.render.seed = seed;
         self
     }
 
-    /// Sets the curve, the exposure and all else that turns linear light into the levels of a file.
+    /// Sets the tone mapping from linear light to the levels of an image file: curve, exposure and
+    /// so on.
     #[must_use]
     pub fn tone(mut self, tone: Tone) -> Self {
         *self.description.tone = tone;

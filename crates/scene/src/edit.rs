@@ -1,9 +1,9 @@
 //! Edits by JSON pointer, validated like documents.
 
-use crate::description::{Description, Named, Written, described};
-use crate::document::{Member, Members, Node, Value as Json, put};
+use crate::description::{Description, Named, SourceSection, deserialize_scene};
+use crate::document::{Member, Members, Node, Value as Json, set_at_pointer};
 use crate::motion::{self, ItemSource};
-use crate::path::{Path, Step, Trail};
+use crate::path::{Path, PathRef, Step};
 use crate::report::Finding;
 use crate::validate::{self, NameScope};
 use crate::{Scene, SceneError, animate};
@@ -18,8 +18,9 @@ const MAPS: [&str; 3] = ["cameras", "textures", "materials"];
 const SINGLE: [&str; 4] = ["render", "tone", "camera", "background"];
 
 impl Scene {
-    /// Returns the scene with `value` stored at a JSON pointer such as `/materials/red/phong/diffuse`. `null` removes
-    /// the value. The value may be an expression or a value form. Missing objects on the way are created.
+    /// Returns the scene with `value` stored at a JSON pointer such as
+    /// `/materials/red/phong/diffuse`. `null` removes the value. The value may be an expression or
+    /// a value form. Missing objects on the way are created.
     pub fn with_value(&self, pointer: &str, value: Value) -> Result<Self, SceneError> {
         let mut scene = self.clone();
         scene.description = self.edits_merged().into_owned();
@@ -36,31 +37,31 @@ impl Scene {
             Some(Step::Key(section)) => section.clone(),
             _ => String::new(),
         };
-        let mut tree = skeleton(&self.description, &section, &path);
-        put(&mut tree, pointer, value).map_err(|finding| vec![finding])?;
+        let mut tree = edited_json(&self.description, &section, &path);
+        set_at_pointer(&mut tree, pointer, value).map_err(|finding| vec![finding])?;
         let written = tree.get(&section);
         match section.as_str() {
             "variables" | "paths" => {
                 let target =
                     if section == "paths" { &mut self.description.paths } else { &mut self.description.variables };
-                *target = Written::new(written);
+                *target = SourceSection::new(written);
                 return self.resolve_again();
             }
-            _ if is_of_items(&section) => {}
+            _ if has_items(&section) => {}
             _ => return self.set_plain(&section, &tree),
         }
         let removes = self.description.remove(&path, &section, written);
         let Some(written) = written else { return self.check_names(removes) };
-        let wanted = wanted_in(written, &path, &section);
+        let items = edited_sources(written, &path, &section);
         let (head, sources) = (motion::head(&self.description), self.sources().clone());
-        let (stored, findings) = motion::replace_items(&mut self.description, &head, &sources, self.frame, &wanted);
+        let (stored, findings) = motion::replace_items(&mut self.description, &head, &sources, self.frame, &items);
         if stored { self.check_names(removes) } else { Err(findings) }
     }
 
     /// Sets a section that is neither an item nor a list of items.
     fn set_plain(&mut self, section: &str, tree: &Node) -> Result<(), Vec<Finding>> {
         let mut findings = Vec::new();
-        let found = described(tree, &mut findings);
+        let found = deserialize_scene(tree, &mut findings);
         let Some((found, _)) = found.filter(|_| !findings.iter().any(Finding::is_error)) else { return Err(findings) };
         let own = &mut self.description;
         match section {
@@ -77,9 +78,9 @@ impl Scene {
     /// Evaluates all templates again, after a change of variables, paths or animation settings.
     fn resolve_again(&mut self) -> Result<(), Vec<Finding>> {
         self.check_paths()?;
-        let wanted = self.description.templates(|_| true);
+        let items = self.description.templates(|_| true);
         let head = motion::head(&self.description);
-        let (parts, findings) = motion::read_items(&self.description, &head, self.sources(), self.frame, &wanted);
+        let (parts, findings) = motion::read_items(&self.description, &head, self.sources(), self.frame, &items);
         parts.ok_or(findings)?.into_iter().for_each(|(path, part)| self.description.put(&path, part));
         self.description.update_time_dependence(&head);
         Ok(())
@@ -89,7 +90,7 @@ impl Scene {
         let head = motion::head(&self.description);
         let (resolved, mut findings) =
             animate::resolve_with(&head, self.sources(), &self.description.programs, self.frame);
-        let at = Trail::Root.key("paths");
+        let at = PathRef::Root.key("paths");
         let paths = resolved.get("paths");
         findings.extend(paths.into_iter().flat_map(|paths| {
             validate::item(paths, &Path::from(&at), &at, NameScope::Scene(&self.description)).findings
@@ -104,12 +105,12 @@ impl Scene {
     }
 }
 
-fn is_of_items(section: &str) -> bool {
+fn has_items(section: &str) -> bool {
     LISTS.contains(&section) || MAPS.contains(&section) || SINGLE.contains(&section) || section == "groups"
 }
 
 /// JSON of the part of a scene that an edit at `path` can reach; other list elements are null.
-fn skeleton(scene: &Description, section: &str, path: &Path) -> Node {
+fn edited_json(scene: &Description, section: &str, path: &Path) -> Node {
     let steps = path.steps().get(1..).unwrap_or_default();
     let at = |steps: &[Step]| match steps.first() {
         Some(Step::Index(i)) => Some(*i),
@@ -119,7 +120,7 @@ fn skeleton(scene: &Description, section: &str, path: &Path) -> Node {
         Some(Step::Key(name)) => name.as_str(),
         _ => "",
     };
-    let item = |path: &Path| scene.item_of(path).map(|(item, _)| motion::node(item));
+    let item = |path: &Path| scene.innermost_item(path).map(|(item, _)| motion::node(item));
     let form = scene.list_forms.iter().find(|form| path.steps().starts_with(form.path.steps()));
     let content = match section {
         _ if form.is_some_and(|form| form.path.steps().len() == 1) => form.map(|form| form.template.node.clone()),
@@ -171,15 +172,15 @@ fn list(mut nodes: impl Iterator<Item = Node>, count: usize, at: Option<usize>) 
 }
 
 /// Sources of the items that an edit at `path` has changed.
-fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<ItemSource> {
+fn edited_sources(section: &Node, path: &Path, key: &str) -> Vec<ItemSource> {
     let root = Path::root().key(key);
-    let mut wanted = Vec::new();
-    let mut want = |path: Path, node: &Node| wanted.push(ItemSource::unread(path, node.clone()));
+    let mut items = Vec::new();
+    let mut want = |path: Path, node: &Node| items.push(ItemSource::unread(path, node.clone()));
     let is_list = |node: &Node| matches!(node.value, Json::Array(_));
     let mut each = |root: &Path, list: &Node, step: Option<&Step>| match step {
         _ if !is_list(list) => want(root.clone(), list),
         Some(Step::Index(i)) => {
-            // Null are the others, and what the change has taken away.
+            // Skip null: elements beside the edited one, or the element that the edit removes.
             let element = list.elements().get(*i).filter(|node| !matches!(node.value, Json::Null));
             element.into_iter().for_each(|node| want(root.index(*i), node));
         }
@@ -192,12 +193,12 @@ fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<ItemSource> {
         _ if MAPS.contains(&key) => section.members().for_each(|(name, member)| want(root.key(name), &member.node)),
         _ => want(root, section),
     }
-    wanted
+    items
 }
 
 impl Description {
-    /// Removes the values that an edit at `path` removes or replaces; `written` is the edited section. Returns whether
-    /// names were removed.
+    /// Removes the values that an edit at `path` removes or replaces; `written` is the edited
+    /// section. Returns whether names were removed.
     fn remove(&mut self, path: &Path, section: &str, written: Option<&Node>) -> bool {
         let steps = path.steps();
         self.list_forms.retain(|form| !path.steps().starts_with(form.path.steps()));
@@ -211,9 +212,9 @@ impl Description {
             "background" if written.is_none() => self.background = None,
             "render" if written.is_none() => self.render = Default::default(),
             "tone" if written.is_none() => self.tone = Default::default(),
-            "cameras" if whole || is_gone => take(&mut self.cameras, (!whole).then_some(name)),
-            "textures" if whole || is_gone => take(&mut self.textures, (!whole).then_some(name)),
-            "materials" if whole || is_gone => take(&mut self.materials, (!whole).then_some(name)),
+            "cameras" if whole || is_gone => remove_named(&mut self.cameras, (!whole).then_some(name)),
+            "textures" if whole || is_gone => remove_named(&mut self.textures, (!whole).then_some(name)),
+            "materials" if whole || is_gone => remove_named(&mut self.materials, (!whole).then_some(name)),
             "objects" => shorten(&mut self.objects, at(steps.get(1)), whole, count),
             "lights" => shorten(&mut self.lights, at(steps.get(1)), whole, count),
             "groups" if whole => self.groups.clear(),
@@ -231,7 +232,7 @@ impl Description {
 }
 
 /// Removes the item with a name, or all items.
-fn take<T: Clone>(map: &mut Named<T>, name: Option<&str>) {
+fn remove_named<T: Clone>(map: &mut Named<T>, name: Option<&str>) {
     match name {
         None => map.clear(),
         Some(name) => drop(map.shift_remove(name)),

@@ -1,12 +1,12 @@
-//! Why a scene cannot be read, built or compiled.
+//! Errors of reading, building and compiling a scene.
 
-use crate::import::Foreign;
-use crate::named::Unknown;
+use crate::import::UnsupportedFormat;
+use crate::named::UnknownName;
 use crate::report::{Problems, plain_io};
 use std::io;
 use std::path::PathBuf;
 
-/// Why there is no scene.
+/// Error of reading, building, compiling or saving a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file cannot be read.
@@ -14,40 +14,54 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file is not a scene file at all.
+    /// The file is not a text file.
     #[error("`{}`: {message}", path.display())]
     NotText {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Reason in words.
         message: String,
     },
-    /// The file is of a format that is known, but not read yet.
+    /// The file is of a known format that is not supported yet.
     #[error("`{}`: {format}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
-        /// Its format.
-        format: Foreign,
+        /// Format of the file.
+        format: UnsupportedFormat,
     },
-    /// The file is a mesh, but no scene can be made around it.
+    /// The mesh file cannot be loaded, so no scene can be made around it.
     #[error("{0}")]
     Mesh(String),
+    /// The file cannot be written.
+    #[error("cannot write `{}`: {}", path.display(), plain_io(source))]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// An image cannot be written.
+    #[error(transparent)]
+    Image(#[from] juggler_imaging::ImageError),
+    /// The name of an asset cannot be the name of a file in the scene's folder.
+    #[error("the asset `{0}` cannot be saved: its name must be a relative path inside the folder of the scene file")]
+    AssetName(String),
     /// No built-in scene has this name.
     #[error("no built-in scene is called `{name}`{}", help.as_ref().map(|h| format!("; {h}")).unwrap_or_default())]
     UnknownBuiltIn {
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// What was probably meant.
+        /// Suggested name.
         help: Option<String>,
     },
-    /// No file has this name, nor has a built-in scene.
+    /// Neither a file nor a built-in scene has this name.
     #[error(transparent)]
-    Unknown(#[from] Unknown),
-    /// The scene has mistakes.
+    Unknown(#[from] UnknownName),
+    /// The scene has errors.
     #[error("{0}")]
     Problems(Problems),
 }

@@ -1,11 +1,12 @@
-//! What decides a scene's pixels, by name: two scenes with the same fingerprint give the same picture for the same
-//! samples, and of two that differ it says in what.
+//! Fingerprints of scenes. Scenes with the same fingerprint give the same pixels for the same
+//! samples; for other scenes, the named parts tell the difference.
 //!
-//! It covers the resolved description and the contents of the files that it names. It does not cover titles, cameras that are not
-//! looked through and the names of cameras, how long the animation is, the tone curve (pixels are linear), and how many
-//! samples are taken: a picture that is extended to more samples stays the same picture.
+//! A fingerprint covers the evaluated description and the contents of its files. It does not cover
+//! titles, unused cameras, names of cameras, the length of the animation, the tone mapping (pixels
+//! are linear) and the number of samples, since a render continued with more samples is still of
+//! the same scene.
 
-use crate::compile::{Files, light_files, pictures};
+use crate::compile::{Files, image_files, light_files};
 use crate::description::{Description, Object, Render};
 use crate::integrator::IntegratorChoice;
 use crate::item::Item;
@@ -21,21 +22,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
-/// Changes when the same description comes to mean another picture.
-const MEANING: &[u8] = b"juggler scene 2\n";
+/// Version of the renderer's interpretation; changes when equal descriptions give other pixels.
+const INTERPRETATION_VERSION: &[u8] = b"juggler scene 2\n";
 
-/// Named parts of everything that decides the pixels: settings as they are, the rest by its hash.
+/// Named parts of everything that affects the pixels: render settings verbatim, all else as hashes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Fingerprint(BTreeMap<String, String>);
 
 impl Fingerprint {
-    /// Of a description, what moves while the shutter is open, and the files it names.
-    pub(crate) fn of(scene: &Description, tracks: &Tracks, files: &Files<'_>) -> Self {
-        // Titles, the animation's length, the tone curve and cameras that are not used decide no pixel.
+    /// Computes the fingerprint of a description, its motion while the shutter is open, and the
+    /// files it refers to.
+    pub(crate) fn compute(scene: &Description, tracks: &Tracks, files: &Files<'_>) -> Self {
+        // Clear the settings that do not affect pixels.
         let settings = Render {
             samples: 0,
-            integrator: Some(IntegratorChoice::of(scene).integrator),
+            integrator: Some(IntegratorChoice::for_scene(scene).integrator),
             camera: None,
             ..(*scene.render).clone()
         };
@@ -49,7 +51,8 @@ impl Fingerprint {
         let Description { version, background, background_light_group, .. } = scene;
         let Description { textures, materials, groups, lights, objects, .. } = scene;
         parts.insert("version", &digest_of(version));
-        // The tone curve decides no pixel, but files on disk carry the hash of the default one.
+        // The tone mapping does not affect pixels, but existing files contain the hash of the
+        // default.
         parts.insert("tone", &digest_of(&Tone::default()));
         parts.insert_some("camera", camera_of(scene));
         parts.insert_some("background", background.as_ref());
@@ -69,7 +72,8 @@ impl Fingerprint {
         parts
     }
 
-    /// Adds what decides the pixels too. Of a name that is there already, both values count.
+    /// Adds a part that affects the pixels. If the name exists, the value is appended to the
+    /// existing one.
     pub fn insert(&mut self, name: &str, value: &str) {
         let part = self.0.entry(name.to_owned()).or_default();
         if !part.is_empty() {
@@ -78,32 +82,34 @@ impl Fingerprint {
         part.push_str(value);
     }
 
-    /// Adds the hash of a part of the scene, if the part is there.
+    /// Adds the hash of a part of the scene, if the scene has the part.
     fn insert_some(&mut self, name: &str, part: Option<&impl Serialize>) {
         if let Some(part) = part {
             self.insert(name, &digest_of(part));
         }
     }
 
-    /// Adds the hash of a section, which is worked out once for all scenes that share the section, unless it is empty.
+    /// Adds the hash of a section unless it is empty. The hash is computed once for all scenes that
+    /// share the section.
     fn insert_section(&mut self, name: &str, section: &Shared<impl Serialize>, is_empty: bool) {
         if !is_empty {
             self.insert(name, section.digest(|section| digest_of(section)));
         }
     }
 
-    /// What is looked through, where the scene leaves it open, and its `course` while the shutter is open.
-    pub fn set_camera(&mut self, camera: &AnyCamera, course: &[AnyCamera]) {
+    /// Sets the camera, for scenes that leave it open, and its `camera_keys` of motion while the shutter
+    /// is open.
+    pub fn set_camera(&mut self, camera: &AnyCamera, camera_keys: &[AnyCamera]) {
         self.0.insert("camera".into(), digest_of(camera));
         self.0.remove("camera.course");
-        if !course.is_empty() {
-            self.0.insert("camera.course".into(), digest_of(&course));
+        if !camera_keys.is_empty() {
+            self.0.insert("camera.course".into(), digest_of(&camera_keys));
         }
     }
 
-    /// The same with the camera and the settings of another.
+    /// Replaces the camera and the render settings by those of another fingerprint.
     #[must_use]
-    pub fn seen_as(&self, other: &Self) -> Self {
+    pub fn with_view_of(&self, other: &Self) -> Self {
         let of_view = |name: &str| name.starts_with("camera") || name.starts_with("render.");
         let own = self.0.iter().filter(|(name, _)| !of_view(name));
         let others = other.0.iter().filter(|(name, _)| of_view(name));
@@ -115,10 +121,10 @@ impl Fingerprint {
         &self.0
     }
 
-    /// All of it as 64 hexadecimal digits.
+    /// Hash of the fingerprint as 64 hexadecimal digits.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(MEANING);
+        hasher.update(INTERPRETATION_VERSION);
         for (name, value) in &self.0 {
             hasher.update(format!("{name:?} {value:?}\n").as_bytes());
         }
@@ -126,16 +132,17 @@ impl Fingerprint {
     }
 }
 
-/// The camera that is looked through, unless it is one that follows from what can be seen.
+/// The active camera; `None` if the scene defines none and it is derived from the bounds.
 fn camera_of(scene: &Description) -> Option<&AnyCamera> {
     let chosen = scene.render.camera.as_ref().and_then(|name| scene.cameras.get(&name.0));
     chosen.or(scene.camera.as_ref()).or_else(|| scene.cameras.values().next()).map(|camera| &**camera)
 }
 
-/// Hash of a value's JSON, in which 32-bit numbers have the digits of 64-bit ones. The text is never held as a whole.
+/// Hash of a value's JSON, with 32-bit numbers written as 64-bit ones. The JSON is streamed to the
+/// hasher.
 fn digest_of(value: &impl Serialize) -> String {
     let mut writer = BufWriter::new(blake3::Hasher::new());
-    // Descriptions are plain data: they can be written.
+    // Serialization of plain data cannot fail.
     let written = value.serialize(&mut serde_json::Serializer::with_formatter(&mut writer, WideNumbers));
     let hasher = writer.into_inner().unwrap_or_default();
     debug_assert!(written.is_ok());
@@ -155,22 +162,22 @@ fn digest(bytes: &[u8]) -> String {
     hex(blake3::hash(bytes))
 }
 
-/// The first half of a hash.
+/// First half of a hash, as 32 hexadecimal digits.
 fn hex(hash: blake3::Hash) -> String {
     hash.to_hex()[..32].to_owned()
 }
 
-/// The mesh, picture and photometric files that a scene names, with the hashes of their contents.
+/// The mesh, image and photometric files that a scene refers to, with the hashes of their contents.
 pub(crate) fn digests(scene: &Description, files: &Files<'_>) -> Vec<(PathBuf, [u8; 32])> {
-    let meshes = mesh_files(scene, files).into_iter().map(|file| (files.library.digest(&file), file));
-    let pictures = pictures(scene, files).into_iter();
-    let pictures = pictures.map(|(file, space)| (files.library.picture_digest(&file, space), file));
+    let meshes = mesh_files(scene, files).into_iter().map(|file| (files.asset_cache.digest(&file), file));
+    let images = image_files(scene, files).into_iter();
+    let images = images.map(|(file, space)| (files.asset_cache.image_digest(&file, space), file));
     let lights = light_files(scene, files).into_iter();
-    let lights = lights.map(|(file, purpose)| (files.library.light_digest(&file, purpose), file));
-    meshes.chain(pictures).chain(lights).map(|(hash, file)| (file, hash)).collect()
+    let lights = lights.map(|(file, purpose)| (files.asset_cache.light_digest(&file, purpose), file));
+    meshes.chain(images).chain(lights).map(|(hash, file)| (file, hash)).collect()
 }
 
-/// The mesh files that a scene names, each once.
+/// The mesh files that a scene refers to, without duplicates.
 pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     for (name, objects) in &scene.groups {
@@ -201,7 +208,7 @@ mod tests {
     use super::*;
     use crate::{Scene, built_in_scenes};
 
-    /// Checkpoints and partial renders on disk carry these hashes.
+    /// Existing checkpoints and partial renders contain these hashes.
     #[test]
     fn hashes_are_those_of_the_json_as_a_tree() {
         let mut parts = 0;

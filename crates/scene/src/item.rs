@@ -1,8 +1,8 @@
-//! Items of a scene: objects, lights, materials, textures, cameras and settings, each with its animation template,
-//! its source location and its validation state.
+//! Items of a scene: objects, lights, materials, textures, cameras and settings, each with its
+//! animation template, its source location and its validation state.
 
 use crate::animate::Programs;
-use crate::document::{Node, Place};
+use crate::document::{Node, SourceSpan};
 use crate::motion::TransformSetters;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -11,10 +11,11 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// One item of a scene: a value at the scene's frame, shared by the scene's copies until it is changed.
+/// One item of a scene: a value at the scene's frame, shared by the scene's copies until it is
+/// changed.
 ///
-/// An item reads and writes as its value: `scene.description.objects[0].visible`. Two items are equal when their values
-/// are.
+/// An item reads and writes as its value: `scene.description.objects[0].visible`. Two items are
+/// equal when their values are.
 pub struct Item<T>(Arc<Inner<T>>);
 
 #[derive(Clone)]
@@ -23,13 +24,13 @@ struct Inner<T> {
     /// Animation template; `None` for a static item.
     template: Option<Arc<Template>>,
     /// Source location.
-    place: Option<Place>,
-    state: State,
+    place: Option<SourceSpan>,
+    state: ValidationState,
 }
 
 /// Validation state of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum ValidationState {
     /// The value was validated and equals the template's value at the scene's frame.
     Checked,
     /// A program created or changed the value.
@@ -50,14 +51,14 @@ pub(crate) struct Template {
 impl Template {
     /// Creates the template of an item with this JSON.
     pub fn new(node: Node, depends_on_time: bool, programs: &Programs) -> Self {
-        let setters = depends_on_time.then(|| TransformSetters::of(&node, programs)).flatten();
+        let setters = depends_on_time.then(|| TransformSetters::from_object_json(&node, programs)).flatten();
         Self { node, depends_on_time, setters }
     }
 }
 
 impl<T> Item<T> {
     /// Returns the item marked as validated, with its source location and template.
-    pub(crate) fn with_source(mut self, place: Option<Place>, template: Option<Arc<Template>>) -> Self
+    pub(crate) fn with_source(mut self, place: Option<SourceSpan>, template: Option<Arc<Template>>) -> Self
     where
         T: Clone,
     {
@@ -66,12 +67,12 @@ impl<T> Item<T> {
     }
 
     /// Marks the value as validated and sets its source location and template.
-    pub(crate) fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>)
+    pub(crate) fn set_source(&mut self, place: Option<SourceSpan>, template: Option<Arc<Template>>)
     where
         T: Clone,
     {
         let inner = Arc::make_mut(&mut self.0);
-        (inner.place, inner.template, inner.state) = (place, template, State::Checked);
+        (inner.place, inner.template, inner.state) = (place, template, ValidationState::Checked);
     }
 
     /// Sets the animation template.
@@ -93,13 +94,13 @@ impl<T> Item<T> {
     }
 
     /// Source location.
-    pub(crate) fn place(&self) -> Option<Place> {
+    pub(crate) fn place(&self) -> Option<SourceSpan> {
         self.0.place
     }
 
     /// Whether a program has created or changed the value since the scene was read.
     pub(crate) fn is_changed(&self) -> bool {
-        self.0.state == State::Changed
+        self.0.state == ValidationState::Changed
     }
 
     /// Mutable access that keeps the validation state.
@@ -127,7 +128,7 @@ impl<T> Clone for Item<T> {
 
 impl<T> From<T> for Item<T> {
     fn from(value: T) -> Self {
-        Self(Arc::new(Inner { value, template: None, place: None, state: State::Changed }))
+        Self(Arc::new(Inner { value, template: None, place: None, state: ValidationState::Changed }))
     }
 }
 
@@ -148,7 +149,7 @@ impl<T> Deref for Item<T> {
 impl<T: Clone> DerefMut for Item<T> {
     fn deref_mut(&mut self) -> &mut T {
         let inner = Arc::make_mut(&mut self.0);
-        inner.state = State::Changed;
+        inner.state = ValidationState::Changed;
         &mut inner.value
     }
 }

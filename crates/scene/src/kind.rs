@@ -1,8 +1,9 @@
-//! The name of a kind as scene files write it.
+//! Names of kinds as in scene files.
 
 use serde::Serialize;
 
-/// The key of an externally tagged value: `sphere` for `{"sphere": {...}}`; empty for anything else.
+/// Key of an externally tagged value: `sphere` for `{"sphere": {...}}` and for `"sphere"`; empty
+/// for other values.
 pub fn name_of(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(serde_json::Value::Object(members)) => members.keys().next().cloned().unwrap_or_default(),

@@ -1,42 +1,50 @@
-//! From files of scenes to worlds that can be rendered:
+//! Scene files and their compilation to worlds for rendering, in these steps:
 //!
-//! 1. [`document`]: texts into one tree that knows where everything was written, includes merged;
-//! 2. [`animate`] resolves every `"=expression"` for one frame;
-//! 3. [`validate`] holds the tree against the [`schema`], which the types of the [`description`] give;
-//! 4. the tree becomes a description;
-//! 5. [`compile`] places groups, looks up names, prepares shapes and makes a world.
+//! 1. [`document`] parses the texts, merges includes, and keeps the position of every value;
+//! 2. [`animate`] evaluates every `"=expression"` for one frame;
+//! 3. [`validate`] checks the tree against the [`schema`], which is generated from the types of the
+//!    [`description`];
+//! 4. the tree is deserialized to a description;
+//! 5. [`compile`] places groups, resolves names, prepares shapes and builds a world.
 //!
-//! Whatever is wrong becomes a [`report`] with file, line, column, path and what was probably meant.
+//! Errors are collected in a [`report`] with file, line, column, path and suggested fix.
 
 pub mod animate;
-mod around;
+mod animating;
 mod asset;
-mod bookmark;
 mod building;
+mod camera_text;
+mod change;
 pub mod compile;
 pub mod description;
 pub mod document;
 mod edit;
+mod equality;
 mod error;
 mod fingerprint;
 pub mod import;
 mod integrator;
 mod item;
 pub mod kind;
+mod mesh_scene;
 mod motion;
 pub mod named;
 pub mod path;
 mod presets;
 mod relocate;
 pub mod report;
+mod save;
 mod scene;
 pub mod schema;
 mod shared;
 mod store;
+mod update;
 pub mod validate;
 
+pub use animating::ValueSource;
 pub use asset::Asset;
-pub use bookmark::{camera_json, with_camera};
+pub use camera_text::{camera_json, with_camera};
+pub use change::{Change, Changed};
 pub use compile::{Compiled, Illuminance, Names};
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
 pub use error::SceneError;

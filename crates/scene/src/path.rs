@@ -1,39 +1,39 @@
-//! Places inside a scene: `objects[0].shape.sphere.radius`.
+//! Paths to values in a scene: `objects[0].shape.sphere.radius`.
 
 use std::fmt;
 
-/// One step from a value to a value inside it.
+/// A step from a value to one of its children.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Step {
-    /// Into an object, by key.
+    /// Member of an object, by key.
     Key(String),
-    /// Into an array, by position.
+    /// Element of an array, by index.
     Index(usize),
 }
 
-/// The way from the top of a scene to one of its values.
+/// Path from the root of a scene to a value.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Path(Vec<Step>);
 
 impl Path {
-    /// The top of the scene.
+    /// Path of the whole scene.
     pub fn root() -> Self {
         Self::default()
     }
 
-    /// One step further, into an object.
+    /// Appends a key.
     #[must_use]
     pub fn key(&self, key: impl Into<String>) -> Self {
         self.step(Step::Key(key.into()))
     }
 
-    /// One step further, into an array.
+    /// Appends an index.
     #[must_use]
     pub fn index(&self, index: usize) -> Self {
         self.step(Step::Index(index))
     }
 
-    /// Further by a written path such as `vertices[3].x`, which the tracer's own errors name.
+    /// Appends a path in text form such as `vertices[3].x`, as the renderer's own errors have it.
     #[must_use]
     pub fn join(&self, written: &str) -> Self {
         let mut path = self.clone();
@@ -52,8 +52,8 @@ impl Path {
         self.0.iter().map(step).collect()
     }
 
-    /// The path that a JSON pointer writes. Numbers are places in arrays, but for names of cameras, textures, materials and
-    /// groups.
+    /// Parses a JSON pointer. Numeric steps are array indices, except for the second step in
+    /// sections whose keys are names.
     pub fn from_pointer(pointer: &str) -> Self {
         let mut path = Self::root();
         for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
@@ -66,22 +66,22 @@ impl Path {
         path
     }
 
-    /// The way that these steps go.
+    /// Creates a path of these steps.
     pub(crate) fn from_steps<'p>(steps: impl IntoIterator<Item = &'p Step>) -> Self {
         Self(steps.into_iter().cloned().collect())
     }
 
-    /// The steps in order.
+    /// Steps in order.
     pub fn steps(&self) -> &[Step] {
         &self.0
     }
 
-    /// Goes one step down, for a walk that comes back up with [`Path::pop`].
+    /// Appends a step; [`Path::pop`] removes it again.
     pub(crate) fn push(&mut self, step: Step) {
         self.0.push(step);
     }
 
-    /// Back up one step.
+    /// Removes the last step.
     pub(crate) fn pop(&mut self) {
         self.0.pop();
     }
@@ -94,43 +94,43 @@ impl Path {
     }
 }
 
-/// A path on the stack of a recursive walk: each step knows the one before. Costs nothing until something is
-/// wrong and it becomes a [`Path`].
+/// Path on the stack of a recursive walk: each step refers to its parent. Memory is allocated only
+/// when an error turns it into a [`Path`].
 #[derive(Clone, Copy, Debug)]
-pub enum Trail<'t> {
-    /// The top of the scene.
+pub enum PathRef<'t> {
+    /// Root of the scene.
     Root,
-    /// Into an object, by key.
-    Key(&'t Trail<'t>, &'t str),
-    /// Into an array, by position.
-    Index(&'t Trail<'t>, usize),
+    /// Member of an object, by key.
+    Key(&'t PathRef<'t>, &'t str),
+    /// Element of an array, by index.
+    Index(&'t PathRef<'t>, usize),
 }
 
-impl<'t> Trail<'t> {
-    /// One step further, into an object.
+impl<'t> PathRef<'t> {
+    /// Appends a key.
     #[must_use]
     pub fn key(&'t self, key: &'t str) -> Self {
         Self::Key(self, key)
     }
 
-    /// One step further, into an array.
+    /// Appends an index.
     #[must_use]
     pub fn index(&'t self, index: usize) -> Self {
         Self::Index(self, index)
     }
 
-    /// Further by a written path, as [`Path::join`].
+    /// Appends a path in text form, as [`Path::join`] does.
     #[must_use]
     pub fn join(&self, written: &str) -> Path {
         Path::from(self).join(written)
     }
 
-    /// Whether it is the top of the scene.
+    /// Whether the path is the root of the scene.
     pub fn is_root(&self) -> bool {
         matches!(self, Self::Root)
     }
 
-    /// The last key on the way.
+    /// Last key of the path.
     pub fn last_key(&self) -> Option<&'t str> {
         match self {
             Self::Root => None,
@@ -140,19 +140,19 @@ impl<'t> Trail<'t> {
     }
 }
 
-impl From<&Trail<'_>> for Path {
-    fn from(trail: &Trail<'_>) -> Self {
-        fn steps(trail: &Trail<'_>, after: usize) -> Vec<Step> {
-            let (parent, step) = match trail {
-                Trail::Root => return Vec::with_capacity(after),
-                Trail::Key(parent, key) => (parent, Step::Key((*key).to_owned())),
-                Trail::Index(parent, index) => (parent, Step::Index(*index)),
+impl From<&PathRef<'_>> for Path {
+    fn from(path: &PathRef<'_>) -> Self {
+        fn steps(path: &PathRef<'_>, after: usize) -> Vec<Step> {
+            let (parent, step) = match path {
+                PathRef::Root => return Vec::with_capacity(after),
+                PathRef::Key(parent, key) => (parent, Step::Key((*key).to_owned())),
+                PathRef::Index(parent, index) => (parent, Step::Index(*index)),
             };
             let mut steps = steps(parent, after + 1);
             steps.push(step);
             steps
         }
-        Self(steps(trail, 0))
+        Self(steps(path, 0))
     }
 }
 
@@ -175,7 +175,7 @@ impl fmt::Display for Path {
     }
 }
 
-/// Whether a key can stand in a written path without quotes.
+/// Whether a key needs no quotes in a written path.
 fn is_plain(key: &str) -> bool {
     !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
@@ -199,9 +199,9 @@ mod tests {
         let path = Path::root().key("objects").index(3).key("shape").key("my sphere").join("vertices[7].x");
         assert_eq!(path.to_string(), "objects[3].shape[\"my sphere\"].vertices[7].x");
         assert_eq!(Path::root().to_string(), "");
-        let objects = Trail::Root.key("objects");
-        let trail = objects.index(3);
-        assert_eq!(Path::from(&trail.key("shape")).to_string(), "objects[3].shape");
-        assert_eq!(trail.index(4).last_key(), Some("objects"));
+        let objects = PathRef::Root.key("objects");
+        let path = objects.index(3);
+        assert_eq!(Path::from(&path.key("shape")).to_string(), "objects[3].shape");
+        assert_eq!(path.index(4).last_key(), Some("objects"));
     }
 }

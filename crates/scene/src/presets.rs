@@ -1,26 +1,26 @@
-//! Scenes that are part of the program.
+//! Built-in scenes, which are part of the program.
 
 use crate::document::{FileId, parse};
-use crate::suggest::meant_or_all;
+use crate::suggest::did_you_mean_or_list;
 use crate::{Scene, SceneError};
 
-/// A scene that is part of the program.
+/// A built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuiltIn {
-    /// What it is called on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// The scene file.
+    /// Text of the scene file.
     pub json: &'static str,
 }
 
-/// The files in `scenes/` by name, in the order in which they are listed.
+/// Includes files of `scenes/` by name, in the order of their listing.
 macro_rules! built_in {
     ($($name:literal),+ $(,)?) => {
         &[$(BuiltIn { name: $name, json: include_str!(concat!("../../../scenes/", $name, ".json")) }),+]
     };
 }
 
-/// Every built-in scene: one line for each file.
+/// All built-in scenes, a line for each file.
 const BUILT_IN: &[BuiltIn] = built_in! {
     "blossom",
     "chess",
@@ -68,13 +68,13 @@ const BUILT_IN: &[BuiltIn] = built_in! {
     "two-spheres-refraction",
 };
 
-/// The scenes that are part of the program.
+/// Returns all built-in scenes.
 pub fn built_in_scenes() -> &'static [BuiltIn] {
     BUILT_IN
 }
 
 impl BuiltIn {
-    /// What is to be seen, in a sentence: the scene file's own `description`.
+    /// One sentence about the picture: the scene file's `description`.
     pub fn description(&self) -> String {
         let tree = parse(self.json, FileId::MAIN).ok();
         let text = tree.as_ref().and_then(|(tree, _)| tree.get("description")?.as_str());
@@ -83,10 +83,10 @@ impl BuiltIn {
 }
 
 impl Scene {
-    /// One of [`built_in_scenes`].
+    /// Loads one of the [`built_in_scenes`].
     pub fn built_in(name: &str) -> Result<Self, SceneError> {
         let Some(scene) = BUILT_IN.iter().find(|scene| scene.name == name) else {
-            let help = meant_or_all(name, BUILT_IN.iter().map(|scene| scene.name));
+            let help = did_you_mean_or_list(name, BUILT_IN.iter().map(|scene| scene.name));
             return Err(SceneError::UnknownBuiltIn { name: name.to_owned(), help });
         };
         Self::from_json(scene.json, &format!("{name}.json"))

@@ -1,13 +1,13 @@
-//! Names of files in a scene that is written to another folder.
+//! Relocation of file names in a scene that is written to another folder.
 
 use crate::compile::Files;
 use crate::path::{Path as ScenePath, Step};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
 
-/// Rewrites the names of mesh, image, environment and photometric files in a scene so that they lead
-/// to the same files from `folder`. Absolute names stay, and so do all names when the scene lies in
-/// that folder already.
+/// Rewrites the relative names of mesh, image, environment and photometric files in a scene so that
+/// they lead to the same files from `folder`. Nothing changes if the scene already lies in that
+/// folder.
 pub fn relocate(scene: &mut Value, files: &Files<'_>, folder: &Path) {
     walk(scene, &mut ScenePath::root(), files, folder);
 }
@@ -37,17 +37,17 @@ fn walk(value: &mut Value, at: &mut ScenePath, files: &Files<'_>, folder: &Path)
 
 fn rename(name: &mut String, at: &ScenePath, files: &Files<'_>, folder: &Path) {
     let is_variable = matches!(at.steps(), [Step::Key(first), ..] if first == "variables");
-    // Variables may be called `file` too; they are numbers and vectors.
-    let is_asset = files.library.store().assets.path_of(name).is_some();
+    // Variables may be called `file` too, but they are numbers and vectors.
+    let is_asset = files.asset_cache.store().assets.path_of(name).is_some();
     if is_variable || is_asset || Path::new(name.as_str()).is_absolute() {
         return;
     }
-    let (Some(from), Some(to)) = (true_folder(&files.locate(at, "")), true_folder(folder)) else { return };
+    let (Some(from), Some(to)) = (canonical_folder(&files.locate(at, "")), canonical_folder(folder)) else { return };
     if from == to {
         return;
     }
     let moved = relative(&to, &from.join(name.as_str()));
-    // Scene files name other files with slashes on every system.
+    // Scene files use slashes on every system.
     let parts: Option<Vec<&str>> = moved.components().map(|part| part.as_os_str().to_str()).collect();
     match parts {
         Some(parts) if moved.is_relative() => *name = parts.join("/"),
@@ -59,15 +59,15 @@ fn rename(name: &mut String, at: &ScenePath, files: &Files<'_>, folder: &Path) {
     }
 }
 
-fn true_folder(folder: &Path) -> Option<PathBuf> {
+fn canonical_folder(folder: &Path) -> Option<PathBuf> {
     let named = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     std::fs::canonicalize(named).ok()
 }
 
-/// The way from a folder to a file; the file's whole name where they lie on different drives. Both are
-/// absolute.
+/// Relative path from a folder to a file; the absolute path if they have no common root. Both must
+/// be absolute.
 fn relative(folder: &Path, file: &Path) -> PathBuf {
-    // The file's own folder may hold steps upwards: these are resolved first.
+    // Resolve `..` in the file's folder first.
     let parent = file.parent().and_then(|parent| std::fs::canonicalize(parent).ok());
     let file = match (parent, file.file_name()) {
         (Some(parent), Some(name)) => parent.join(name),

@@ -7,8 +7,8 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
-/// Copy-on-write value, shared between copies of a scene. Mutable access through [`DerefMut`] copies the value if
-/// another scene shares it.
+/// Copy-on-write value, shared between copies of a scene. Mutable access through [`DerefMut`]
+/// copies the value if another scene shares it.
 pub struct Shared<T>(Arc<Cached<T>>);
 
 struct Cached<T> {

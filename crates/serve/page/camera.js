@@ -1,4 +1,4 @@
-// From what is pressed and dragged to what the session is asked for; the same numbers as in the native window.
+// Conversion of key presses and drags to edits, with the same constants as in the native window.
 
 const SIZES_PER_SECOND = 0.25, DEGREES_PER_SECOND = 60, ZOOM_PER_SECOND = 1, FAST = 4;
 const ORBIT_DEGREES = 0.35, PARALLEL_DEGREES = 0.15, WHEEL_POINTS = 400;
@@ -6,10 +6,11 @@ const LONGEST_STEP = 0.1;
 const DEFAULT_FIELD = 40, DEFAULT_HEIGHT = 4;
 const RADIANS = Math.PI / 180;
 
-/// Whether a drag turns the camera (`fly`) or the scene (`orbit`), and how fast keys are.
+/// Effect of a drag, on the camera (`fly`) or the scene (`orbit`), and speed of the keys.
 export const steering = { mode: "fly", speed: 1 };
 
-/// How far a pixel in the middle of the picture reaches: as an angle, and at the point of interest.
+/// Returns the extent of a pixel at the image center: in degrees, and in scene units at the point
+/// of interest.
 export function lens(status) {
   const [kind, camera] = Object.entries(status.camera ?? {})[0] ?? ["perspective", {}];
   const [width, height] = status.size;
@@ -24,7 +25,7 @@ export function lens(status) {
   return { degrees: Math.atan((2 * half) / height) / RADIANS, units };
 }
 
-/// Half the height of a film one unit in front of the eye.
+/// Returns half the film height at distance 1.
 function halfHeight(camera, shape) {
   if (camera.horizontal_fov_degrees) return Math.tan((camera.horizontal_fov_degrees * RADIANS) / 2) * shape;
   if (camera.screen) return ((camera.screen.width / 2) * shape) / camera.screen.distance;
@@ -32,7 +33,7 @@ function halfHeight(camera, shape) {
   return Math.tan(((camera.vertical_fov_degrees ?? DEFAULT_FIELD) * RADIANS) / 2);
 }
 
-/// Keys that are held for some seconds: all edits that they are.
+/// Returns the edits of keys that were held for some seconds.
 export function held(motions, fast, seconds, extent) {
   const time = Math.min(seconds, LONGEST_STEP) * (fast ? FAST : 1);
   const step = extent * SIZES_PER_SECOND * steering.speed * time;
@@ -46,26 +47,27 @@ export function held(motions, fast, seconds, extent) {
   return zoom === 0 ? flown : [...flown, { zoom: Math.exp(zoom) }];
 }
 
-/// A drag over so many points of the screen: what was under the pointer stays there, or the scene turns.
+/// Returns the edit of a drag over some points: in fly mode, the content under the pointer follows
+/// it.
 export function drag(x, y, scale, status) {
   if (steering.mode === "orbit") return { orbit: { yaw_degrees: x * ORBIT_DEGREES, pitch_degrees: y * ORBIT_DEGREES } };
   const degrees = lens(status).degrees * scale || PARALLEL_DEGREES;
   return { fly: { yaw_degrees: -x * degrees, pitch_degrees: y * degrees } };
 }
 
-/// The camera moves aside; the point of interest stays under the pointer.
-export function slide(x, y, scale, status) {
+/// Returns the edit of a sideways drag: the point of interest follows the pointer.
+export function pan(x, y, scale, status) {
   const units = lens(status).units * scale;
   return { fly: { right: -x * units, up: y * units } };
 }
 
-/// By the wheel or two fingers, by this factor.
+/// Returns the edit of a zoom with the wheel or two fingers, by a factor.
 export function closer(factor) {
   const bounded = Math.min(Math.max(factor, 0.1), 10);
   return steering.mode === "orbit" ? { orbit: { closer: bounded } } : { zoom: bounded };
 }
 
-/// The factor of a turn of the wheel, towards the hand being positive.
+/// Returns the zoom factor of a wheel event; below 1 for scrolling down.
 export function wheelFactor(event) {
   const points = event.deltaY * [1, 20, 400][event.deltaMode];
   return Math.exp(-points / (event.ctrlKey ? WHEEL_POINTS / 4 : WHEEL_POINTS));

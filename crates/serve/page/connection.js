@@ -1,11 +1,13 @@
-// The WebSocket to the server: messages as objects, frames as bitmaps, and a new try whenever it is lost.
+// WebSocket to the server: sends objects, decodes frames to bitmaps, and reconnects when it is
+// lost.
 
 const HEADER_BYTES = 36;
 const KINDS = ["image/jpeg", "image/jpeg", "image/png"];
 const FIRST_PAUSE = 500, LONGEST_PAUSE = 15000, GROWTH = 1.7;
 const SIGN_OF_LIFE = 20000;
 
-/// `on` has `open()`, `lost(milliseconds until the next try, why)`, `message(object)`, `frame(bitmap, facts)`.
+/// `on` has `open()`, `lost(milliseconds until the next attempt, reason)`, `message(object)` and
+/// `frame(bitmap, facts)`.
 export class Connection {
   constructor(on) {
     this.on = on;
@@ -25,7 +27,7 @@ export class Connection {
     if (this.isOpen) this.socket.send(JSON.stringify(message));
   }
 
-  /// Tries now instead of later.
+  /// Reconnects now.
   retry() {
     if (!this.timer) return;
     clearTimeout(this.timer);
@@ -55,7 +57,7 @@ export class Connection {
     this.pause = Math.min(this.pause * GROWTH, LONGEST_PAUSE);
     this.timer = setTimeout(() => this.open(), pause);
     this.on.lost(pause, "");
-    // A server that is there and says no is worth telling.
+    // Report the reason of a server that refuses the connection.
     const answer = await fetch("/catalogue.json").catch(() => null);
     if (answer && !answer.ok && this.timer) this.on.lost(pause, (await answer.text()).trim());
   }
@@ -78,7 +80,7 @@ export class Connection {
     this.shown();
   }
 
-  /// A hidden page asks for no more frames.
+  /// Acknowledges the displayed frame. A hidden page does not, and so receives no more frames.
   shown() {
     if (this.unseen === null || document.hidden) return;
     this.send({ ack: this.unseen });

@@ -1,8 +1,8 @@
-// Every key and gesture in one table: the page acts by it, the help shows it. The same as in the native window, but for
-// Tab, which here goes from one control to the next.
+// Table of all keys and gestures, used by the input and by the help. Commands that the native
+// window has too have the same keys, except that H replaces Tab, which moves the focus here.
 
-const hold = (keys, axis, sign, says) => ({ keys, motion: [axis, sign], says });
-const press = (keys, command, says) => ({ keys, command, says });
+const hold = (keys, axis, sign, help) => ({ keys, motion: [axis, sign], help });
+const press = (keys, command, help) => ({ keys, command, help });
 
 export const GROUPS = [
   {
@@ -33,14 +33,14 @@ export const GROUPS = [
       press(["+", "="], "faster", "faster"),
       press(["-"], "slower", "slower"),
       press(["m"], "mode", "fly or orbit"),
-      press(["f"], "frameAll", "everything into view"),
+      press(["f"], "frameAll", "bring everything into view"),
       press(["v"], "nextCamera", "next camera of the scene"),
-      press(["b"], "bookmark", "keep this camera"),
+      press(["b"], "bookmark", "bookmark this camera"),
     ],
   },
   {
     name: "Picture",
-    gestures: [["R drag", "refine only this part"]],
+    gestures: [["R drag", "refine only this region"]],
     keys: [
       press(["t"], "whole", "refine the whole picture"),
       press(["p"], "probe", "probe the pixel: follow, pin, off"),
@@ -54,7 +54,7 @@ export const GROUPS = [
   {
     name: "Time",
     gestures: [],
-    keys: [press([" "], "play", "play, stop"), press([","], "frameBefore", "frame before, after"), press(["."], "frameAfter", "frame before, after")],
+    keys: [press([" "], "play", "play or stop"), press([","], "frameBefore", "previous, next frame"), press(["."], "frameAfter", "previous, next frame")],
   },
   {
     name: "Page",
@@ -64,7 +64,7 @@ export const GROUPS = [
       press(["g"], "scenes", "choose a scene"),
       press(["?", "F1"], "help", "these keys"),
       press(["Home"], "reset", "undo all changes"),
-      press(["Escape"], "close", "close what lies over the picture"),
+      press(["Escape"], "close", "close dialogs and overlays"),
     ],
   },
 ];
@@ -72,7 +72,8 @@ export const GROUPS = [
 const ROWS = new Map(GROUPS.flatMap((group) => group.keys.flatMap((row) => row.keys.map((key) => [key, row]))));
 const NAMES = { ArrowUp: "↑", ArrowDown: "↓", ArrowLeft: "←", ArrowRight: "→", PageUp: "Page ↑", PageDown: "Page ↓", " ": "Space", Escape: "Esc", "Control s": "Ctrl S" };
 
-/// `on` has `commands` by name, `hold(motions, fast, seconds)` for each frame of the screen, and `isBlocked()`.
+/// `on` has `commands` by name, `hold(motions, fast, seconds)` for each animation frame, and
+/// `isBlocked()`.
 export class Keys {
   constructor(on) {
     this.on = on;
@@ -112,7 +113,7 @@ export class Keys {
     this.region = false;
   }
 
-  /// The first step is taken at once, the others with the frames of the screen.
+  /// Performs the first step at once, further ones with each animation frame.
   begin() {
     let last = performance.now();
     const step = (seconds) => this.on.hold([...this.held.values()], this.fast, seconds);
@@ -130,7 +131,7 @@ export class Keys {
   }
 }
 
-/// Whether a key belongs to the control that has the focus.
+/// Returns whether a key belongs to the focused control.
 function isTyping(target, key) {
   if (!(target instanceof HTMLElement)) return false;
   if (target.matches("input[type=range], input[type=radio], summary, pre")) return key.startsWith("Arrow") || key.startsWith("Page") || key === " " || key === "Home";
@@ -138,10 +139,10 @@ function isTyping(target, key) {
   return target.matches("input, select, textarea");
 }
 
-/// The table as the help shows it: rows with the same words are one.
+/// Returns a group for the help; rows with the same text are merged.
 export function helpOf(group) {
   const rows = new Map();
-  for (const { keys, says } of group.keys) rows.set(says, [...(rows.get(says) ?? []), ...keys]);
+  for (const { keys, help } of group.keys) rows.set(help, [...(rows.get(help) ?? []), ...keys]);
   const caps = (keys) => keys.map((key) => NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key));
-  return { gestures: group.gestures, keys: [...rows].map(([says, keys]) => [caps(keys), says]) };
+  return { gestures: group.gestures, keys: [...rows].map(([help, keys]) => [caps(keys), help]) };
 }

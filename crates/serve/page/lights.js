@@ -1,14 +1,15 @@
-// Groups of lights: how strong each is, and in which colour. The picture is mixed anew, not traced.
+// Light mixer: intensity and color of each light group. Changes relight the image without tracing
+// it again.
 
 import { element } from "./notices.js";
 
-/// The strongest that a slider makes a group.
+/// Maximum intensity of the slider.
 const MOST = 4;
 
 const toScreen = (light) => Math.round(255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055));
 const toLight = (level) => (level / 255 <= 0.04045 ? level / 255 / 12.92 : ((level / 255 + 0.055) / 1.055) ** 2.4);
 
-/// A gain as a strength and a colour whose strongest channel is 1.
+/// Splits a gain into intensity and a color whose largest channel is 1.
 function parts(gain) {
   const strength = Math.max(...gain);
   const color = strength > 0 ? gain.map((factor) => factor / strength) : [1, 1, 1];
@@ -17,7 +18,7 @@ function parts(gain) {
 
 function row(name, edit) {
   const strength = element("input", { type: "range", min: 0, max: MOST, step: 0.01, ariaLabel: `Strength of ${name}` });
-  const color = element("input", { type: "color", ariaLabel: `Colour of ${name}` });
+  const color = element("input", { type: "color", ariaLabel: `Color of ${name}` });
   const tell = () => {
     const lights = [1, 3, 5].map((at) => toLight(parseInt(color.value.slice(at, at + 2), 16)));
     const most = Math.max(...lights, 1e-6);
@@ -30,7 +31,7 @@ function row(name, edit) {
   return label;
 }
 
-/// Shows the scene's groups of lights, where it has any.
+/// Shows the scene's light groups, if it has any.
 export function showLights(groups, edit) {
   const rows = document.getElementById("light-rows");
   const key = groups.map(([name]) => name).join("\n");

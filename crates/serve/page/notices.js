@@ -1,4 +1,4 @@
-// What is said over the picture: the connection, who steers, mistakes of the scene, the probe, the help.
+// Messages over the image: connection, steering, errors of the scene, probe, help.
 
 import { GROUPS, helpOf } from "./keys.js";
 
@@ -13,7 +13,7 @@ export function element(name, properties = {}, ...children) {
 
 let toastTimer = null;
 
-/// A sentence that goes away by itself.
+/// Shows a sentence for some seconds.
 export function toast(text) {
   const toast = byId("toast");
   toast.textContent = text;
@@ -24,7 +24,8 @@ export function toast(text) {
 
 let countdown = null;
 
-/// The server is gone; `milliseconds` until the next try, `why` when it said so. `null`: it is there.
+/// Shows that the connection is lost: `milliseconds` until the next attempt, and the server's
+/// reason if known. `null` hides the message.
 export function connectionLost(milliseconds, why = "") {
   clearInterval(countdown);
   const notice = byId("connection");
@@ -35,20 +36,20 @@ export function connectionLost(milliseconds, why = "") {
     const seconds = Math.max(0, Math.ceil((until - performance.now()) / 1000));
     const next = seconds > 0 ? `trying again in ${seconds} s` : "trying again";
     const reason = why.includes("token") ? "the server has a new token: open the address that it printed" : why;
-    notice.textContent = reason ? `Not let in: ${reason} (${next})` : `Connection lost, ${next}`;
+    notice.textContent = reason ? `Refused: ${reason} (${next})` : `Connection lost, ${next}`;
   };
   say();
   countdown = setInterval(say, 500);
 }
 
-/// Who steers, unless it is this page.
+/// Shows which page steers, unless it is this one.
 export function wheel({ steering, free, watching }) {
   byId("watching").hidden = steering;
   const others = watching > 2 ? ` ${watching} pages are open.` : "";
-  byId("watching-text").textContent = free ? "Nobody steers." : `Another page steers, this one watches.${others}`;
+  byId("watching-text").textContent = free ? "No page controls the session." : `Another page controls the session; this one watches.${others}`;
 }
 
-/// Mistakes of the scene, or `null`.
+/// Shows errors of the scene; `null` hides them.
 export function sceneError(text) {
   byId("error").hidden = !text;
   if (text && byId("error-text").textContent !== text) {
@@ -57,7 +58,7 @@ export function sceneError(text) {
   }
 }
 
-/// A ring where somebody clicked.
+/// Shows a ring at a clicked point.
 export function mark(x, y) {
   const mark = byId("mark");
   const again = mark.cloneNode();
@@ -71,14 +72,14 @@ export function mark(x, y) {
 const number = (value) => (Math.abs(value) >= 1e4 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2) : Number(value.toPrecision(4)).toString());
 const triple = (values) => values.map(number).join(", ");
 
-/// What is known about a pixel, or `null` to hide it.
+/// Shows the data of a pixel; `null` hides them.
 export function probe(facts) {
   const box = byId("probe");
   box.hidden = !facts;
   if (!facts) return;
   const rows = [
     ["pixel", facts.pixel.join(", ")],
-    ["colour", facts.color && triple(facts.color)],
+    ["color", facts.color && triple(facts.color)],
     ["samples", facts.samples],
     ["noise", facts.noise != null && `${(facts.noise * 100).toFixed(2)} %`],
     ["depth", facts.depth != null && number(facts.depth)],
@@ -92,7 +93,7 @@ export function probe(facts) {
   for (const [name, value] of rows) {
     if (value === null || value === undefined || value === false || value === "") continue;
     const shown = element("dd", {}, `${value}`);
-    if (name === "colour") {
+    if (name === "color") {
       const swatch = element("span", { className: "swatch" });
       const level = (light) => Math.round(255 * Math.min(1, Math.max(0, light)) ** (1 / 2.2));
       swatch.style.background = `rgb(${facts.color.map(level).join(" ")})`;
@@ -103,15 +104,15 @@ export function probe(facts) {
   box.replaceChildren(list);
 }
 
-/// The help, from the table of keys.
+/// Fills the help dialog from the table of keys.
 export function fillHelp() {
   const sections = GROUPS.map((group) => {
     const { gestures, keys } = helpOf(group);
     const list = element("dl");
-    for (const [gesture, says] of gestures) list.append(element("dt", {}, gesture), element("dd", {}, says));
-    for (const [caps, says] of keys) {
+    for (const [gesture, help] of gestures) list.append(element("dt", {}, gesture), element("dd", {}, help));
+    for (const [caps, help] of keys) {
       const shown = caps.flatMap((cap) => [element("kbd", {}, cap), " "]);
-      list.append(element("dt", {}, ...shown), element("dd", {}, says));
+      list.append(element("dt", {}, ...shown), element("dd", {}, help));
     }
     return element("section", {}, element("h3", {}, group.name), list);
   });

@@ -1,4 +1,5 @@
-// Puts the page together: the server's messages to the picture and the panel, gestures and keys to the server.
+// Main module: passes the server's messages to image and panel, and gestures and keys to the
+// server.
 
 import { held, steering } from "./camera.js";
 import { Connection } from "./connection.js";
@@ -12,29 +13,29 @@ import { fillScenes, openScenes } from "./scenes.js";
 const byId = (id) => document.getElementById(id);
 const canvas = byId("picture");
 const picture = new Picture(canvas, byId("region"));
-const PROBE_MILLISECONDS = 60, UNSEEN_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25, KEPT_MILLISECONDS = 60000;
+const PROBE_MILLISECONDS = 60, PENDING_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25, KEPT_MILLISECONDS = 60000;
 
-let status = null, catalogue = null, wheel = { steering: true, free: false, watching: 1 };
-let asked = null;
+let status = null, catalog = null, wheel = { steering: true, free: false, watching: 1 };
+let pending = null;
 const probing = { mode: "off", at: null, waiting: false, last: 0 };
 let choosingRegion = false;
 
-// The token has become a cookie.
+// Remove the token from the URL; the server has stored it in a cookie.
 if (new URLSearchParams(location.search).has("token")) history.replaceState(null, "", "/");
 
-// Asks the server for a change, if this page steers.
+// Sends an edit to the server if this page steers.
 function edit(change) {
   if (!change) return;
   if (!connection.isOpen) return;
-  if (!wheel.steering && !wheel.free) return notices.toast("Another page steers: take the wheel first");
-  asked ??= { at: performance.now(), revision: status?.revision ?? 0 };
+  if (!wheel.steering && !wheel.free) return notices.toast("Another page controls the session: take control first");
+  pending ??= { at: performance.now(), revision: status?.revision ?? 0 };
   connection.send({ edit: change });
 }
 
 const connection = new Connection({
   open() {
     notices.connectionLost(null);
-    [status, asked, probing.waiting] = [null, null, false];
+    [status, pending, probing.waiting] = [null, null, false];
   },
   lost(pause, why) {
     byId("stage-chip").dataset.stage = "lost";
@@ -47,10 +48,10 @@ const connection = new Connection({
   },
   frame(bitmap, facts) {
     picture.show(bitmap, facts.size);
-    if (asked && facts.revision > asked.revision) {
-      facts.latency = performance.now() - asked.at;
+    if (pending && facts.revision > pending.revision) {
+      facts.latency = performance.now() - pending.at;
       showLatency(facts.latency);
-      asked = null;
+      pending = null;
     }
     canvas.dataset.revision = facts.revision;
     canvas.dataset.number = facts.number;
@@ -60,23 +61,23 @@ const connection = new Connection({
 });
 
 function gotStatus(news) {
-  forgetUnseen(news);
+  stopLatency(news);
   status = news;
-  if (catalogue) showStatus(status, titleOf(status.scene), edit);
+  if (catalog) showStatus(status, titleOf(status.scene), edit);
   notices.sceneError(status.error);
   if (!choosingRegion) picture.frame(status.region);
   if (probing.mode !== "off") askProbe();
 }
 
-// A change that shows nothing new, such as to what is already so, is not waited for.
-function forgetUnseen(news) {
-  const waited = asked;
+// Stops the latency measurement of an edit that produces no new frame.
+function stopLatency(news) {
+  const waited = pending;
   if (!waited || news.stage !== "finished" || news.revision <= waited.revision) return;
-  setTimeout(() => (asked = asked === waited ? null : asked), UNSEEN_MILLISECONDS);
+  setTimeout(() => (pending = pending === waited ? null : pending), PENDING_MILLISECONDS);
 }
 
 function titleOf(name) {
-  const own = catalogue?.file?.name === name ? catalogue.file : catalogue?.scenes.find((scene) => scene.name === name);
+  const own = catalog?.file?.name === name ? catalog.file : catalog?.scenes.find((scene) => scene.name === name);
   return own?.title || name || "juggler";
 }
 
@@ -177,7 +178,7 @@ const commands = {
     else byId("error").classList.add("folded");
   },
 };
-for (let index = 0; index < 8; index += 1) commands[`channel${index}`] = () => catalogue && edit({ show: catalogue.channels[index] });
+for (let index = 0; index < 8; index += 1) commands[`channel${index}`] = () => catalog && edit({ show: catalog.channels[index] });
 
 function stepFrame(step) {
   if (!(status?.frames > 1)) return;
@@ -190,7 +191,7 @@ const keys = new Keys({
   isBlocked: () => document.querySelector("dialog[open]") !== null,
 });
 
-// Downloads the picture as it is now, and names the file.
+// Downloads the current image.
 async function save(address) {
   notices.toast("Saving the picture");
   const answer = await fetch(address).catch(() => null);
@@ -233,13 +234,13 @@ if (matchMedia("(max-width: 720px)").matches) togglePanel(false);
 setMode(steering.mode);
 notices.fillHelp();
 
-async function readCatalogue() {
+async function readCatalog() {
   const answer = await fetch("/catalogue.json");
   if (!answer.ok) return;
-  catalogue = await answer.json();
+  catalog = await answer.json();
   const fit = () => [canvas.width, canvas.height];
-  watchPanel(catalogue, edit, fit);
-  fillScenes(catalogue, (name) => edit({ scene: name }));
+  watchPanel(catalog, edit, fit);
+  fillScenes(catalog, (name) => edit({ scene: name }));
   if (status) showStatus(status, titleOf(status.scene), edit);
 }
-readCatalogue();
+readCatalog();

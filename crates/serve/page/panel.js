@@ -1,4 +1,4 @@
-// The settings: they show the status, and what people do with them becomes edits.
+// Settings panel: shows the status and sends changed settings as edits.
 
 import { element } from "./notices.js";
 import { steering } from "./camera.js";
@@ -13,7 +13,7 @@ const count = (value) => {
   return divisor === 1 ? `${Math.round(value)}` : `${(value / divisor).toPrecision(3)}${unit}`;
 };
 
-/// Sets a control to what is so, unless somebody is at it.
+/// Sets the value of a control, unless it is being edited.
 function show(id, value) {
   const control = byId(id);
   if (document.activeElement === control && control.matches("input[type=number], input[type=range]:active")) return;
@@ -28,22 +28,22 @@ function fill(id, names) {
   control.replaceChildren(...names.map((name) => element("option", { value: name }, `${name}`.replaceAll("_", " ") || "choose")));
 }
 
-/// Tells `edit(edit)` what people do; `fit()` is the size of the canvas in pixels.
-export function watchPanel(catalogue, edit, fit) {
+/// Connects the controls to `edit(edit)`; `fit()` returns the size of the canvas in pixels.
+export function watchPanel(catalog, edit, fit) {
   const setting = (name, read) => (event) => {
     const value = read(event.target.value);
     if (event.target.checkValidity() && !Number.isNaN(value)) edit({ setting: { [name]: value } });
   };
-  fill("channel", catalogue.channels);
+  fill("channel", catalog.channels);
   byId("channel").onchange = ({ target }) => edit({ show: target.value });
-  for (const [id, names, name] of [["tone", catalogue.tones, "tone"], ["integrator", catalogue.integrators, "integrator"], ["sampler", catalogue.samplers, "sampler"], ["scheduler", catalogue.schedulers, "scheduler"]]) {
+  for (const [id, names, name] of [["tone", catalog.tones, "tone"], ["integrator", catalog.integrators, "integrator"], ["sampler", catalog.samplers, "sampler"], ["scheduler", catalog.schedulers, "scheduler"]]) {
     fill(id, names);
     byId(id).onchange = setting(name, String);
   }
   for (const [id, name] of [["samples", "samples"], ["max-depth", "max_depth"], ["threads", "threads"]]) {
     byId(id).onchange = setting(name, Number);
   }
-  byId("samples").max = catalogue.most.samples;
+  byId("samples").max = catalog.most.samples;
   byId("exposure").oninput = setting("exposure", Number);
   byId("exposure").ondblclick = () => edit({ setting: { exposure: 0 } });
   byId("camera").onchange = ({ target }) => edit({ camera: target.value });
@@ -54,7 +54,7 @@ export function watchPanel(catalogue, edit, fit) {
     edit({ bookmark: name });
     byId("bookmark-name").value = "";
   };
-  watchSize(catalogue, edit, fit);
+  watchSize(catalog, edit, fit);
   byId("speed").oninput = ({ target }) => setSpeed(10 ** Number(target.value));
   for (const radio of document.getElementsByName("mode")) radio.onchange = () => (steering.mode = radio.value);
   byId("frame-all").onclick = () => edit({ frame: null });
@@ -64,7 +64,7 @@ export function watchPanel(catalogue, edit, fit) {
   byId("denoise").onclick = ({ currentTarget }) => edit({ setting: { denoise: currentTarget.ariaPressed !== "true" } });
 }
 
-function watchSize(catalogue, edit, fit) {
+function watchSize(catalog, edit, fit) {
   const options = SIZES.map(([width, height]) => [`${width} ${height}`, `${width} × ${height}`]);
   const choices = [["now", "now"], ["fit", "this screen"], ["half", "this screen, half"], ...options, ["own", "other …"]];
   byId("size").replaceChildren(...choices.map(([value, text]) => element("option", { value }, text)));
@@ -78,7 +78,7 @@ function watchSize(catalogue, edit, fit) {
     target.value = "now";
     if (size.length === 2) edit({ setting: { size } });
   };
-  for (const id of ["width", "height"]) byId(id).max = catalogue.most.edge;
+  for (const id of ["width", "height"]) byId(id).max = catalog.most.edge;
   byId("own-size").onsubmit = (event) => {
     event.preventDefault();
     edit({ setting: { size: [Number(byId("width").value), Number(byId("height").value)] } });
@@ -87,20 +87,20 @@ function watchSize(catalogue, edit, fit) {
   };
 }
 
-/// How fast keys are.
+/// Sets the speed of the keys.
 export function setSpeed(speed) {
   steering.speed = Math.min(Math.max(speed, 1e-3), 1e3);
   byId("speed").value = Math.log10(steering.speed);
   byId("speed-text").textContent = `${Number(steering.speed.toPrecision(2))}×`;
 }
 
-/// Fly or orbit.
+/// Sets the effect of a drag: `fly` or `orbit`.
 export function setMode(mode) {
   steering.mode = mode;
   for (const radio of document.getElementsByName("mode")) radio.checked = radio.value === mode;
 }
 
-/// Shows how things stand.
+/// Shows the status.
 export function showStatus(status, title, edit) {
   byId("scene-title").textContent = title;
   document.title = `${title} · juggler`;
@@ -142,15 +142,15 @@ function showFigures(status) {
 function showTime(status) {
   byId("timeline").hidden = !(status.frames > 1);
   if (!(status.frames > 1)) return;
-  byId("time").max = status.frames - 1;
+  byId("time").max = status.frames - 0.01;
   show("time", status.frame);
-  const frame = status.frame % 1 ? status.frame.toFixed(1) : status.frame;
+  const frame = status.frame % 1 ? status.frame.toFixed(2) : status.frame;
   byId("time-text").textContent = `${frame} / ${status.frames - 1}`;
   byId("play").textContent = status.playing ? "❚❚" : "▶";
   byId("play").ariaLabel = status.playing ? "Stop" : "Play";
 }
 
-/// From the last key or drag to the picture that shows it.
+/// Shows the time from the last input to the frame that includes it.
 export function showLatency(milliseconds) {
   byId("figure-latency").textContent = `${Math.round(milliseconds)} ms`;
 }

@@ -1,4 +1,5 @@
-// The picture on the canvas: as large as fits, coarse frames smoothed; and which pixel lies where.
+// Image on the canvas: fitted to its area, with interpolated pixels; and conversions between points
+// and pixels.
 
 export class Picture {
   constructor(canvas, region) {
@@ -39,12 +40,12 @@ export class Picture {
     this.drawRegion();
   }
 
-  /// Pixels of the picture that a point of the screen covers.
+  /// Image pixels per point of the screen.
   get scale() {
     return this.size[0] / this.box.width || 1;
   }
 
-  /// The place on the picture, in its pixels; nothing beside it.
+  /// Returns the film position under a point, in pixels; `null` outside of the image.
   at(x, y) {
     const place = this.near(x, y);
     const inside = place.every((value, axis) => value >= 0 && value < this.size[axis]);
@@ -56,7 +57,7 @@ export class Picture {
     return [(x - left - this.box.left) * this.scale, (y - top - this.box.top) * this.scale];
   }
 
-  /// The part between two places on the screen, as far as it is on the picture.
+  /// Returns the image region between two points of the screen.
   between([x0, y0], [x1, y1]) {
     const clamp = (value, axis) => Math.min(Math.max(value, 0), this.size[axis]);
     const [a, b] = [this.near(Math.min(x0, x1), Math.min(y0, y1)), this.near(Math.max(x0, x1), Math.max(y0, y1))];
@@ -65,7 +66,7 @@ export class Picture {
     return { x, y, width: right - x, height: bottom - y };
   }
 
-  /// A part of the picture, framed; `null` none.
+  /// Outlines a region of the image; `null` removes the outline.
   frame(rect) {
     this.rect = rect;
     this.drawRegion();

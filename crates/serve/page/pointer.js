@@ -1,11 +1,12 @@
-// Mouse, pen and fingers on the picture. One drags or taps, two fingers move and pinch. What comes between two frames of
-// the screen is sent as one change.
+// Mouse, pen and touch input on the image. One pointer drags or taps, two fingers move and pinch.
+// Events within one animation frame are sent as one edit.
 
 import * as camera from "./camera.js";
 
 const TAP_POINTS = 6, TAP_MILLISECONDS = 400, DOUBLE_MILLISECONDS = 350, DOUBLE_POINTS = 24;
 
-/// `on` has `edit(edit)`, `status()`, `tap([x, y])`, `doubleTap([x, y])`, `region(from, to, done)`, `hover([x, y])`.
+/// `on` has `edit(edit)`, `status()`, `tap([x, y])`, `doubleTap([x, y])`, `region(from, to, done)`,
+/// `hover([x, y])` and `choosesRegion()`.
 export function watchPointer(canvas, picture, on) {
   const pointers = new Map();
   let gesture = null, moved = [0, 0], factor = 1, waiting = false, lastTap = null;
@@ -20,7 +21,7 @@ export function watchPointer(canvas, picture, on) {
     if (x === 0 && y === 0) return;
     if (gesture?.pivot) on.edit({ pivot: gesture.pivot });
     if (gesture) gesture.pivot = null;
-    const edit = gesture?.slides ? camera.slide : camera.drag;
+    const edit = gesture?.pans ? camera.pan : camera.drag;
     on.edit(edit(x, y, picture.scale, status));
   };
   const later = () => {
@@ -44,10 +45,10 @@ export function watchPointer(canvas, picture, on) {
     pointers.set(event.pointerId, point);
     const fingers = pointers.size;
     const chooses = fingers === 1 && on.choosesRegion();
-    const slides = fingers > 1 || event.shiftKey || event.button === 1 || event.button === 2;
-    // An orbit turns about what lies under the pointer, where no other point was chosen.
-    const pivot = camera.steering.mode === "orbit" && !slides ? picture.at(...point) : null;
-    gesture = { start: point, at: performance.now(), slides, chooses, pivot, travelled: gesture && fingers > 1 ? Infinity : 0, middle: middle(), spread: spread() };
+    const pans = fingers > 1 || event.shiftKey || event.button === 1 || event.button === 2;
+    // An orbit starts with a pivot at the pointer, which has no effect while a point is chosen.
+    const pivot = camera.steering.mode === "orbit" && !pans ? picture.at(...point) : null;
+    gesture = { start: point, at: performance.now(), pans, chooses, pivot, traveled: gesture && fingers > 1 ? Infinity : 0, middle: middle(), spread: spread() };
     canvas.classList.toggle("dragging", !chooses);
     event.preventDefault();
   });
@@ -58,10 +59,10 @@ export function watchPointer(canvas, picture, on) {
     if (!before || !gesture) return on.hover(point);
     pointers.set(event.pointerId, point);
     const now = middle(), step = now.map((value, axis) => value - gesture.middle[axis]);
-    gesture.travelled += Math.hypot(...step);
+    gesture.traveled += Math.hypot(...step);
     gesture.middle = now;
     if (gesture.chooses) return on.region(gesture.start, point, false);
-    if (gesture.travelled < TAP_POINTS && pointers.size === 1) return;
+    if (gesture.traveled < TAP_POINTS && pointers.size === 1) return;
     moved = moved.map((value, axis) => value + step[axis]);
     if (pointers.size === 2) {
       const wide = spread();
@@ -76,15 +77,15 @@ export function watchPointer(canvas, picture, on) {
     const point = [event.clientX, event.clientY];
     if (waiting) flush();
     if (pointers.size > 0) {
-      gesture = { ...gesture, slides: true, travelled: Infinity, middle: middle(), spread: spread() };
+      gesture = { ...gesture, pans: true, traveled: Infinity, middle: middle(), spread: spread() };
       return;
     }
-    const { chooses, start, travelled, at, slides } = gesture;
+    const { chooses, start, traveled, at, pans } = gesture;
     gesture = null;
     canvas.classList.remove("dragging");
     if (event.type === "pointercancel") return;
     if (chooses) return on.region(start, point, true);
-    const tapped = travelled < TAP_POINTS && !slides && performance.now() - at < TAP_MILLISECONDS;
+    const tapped = traveled < TAP_POINTS && !pans && performance.now() - at < TAP_MILLISECONDS;
     if (tapped) tap(point);
   };
   canvas.addEventListener("pointerup", end);

@@ -1,11 +1,11 @@
-// The choice of scenes. Their pictures are asked for when they come into view.
+// Scene chooser. Its thumbnails are loaded when they come into view.
 
 import { element } from "./notices.js";
 
 const byId = (id) => document.getElementById(id);
 
-/// Fills the dialog; `choose(name)` is called with a scene's name.
-export function fillScenes(catalogue, choose) {
+/// Fills the dialog; it calls `choose(name)` with the chosen scene.
+export function fillScenes(catalog, choose) {
   const card = ({ name, title, description }, picture) => {
     const button = element("button", { className: "card" }, picture, element("strong", {}, title || name), element("span", {}, description ?? ""));
     button.dataset.name = name;
@@ -16,8 +16,8 @@ export function fillScenes(catalogue, choose) {
     };
     return element("li", {}, button);
   };
-  const own = catalogue.file && card({ ...catalogue.file, description: "the scene that the server was started with" }, element("span", { className: "own" }, "{ }"));
-  const built = catalogue.scenes.map((scene) => {
+  const own = catalog.file && card({ ...catalog.file, description: "the scene that the server was started with" }, element("span", { className: "own" }, "{ }"));
+  const built = catalog.scenes.map((scene) => {
     const picture = element("img", { loading: "lazy", alt: "", width: 192, height: 120, src: `/thumbnail/${scene.name}.jpg` });
     return card(scene, picture);
   });
@@ -30,7 +30,7 @@ export function fillScenes(catalogue, choose) {
   };
 }
 
-/// Opens it, with the scene that is shown marked.
+/// Opens the dialog with the current scene marked.
 export function openScenes(current) {
   for (const button of document.querySelectorAll(".card")) {
     button.classList.toggle("current", button.dataset.name === current);
@@ -39,6 +39,6 @@ export function openScenes(current) {
   byId("scenes").showModal();
   const shown = document.querySelector(".card.current");
   shown?.scrollIntoView({ block: "center" });
-  // The search would bring up a phone's keyboard.
+  // Focus a card on touch screens, since the search field would open the keyboard.
   if (matchMedia("(pointer: coarse)").matches) shown?.focus();
 }

@@ -1,12 +1,12 @@
-//! The page, as it lies in the program.
+//! Files of the page, embedded in the program.
 
-/// A file of the page.
+/// File of the page.
 pub struct Asset {
-    /// Its address.
+    /// Path of its URL.
     pub path: &'static str,
-    /// What it is.
+    /// Media type.
     pub media_type: &'static str,
-    /// What is in it.
+    /// Content.
     pub text: &'static str,
 }
 
@@ -16,7 +16,7 @@ macro_rules! asset {
     };
 }
 
-/// All of it.
+/// All files of the page.
 pub const ASSETS: &[Asset] = &[
     asset!("/", "index.html", "text/html; charset=utf-8"),
     asset!("/page.css", "page.css", "text/css; charset=utf-8"),

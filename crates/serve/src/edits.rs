@@ -1,26 +1,27 @@
-//! What a page may ask for. A page sees and changes the picture; it reads no file but the one scene that the server was
-//! started with, and writes none, but for bookmarks of somebody at this very machine.
+//! Edits that a page may send. A page sees and edits the scene; it reads no file but the scene with
+//! which the server was started. It writes none, except for bookmarks of users at this machine.
 
-use juggler::MOST_GAIN;
+use juggler::MAX_GAIN;
 use juggler::scene::built_in_scenes;
 use juggler_session::{Edit, Fly, Orbit, Setting};
 use serde_json::Value;
 
-/// Longest side of a picture.
+/// Maximum edge of an image, in pixels.
 pub const MAX_EDGE: u32 = 8192;
-/// Most pixels of a picture.
+/// Maximum number of pixels of an image.
 pub const MAX_PIXELS: u64 = 1 << 24;
-/// Most samples of a pixel.
+/// Maximum number of samples per pixel.
 pub const MAX_SAMPLES: u32 = 1 << 24;
-/// Most threads.
+/// Maximum number of threads.
 pub const MAX_THREADS: usize = 256;
-/// Longest name of anything.
+/// Maximum length of a name, in characters.
 const MAX_NAME: usize = 100;
-/// Where a scene's values may be changed: none of these names a file or decides how much there is.
-const OPEN_PLACES: [&str; 6] = ["/materials/", "/lights/", "/background", "/camera/", "/cameras/", "/tone/"];
+/// Prefixes of JSON pointers that may be set. None of these values names a file or determines a
+/// size.
+const EDITABLE_PATHS: [&str; 6] = ["/materials/", "/lights/", "/background", "/camera/", "/cameras/", "/tone/"];
 
-/// Whether a page may have this done, or why not. `scene` is the file that the server was started with; `local` pages are
-/// on this machine.
+/// Checks an edit; an error is the reason of the refusal. `scene` is the file with which the server
+/// was started; `local` is true for pages on this machine.
 pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String> {
     match edit {
         Edit::Scene(name) => check_scene(name, scene),
@@ -34,11 +35,13 @@ pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String
         Edit::Focus(pixel) | Edit::Pivot(pixel) | Edit::Frame(Some(pixel)) => finite(&pixel.map(f64::from)),
         Edit::At(frame) => finite(&[*frame]),
         Edit::Camera(name) => short(name),
-        Edit::Bookmark(_) if !local => Err("bookmarks are kept in the scene's file: only from this machine".into()),
+        Edit::Bookmark(_) if !local => {
+            Err("bookmarks change the scene file: only pages on this machine may save them".into())
+        }
         Edit::Bookmark(name) if name.trim().is_empty() => Err("a bookmark needs a name".into()),
         Edit::Bookmark(name) => short(name),
         Edit::Look(camera) => check_value(camera),
-        Edit::Set { path, value } => check_place(path).and_then(|()| check_value(value)),
+        Edit::Set { path, value } => check_path(path).and_then(|()| check_value(value)),
         Edit::Setting(setting) => check_setting(setting),
         Edit::Reload | Edit::Frame(None) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) | Edit::Reset => Ok(()),
     }
@@ -48,12 +51,12 @@ fn check_scene(name: &str, own: Option<&str>) -> Result<(), String> {
     if own == Some(name) {
         return Ok(());
     }
-    // A file that happens to be called like a built-in scene would come before it.
+    // A file with the name of a built-in scene would take precedence over it.
     let built_in = built_in_scenes().iter().any(|scene| scene.name == name);
     if built_in && !std::path::Path::new(name).exists() {
         return Ok(());
     }
-    Err("pages may choose built-in scenes and the one that the server was started with".into())
+    Err("pages may choose built-in scenes and the scene that the server was started with".into())
 }
 
 fn check_setting(setting: &Setting) -> Result<(), String> {
@@ -62,7 +65,7 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
             let edges = 1..=MAX_EDGE;
             let fits = edges.contains(width) && edges.contains(height);
             let pixels = u64::from(*width) * u64::from(*height);
-            let most = format!("a size is 1 to {MAX_EDGE} pixels each way, and not more than {MAX_PIXELS} in all");
+            let most = format!("width and height are 1 to {MAX_EDGE} pixels, at most {MAX_PIXELS} pixels in all");
             if fits && pixels <= MAX_PIXELS { Ok(()) } else { Err(most) }
         }
         Setting::Samples(samples) if !(1..=MAX_SAMPLES).contains(samples) => {
@@ -73,8 +76,9 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
         }
         Setting::Exposure(stops) if !(-64.0..=64.0).contains(stops) => Err("an exposure is -64 to 64 stops".into()),
         Setting::Gain(name, factors) => {
-            let fits = factors.iter().all(|factor| (0.0..=MOST_GAIN).contains(factor));
-            short(name).and_then(|()| if fits { Ok(()) } else { Err(format!("factors on light are 0 to {MOST_GAIN}")) })
+            let fits = factors.iter().all(|factor| (0.0..=MAX_GAIN).contains(factor));
+            short(name)
+                .and_then(|()| if fits { Ok(()) } else { Err(format!("factors of light groups are 0 to {MAX_GAIN}")) })
         }
         Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
             short(name)
@@ -96,22 +100,22 @@ fn short(name: &str) -> Result<(), String> {
     if name.chars().count() <= MAX_NAME { Ok(()) } else { Err(format!("a name has at most {MAX_NAME} characters")) }
 }
 
-fn check_place(path: &str) -> Result<(), String> {
+fn check_path(path: &str) -> Result<(), String> {
     let file = path.split('/').any(|step| step == "file");
-    if !file && OPEN_PLACES.iter().any(|place| path.starts_with(place)) {
+    if !file && EDITABLE_PATHS.iter().any(|prefix| path.starts_with(prefix)) {
         return Ok(());
     }
-    Err(format!("pages may change values below {}", OPEN_PLACES.join(" ")))
+    Err(format!("pages may change values below {}", EDITABLE_PATHS.join(" ")))
 }
 
-/// Values without names of files: numbers, colours, and what is made of them.
+/// Checks that a value names no file: numbers, colors, and arrays and objects of them.
 fn check_value(value: &Value) -> Result<(), String> {
     match value {
         Value::Array(values) => values.iter().try_for_each(check_value),
         Value::Object(members) if members.contains_key("file") => Err("pages may not name files".into()),
         Value::Object(members) => members.values().try_for_each(check_value),
         Value::String(text) if !text.starts_with('#') => {
-            Err("pages may set numbers and colours, no other texts".into())
+            Err("pages may set numbers and colors, no other strings".into())
         }
         _ => Ok(()),
     }

@@ -1,24 +1,28 @@
-//! The browser's door to a [`Session`](juggler_session::Session): a small web server with its page inside. No files to
-//! find, nothing fetched from elsewhere. The protocol is in this crate's `README.md`.
+//! Web server with an embedded page that controls a [`Session`](juggler_session::Session). It needs
+//! no other files and fetches nothing from other servers. This crate's `README.md` describes the
+//! protocol.
 //!
-//! - [`Server::bind`] listens, [`Server::start`] serves on threads of its own until the [`Running`] is dropped;
-//! - who is let in: `access`; how much of anything there may be: [`Limits`]; what a page may ask for: `edits`;
-//! - a page's socket: `socket`, its pictures: `picture`, who steers: `wheel`.
+//! - [`Server::bind`] opens the port, [`Server::start`] serves on its own threads until the
+//!   [`Running`] is dropped.
+//! - `access` has the access rules, [`Limits`] the resource limits, `edits` the edits that a page
+//!   may send.
+//! - `socket` serves a page's WebSocket, `encoded_frame` encodes its frames, `wheel` decides which
+//!   page steers.
 
 mod accept;
 mod access;
 mod assets;
-mod catalogue;
+mod catalog;
 mod edits;
-mod hub;
+mod encoded_frame;
 mod message;
-mod picture;
-mod refusals;
+mod refusal_log;
 mod routes;
 mod server;
 mod socket;
+mod state;
 mod wheel;
 
+pub use encoded_frame::HEADER_BYTES;
 pub use message::is_allowed;
-pub use picture::HEADER_BYTES;
-pub use server::{Limits, Options, Running, ServeError, Server};
+pub use server::{Limits, Running, ServeError, Server, ServerOptions};

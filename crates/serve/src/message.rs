@@ -1,25 +1,25 @@
-//! What pages and server say to each other, as JSON texts. Pictures are in [`crate::picture`].
+//! JSON messages between pages and server. [`crate::encoded_frame`] has the binary frames.
 
-use juggler_session::{Edit, Probe, Status};
+use juggler_session::{Edit, PixelInfo, Status};
 use serde::{Deserialize, Serialize};
 
-/// What a page says: an object with one member.
+/// Message from a page: an object with one member.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum FromPage {
-    /// It wants a change; only the page that steers may.
+pub enum PageMessage {
+    /// Requests an edit; only the page that steers may send it.
     Edit(Box<Edit>),
-    /// It has shown the picture with this serial number, and all before it.
+    /// Acknowledges that the frame with this serial number was displayed, and all before it.
     Ack(u32),
-    /// It asks what is known about a pixel.
+    /// Probes a pixel.
     Probe([u32; 2]),
-    /// It takes the wheel.
+    /// Takes the wheel.
     Steer(True),
-    /// It is still there.
+    /// Keeps the connection alive.
     Here(True),
 }
 
-/// Only `true` will do.
+/// The value `true`; `false` is rejected.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "bool")]
 pub struct True;
@@ -28,42 +28,43 @@ impl TryFrom<bool> for True {
     type Error = &'static str;
 
     fn try_from(value: bool) -> Result<Self, Self::Error> {
-        if value { Ok(Self) } else { Err("only `true` will do") }
+        if value { Ok(Self) } else { Err("must be `true`") }
     }
 }
 
-/// What the server says: an object with one member.
+/// Message from the server: an object with one member.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ToPage<'a> {
-    /// How things stand.
+pub enum ServerMessage<'a> {
+    /// Status of the session.
     Status(&'a Status),
-    /// Who steers.
+    /// Steering.
     Wheel {
-        /// This very page does.
+        /// Whether the receiving page steers.
         steering: bool,
-        /// Nobody does.
+        /// Whether no page steers.
         free: bool,
-        /// Pages that are there.
+        /// Number of connected pages.
         watching: usize,
     },
-    /// What is known about a pixel; nothing before there is a world.
-    Probe(Option<Probe>),
-    /// What the page asked for is not done, and why.
+    /// Result of a probe; `None` before a world is built.
+    Probe(Option<PixelInfo>),
+    /// Reason why a request was refused.
     Refused(&'a str),
 }
 
-impl ToPage<'_> {
-    /// As text. Nothing in it can fail to be JSON; if it did, the page would be told nothing.
+impl ServerMessage<'_> {
+    /// Returns the message as JSON text. Serialization cannot fail; otherwise the text would be
+    /// empty.
     pub fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 }
 
-/// Whether a text is a message that a page on this machine may send, whoever steers.
+/// Returns whether a text is a valid message from a page on this machine that steers.
 pub fn is_allowed(text: &str) -> bool {
     match serde_json::from_str(text) {
-        Ok(FromPage::Edit(edit)) => crate::edits::check(&edit, None, true).is_ok(),
+        Ok(PageMessage::Edit(edit)) => crate::edits::check(&edit, None, true).is_ok(),
         other => other.is_ok(),
     }
 }
@@ -74,16 +75,16 @@ mod tests {
 
     #[test]
     fn each_message_is_an_object_with_one_member() {
-        let read = |text: &str| serde_json::from_str::<FromPage>(text);
-        assert!(matches!(read(r#"{"ack": 7}"#), Ok(FromPage::Ack(7))));
-        assert!(matches!(read(r#"{"steer": true}"#), Ok(FromPage::Steer(_))));
-        assert!(matches!(read(r#"{"edit": {"zoom": 1.5}}"#), Ok(FromPage::Edit(edit)) if *edit == Edit::Zoom(1.5)));
-        assert!(matches!(read(r#"{"edit": "reload"}"#), Ok(FromPage::Edit(edit)) if *edit == Edit::Reload));
+        let read = |text: &str| serde_json::from_str::<PageMessage>(text);
+        assert!(matches!(read(r#"{"ack": 7}"#), Ok(PageMessage::Ack(7))));
+        assert!(matches!(read(r#"{"steer": true}"#), Ok(PageMessage::Steer(_))));
+        assert!(matches!(read(r#"{"edit": {"zoom": 1.5}}"#), Ok(PageMessage::Edit(edit)) if *edit == Edit::Zoom(1.5)));
+        assert!(matches!(read(r#"{"edit": "reload"}"#), Ok(PageMessage::Edit(edit)) if *edit == Edit::Reload));
         for wrong in [r#"{"steer": false}"#, r#"{"ack": 1, "here": true}"#, r#"{"ack": -1}"#, "[]", "{}", "7", ""] {
             assert!(read(wrong).is_err(), "{wrong}");
         }
         let deep = format!("{{\"edit\": {{\"look\": {}{}}}}}", "[".repeat(30_000), "]".repeat(30_000));
         assert!(read(&deep).is_err());
-        assert_eq!(ToPage::Refused("no").text(), r#"{"refused":"no"}"#);
+        assert_eq!(ServerMessage::Refused("no").text(), r#"{"refused":"no"}"#);
     }
 }

@@ -1,10 +1,10 @@
-//! What there is at which address. Nothing changes by a plain request; all changes come through the WebSocket.
+//! Routes of the server. Plain requests change nothing; all changes arrive through the WebSocket.
 
-use crate::accept::Place;
-use crate::access::{Entry, Peer};
+use crate::accept::ConnectionPermit;
+use crate::access::{Authorization, Peer};
 use crate::assets::ASSETS;
-use crate::hub::Hub;
 use crate::socket;
+use crate::state::ServerState;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::{Path, Request, State};
@@ -16,7 +16,7 @@ use axum::{Extension, Router};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Sent with everything: nothing from elsewhere, nothing kept, no page of others around it.
+/// Headers of every response: no foreign resources, no caching, no embedding in other pages.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -30,35 +30,38 @@ const HEADERS: [(HeaderName, &str); 6] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// All addresses, behind the rules of [`crate::access`].
-pub fn router(hub: Arc<Hub>) -> Router {
+/// Returns all routes, protected by the rules of [`crate::access`].
+pub fn router(state: Arc<ServerState>) -> Router {
     let mut router = Router::new()
-        .route("/catalogue.json", get(catalogue))
+        .route("/catalogue.json", get(catalog))
         .route("/thumbnail/{name}", get(thumbnail))
         .route("/save/{name}", get(save))
         .route("/socket", get(open_socket));
     for asset in ASSETS {
         router = router.route(asset.path, get(|| async { ([(header::CONTENT_TYPE, asset.media_type)], asset.text) }));
     }
-    let nothing = (StatusCode::NOT_FOUND, "there is nothing here\n");
-    router.fallback(move || async move { nothing }).layer(from_fn_with_state(Arc::clone(&hub), guard)).with_state(hub)
+    let nothing = (StatusCode::NOT_FOUND, "there is no such page\n");
+    router
+        .fallback(move || async move { nothing })
+        .layer(from_fn_with_state(Arc::clone(&state), guard))
+        .with_state(state)
 }
 
-/// Lets in, or says why not; and the headers that everything has.
+/// Checks access, and adds the common headers to the response.
 async fn guard(
-    State(hub): State<Arc<Hub>>,
+    State(state): State<Arc<ServerState>>,
     Extension(peer): Extension<Peer>,
-    Extension(place): Extension<Place>,
+    Extension(permit): Extension<ConnectionPermit>,
     request: Request,
     next: Next,
 ) -> Response {
-    place.served.store(true, Relaxed);
+    permit.served.store(true, Relaxed);
     let (parts, body) = request.into_parts();
-    let entry = hub.access.check(&parts, peer);
-    let mut response = match &entry {
+    let authorization = state.access.check(&parts, peer);
+    let mut response = match &authorization {
         Ok(_) => next.run(Request::from_parts(parts, body)).await,
         Err(why) => {
-            hub.refusals.say(peer.remote, why);
+            state.refusals.log(peer.remote, why);
             (StatusCode::FORBIDDEN, format!("{why}\n")).into_response()
         }
     };
@@ -66,14 +69,14 @@ async fn guard(
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
-    if entry == Ok(Entry::ByAddress) {
-        hub.access.cookie().map(|cookie| headers.insert(header::SET_COOKIE, cookie));
+    if authorization == Ok(Authorization::ByUrl) {
+        state.access.cookie().map(|cookie| headers.insert(header::SET_COOKIE, cookie));
     }
     response
 }
 
-async fn catalogue(State(hub): State<Arc<Hub>>) -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], hub.catalogue.text().to_owned()).into_response()
+async fn catalog(State(state): State<Arc<ServerState>>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], state.catalog.text().to_owned()).into_response()
 }
 
 async fn thumbnail(Path(name): Path<String>) -> Response {
@@ -83,19 +86,19 @@ async fn thumbnail(Path(name): Path<String>) -> Response {
     }
 }
 
-/// The picture as it is now, as a download: `/save/picture.png`, `/save/picture.exr`.
-async fn save(State(hub): State<Arc<Hub>>, Path(name): Path<String>) -> Response {
+/// Returns the current image as a download: `/save/picture.png`, `/save/picture.exr`.
+async fn save(State(state): State<Arc<ServerState>>, Path(name): Path<String>) -> Response {
     let (format, media_type) = match name.as_str() {
         "picture.png" => ("png", "image/png"),
         "picture.exr" => ("exr", "image/x-exr"),
         _ => return (StatusCode::NOT_FOUND, "pictures are saved as picture.png or picture.exr\n").into_response(),
     };
-    let Ok(_turn) = hub.saving.acquire().await else { return StatusCode::SERVICE_UNAVAILABLE.into_response() };
-    let session = hub.session.clone();
-    let encoded = tokio::task::spawn_blocking(move || session.encoded(format)).await;
+    let Ok(_turn) = state.saving.acquire().await else { return StatusCode::SERVICE_UNAVAILABLE.into_response() };
+    let session = state.session.clone();
+    let encoded = tokio::task::spawn_blocking(move || session.encode(format)).await;
     match encoded {
         Ok(Ok(bytes)) => {
-            let disposition = format!("attachment; filename=\"{}.{format}\"", file_stem(&hub.session.status().scene));
+            let disposition = format!("attachment; filename=\"{}.{format}\"", file_stem(&state.session.status().scene));
             ([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, disposition)], bytes)
                 .into_response()
         }
@@ -104,7 +107,7 @@ async fn save(State(hub): State<Arc<Hub>>, Path(name): Path<String>) -> Response
     }
 }
 
-/// A name that is harmless in a header and on any disk.
+/// Returns a file name that is safe in a header and on any file system.
 fn file_stem(scene: &str) -> String {
     let stem = std::path::Path::new(scene).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '_' };
@@ -113,25 +116,25 @@ fn file_stem(scene: &str) -> String {
 }
 
 async fn open_socket(
-    State(hub): State<Arc<Hub>>,
+    State(state): State<Arc<ServerState>>,
     Extension(peer): Extension<Peer>,
-    Extension(place): Extension<Place>,
+    Extension(permit): Extension<ConnectionPermit>,
     headers: HeaderMap,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
     let upgrade = match upgrade {
         Ok(upgrade) if headers.contains_key(header::ORIGIN) => upgrade,
-        Ok(_) => return (StatusCode::FORBIDDEN, "no Origin\n").into_response(),
+        Ok(_) => return (StatusCode::FORBIDDEN, "the request has no Origin header\n").into_response(),
         Err(rejection) => return rejection.into_response(),
     };
-    let Ok(seat) = Arc::clone(&hub.sockets).try_acquire_owned() else {
-        hub.refusals.say(peer.remote, "too many pages");
+    let Ok(socket_permit) = Arc::clone(&state.sockets).try_acquire_owned() else {
+        state.refusals.log(peer.remote, "too many pages");
         return (StatusCode::SERVICE_UNAVAILABLE, "too many pages are open\n").into_response();
     };
-    let most = hub.limits.message_bytes;
+    let most = state.limits.message_bytes;
     upgrade.max_message_size(most).max_frame_size(most).on_upgrade(move |socket| async move {
-        let _held = (seat, place);
-        socket::run(socket, hub, peer).await;
+        let _held = (socket_permit, permit);
+        socket::run(socket, state, peer).await;
     })
 }
 

@@ -1,10 +1,10 @@
-//! The handles that programs hold.
+//! Server handles for programs.
 
 use crate::accept;
 use crate::access::{Access, Token};
-use crate::hub::Hub;
-use crate::refusals::Refusals;
+use crate::refusal_log::RefusalLog;
 use crate::routes;
+use crate::state::ServerState;
 use juggler_session::Session;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
@@ -12,48 +12,52 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 
-/// Threads that serve; they only hand on what others made.
+/// Number of server threads, which only forward data.
 const THREADS: usize = 2;
-/// Threads that encode pictures and render thumbnails.
+/// Maximum number of threads that encode images.
 const ENCODERS: usize = 4;
 
-/// What a server is opened with.
+/// Options with which a server is opened.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    /// Where it listens; port 0 takes a free one.
+pub struct ServerOptions {
+    /// Address to listen at; port 0 selects a free one.
     pub address: SocketAddr,
-    /// Whether the address may be one that other machines reach.
+    /// Whether the address may be reachable from other machines.
     pub allow_remote: bool,
-    /// Whether every request needs the token that [`Server::url`] contains. `true` by default. `false` opens a loopback
-    /// server to every user and program of this machine; a server that other machines reach has a token in any case.
+    /// Whether every request needs the token that [`Server::url`] contains; `true` by default.
+    /// `false` opens a loopback server to every user and program of this machine. A server that
+    /// other machines can reach always has a token.
     pub token: bool,
-    /// The scene file that pages may go back to, besides built-in scenes, as the session was opened with it.
+    /// Scene file that pages may open besides built-in scenes, named as when the session was
+    /// opened.
     pub scene: Option<String>,
-    /// How much of anything there may be.
+    /// Resource limits.
     pub limits: Limits,
 }
 
-impl Default for Options {
+impl Default for ServerOptions {
     fn default() -> Self {
         let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 8080));
         Self { address, allow_remote: false, token: true, scene: None, limits: Limits::default() }
     }
 }
 
-/// How much of anything there may be.
+/// Resource limits of a server.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Connections of any kind; those beyond are answered 503 and closed.
+    /// Maximum number of connections, 64 by default; further ones are answered with status 503 and
+    /// closed.
     pub connections: usize,
-    /// WebSockets among them.
+    /// Maximum number of WebSockets among them, 16 by default.
     pub sockets: usize,
-    /// Bytes of a message of a page.
+    /// Maximum size of a page's message, in bytes; 64 KiB by default.
     pub message_bytes: usize,
-    /// How long the head of a request may take.
+    /// Maximum time to receive the head of a request, 10 seconds by default.
     pub head: Duration,
-    /// How long a plain connection may last.
+    /// Maximum duration of a connection that is no WebSocket, 10 minutes by default.
     pub connection: Duration,
-    /// How long a page may be silent; it is asked for a sign of life three times as often.
+    /// Time without messages after which a page is disconnected, 90 seconds by default. The server
+    /// sends a ping after each third of it.
     pub silence: Duration,
 }
 
@@ -70,69 +74,70 @@ impl Default for Limits {
     }
 }
 
-/// Why there is no server.
+/// Error of starting a server.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// Nobody asked for a server that others reach.
+    /// The address is reachable from other machines, which the options do not allow.
     #[error(
         "{0} can be reached from other machines: an ssh tunnel to 127.0.0.1 is safer; `--allow-remote` serves there"
     )]
     Remote(SocketAddr),
-    /// The port is taken.
+    /// The port is in use.
     #[error("{0} is in use by another program: `--addr 127.0.0.1:0` takes a free port")]
     Busy(SocketAddr),
-    /// The address cannot be listened at.
+    /// The server cannot listen at the address.
     #[error("cannot listen at {address}: {source}")]
     Listen {
-        /// Which.
+        /// Requested address.
         address: SocketAddr,
-        /// Why.
+        /// Cause.
         source: io::Error,
     },
-    /// The system gives no threads or no random numbers.
+    /// The system provides no threads or random numbers.
     #[error("cannot serve: {0}")]
     System(io::Error),
 }
 
-/// A server that listens, but does not answer yet.
+/// Server that listens but does not answer yet.
 pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     token: Option<Token>,
     session: Session,
-    options: Options,
-    refusals: Refusals,
+    options: ServerOptions,
+    refusals: RefusalLog,
 }
 
 impl Server {
-    /// Listens. `log` gets one line for each thing that is refused, not too many of them, from any thread.
+    /// Opens the port. `log` receives one line per refusal, with a rate limit, from any thread.
+    /// Fails if the port is not available, or the address is remote and not allowed.
     pub fn bind(
         session: Session,
-        options: Options,
+        options: ServerOptions,
         log: impl Fn(&str) + Send + Sync + 'static,
     ) -> Result<Self, ServeError> {
-        let asked = options.address;
-        let remote = !asked.ip().is_loopback();
+        let requested = options.address;
+        let remote = !requested.ip().is_loopback();
         if remote && !options.allow_remote {
-            return Err(ServeError::Remote(asked));
+            return Err(ServeError::Remote(requested));
         }
-        let listener = TcpListener::bind(asked).map_err(|source| match source.kind() {
-            io::ErrorKind::AddrInUse => ServeError::Busy(asked),
-            _ => ServeError::Listen { address: asked, source },
+        let listener = TcpListener::bind(requested).map_err(|source| match source.kind() {
+            io::ErrorKind::AddrInUse => ServeError::Busy(requested),
+            _ => ServeError::Listen { address: requested, source },
         })?;
         listener.set_nonblocking(true).map_err(ServeError::System)?;
         let address = listener.local_addr().map_err(ServeError::System)?;
         let token = (remote || options.token).then(Token::random).transpose().map_err(ServeError::System)?;
-        Ok(Self { listener, address, token, session, options, refusals: Refusals::new(log) })
+        Ok(Self { listener, address, token, session, options, refusals: RefusalLog::new(log) })
     }
 
-    /// Where it listens; the port is the one it got.
+    /// Returns the address with the actual port.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// What to open in a browser; with the token, where requests need one. An address that means all of this machine's is
-    /// shown as it is: the reader knows by which name the machine is reached.
+    /// Returns the URL to open in a browser, with the token if requests need one. An unspecified
+    /// address is shown as it is, since the reader knows the machine's name.
     pub fn url(&self) -> String {
         match &self.token {
             Some(token) => format!("http://{}/?token={}", self.address, token.text()),
@@ -140,7 +145,7 @@ impl Server {
         }
     }
 
-    /// Serves from now on.
+    /// Starts to serve.
     pub fn start(self) -> Result<Running, ServeError> {
         let runtime = Builder::new_multi_thread()
             .worker_threads(THREADS)
@@ -154,14 +159,14 @@ impl Server {
         drop(guard);
         let access = Access::new(self.address.port(), self.token);
         let limits = self.options.limits;
-        let hub = Arc::new(Hub::new(self.session, self.options, access, self.refusals));
-        let router = routes::router(Arc::clone(&hub));
-        runtime.spawn(accept::run(listener, router, hub, limits));
+        let state = Arc::new(ServerState::new(self.session, self.options, access, self.refusals));
+        let router = routes::router(Arc::clone(&state));
+        runtime.spawn(accept::run(listener, router, state, limits));
         Ok(Running { runtime: Some(runtime) })
     }
 }
 
-/// A server at work; it ends when this is dropped. The session goes on.
+/// Running server. Dropping it ends the server but not the session.
 pub struct Running {
     runtime: Option<Runtime>,
 }

@@ -1,27 +1,28 @@
-//! Which page steers. Any number of pages may watch; one steers.
+//! Steering: any number of pages may watch, one of them steers.
 
-/// A page, by a number that none had before it.
+/// Unique number of a page.
 pub type PageId = u64;
 
-/// The wheel, and who watches.
+/// Steering state: the connected pages, and the one that steers.
 #[derive(Debug, Default)]
 pub struct Wheel {
-    /// Counts up with every change.
+    /// Sequence number, which increases with every change.
     pub number: u64,
     steering: Option<PageId>,
     pages: Vec<PageId>,
 }
 
 impl Wheel {
-    /// A page comes; it steers when nobody else does.
-    pub fn come(&mut self, page: PageId) {
+    /// Adds a page; it steers if no other does.
+    pub fn add(&mut self, page: PageId) {
         self.number += 1;
         self.pages.push(page);
         self.steering.get_or_insert(page);
     }
 
-    /// A page goes. If it steered, the only page that is left steers; of several none does before one asks.
-    pub fn go(&mut self, page: PageId) {
+    /// Removes a page. If it steered, a single remaining page steers; several wait until one takes
+    /// the wheel.
+    pub fn remove(&mut self, page: PageId) {
         self.number += 1;
         self.pages.retain(|other| *other != page);
         self.steering = self.steering.filter(|steering| *steering != page);
@@ -30,23 +31,24 @@ impl Wheel {
         }
     }
 
-    /// A page takes it, from whomever has it: the people who watch can talk to each other.
+    /// Gives the wheel to a page, even if another one steers: people who watch can talk to each
+    /// other.
     pub fn take(&mut self, page: PageId) {
         self.number += 1;
         self.steering = Some(page);
     }
 
-    /// Whether this page steers.
+    /// Returns whether this page steers.
     pub fn is_steered_by(&self, page: PageId) -> bool {
         self.steering == Some(page)
     }
 
-    /// Whether nobody steers.
+    /// Returns whether no page steers.
     pub fn is_free(&self) -> bool {
         self.steering.is_none()
     }
 
-    /// How many pages are there.
+    /// Returns the number of connected pages.
     pub fn watching(&self) -> usize {
         self.pages.len()
     }
@@ -59,22 +61,22 @@ mod tests {
     #[test]
     fn one_steers_and_it_can_change_hands() {
         let mut wheel = Wheel::default();
-        wheel.come(1);
-        wheel.come(2);
+        wheel.add(1);
+        wheel.add(2);
         assert!(wheel.is_steered_by(1) && !wheel.is_steered_by(2));
-        wheel.go(2);
+        wheel.remove(2);
         assert!(wheel.is_steered_by(1) && wheel.watching() == 1);
-        wheel.come(3);
+        wheel.add(3);
         wheel.take(3);
         assert!(wheel.is_steered_by(3) && !wheel.is_steered_by(1));
-        wheel.come(4);
-        wheel.go(3);
+        wheel.add(4);
+        wheel.remove(3);
         assert!(wheel.is_free() && wheel.watching() == 2, "two are left: neither is preferred");
-        wheel.go(4);
+        wheel.remove(4);
         assert!(wheel.is_steered_by(1) && wheel.watching() == 1, "one is left");
-        wheel.go(1);
+        wheel.remove(1);
         assert!(wheel.is_free() && wheel.watching() == 0);
-        wheel.come(5);
+        wheel.add(5);
         assert!(wheel.is_steered_by(5));
     }
 }

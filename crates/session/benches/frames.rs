@@ -1,29 +1,29 @@
-//! How fast a session follows: frames a second while the camera moves, and the time from an edit to the first frame.
+//! Frame rate of a session while the camera moves, and latency from an edit to the first frame.
 //!
-//! `cargo bench -p juggler-session --bench frames [-- THREADS] [SCENE]` prints two tables, or of one scene its frames
-//! a second.
+//! `cargo bench -p juggler-session --bench frames [-- THREADS] [SCENE]` prints one table for each;
+//! with SCENE it prints only the frame rate of that scene.
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
 use juggler::scene::built_in_scenes;
-use juggler_session::{Edit, Fly, Options, Session, Setting, Stage};
+use juggler_session::{Edit, Fly, Session, SessionOptions, Setting, Stage};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Frames that are measured, and edits.
+/// Number of measured frames, then of measured edits.
 const FRAMES: usize = 120;
 const EDITS: usize = 9;
-/// The mesh's vertices to a side: a million triangles.
+/// Vertices along each side of the mesh, which has a million triangles.
 const SIDE: u32 = 708;
 
 fn main() -> std::io::Result<()> {
     let threads = std::env::args().skip(1).find_map(|word| word.parse().ok()).unwrap_or(2);
     let one = std::env::args().skip(1).find(|word| built_in_scenes().iter().any(|scene| scene.name == *word));
-    let options = |budget| Options { size: Some([640, 480]), threads, budget, ..Options::default() };
-    println!("640 x 480, {threads} threads, one ray through each pixel's centre\n");
+    let options = |budget| SessionOptions { size: Some([640, 480]), threads, budget, ..SessionOptions::default() };
+    println!("640 x 480, {threads} threads, one ray through each pixel's center\n");
     println!("{:<34} {:>9} {:>9}", "full resolution while it moves", "frames/s", "slowest");
-    let wanted = |name: &&str| one.as_ref().map_or(name.starts_with("scalablitz-"), |one| one == name);
-    for name in built_in_scenes().iter().map(|scene| scene.name).filter(wanted) {
-        // A budget that nothing exceeds: never coarse.
+    let is_selected = |name: &&str| one.as_ref().map_or(name.starts_with("scalablitz-"), |one| one == name);
+    for name in built_in_scenes().iter().map(|scene| scene.name).filter(is_selected) {
+        // The budget is never exceeded, so every frame has full resolution.
         let session = Session::open(name, options(Duration::from_secs(100)));
         settle(&session);
         session.edit(Edit::Setting(Setting::MaxDepth(2)));
@@ -38,15 +38,15 @@ fn main() -> std::io::Result<()> {
     }
     println!("\n{:<34} {:>9} {:>9}", "from an edit to its frame", "median", "slowest");
     for scene in built_in_scenes() {
-        follow(scene.name, &Session::open(scene.name, options(Options::default().budget)));
+        follow(scene.name, &Session::open(scene.name, options(SessionOptions::default().budget)));
     }
     let folder = tempfile::tempdir()?;
     let hills = hills(folder.path())?;
-    follow("a million triangles", &Session::open(&hills.to_string_lossy(), options(Options::default().budget)));
+    follow("a million triangles", &Session::open(&hills.to_string_lossy(), options(SessionOptions::default().budget)));
     Ok(())
 }
 
-/// Waits until a scene is there, and a little more: its picture is being refined.
+/// Waits until the scene is loaded and its image is being refined.
 fn settle(session: &Session) {
     while session.frame().is_none() || session.status().stage == Stage::Loading {
         session.wait(0, u64::MAX, Duration::from_secs(1));
@@ -54,20 +54,20 @@ fn settle(session: &Session) {
     std::thread::sleep(Duration::from_millis(300));
 }
 
-/// Moves the camera and waits for the frame that shows it.
+/// Moves the camera and returns the time until a frame shows the move.
 fn step(session: &Session, i: usize) -> Duration {
     let yaw_degrees = if i.is_multiple_of(40) { -10.0 } else { 0.25 };
     let begin = Instant::now();
     let revision = session.edit(Edit::Fly(Fly { yaw_degrees, ..Fly::default() }));
-    let mut seen = 0;
+    let mut last_frame = 0;
     loop {
         if let Some(frame) = session.frame() {
             if frame.revision >= revision {
                 return begin.elapsed();
             }
-            seen = frame.number;
+            last_frame = frame.number;
         }
-        session.wait(seen, u64::MAX, Duration::from_secs(1));
+        session.wait(last_frame, u64::MAX, Duration::from_secs(1));
     }
 }
 
@@ -76,7 +76,7 @@ fn follow(name: &str, session: &Session) {
     let mut times: Vec<Duration> = (1..=EDITS)
         .map(|i| {
             let time = step(session, i);
-            // Long enough for the picture to be refined again.
+            // Let refinement start again.
             std::thread::sleep(Duration::from_millis(100));
             time
         })
@@ -86,7 +86,7 @@ fn follow(name: &str, session: &Session) {
     println!("{name:<34} {median:>6.1} ms {slowest:>6.1} ms");
 }
 
-/// A scene of hills of a million triangles, and its mesh, in a folder.
+/// Writes a scene with a height field of a million triangles into `folder`.
 fn hills(folder: &Path) -> std::io::Result<PathBuf> {
     let height = |x: f32, y: f32| ((x * 9.0).sin() + (y * 7.0).cos() + (x * 31.0 + y * 17.0).sin() * 0.3) * 0.1;
     let at = |i: u32| i as f32 / (SIDE - 1) as f32 * 4.0 - 2.0;

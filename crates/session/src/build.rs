@@ -1,4 +1,4 @@
-//! Worlds to be built: all that takes long, and what is wrong with a scene.
+//! Builds of worlds: reading, compiling and building hierarchies, with the errors of a scene.
 
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
@@ -9,75 +9,76 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most pixels of a picture that is looked at: their samples are all held in memory.
-pub const MOST_PIXELS: u64 = 1 << 25;
+/// Maximum number of pixels of an interactive image, whose film is held in memory.
+pub const MAX_PIXELS: u64 = 1 << 25;
 
-/// Most pixels of a picture that is shown denoised: the filter needs up to 320 bytes for each.
-pub const MOST_DENOISED: u64 = 1 << 21;
+/// Maximum number of pixels of the denoised preview: the denoiser needs up to 320 bytes per pixel.
+pub const MAX_DENOISED_PIXELS: u64 = 1 << 21;
 
-/// A world to be built.
-pub struct Build {
+/// Request to build a world, run by [`BuildRequest::run`].
+pub struct BuildRequest {
     pub(crate) task: Task,
     pub(crate) name: String,
     pub(crate) values: Vec<(String, Value)>,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
     pub(crate) size: Option<[u32; 2]>,
-    /// The camera where people moved it.
+    /// Camera that an edit has moved; `None` for the scene's own.
     pub(crate) camera: Option<AnyCamera>,
-    /// Cameras that were kept in memory.
-    pub(crate) kept: Vec<(String, AnyCamera)>,
-    /// Factors on groups of lights, by name.
+    /// Bookmarked cameras held in memory, by name.
+    pub(crate) bookmarks: Vec<(String, AnyCamera)>,
+    /// RGB gain of each light group, by name.
     pub(crate) gains: Vec<(String, Rgb)>,
-    /// The point of interest that was chosen; it stays with the camera.
+    /// Point of interest that was chosen explicitly; kept only together with `camera`.
     pub(crate) interest: Option<Vec3>,
-    /// The subject as it was, whose world may be that of the new one.
-    pub(crate) before: Option<(Arc<Scene>, Arc<Picture>)>,
+    /// Scene and picture of the previous subject, whose world is reused where it still holds.
+    pub(crate) previous: Option<(Arc<Scene>, Arc<Picture>)>,
 }
 
 #[derive(Clone)]
 pub(crate) enum Task {
-    /// Another scene, by its name.
+    /// Open another scene by its name.
     Open,
-    /// The same file again; the scene holds meshes that need not be read again.
+    /// Read the same file again; the given scene holds meshes that need not be read again.
     Reload(Arc<Scene>),
-    /// A scene that is here.
-    Have(Arc<Scene>),
+    /// Use a scene in memory.
+    InMemory(Arc<Scene>),
 }
 
-/// Why there is no world.
+/// Error that prevented a build.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mistake {
-    /// As `juggler check` says it, without colours.
+pub struct BuildError {
+    /// Message as `juggler check` prints it, without colors.
     pub text: String,
-    /// The files that were read before it was found, as far as they are known.
+    /// Files that were read before the error, as far as they are known.
     pub files: Vec<PathBuf>,
 }
 
-impl Build {
-    /// A scene file, or a built-in scene by name.
+impl BuildRequest {
+    /// Request for a scene file, or for a built-in scene by name.
     pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
         let settings = Settings { size, ..Settings::default() };
-        let (values, kept, gains) = (Vec::new(), Vec::new(), Vec::new());
+        let (values, bookmarks, gains) = (Vec::new(), Vec::new(), Vec::new());
         let (task, name) = (Task::Open, name.to_owned());
-        let (camera, interest, before) = (None, None, None);
-        Self { task, name, values, frame: 0.0, settings, size, camera, kept, gains, interest, before }
+        let (camera, interest, previous) = (None, None, None);
+        Self { task, name, values, frame: 0.0, settings, size, camera, bookmarks, gains, interest, previous }
     }
 
-    /// A scene that a program made.
-    pub fn of(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
-        Self { task: Task::Have(Arc::new(scene)), ..Self::open(name, size) }
+    /// Request for a scene that a program has built.
+    pub fn from_scene(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
+        Self { task: Task::InMemory(Arc::new(scene)), ..Self::open(name, size) }
     }
 
-    /// Reads and builds: takes its time, on the threads of the current rayon pool.
-    pub fn run(self) -> Result<Subject, Mistake> {
+    /// Reads the scene and builds its world on the threads of the current rayon pool. This call may
+    /// take long.
+    pub fn run(self) -> Result<Subject, BuildError> {
         let name = PathBuf::from(&self.name);
         self.build().map_err(|error| {
             let mut files = vec![name];
             if let Error::Scene(SceneError::Problems(problems)) = &error {
                 files.extend(problems.sources().names().map(PathBuf::from));
             }
-            Mistake { text: text_of(&error), files }
+            BuildError { text: error_text(&error), files }
         })
     }
 
@@ -85,18 +86,18 @@ impl Build {
         let file = match self.task.clone() {
             Task::Open => Arc::new(Scene::named(&self.name)?),
             Task::Reload(scene) => self.reload(&scene)?,
-            Task::Have(scene) => scene,
+            Task::InMemory(scene) => scene,
         };
         let scene = self.scene(&file)?;
         self.fit_settings(&scene);
         let mut picture = self.picture(&scene)?;
-        let upward = picture.view().camera.upward();
+        let upward = picture.view().camera.up();
         if let Some(camera) = &self.camera {
             picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
         }
-        let Self { name, values, frame, settings, size, camera, kept, gains, .. } = self;
+        let Self { name, values, frame, settings, size, camera, bookmarks, gains, .. } = self;
         let chosen = self.interest.filter(|_| camera.is_some());
-        let (picture, interest, held) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
+        let (picture, interest, interest_is_chosen) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
         let mut subject = Subject {
             name,
             file,
@@ -106,33 +107,34 @@ impl Build {
             settings,
             size,
             camera,
-            kept,
+            bookmarks,
             gains,
             upward,
             interest,
-            held,
+            interest_is_chosen,
             picture,
         };
-        if !held {
-            subject.begin_interest();
+        if !interest_is_chosen {
+            subject.init_interest();
         }
         Ok(subject)
     }
 
-    /// Keeps size and denoising within what memory bears, and the light of groups apart, so that it can be mixed.
+    /// Limits size and denoising to the memory budget, and stores light groups separately where
+    /// there are several, so that they can be relit.
     fn fit_settings(&mut self, scene: &Scene) {
         let size = self.settings.size_of(scene);
-        if bearable(size) != size {
-            self.settings.size = Some(bearable(size));
+        if limited_size(size) != size {
+            self.settings.size = Some(limited_size(size));
         }
-        if pixels_of(size) > MOST_DENOISED {
+        if pixel_count(size) > MAX_DENOISED_PIXELS {
             self.settings.denoiser = None;
         }
-        let groups = Names::of(&scene.description).light_groups.len();
+        let groups = Names::from_scene(&scene.description).light_groups.len();
         self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
     }
 
-    /// The file's scene with the values that were set, at the frame.
+    /// Returns the file's scene with the edited values, at the current frame.
     fn scene(&self, file: &Arc<Scene>) -> Result<Arc<Scene>, SceneError> {
         let mut scene = Arc::clone(file);
         for (path, value) in &self.values {
@@ -145,13 +147,14 @@ impl Build {
     }
 
     fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
-        match &self.before {
+        match &self.previous {
             Some((before, picture)) => picture.after(before, scene, &self.settings),
             _ => Picture::new(scene, &self.settings),
         }
     }
 
-    /// The file again. What people changed stays, unless the file has changed there too.
+    /// Reads the file again. Edited values and the camera are kept unless the file has changed
+    /// there too.
     fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
         let is_file = Path::new(&self.name).is_file();
         let new = Arc::new(if is_file { old.reload(&self.name)? } else { Scene::named(&self.name)? });
@@ -167,7 +170,7 @@ impl Build {
     }
 }
 
-/// The camera that is looked through first, when the scene says.
+/// Returns the initial camera: the one that settings or scene name, otherwise the first.
 fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCamera> {
     let description = &scene.description;
     let named = settings.camera.as_ref().or(description.render.camera.as_ref().map(|name| &name.0));
@@ -176,24 +179,24 @@ fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCam
     named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next())).map(|camera| &**camera)
 }
 
-/// Width times height.
-pub fn pixels_of([width, height]: [u32; 2]) -> u64 {
+/// Returns width times height.
+pub fn pixel_count([width, height]: [u32; 2]) -> u64 {
     u64::from(width) * u64::from(height)
 }
 
-/// A size whose film can be held in memory, of the same shape.
-fn bearable([width, height]: [u32; 2]) -> [u32; 2] {
-    let pixels = pixels_of([width, height]);
-    let scale = (MOST_PIXELS as f64 / pixels.max(1) as f64).sqrt();
-    if pixels <= MOST_PIXELS {
+/// Returns the largest size of the same aspect ratio that has at most [`MAX_PIXELS`] pixels.
+fn limited_size([width, height]: [u32; 2]) -> [u32; 2] {
+    let pixels = pixel_count([width, height]);
+    let scale = (MAX_PIXELS as f64 / pixels.max(1) as f64).sqrt();
+    if pixels <= MAX_PIXELS {
         [width, height]
     } else {
         [width, height].map(|edge| ((f64::from(edge) * scale) as u32).max(1))
     }
 }
 
-/// As `juggler check` says it.
-pub fn text_of(error: &Error) -> String {
+/// Formats an error as `juggler check` prints it, without colors.
+pub fn error_text(error: &Error) -> String {
     match error {
         Error::Scene(SceneError::Problems(problems)) => problems.render(false),
         error => format!("error: {error}"),

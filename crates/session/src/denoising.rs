@@ -1,64 +1,66 @@
-//! The denoised preview: what the worker shows instead of the film when nothing moves and people asked for it.
+//! Denoised preview, which the worker displays instead of the film while the camera is at rest.
 
 use crate::subject::Subject;
 use crate::worker::Worker;
 use juggler::camera::film::Film;
-use juggler::denoise::Guides;
+use juggler::denoise::DenoiserInput;
 use juggler::math::Rgb;
 use juggler::render::Control;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long samples pile up before the first of them are denoised.
-const FIRST: Duration = Duration::from_millis(700);
-/// The share of the time that denoising may take while the film goes on is one over this and one more.
+/// Time for which samples accumulate before the first denoising.
+const FIRST_DELAY: Duration = Duration::from_millis(700);
+/// Pause between two runs as a multiple of the last run's duration: denoising takes at most 1 /
+/// (`SPACING` + 1) of the time.
 const SPACING: u32 = 4;
-/// Samples of a pixel that the filter needs: it compares halves.
-const LEAST: u32 = 2;
+/// Minimum number of samples per pixel: the denoiser compares two halves.
+const MIN_SAMPLES: u32 = 2;
 
-/// A film's picture without noise.
+/// Last denoised image of the film.
 #[derive(Default)]
 pub struct Denoising {
-    /// Linear light, row by row from the top; none before the first, or when it failed.
+    /// Linear radiance, row by row from the top; `None` before the first run, or after a failed
+    /// one.
     pixels: Option<Arc<[Rgb]>>,
-    /// Samples of the film that it was made of.
+    /// Number of samples of the film that `pixels` was computed from.
     samples: u64,
-    /// When the last one was ready, and how long it took.
+    /// Time at which the last run ended, and its duration.
     last: Option<(Instant, Duration)>,
 }
 
 impl Worker {
-    /// The picture without noise, where it is asked for and there is one. Where groups of lights are mixed there is none: the
-    /// halves that the filter compares hold all lights together.
+    /// Returns the denoised image if there is one and denoising is on. Relighting disables it: the
+    /// halves that the denoiser compares hold all light groups together.
     pub fn denoised_pixels(&self, subject: &Subject) -> Option<Arc<[Rgb]>> {
         self.denoising.pixels.clone().filter(|_| subject.is_denoised())
     }
 
-    /// Whether the film is to be denoised now: it has enough samples, others than last time, and some time has gone by, or it is
-    /// finished.
-    pub fn denoises(&self, subject: &Subject, film: &Film, finished: bool) -> bool {
+    /// Returns whether the film should be denoised now: it has enough samples, more than last time,
+    /// and either it is finished or the pause is over.
+    pub fn should_denoise(&self, subject: &Subject, film: &Film, finished: bool) -> bool {
         let due = finished
             || match self.denoising.last {
-                Some((ready, took)) => ready.elapsed() >= (took * SPACING).max(FIRST),
-                None => self.drawn.elapsed() >= FIRST,
+                Some((ready, took)) => ready.elapsed() >= (took * SPACING).max(FIRST_DELAY),
+                None => self.drawn.elapsed() >= FIRST_DELAY,
             };
         due && self.status.channel.is_light()
             && subject.is_denoised()
             && film.samples() != self.denoising.samples
-            && film.counts().iter().all(|count| *count >= LEAST)
+            && film.counts().iter().all(|count| *count >= MIN_SAMPLES)
     }
 
-    /// Denoises the film and shows that, unless something else is to be done.
+    /// Denoises the film and displays the result; new work for the worker cancels it.
     pub fn denoise(&mut self, subject: &Subject, film: &Film) {
         let (began, control, samples) = (Instant::now(), Control::default(), film.samples());
         let picture = subject.picture();
-        let denoised = self.run_unless_called(Duration::ZERO, &control, || {
-            let mut guides = Guides::new(picture.region());
-            film.tiles().for_each(|(_, tile)| guides.add(picture.layers(), &tile));
-            // The filter of our own fails at nothing.
-            guides.denoise(picture.layers().denoiser()?, None, &control).ok()?
+        let denoised = self.run_cancellable(Duration::ZERO, &control, || {
+            let mut input = DenoiserInput::new(picture.region());
+            film.tiles().for_each(|(_, tile)| input.add(picture.layers(), &tile));
+            // The own denoiser cannot fail; it returns `None` only when cancelled.
+            input.denoise(picture.layers().denoiser()?, None, &control).ok()?
         });
-        if denoised.is_none() && self.shared.desk().calls() {
+        if denoised.is_none() && self.shared.mailbox().has_work() {
             return;
         }
         self.denoising = Denoising {

@@ -1,66 +1,72 @@
-//! What people change. In JSON each is an object with one member: `{"fly": {"forward": 0.5, "yaw_degrees": 3}}`.
+//! Edits of an interactive session. In JSON, an edit is an object with one member: `{"fly":
+//! {"forward": 0.5, "yaw_degrees": 3}}`.
 
 use juggler::camera::film::Rect;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A wish. Wishes that come faster than pictures are all kept; the next picture shows their sum.
+/// Change requested by a client. Edits that arrive faster than frames are rendered are all applied;
+/// the next frame shows their combined effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Edit {
-    /// Another scene: a file, or the name of a built-in one. Its first camera is taken.
+    /// Opens another scene, a file or a built-in scene by name, and uses its initial camera.
     Scene(String),
-    /// The files again. A scene with mistakes leaves the last good picture, with [`Status::error`](crate::Status).
+    /// Reads the scene's files again. If they have errors, the last valid image stays and
+    /// [`Status::error`](crate::Status) reports them.
     Reload,
-    /// Steps along, and turns about, the camera's own axes.
+    /// Rotates the camera about its own axes, then translates it along them.
     Fly(Fly),
-    /// Round the point of interest, which stays where it is in the picture.
+    /// Rotates the camera about the point of interest, which keeps its position in the image.
     Orbit(Orbit),
-    /// Narrows the field of view by this factor (of the tangent of its half), 0.1 to 10; below 1 widens it.
+    /// Divides the tangent of half the field of view by this factor, clamped to 0.1 to 10. Values
+    /// above 1 narrow the view, values below 1 widen it.
     Zoom(f32),
-    /// What is seen at this pixel becomes the point of interest, round which one orbits; a lens is focused on it.
+    /// Makes the visible point at this pixel the point of interest, and focuses a thin lens on it.
     Focus([f32; 2]),
-    /// What is seen at this pixel becomes the point that orbits turn about, unless the camera has a `look_at` in view or a
-    /// point was chosen. Windows ask for it where a drag begins.
+    /// Makes the visible point at this pixel the center of orbits, unless the camera has a
+    /// `look_at` in view or a point was chosen. Windows send it when a drag begins.
     Pivot([f32; 2]),
-    /// Moves the camera, its direction kept, so that what is seen at this pixel fills the picture; everything, when there is
-    /// none, or nothing is seen there.
+    /// Moves the camera along its view direction until the object at this pixel fills the image.
+    /// `null`, or a pixel without an object, frames the whole scene.
     Frame(Option<[f32; 2]>),
-    /// One of the scene's cameras, as the scene has it.
+    /// Switches to one of the scene's cameras or bookmarks, by name.
     Camera(String),
-    /// Any camera, as scene files describe it: `{"perspective": {"eye": ...}}`.
+    /// Switches to a camera in the scene format: `{"perspective": {"eye": ...}}`.
     Look(Value),
-    /// Keeps the camera under a name: in the scene's file, whose other text stays as it is, or for a built-in scene in
-    /// memory, where [`Session::bookmarks`](crate::Session::bookmarks) finds it.
+    /// Bookmarks the camera under a name: in the scene's file, whose other text is preserved, or in
+    /// memory for a built-in scene; see [`Session::bookmarks`](crate::Session::bookmarks).
     Bookmark(String),
-    /// A value of the scene, by its place (a JSON pointer): `/materials/red/phong/diffuse`. `null` takes it away.
+    /// Sets a value of the scene by its JSON pointer, such as `/materials/red/phong/diffuse`.
+    /// `null` removes it.
     Set {
-        /// Where.
+        /// JSON pointer into the scene.
         path: String,
-        /// What.
+        /// New value, or `null` to remove the old one.
         value: Value,
     },
-    /// How the picture is made.
+    /// Changes a render setting.
     Setting(Setting),
-    /// A moment of the animation, as a frame that may lie between two.
+    /// Moves to a frame of the animation, clamped to its length. Fractions lie between two frames.
     At(f64),
-    /// Plays the animation from where it is, in a loop; or stops.
+    /// `true` plays the animation in a loop from the current frame, `false` stops it.
     Play(bool),
-    /// What of the picture is shown.
+    /// Selects the displayed channel.
     Show(Channel),
-    /// Only this part of the picture is refined, in pixels; `null`: all of it.
+    /// Restricts refinement to this rectangle, in pixels; `null` refines the whole image.
     Region(Option<Rect>),
-    /// Undoes all but [`Edit::Scene`]: the scene as its file has it.
+    /// Restores the scene as its file describes it, with its camera and settings. Denoising and
+    /// bookmarks are kept.
     Reset,
 }
 
 impl Edit {
-    /// Whether nothing that comes before it matters any more.
+    /// Returns whether all earlier edits become irrelevant.
     pub fn supersedes(&self) -> bool {
         matches!(self, Self::Scene(_))
     }
 
-    /// Whether it leaves no trace of the edit just before it.
+    /// Returns whether this edit overwrites the effect of the edit directly `before` it.
     pub fn replaces(&self, before: &Self) -> bool {
         match (self, before) {
             (Self::At(_), Self::At(_)) | (Self::Reload, Self::Reload) | (Self::Scene(_), _) => true,
@@ -70,33 +76,35 @@ impl Edit {
     }
 }
 
-/// Steps and turns, by the camera's own axes; none by default.
+/// Translation and rotation along the camera's own axes; all 0 by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Fly {
-    /// To the right, scene units.
+    /// Translation to the right, in scene units.
     pub right: f32,
-    /// Up, scene units.
+    /// Translation upwards, in scene units.
     pub up: f32,
-    /// Forward, scene units.
+    /// Translation forwards, in scene units.
     pub forward: f32,
-    /// To the right.
+    /// Rotation of the view direction to the right, in degrees.
     pub yaw_degrees: f32,
-    /// Up.
+    /// Rotation of the view direction upwards, in degrees.
     pub pitch_degrees: f32,
-    /// The top to the right.
+    /// Rotation of the camera's up vector to its right, in degrees.
     pub roll_degrees: f32,
 }
 
-/// Turns round the point of interest.
+/// Rotation about the point of interest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Orbit {
-    /// The camera goes to the left, so that the scene turns to the right.
+    /// Rotation of the camera to the left about the scene's up axis, in degrees: the scene turns to
+    /// the right.
     pub yaw_degrees: f32,
-    /// The camera rises; not beyond the poles of the scene's upward axis.
+    /// Increase of the camera's elevation, in degrees. The elevation is at most 89.9 degrees.
     pub pitch_degrees: f32,
-    /// The distance is divided by this.
+    /// Divisor of the distance to the point of interest, clamped to 0.001 to 1000. 1 by default,
+    /// which is also used for values that are not positive.
     pub closer: f32,
 }
 
@@ -106,67 +114,69 @@ impl Default for Orbit {
     }
 }
 
-/// How the picture is made; names are those of the scene format.
+/// Render setting, with the names of the scene format.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Setting {
-    /// Width and height in pixels.
+    /// Width and height of the image, in pixels, at most 2^25 pixels in total.
     Size([u32; 2]),
-    /// Samples of a pixel after which the picture is finished.
+    /// Number of samples per pixel after which the image is finished.
     Samples(u32),
-    /// Integrator by name, with its defaults.
+    /// Integrator by name, with its default parameters.
     Integrator(String),
-    /// Sampler by name, with its defaults.
+    /// Sampler by name, with its default parameters.
     Sampler(String),
-    /// How often a path may be mirrored or refracted.
+    /// Maximum path depth: specular bounces under `classic`, 0 to 1000; path segments under `path`,
+    /// 1 to 10,000.
     MaxDepth(u32),
     /// Tone curve by name.
     Tone(String),
-    /// Photographic stops.
+    /// Exposure in photographic stops; each stop doubles the brightness.
     Exposure(f32),
-    /// Factors on red, green and blue of the light of one group of lights, by name.
+    /// RGB gain of a light group, by name; each factor is 0 to 1,000,000.
     Gain(String, [f32; 3]),
-    /// Whether the picture is shown denoised when nothing moves; at most 2^21 pixels. The film begins anew, for it keeps what
-    /// guides the filter, as `juggler render --denoise` does.
+    /// Whether the image is displayed denoised while the camera is at rest. It may have at most
+    /// 2^21 pixels. A change restarts the film, which has to store the denoiser's features, as with
+    /// `juggler render --denoise`.
     Denoise(bool),
-    /// Another seed, another noise.
+    /// Seed of the sampler; another seed gives another noise pattern.
     Seed(u64),
-    /// Threads that render.
+    /// Number of render threads, at most 1024; 0 uses all cores.
     Threads(usize),
-    /// Who renders which pixels of a frame: `work-stealing`, `row-queue`, `static-rows`.
+    /// Distribution of a frame's pixels to threads: `work-stealing`, `row-queue` or `static-rows`.
     Scheduler(String),
 }
 
-/// What of the picture is shown.
+/// Displayed channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
-    /// The picture.
+    /// Rendered radiance.
     #[default]
     Color,
-    /// Colours without light.
+    /// Surface albedo, without lighting.
     Albedo,
     /// Shading normals.
     Normals,
-    /// Distances, white where the farthest is.
+    /// Distance along the camera ray; the farthest visible point is white.
     Depth,
-    /// Each object in a colour of its own.
+    /// One color per object.
     Objects,
-    /// Each material in a colour of its own.
+    /// One color per material.
     Materials,
-    /// How many samples each tile has.
+    /// Number of samples of each tile, relative to the number wanted.
     Samples,
-    /// The estimated relative error of each pixel: black 0, white 10 % and more.
+    /// Estimated relative error of each pixel: black is 0, white is 10 % or more.
     Noise,
 }
 
 impl Channel {
-    /// Whether it is of light, and thus of the film.
+    /// Returns whether the channel is computed from the film.
     pub fn is_light(self) -> bool {
         matches!(self, Self::Color | Self::Samples | Self::Noise)
     }
 
-    /// All of them.
+    /// All channels, in the order in which user interfaces list them.
     pub const ALL: [Self; 8] = [
         Self::Color,
         Self::Albedo,

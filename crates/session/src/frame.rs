@@ -1,20 +1,21 @@
-//! What is shown.
+//! Displayable frames.
 
-/// A picture for the screen: tone mapped, 8 bits a channel.
+/// Tone-mapped image for display, with 8 bits per channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Counts up with every frame of the session.
+    /// Sequence number, which increases with every frame of the session.
     pub number: u64,
-    /// How many edits it shows; see [`Session::edit`](crate::Session::edit).
+    /// Number of edits that the frame includes; see [`Session::edit`](crate::Session::edit).
     pub revision: u64,
-    /// Width of the pixels here.
+    /// Width of `rgba`, in pixels.
     pub width: u32,
-    /// Height of the pixels here.
+    /// Height of `rgba`, in pixels.
     pub height: u32,
-    /// Red, green, blue, opaque, row by row from the top; `4 * width * height` bytes.
+    /// RGBA pixels with alpha 255, row by row from the top; `4 * width * height` bytes.
     pub rgba: Vec<u8>,
-    /// Width and height of the picture that they stand for; more than of the pixels when the frame is coarse.
+    /// Width and height of the full-resolution image; larger than `width` and `height` for a coarse
+    /// frame.
     pub size: [u32; 2],
-    /// Samples of a pixel, the mean over the picture; 0 when the frame is coarse.
+    /// Mean number of samples per pixel; 0 for a coarse frame.
     pub samples: f32,
 }

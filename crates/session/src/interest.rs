@@ -1,12 +1,12 @@
-//! Where one looks: what is seen at a pixel, and the point that orbits turn about.
+//! Picking, and the point of interest that orbits rotate about.
 
 use crate::subject::Subject;
 use juggler::math::{Aabb, Ray, Vec2, Vec3};
 use juggler::world::Vertex;
 
 impl Subject {
-    /// The point and the vertex that is seen at a place of the film, in pixels.
-    pub fn seen_at(&self, pixel: [f32; 2]) -> Option<(Vec3, Vertex)> {
+    /// Returns the visible point at a film position, in pixels, with its vertex.
+    pub fn pick(&self, pixel: [f32; 2]) -> Option<(Vec3, Vertex)> {
         let mut ray = self.ray(pixel);
         if !(ray.origin.is_finite() && ray.direction.is_finite()) {
             return None;
@@ -16,50 +16,53 @@ impl Subject {
         hit.is_some().then(|| world.vertex(&ray, &hit)).map(|vertex| (vertex.surface.point, vertex))
     }
 
-    /// The ray through a place of the film, in pixels, and the middle of the lens.
+    /// Returns the camera ray through a film position, in pixels, at the center of lens and shutter
+    /// interval.
     pub fn ray(&self, pixel: [f32; 2]) -> Ray {
-        self.picture.job().camera.at(0.5).ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.5)
+        self.picture.job().camera.projection_at(0.5).ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.5)
     }
 
-    /// Box around the object at a pixel; around everything where no pixel is given or nothing is seen there.
-    pub(crate) fn to_frame(&self, pixel: Option<[f32; 2]>) -> Aabb {
+    /// Returns the bounding box of the object at a pixel, or of all bounded objects if there is
+    /// none.
+    pub(crate) fn framing_bounds(&self, pixel: Option<[f32; 2]>) -> Aabb {
         let world = self.picture.world();
-        let object = pixel.and_then(|pixel| self.seen_at(pixel)).map(|(_, vertex)| world.shape_bounds(vertex.object));
+        let object = pixel.and_then(|pixel| self.pick(pixel)).map(|(_, vertex)| world.shape_bounds(vertex.shape));
         let all = world.bounds();
         let all = if all.is_empty() { Aabb { min: -Vec3::ONE, max: Vec3::ONE } } else { all };
         object.filter(|bounds| !bounds.is_empty()).unwrap_or(all)
     }
 
-    /// Finds the point of interest of a camera that one has not looked through before: its `look_at`, or what is seen in the
-    /// picture's middle.
-    pub(crate) fn begin_interest(&mut self) {
+    /// Sets the point of interest of a new camera: its `look_at` if in view and within the scene,
+    /// else the visible point at the image center.
+    pub(crate) fn init_interest(&mut self) {
         let target =
             self.picture.view().camera.target().filter(|point| self.is_in_view(*point) && self.is_near(*point));
-        self.held = target.is_some();
+        self.interest_is_chosen = target.is_some();
         match target {
             Some(point) => self.interest = point,
-            None => self.look_for_interest(),
+            None => self.center_interest(),
         }
     }
 
-    /// What is seen at a pixel becomes the point of interest, unless `look_at` or a person has chosen one.
+    /// Makes the visible point at a pixel the point of interest, unless one is chosen already.
     pub(crate) fn pivot(&mut self, pixel: [f32; 2]) {
-        if !self.held
-            && let Some((point, _)) = self.seen_at(pixel)
+        if !self.interest_is_chosen
+            && let Some((point, _)) = self.pick(pixel)
         {
-            (self.interest, self.held) = (point, true);
+            (self.interest, self.interest_is_chosen) = (point, true);
         }
     }
 
-    /// Forgets a point of interest that has left the picture.
-    pub(crate) fn lose_interest(&mut self) {
-        if self.held && !self.is_in_view(self.interest) {
-            self.held = false;
-            self.look_for_interest();
+    /// Discards a chosen point of interest that is no longer in view.
+    pub(crate) fn drop_hidden_interest(&mut self) {
+        if self.interest_is_chosen && !self.is_in_view(self.interest) {
+            self.interest_is_chosen = false;
+            self.center_interest();
         }
     }
 
-    /// Whether a point is not farther away than the scene reaches: a `look_at` beyond it is meant as a direction.
+    /// Returns whether a point is within the scene's reach; a `look_at` farther away only gives a
+    /// direction.
     fn is_near(&self, point: Vec3) -> bool {
         let bounds = self.picture.world().bounds();
         let Ok(axes) = self.picture.view().camera.axes() else { return false };
@@ -67,7 +70,8 @@ impl Subject {
         bounds.is_empty() || axes.eye.distance(point) <= reach
     }
 
-    /// Whether a point is ahead, and not farther from the picture's middle than its corners are.
+    /// Returns whether a point is in front of the camera and at most as far from the optical axis
+    /// as the image corners.
     fn is_in_view(&self, point: Vec3) -> bool {
         let Ok(axes) = self.picture.view().camera.axes() else { return false };
         let (corner, depth) = (self.ray([0.0, 0.0]), (point - axes.eye).dot(axes.forward));
@@ -77,10 +81,11 @@ impl Subject {
         depth > 0.0 && point.distance_squared(middle) <= corner.distance_squared(middle)
     }
 
-    /// What is seen in the picture's middle, or as far ahead as the middle of everything.
-    pub(crate) fn look_for_interest(&mut self) {
+    /// Sets the point of interest to the visible point at the image center, else to a point on the
+    /// optical axis at the depth of the scene's center.
+    pub(crate) fn center_interest(&mut self) {
         let middle = self.picture.size().map(|edge| edge as f32 * 0.5);
-        if let Some((point, _)) = self.seen_at(middle) {
+        if let Some((point, _)) = self.pick(middle) {
             self.interest = point;
             return;
         }

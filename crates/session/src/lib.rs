@@ -1,26 +1,29 @@
-//! A scene to walk around in: a world, a camera, a picture that becomes better while one looks at it. No window in
-//! here; the native viewer, the browser's page and scripts all stand on it.
+//! Interactive rendering session: a scene, a camera and an image that refines progressively. The
+//! crate has no window; the native viewer, the browser page and scripts are its clients.
 //!
-//! - [`Session`]: takes [`Edit`]s, gives [`Frame`]s and its [`Status`], answers [`Probe`]s. Its work happens on threads of
-//!   its own; none of its functions makes the caller wait for a picture.
-//! - An edit cancels what is being rendered. What follows is first a coarse frame, as fine as the frame budget allows,
-//!   then the picture itself, sample by sample, until it is the one that `juggler render` writes, to the bit.
-
+//! - [`Session`] accepts [`Edit`]s, provides [`Frame`]s and its [`Status`], and returns the
+//!   [`PixelInfo`] of a pixel. It works on its own threads; none of its functions blocks until an
+//!   image is rendered.
+//! - An edit cancels rendering. The session then renders a coarse frame, as fine as the frame
+//!   budget allows, and refines it sample by sample until it is bit-identical to the image that
+//!   `juggler render` writes.
 //!
-//! With the feature `native`, which is there by default. Without it there are neither threads nor clocks nor files that are
-//! watched: what stands here for who brings their own, as the page that renders in the browser alone, is [`Subject`] with
-//! what makes pictures of it: [`draw`], [`screen`], [`Pace`].
+//! The default feature `native` provides threads, clocks and file watching. Clients without it,
+//! such as the page that renders inside the browser, bring their own and use [`Subject`],
+//! [`preview`], [`screen`] and [`RenderRate`].
 
+#[cfg(feature = "native")]
+mod background_build;
 mod build;
 mod coarse;
 #[cfg(feature = "native")]
 mod denoising;
-pub mod draw;
 mod edit;
 mod frame;
 mod interest;
+mod pixel_info;
 pub mod pose;
-mod probe;
+pub mod preview;
 #[cfg(feature = "native")]
 mod rendering;
 pub mod screen;
@@ -36,18 +39,16 @@ mod thumbnails;
 mod watch;
 #[cfg(feature = "native")]
 mod worker;
-#[cfg(feature = "native")]
-mod worlds;
 
-pub use build::{Build, MOST_PIXELS, Mistake, text_of};
-pub use coarse::{Pace, coarse_size, finer};
+pub use build::{BuildError, BuildRequest, MAX_PIXELS, error_text};
+pub use coarse::{RenderRate, coarse_size, next_pass};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
-pub use probe::Probe;
+pub use pixel_info::PixelInfo;
 #[cfg(feature = "native")]
-pub use session::{Options, SaveError, Session};
+pub use session::{SaveError, Session, SessionOptions};
 pub use status::{Stage, Status};
-pub use subject::{Change, Subject};
+pub use subject::{EditEffect, Subject};
 #[cfg(feature = "native")]
 pub use thumbnails::thumbnail;
 

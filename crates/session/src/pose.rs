@@ -1,59 +1,64 @@
-//! How cameras move: pure functions from a camera to a camera. Signs and axes are those of `camera/pose.rs` in the
-//! tracer. What results is plain: `eye`, `direction` and `up`, as a scene file would have it.
+//! Camera motion: pure functions from a camera to a camera. Axes and signs are those of the crate
+//! `camera` (`pose.rs`). The result has `eye`, `direction` and `up`, as a scene file would have.
 
 use crate::{Fly, Orbit};
-use juggler::camera::{AnyCamera, Axes};
-use juggler::math::{Aabb, Ray, UVec2, Vec2, Vec3, fun};
+use juggler::camera::{AnyCamera, CameraAxes};
+use juggler::math::{Aabb, Ray, UVec2, Vec2, Vec3, portable};
 
-/// How far an orbit goes towards a pole.
+/// Maximum elevation of an orbit, in degrees.
 const POLE_DEGREES: f32 = 89.9;
-/// Farthest and nearest that one step of an orbit goes.
-const CLOSER: std::ops::RangeInclusive<f32> = 1e-3..=1e3;
-/// Where coordinates end: beyond, no ray finds anything.
-const FARTHEST: f32 = 1e15;
+/// Range of [`Orbit::closer`].
+const CLOSER_RANGE: std::ops::RangeInclusive<f32> = 1e-3..=1e3;
+/// Largest absolute coordinate of a camera position; rays from farther away find nothing.
+const MAX_COORDINATE: f32 = 1e15;
 
-/// Turns about the camera's own axes, then steps along them.
+/// Rotates a camera about its own axes, then translates it along them. Returns `None` if the pose
+/// becomes invalid.
 pub fn fly(camera: &AnyCamera, upward: Vec3, fly: &Fly) -> Option<AnyCamera> {
     let mut axes = camera.axes().ok()?;
-    (axes.forward, axes.right) = turn(axes.forward, axes.right, fly.yaw_degrees);
-    (axes.forward, axes.up) = turn(axes.forward, axes.up, fly.pitch_degrees);
-    (axes.up, axes.right) = turn(axes.up, axes.right, fly.roll_degrees);
+    (axes.forward, axes.right) = rotate_in_plane(axes.forward, axes.right, fly.yaw_degrees);
+    (axes.forward, axes.up) = rotate_in_plane(axes.forward, axes.up, fly.pitch_degrees);
+    (axes.up, axes.right) = rotate_in_plane(axes.up, axes.right, fly.roll_degrees);
     axes.eye += axes.right * fly.right + axes.up * fly.up + axes.forward * fly.forward;
-    stand(camera, upward, &axes)
+    with_axes(camera, upward, &axes)
 }
 
-/// Round `interest`, which keeps its place in the picture.
+/// Rotates a camera about `interest`, which keeps its position in the image. Returns `None` if the
+/// pose becomes invalid.
 pub fn orbit(camera: &AnyCamera, upward: Vec3, interest: Vec3, orbit: &Orbit) -> Option<AnyCamera> {
     let axes = camera.axes().ok()?;
     let upward = upward.normalize_or(Vec3::Y);
-    let elevation = fun::asin((-axes.forward.dot(upward)).clamp(-1.0, 1.0)).to_degrees();
+    // Limit the elevation
+    let elevation = portable::asin((-axes.forward.dot(upward)).clamp(-1.0, 1.0)).to_degrees();
     let limit = POLE_DEGREES.max(elevation.abs());
     let rise = (elevation + orbit.pitch_degrees).clamp(-limit, limit) - elevation;
+    // Rotate about the up axis and the horizontal axis
     let level = axes.forward.cross(upward);
     let level = if level.length_squared() > 1e-8 { level.normalize() } else { axes.right };
-    let turned = |v: Vec3| around(upward, -orbit.yaw_degrees, around(level, -rise, v));
-    let closer = if orbit.closer > 0.0 { orbit.closer.clamp(*CLOSER.start(), *CLOSER.end()) } else { 1.0 };
-    let axes = Axes {
+    let turned = |v: Vec3| rotate_about_axis(upward, -orbit.yaw_degrees, rotate_about_axis(level, -rise, v));
+    let closer = if orbit.closer > 0.0 { orbit.closer.clamp(*CLOSER_RANGE.start(), *CLOSER_RANGE.end()) } else { 1.0 };
+    let axes = CameraAxes {
         eye: interest + turned(axes.eye - interest) / closer,
         right: turned(axes.right),
         up: turned(axes.up),
         forward: turned(axes.forward),
     };
-    let mut camera = stand(camera, upward, &axes)?;
+    let mut camera = with_axes(camera, upward, &axes)?;
+    // Zoom an orthographic camera, for which distance has no effect
     if matches!(camera, AnyCamera::Orthographic(_)) {
         camera.zoom(closer);
     }
     Some(camera)
 }
 
-/// Narrows the field of view.
+/// Divides the tangent of half the field of view by `factor`, clamped to 0.1 to 10.
 pub fn zoom(camera: &AnyCamera, factor: f32) -> Option<AnyCamera> {
     let mut zoomed = camera.clone();
     zoomed.zoom(if factor > 0.0 { factor.clamp(0.1, 10.0) } else { 1.0 });
     valid(zoomed)
 }
 
-/// A lens is sharp at `point`; a camera without one stays.
+/// Focuses a thin lens on `point`; a camera without a lens stays unchanged.
 pub fn focus(camera: &AnyCamera, point: Vec3) -> Option<AnyCamera> {
     let axes = camera.axes().ok()?;
     let distance = (point - axes.eye).dot(axes.forward);
@@ -64,14 +69,15 @@ pub fn focus(camera: &AnyCamera, point: Vec3) -> Option<AnyCamera> {
     valid(focused)
 }
 
-/// Steps back, or forward, until a ball around `bounds` fills the picture.
+/// Moves a camera along its view direction until the bounding sphere of `bounds` fits an image of
+/// `size` pixels.
 pub fn frame(camera: &AnyCamera, upward: Vec3, bounds: &Aabb, size: [u32; 2]) -> Option<AnyCamera> {
     let axes = camera.axes().ok()?;
     let [width, height] = size.map(|edge| edge.max(1) as f32);
-    let projection = camera.project(UVec2::new(width as u32, height as u32)).ok()?;
+    let projection = camera.projection(UVec2::new(width as u32, height as u32)).ok()?;
     let ray = |x: f32, y: f32| projection.ray(Vec2::new(x * width, y * height), Vec2::splat(0.5), 0.0);
     let edges = [ray(0.0, 0.5), ray(0.5, 0.0)];
-    let (center, radius) = ball(bounds);
+    let (center, radius) = bounding_sphere(bounds);
     let mut framed = camera.clone();
     let distance = if matches!(camera, AnyCamera::Orthographic(_)) {
         let half = edges.map(|edge| (edge.origin - axes.eye).length());
@@ -81,46 +87,47 @@ pub fn frame(camera: &AnyCamera, upward: Vec3, bounds: &Aabb, size: [u32; 2]) ->
         let sine = edges.map(|edge| sine_of(&edge, axes.forward));
         radius / sine[0].min(sine[1]).max(1e-6)
     };
-    stand(&framed, upward, &Axes { eye: center - axes.forward * distance, ..axes })
+    with_axes(&framed, upward, &CameraAxes { eye: center - axes.forward * distance, ..axes })
 }
 
 fn sine_of(ray: &Ray, forward: Vec3) -> f32 {
     ray.direction.cross(forward).length()
 }
 
-/// Middle and radius of the ball around a box; of some size, always.
-fn ball(bounds: &Aabb) -> (Vec3, f32) {
+/// Returns center and radius of the sphere around a box; the radius is at least 1e-6.
+fn bounding_sphere(bounds: &Aabb) -> (Vec3, f32) {
     let half = (bounds.max - bounds.min) * 0.5;
     (bounds.min + half, half.length().max(1e-6))
 }
 
-/// The camera in another place; nothing where numbers have no meaning any more.
-fn stand(camera: &AnyCamera, upward: Vec3, axes: &Axes) -> Option<AnyCamera> {
+/// Moves a camera to other axes. Returns `None` if they are degenerate or out of range.
+fn with_axes(camera: &AnyCamera, upward: Vec3, axes: &CameraAxes) -> Option<AnyCamera> {
     let forward = axes.forward.try_normalize()?;
     let up = (axes.up - forward * axes.up.dot(forward)).try_normalize()?;
-    // Where the scene's own upward direction says the same, that is what a file should have.
+    // Prefer the scene's up vector if it gives the same orientation, as a file would have it.
     let level = forward.cross(upward);
     let right = forward.cross(up);
     let plain = level.length() > 1e-3 * upward.length() && (level.normalize_or_zero() - right).length() < 1e-5;
     let mut moved = camera.clone();
-    moved.stand(axes.eye, forward, if plain { upward } else { up });
+    moved.set_pose(axes.eye, forward, if plain { upward } else { up });
     valid(moved)
 }
 
 fn valid(camera: AnyCamera) -> Option<AnyCamera> {
-    let near = camera.axes().is_ok_and(|axes| axes.eye.abs().max_element() <= FARTHEST);
+    let near = camera.axes().is_ok_and(|axes| axes.eye.abs().max_element() <= MAX_COORDINATE);
     near.then_some(camera)
 }
 
-/// Turns `a` towards `b`, and `b` away from where `a` was.
-fn turn(a: Vec3, b: Vec3, degrees: f32) -> (Vec3, Vec3) {
-    let (sin, cos) = fun::sin_cos((degrees % 360.0).to_radians());
+/// Rotates the orthogonal vectors `a` and `b` in their plane, `a` towards `b`.
+fn rotate_in_plane(a: Vec3, b: Vec3, degrees: f32) -> (Vec3, Vec3) {
+    let (sin, cos) = portable::sin_cos((degrees % 360.0).to_radians());
     (a * cos + b * sin, b * cos - a * sin)
 }
 
-/// Turns `v` about a unit `axis`, counter-clockwise for who sees the axis come towards them (Rodrigues).
-fn around(axis: Vec3, degrees: f32, v: Vec3) -> Vec3 {
-    let (sin, cos) = fun::sin_cos((degrees % 360.0).to_radians());
+/// Rotates `v` counterclockwise about a unit `axis` that points towards the viewer (Rodrigues'
+/// formula).
+fn rotate_about_axis(axis: Vec3, degrees: f32, v: Vec3) -> Vec3 {
+    let (sin, cos) = portable::sin_cos((degrees % 360.0).to_radians());
     v * cos + axis.cross(v) * sin + axis * axis.dot(v) * (1.0 - cos)
 }
 
@@ -132,7 +139,7 @@ mod tests {
 
     const SIZE: UVec2 = UVec2::new(80, 60);
 
-    /// At (0, 0, 5), looking along -z.
+    /// Camera at (0, 0, 5) that looks along -z.
     fn plain() -> AnyCamera {
         Perspective::default().into()
     }
@@ -146,7 +153,7 @@ mod tests {
         (a - b).length() < 1e-4 * (1.0 + b.length())
     }
 
-    /// Where a point is seen, from the picture's middle.
+    /// Returns the projected position of a point, relative to the image center.
     fn place(camera: &AnyCamera, point: Vec3) -> Vec2 {
         let axes = camera.axes().unwrap();
         let to = point - axes.eye;
@@ -211,7 +218,7 @@ mod tests {
     #[test]
     fn zooming_divides_the_tangent_and_ends_somewhere() {
         let half = |camera: &AnyCamera| {
-            let top = camera.project(SIZE).unwrap().ray(Vec2::new(40.0, 0.0), Vec2::splat(0.5), 0.0).direction;
+            let top = camera.projection(SIZE).unwrap().ray(Vec2::new(40.0, 0.0), Vec2::splat(0.5), 0.0).direction;
             top.y / -top.z
         };
         let zoomed = zoom(&plain(), 2.0).unwrap();
@@ -220,7 +227,7 @@ mod tests {
         for mut camera in [plain(), tilted(), ThinLens::default().into(), Orthographic::default().into()] {
             for factor in [10.0; 30].into_iter().chain([0.1; 60]) {
                 camera = zoom(&camera, factor).unwrap();
-                assert!(camera.project(SIZE).is_ok(), "{camera:?}");
+                assert!(camera.projection(SIZE).is_ok(), "{camera:?}");
             }
         }
         assert_eq!(zoom(&plain(), f32::NAN), zoom(&plain(), 1.0));
@@ -241,13 +248,13 @@ mod tests {
     #[test]
     fn what_is_framed_just_fits() {
         let bounds = Aabb { min: vec3(1.0, 1.0, 1.0), max: vec3(2.0, 3.0, 2.0) };
-        let (center, radius) = ball(&bounds);
+        let (center, radius) = bounding_sphere(&bounds);
         for camera in [plain(), tilted(), Orthographic::default().into()] {
             let framed = frame(&camera, Vec3::Y, &bounds, SIZE.to_array()).unwrap();
             let [axes, before] = [&framed, &camera].map(|camera| camera.axes().unwrap());
             assert!(near(axes.forward, before.forward) && place(&framed, center).length() < 1e-4);
-            // The ball touches the ray through the middle of the picture's upper edge.
-            let top = framed.project(SIZE).unwrap().ray(Vec2::new(40.0, 0.0), Vec2::splat(0.5), 0.0);
+            // The sphere touches the ray through the center of the image's upper edge.
+            let top = framed.projection(SIZE).unwrap().ray(Vec2::new(40.0, 0.0), Vec2::splat(0.5), 0.0);
             let to = center - top.origin;
             let distance = (to - top.direction * to.dot(top.direction)).length();
             assert!((distance - radius).abs() < 1e-3, "{distance} {radius}");
@@ -260,7 +267,7 @@ mod tests {
             assert_eq!(fly(&plain(), Vec3::Y, &Fly { forward: wild, ..Fly::default() }), None);
             let step = Orbit { yaw_degrees: wild, pitch_degrees: wild, closer: wild };
             let moved = orbit(&plain(), Vec3::Y, Vec3::ZERO, &step);
-            assert!(moved.is_none_or(|camera| camera.project(SIZE).is_ok()));
+            assert!(moved.is_none_or(|camera| camera.projection(SIZE).is_ok()));
         }
     }
 }

@@ -1,66 +1,67 @@
-//! How the worker makes pictures: coarse ones while somebody moves, finer passes over the whole picture when nobody does,
-//! then the film.
+//! Rendering by the worker: coarse frames while the camera moves, passes of increasing resolution
+//! at rest, then the film.
 
-use crate::coarse::{coarse_size, finer};
-use crate::draw::draw;
-use crate::screen::{self, Canvas, Toner};
+use crate::coarse::{coarse_size, next_pass};
+use crate::preview::render_preview;
+use crate::screen::{self, Canvas, DisplayTransform};
 use crate::subject::Subject;
 use crate::worker::Worker;
 use crate::{Channel, Frame, Stage};
 use juggler::Picture;
-use juggler::camera::film::{Film, Layout, Rect};
-use juggler::render::{self, Control, Stop};
+use juggler::camera::film::{Film, Rect, Tiling};
+use juggler::render::{self, Control, StopCriterion};
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long after a frame the next edit is waited for before the picture gets better.
-const LINGER: Duration = Duration::from_millis(20);
-/// The first picture that gets better is shown after so long, later ones ever less often.
+/// Time after a frame for which the worker waits for another edit before it refines.
+const EDIT_WAIT: Duration = Duration::from_millis(20);
+/// Delay of the first displayed refinement; the interval then grows by half each time, up to
+/// `LAST_SHOW`.
 const FIRST_SHOW: Duration = Duration::from_millis(40);
 const LAST_SHOW: Duration = Duration::from_millis(500);
-/// Frames that follow each other within this time are one motion.
+/// Maximum time between two frames of one motion.
 const MOTION: Duration = Duration::from_millis(500);
-/// How much the newest frame counts for the frames a second.
-const NEWEST: f32 = 0.2;
+/// Weight of the newest frame in the moving average of the frame rate.
+const RATE_WEIGHT: f32 = 0.2;
 
 impl Worker {
-    /// A frame as fine as the budget allows.
+    /// Renders a frame at the resolution that the frame budget allows.
     pub fn draw(&mut self) {
         let Some(subject) = self.subject.clone() else {
-            self.moved = false;
+            self.needs_preview = false;
             return;
         };
         let size = subject.picture().size();
-        let coarseness = self.pace.coarseness(size, self.options.budget.as_secs_f64());
+        let coarseness = self.rate.coarseness(size, self.options.budget.as_secs_f64());
         if !self.draw_by(&subject, coarseness, Stage::Moving) {
-            // Too slow, and somebody goes on: the next one is coarser.
+            // Cancelled by a new edit: the updated pace makes the next frame coarser.
             return;
         }
-        // When nothing is known of a world, the first frame is coarser than it must be.
-        let finer = self.pace.coarseness(size, self.options.budget.as_secs_f64());
-        self.moved = finer < coarseness && !self.shared.desk().calls();
+        // Render once more if the measured speed allows a finer frame.
+        let finer = self.rate.coarseness(size, self.options.budget.as_secs_f64());
+        self.needs_preview = finer < coarseness && !self.shared.mailbox().has_work();
     }
 
-    /// A frame of squares; `false` when it was cancelled.
+    /// Renders a frame in pixel blocks of edge `coarseness`. Returns `false` when it was cancelled.
     fn draw_by(&mut self, subject: &Subject, coarseness: u32, stage: Stage) -> bool {
         let picture = subject.picture();
         let size = coarse_size(picture.size(), coarseness);
         let (control, began) = (Control::default(), Instant::now());
-        // What is ready soon is not disturbed.
-        let patience = if self.moved { self.options.budget * 2 } else { Duration::ZERO };
-        let (toner, gains) = (self.toner_of(picture), subject.gains());
+        // Give the frame time to finish before an edit may cancel it.
+        let patience = if self.needs_preview { self.options.budget * 2 } else { Duration::ZERO };
+        let (transform, gains) = (self.display_transform(picture), subject.gains());
         let (channel, scheduler) = (self.status.channel, self.scheduler);
-        let drawn = self.run_unless_called(patience, &control, || {
-            let draft = draw(picture, size, channel, &gains, scheduler, &control).ok()?;
-            let rgba = toner.picture(&draft.pixels);
-            Some((draft, rgba))
+        let drawn = self.run_cancellable(patience, &control, || {
+            let preview = render_preview(picture, size, channel, &gains, scheduler, &control).ok()?;
+            let rgba = transform.rgba_image(&preview.pixels);
+            Some((preview, rgba))
         });
         let seconds = began.elapsed().as_secs_f64();
-        self.pace.learn(control.samples() as f64, seconds);
-        let Some((draft, rgba)) = drawn else { return false };
+        self.rate.measure(control.samples() as f64, seconds);
+        let Some((preview, rgba)) = drawn else { return false };
         self.measure(&control, seconds, stage);
-        (self.draft, self.toner, self.canvas, self.retoned) = (Arc::new(draft), toner, None, false);
+        (self.preview, self.transform, self.canvas, self.needs_repaint) = (Arc::new(preview), transform, None, false);
         (self.status.stage, self.status.coarseness) = (stage, coarseness);
         (self.status.samples, self.status.noise, self.status.hash) = (0.0, None, None);
         (self.status.clamped, self.status.denoised) = (None, false);
@@ -69,23 +70,24 @@ impl Worker {
         true
     }
 
-    /// Runs `work` on the pool. When something else is to be done, `control` is cancelled, though not before `patience` is over.
-    pub fn run_unless_called<T: Send>(
+    /// Runs `work` on the pool. New work for the worker cancels `control`, but not before
+    /// `patience` is over.
+    pub fn run_cancellable<T: Send>(
         &self,
         patience: Duration,
         control: &Control,
         work: impl FnOnce() -> Option<T> + Send,
     ) -> Option<T> {
         let (shared, mut result) = (&self.shared, None);
-        shared.desk().done = false;
+        shared.mailbox().job_ended = false;
         self.pool.in_place_scope(|scope| {
             scope.spawn(|_| {
                 result = work();
-                shared.tell(|desk| desk.done = true);
+                shared.update(|mailbox| mailbox.job_ended = true);
             });
-            shared.rest(Some(patience), |desk| desk.done);
-            shared.rest(None, |desk| desk.done || desk.calls());
-            if !shared.desk().done {
+            shared.wait_for_work(Some(patience), |mailbox| mailbox.job_ended);
+            shared.wait_for_work(None, |mailbox| mailbox.job_ended || mailbox.has_work());
+            if !shared.mailbox().job_ended {
                 control.cancel();
             }
         });
@@ -103,31 +105,32 @@ impl Worker {
         self.drawn = Instant::now();
         if since < MOTION && stage == Stage::Moving {
             let (now, before) = ((1.0 / since.as_secs_f64().max(1e-6)) as f32, self.status.frames_per_second);
-            self.status.frames_per_second = if before > 0.0 { before + (now - before) * NEWEST } else { now };
+            self.status.frames_per_second = if before > 0.0 { before + (now - before) * RATE_WEIGHT } else { now };
         }
     }
 
-    fn toner_of(&self, picture: &Picture) -> Toner {
+    fn display_transform(&self, picture: &Picture) -> DisplayTransform {
         let of_light = self.status.channel.is_light() || self.status.channel == Channel::Albedo;
-        self.toner.toned(if of_light { picture.tone() } else { &screen::PLAIN })
+        self.transform.for_tone(if of_light { picture.tone() } else { &screen::LINEAR_TONE })
     }
 
-    /// A film for the picture as it is now, with the samples that are there; only the region gets more.
-    pub fn refilm(&mut self) {
+    /// Creates a film for the current picture from the samples of the old one; only tiles in the
+    /// region receive more.
+    pub fn rebuild_film(&mut self) {
         let Some(subject) = &self.subject else { return };
         let picture = subject.picture();
-        let (layout, wanted, region) = (Layout::new(picture.region()), picture.samples(), self.region);
+        let (tiling, target, region) = (Tiling::new(picture.region()), picture.samples(), self.region);
         let old = self.film.take();
         let counts = old.as_ref().map_or_else(Vec::new, |old| old.counts());
-        // Fewer samples than there are: no sum can be taken apart.
-        let old = old.filter(|_| counts.iter().all(|count| *count <= wanted));
+        // Samples cannot be subtracted from a sum, so a film with too many starts over.
+        let old = old.filter(|_| counts.iter().all(|count| *count <= target));
         let inside = |number: u64| {
-            let tile = layout.tile(number);
+            let tile = tiling.tile(number);
             region.is_none_or(|region| tile.is_some_and(|tile| tile.intersection(&region).area() > 0))
         };
         let have = |number: u64| old.as_ref().and_then(|_| counts.get(number as usize)).copied().unwrap_or(0);
-        let share = |number: u64| (number, 0..if inside(number) { wanted } else { have(number) });
-        let film = Film::of(layout, (0..layout.tiles()).map(share));
+        let share = |number: u64| (number, 0..if inside(number) { target } else { have(number) });
+        let film = Film::from_tiles(tiling, (0..tiling.tile_count()).map(share));
         for (number, tile) in old.iter().flat_map(|old| old.tiles()) {
             let added = film.add(number, tile);
             debug_assert_eq!(added, Ok(true), "of the same layout, and new");
@@ -135,44 +138,46 @@ impl Worker {
         self.film = Some(Arc::new(film));
     }
 
-    /// Only this part gets better from now on.
-    pub fn confine(&mut self, region: Option<Rect>) {
+    /// Restricts refinement to a region; `None` refines the whole image.
+    pub fn set_region(&mut self, region: Option<Rect>) {
         let [width, height] = self.status.size;
         let whole = Rect { x: 0, y: 0, width, height };
         let inside = region.map(|region| region.intersection(&whole));
         self.region = inside.filter(|region| region.area() > 0 && *region != whole);
-        self.describe();
-        self.refilm();
+        self.update_status();
+        self.rebuild_film();
     }
 
-    /// The same samples shown otherwise.
+    /// Displays the same samples with the current tone, channel and gains.
     pub fn repaint(&mut self) {
-        self.retoned = false;
+        self.needs_repaint = false;
         let Some(subject) = self.subject.clone() else { return };
-        (self.toner, self.canvas) = (self.toner_of(subject.picture()), None);
+        (self.transform, self.canvas) = (self.display_transform(subject.picture()), None);
         self.status.stage = if self.status.stage == Stage::Finished { Stage::Refining } else { self.status.stage };
         self.show(self.status.samples);
     }
 
-    /// Shows the film as it is, over the draft.
+    /// Displays the film over the preview.
     fn show(&mut self, samples: f32) {
         let Some(film) = self.film.clone() else { return };
         let Some(subject) = self.subject.clone() else { return };
-        let (size, wanted, toner) = (self.status.size, self.status.samples_wanted, &self.toner);
+        let (size, target, transform) = (self.status.size, self.status.samples_wanted, &self.transform);
         let gains = subject.gains();
         if let Some(pixels) = self.denoised_pixels(&subject).filter(|_| self.status.channel == Channel::Color) {
-            let rgba = toner.picture(&pixels);
+            let rgba = transform.rgba_image(&pixels);
             self.status.denoised = true;
             let frame = self.frame(size, rgba, samples);
             return self.publish(Some(frame));
         }
         self.status.denoised = false;
-        let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.draft, size, toner));
-        // A whole picture through the pixels' centres looks better than one through one place of each.
-        let least = if self.draft.size == size { wanted.min(4) } else { 1 };
+        let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.preview, size, transform));
+        // A full-resolution preview looks better than fewer than four samples per pixel.
+        let least = if self.preview.size == size { target.min(4) } else { 1 };
         match self.status.channel {
-            Channel::Color => canvas.paint(&film, least, |tile| screen::light(toner, subject.light(tile, &gains))),
-            Channel::Samples => canvas.paint(&film, 0, |tile| screen::samples(tile, wanted)),
+            Channel::Color => {
+                canvas.paint(&film, least, |tile| screen::radiance_to_rgba(transform, subject.light(tile, &gains)));
+            }
+            Channel::Samples => canvas.paint(&film, 0, |tile| screen::samples(tile, target)),
             Channel::Noise => canvas.paint(&film, 0, screen::noise),
             _ => {}
         }
@@ -181,26 +186,29 @@ impl Worker {
         self.publish(Some(frame));
     }
 
-    /// Makes the picture better until something else is to be done; `false` when it cannot get better.
+    /// Refines the image until there is new work. Returns `false` when it cannot be refined
+    /// further.
     pub fn refine(&mut self) -> bool {
         let Some(subject) = self.subject.clone() else { return false };
-        let linger = LINGER.saturating_sub(self.drawn.elapsed());
-        if !linger.is_zero() && self.status.stage == Stage::Moving {
-            self.shared.rest(Some(linger), |desk| desk.calls());
+        // Wait for further edits of a motion
+        let wait = EDIT_WAIT.saturating_sub(self.drawn.elapsed());
+        if !wait.is_zero() && self.status.stage == Stage::Moving {
+            self.shared.wait_for_work(Some(wait), |mailbox| mailbox.has_work());
         }
-        // Finer passes over the whole picture, as long as no samples are there to be shown.
+        // Render passes of increasing resolution until the film has samples to display.
         let has_samples = self.film.as_ref().is_some_and(|film| film.samples() > 0);
         if (!self.status.channel.is_light() || !has_samples)
-            && let Some(step) = finer(self.draft.size, subject.picture().size())
+            && let Some(step) = next_pass(self.preview.size, subject.picture().size())
         {
-            return self.draw_by(&subject, step, Stage::Refining) || self.shared.desk().calls();
+            return self.draw_by(&subject, step, Stage::Refining) || self.shared.mailbox().has_work();
         }
+        // Continue the film
         if self.film.is_none() {
-            self.refilm();
+            self.rebuild_film();
         }
         let Some(film) = self.film.clone() else { return false };
-        let finished = render::is_finished(&film, Stop::Evenly);
-        if self.denoises(&subject, &film, finished) {
+        let finished = render::is_finished(&film, StopCriterion::Evenly);
+        if self.should_denoise(&subject, &film, finished) {
             self.denoise(&subject, &film);
             return true;
         }
@@ -210,40 +218,40 @@ impl Worker {
         }
         let control = Control::default();
         {
-            let mut desk = self.shared.desk();
-            if desk.calls() {
+            let mut mailbox = self.shared.mailbox();
+            if mailbox.has_work() {
                 return true;
             }
-            desk.done = false;
+            mailbox.job_ended = false;
         }
         (self.status.stage, self.status.coarseness) = (Stage::Refining, 1);
         self.expose(&subject, &film, &control);
         true
     }
 
-    /// Exposes the film and shows it from time to time, until it is finished, is to be denoised, or something else is to be
-    /// done.
+    /// Renders into the film and displays it periodically, until it is finished, is due for
+    /// denoising, or there is new work.
     fn expose(&mut self, subject: &Subject, film: &Film, control: &Control) {
         let picture = subject.picture();
         let (shared, pool) = (Arc::clone(&self.shared), Arc::clone(&self.pool));
         let (began, mut interval) = (Instant::now(), FIRST_SHOW);
         pool.in_place_scope(|scope| {
             scope.spawn(|_| {
-                // Cancelled or not: what is there stays.
-                let _ = render::expose(&picture.job(), film, Stop::Evenly, control);
-                shared.tell(|desk| desk.done = true);
+                // A cancelled render keeps the samples it has added.
+                let _ = render::render_progressive(&picture.job(), film, StopCriterion::Evenly, control);
+                shared.update(|mailbox| mailbox.job_ended = true);
             });
             loop {
-                shared.rest(Some(interval), |desk| desk.done || desk.calls());
-                let (done, called) = shared.desk().state();
-                if called {
+                shared.wait_for_work(Some(interval), |mailbox| mailbox.job_ended || mailbox.has_work());
+                let (job_ended, has_work) = shared.mailbox().state();
+                if has_work {
                     control.cancel();
                 }
-                if done || called {
+                if job_ended || has_work {
                     break;
                 }
-                self.tell_of(picture, film, control, began);
-                if self.denoises(subject, film, false) {
+                self.publish_progress(picture, film, control, began);
+                if self.should_denoise(subject, film, false) {
                     control.cancel();
                     break;
                 }
@@ -252,7 +260,7 @@ impl Worker {
         });
     }
 
-    fn tell_of(&mut self, picture: &Picture, film: &Film, control: &Control, began: Instant) {
+    fn publish_progress(&mut self, picture: &Picture, film: &Film, control: &Control, began: Instant) {
         self.count(picture, film);
         self.status.rays_per_second = (control.rays().total() as f64 / began.elapsed().as_secs_f64().max(1e-9)) as f32;
         if self.status.channel.is_light() {
@@ -265,8 +273,8 @@ impl Worker {
     fn count(&mut self, picture: &Picture, film: &Film) {
         let pixels = self.status.size.map(f64::from).iter().product::<f64>();
         self.status.samples = (film.samples() as f64 / pixels.max(1.0)) as f32;
-        self.status.noise = screen::noise_of(film);
-        self.status.clamped = picture.is_clamped().then(|| screen::clamped_of(film));
+        self.status.noise = screen::relative_error_of_film(film);
+        self.status.clamped = picture.is_clamped().then(|| screen::clamped_fraction(film));
     }
 
     fn finish(&mut self, subject: &Subject, film: &Film) {

@@ -1,10 +1,10 @@
-//! The handle that windows, pages and scripts hold.
+//! Session handle for windows, web pages and scripts.
 
-use crate::build::Build;
+use crate::build::BuildRequest;
 use crate::shared::Shared;
 use crate::worker::{self, Worker};
-use crate::{Edit, Frame, Probe, Status};
-use juggler::imaging::{self, Destination, Format, Options as FileOptions, RowWriter};
+use crate::{Edit, Frame, PixelInfo, Status};
+use juggler::imaging::{self, Destination, ImageFormat, Options as EncoderOptions, RowWriter};
 use juggler::scene::Scene;
 use std::io::{Cursor, Seek, SeekFrom, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,37 +12,39 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// What a session is opened with.
+/// Options with which a session is opened.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    /// Width and height, instead of the scene's.
+pub struct SessionOptions {
+    /// Width and height in pixels; `None` uses the scene's.
     pub size: Option<[u32; 2]>,
-    /// Threads that render; all cores when 0.
+    /// Number of render threads, at most 1024; 0 uses all cores.
     pub threads: usize,
-    /// How long a frame may take while the camera moves; resolution is lowered to keep it.
+    /// Target duration of a frame while the camera moves, 30 ms by default. The session lowers the
+    /// resolution to meet it.
     pub budget: Duration,
-    /// Whether the scene's files are watched, and edits of them shown.
+    /// Whether the scene's files are watched and reloaded when they change.
     pub watch: bool,
 }
 
-impl Default for Options {
+impl Default for SessionOptions {
     fn default() -> Self {
         Self { size: None, threads: 0, budget: Duration::from_millis(30), watch: false }
     }
 }
 
-/// Why a picture was not saved.
+/// Error of saving an image.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    /// There is none yet.
+    /// No image has been rendered yet.
     #[error("there is no picture yet")]
     Nothing,
-    /// It cannot be written.
+    /// The image cannot be encoded or written.
     #[error(transparent)]
     Image(#[from] imaging::ImageError),
 }
 
-/// A scene that is looked at. Cheap to clone: all clones are the same session, which ends with the last of them.
+/// Handle of an interactive session. Clones share one session, which ends when the last of them is
+/// dropped.
 #[derive(Clone)]
 pub struct Session {
     handle: Arc<Handle>,
@@ -52,35 +54,36 @@ struct Handle(Arc<Shared>);
 
 impl Drop for Handle {
     fn drop(&mut self) {
-        self.0.tell(|desk| desk.closed = true);
+        self.0.update(|mailbox| mailbox.closed = true);
     }
 }
 
 impl Session {
-    /// Opens a scene file or a built-in scene by name. Mistakes do not end a session: see [`Status::error`].
-    pub fn open(name: &str, options: Options) -> Self {
-        let build = Build::open(name, options.size);
-        Self::begin(build, name, options)
+    /// Opens a scene file, or a built-in scene by name. Errors of the scene do not end the session;
+    /// see [`Status::error`].
+    pub fn open(name: &str, options: SessionOptions) -> Self {
+        let build = BuildRequest::open(name, options.size);
+        Self::start(build, name, options)
     }
 
-    /// The same for a scene made by a program; it has no files to watch.
-    pub fn of(scene: Scene, name: &str, options: Options) -> Self {
-        let build = Build::of(scene, name, options.size);
-        Self::begin(build, name, options)
+    /// Opens a scene that a program has built; it has no files to watch.
+    pub fn from_scene(scene: Scene, name: &str, options: SessionOptions) -> Self {
+        let build = BuildRequest::from_scene(scene, name, options.size);
+        Self::start(build, name, options)
     }
 
-    fn begin(build: Build, name: &str, options: Options) -> Self {
+    fn start(build: BuildRequest, name: &str, options: SessionOptions) -> Self {
         let shared = Arc::new(Shared::default());
         let handle = Arc::new(Handle(Arc::clone(&shared)));
         let status = Status { scene: name.to_owned(), scheduler: "work-stealing".into(), ..Status::default() };
         shared.publish(None, status.clone(), None);
         let work = move || {
             let Some(pool) = worker::pool(options.threads) else {
-                return shared.end("error: the threads cannot be started");
+                return shared.end("error: cannot start threads");
             };
             let worker = Worker::new(Arc::clone(&shared), options, pool, status);
             if catch_unwind(AssertUnwindSafe(|| worker.run(build))).is_err() {
-                shared.end("error: the session has ended: the program has a fault");
+                shared.end("error: the session has ended: this is a bug of Juggler");
             }
         };
         let started = std::thread::Builder::new().name("session".into()).spawn(work);
@@ -94,55 +97,57 @@ impl Session {
         &self.handle.0
     }
 
-    /// Asks for a change and returns at once, with the number of edits so far; frames and status tell by `revision` from
-    /// when on it shows.
+    /// Queues an edit and returns at once, with the number of edits so far. Frames and status
+    /// include the edit once their `revision` is at least that number.
     pub fn edit(&self, edit: Edit) -> u64 {
         self.shared().edit(edit)
     }
 
-    /// The newest frame; the same one until there is a newer.
+    /// Returns the newest frame; `None` before the first.
     pub fn frame(&self) -> Option<Arc<Frame>> {
-        self.shared().desk().frame.clone()
+        self.shared().mailbox().frame.clone()
     }
 
-    /// How things stand.
+    /// Returns the current status.
     pub fn status(&self) -> Arc<Status> {
-        Arc::clone(&self.shared().desk().status)
+        Arc::clone(&self.shared().mailbox().status)
     }
 
-    /// Waits until there is a frame with a higher number than `seen_frame`, or a status with a higher one than
-    /// `seen_status`, or for so long; whether anything came.
+    /// Waits for a frame with a higher number than `seen_frame` or a status with a higher number
+    /// than `seen_status`. Returns `false` on timeout.
     pub fn wait(&self, seen_frame: u64, seen_status: u64, timeout: Duration) -> bool {
         self.shared().wait(seen_frame, seen_status, timeout)
     }
 
-    /// Calls `wake` whenever there is a new frame or status, from a thread of the session: it must be quick.
-    pub fn on_news(&self, wake: impl Fn() + Send + Sync + 'static) {
-        self.shared().on_news(Arc::new(wake));
+    /// Registers a callback for new frames and statuses. A thread of the session calls it, so it
+    /// must return quickly.
+    pub fn on_update(&self, callback: impl Fn() + Send + Sync + 'static) {
+        self.shared().on_update(Arc::new(callback));
     }
 
-    /// What is known about a pixel of the picture; nothing before there is a world.
-    pub fn probe(&self, pixel: [u32; 2]) -> Option<Probe> {
-        let shown = self.shared().desk().shown.clone()?;
-        Some(Probe::of(&shown.subject, shown.film.as_deref(), pixel))
+    /// Probes a pixel of the image; `None` before a world is built.
+    pub fn probe(&self, pixel: [u32; 2]) -> Option<PixelInfo> {
+        let snapshot = self.shared().mailbox().snapshot.clone()?;
+        Some(PixelInfo::at_pixel(&snapshot.subject, snapshot.film.as_deref(), pixel))
     }
 
-    /// Cameras that were kept, as the member `cameras` of a scene file.
+    /// Returns the bookmarked cameras as the member `cameras` of a scene file.
     pub fn bookmarks(&self) -> serde_json::Value {
-        let shown = self.shared().desk().shown.clone();
-        shown.map_or_else(|| serde_json::json!({}), |shown| shown.subject.kept())
+        let snapshot = self.shared().mailbox().snapshot.clone();
+        snapshot.map_or_else(|| serde_json::json!({}), |snapshot| snapshot.subject.bookmarks())
     }
 
-    /// Writes the picture as it is now, with the samples that it has; the ending of the name says the format.
+    /// Writes the image with the samples it has so far; the file extension selects the format.
     pub fn save(&self, path: &Path) -> Result<(), SaveError> {
-        let format = Format::from_path(path)?;
+        let format = ImageFormat::from_path(path)?;
         self.write(|header| imaging::create(path, format, header))
     }
 
-    /// The same as bytes in memory, in a format by its ending: `png`, `exr`.
-    pub fn encoded(&self, format: &str) -> Result<Vec<u8>, SaveError> {
-        let format = Format::from_path(Path::new(&format!("picture.{format}")))?;
-        let bytes = Bytes::default();
+    /// Encodes the image in memory, in a format given by its file extension, such as `png` or
+    /// `exr`.
+    pub fn encode(&self, format: &str) -> Result<Vec<u8>, SaveError> {
+        let format = ImageFormat::from_path(Path::new(&format!("picture.{format}")))?;
+        let bytes = SharedBuffer::default();
         self.write(|header| imaging::writer(format, Destination::seekable("memory", bytes.clone()), header))?;
         Ok(bytes.take())
     }
@@ -151,21 +156,21 @@ impl Session {
         &self,
         writer: impl FnOnce(&imaging::Header) -> Result<Box<dyn RowWriter>, imaging::ImageError>,
     ) -> Result<(), SaveError> {
-        let shown = self.shared().desk().shown.clone().ok_or(SaveError::Nothing)?;
-        if shown.draft.pixels.is_empty() {
+        let snapshot = self.shared().mailbox().snapshot.clone().ok_or(SaveError::Nothing)?;
+        if snapshot.preview.pixels.is_empty() {
             return Err(SaveError::Nothing);
         }
-        let mut writer = writer(&shown.picture().header(FileOptions::default()))?;
-        shown.develop(|rows| writer.write_rows(rows))?;
+        let mut writer = writer(&snapshot.picture().header(EncoderOptions::default()))?;
+        snapshot.develop(|rows| writer.write_rows(rows))?;
         Ok(writer.finish()?)
     }
 }
 
-/// Bytes that somebody else writes.
+/// Shared in-memory file for an image writer.
 #[derive(Clone, Default)]
-struct Bytes(Arc<Mutex<Cursor<Vec<u8>>>>);
+struct SharedBuffer(Arc<Mutex<Cursor<Vec<u8>>>>);
 
-impl Bytes {
+impl SharedBuffer {
     fn with<T>(&self, what: impl FnOnce(&mut Cursor<Vec<u8>>) -> T) -> T {
         what(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -175,7 +180,7 @@ impl Bytes {
     }
 }
 
-impl Write for Bytes {
+impl Write for SharedBuffer {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.with(|all| all.write(bytes))
     }
@@ -185,7 +190,7 @@ impl Write for Bytes {
     }
 }
 
-impl Seek for Bytes {
+impl Seek for SharedBuffer {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
         self.with(|all| all.seek(to))
     }

@@ -1,7 +1,7 @@
-//! What a session's handles and its worker share.
+//! State that a session's handles and its worker share.
 
-use crate::build::Mistake;
-use crate::screen::Draft;
+use crate::build::BuildError;
+use crate::screen::Preview;
 use crate::subject::Subject;
 use crate::{Edit, Frame, Stage, Status};
 use juggler::Picture;
@@ -11,76 +11,76 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Something to be called when there is news.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
+/// Callback for new frames and statuses.
+pub type Callback = Arc<dyn Fn() + Send + Sync>;
 
-/// What a session's handles and its worker share.
+/// State that a session's handles and its worker share.
 #[derive(Default)]
 pub struct Shared {
-    desk: Mutex<Desk>,
-    /// Something lies on the desk for the worker.
+    mailbox: Mutex<Mailbox>,
+    /// Notifies the worker about new work.
     work: Condvar,
-    /// Something lies on the desk for who waits for pictures.
-    news: Condvar,
+    /// Notifies clients about new frames and statuses.
+    updates: Condvar,
 }
 
-/// What lies between the two.
+/// Mailbox between the handles and the worker.
 #[derive(Default)]
-pub struct Desk {
-    /// Edits that wait.
+pub struct Mailbox {
+    /// Edits that the worker has not taken yet.
     pub edits: VecDeque<Edit>,
-    /// How many were asked for.
-    pub asked: u64,
-    /// The number of the world that is waited for; those before it were overtaken.
-    pub awaited: u64,
-    /// That world once it is built, or why there is none.
-    pub built: Option<Result<Subject, Mistake>>,
-    /// What was being rendered is done.
-    pub done: bool,
-    /// Nobody holds the session any more.
+    /// Total number of edits.
+    pub edit_count: u64,
+    /// Number of the latest build; results of earlier builds are discarded.
+    pub build_number: u64,
+    /// Result of the latest build.
+    pub built: Option<Result<Subject, BuildError>>,
+    /// Whether the current render job has ended.
+    pub job_ended: bool,
+    /// Whether all handles are dropped.
     pub closed: bool,
-    /// What is shown.
+    /// Newest frame.
     pub frame: Option<Arc<Frame>>,
-    /// How things stand.
+    /// Newest status.
     pub status: Arc<Status>,
-    /// What can be asked about and saved.
-    pub shown: Option<Shown>,
-    wakes: Vec<Wake>,
+    /// Data for probing and saving.
+    pub snapshot: Option<Snapshot>,
+    callbacks: Vec<Callback>,
 }
 
-/// What can be asked about and saved.
+/// Snapshot of the session for probing and saving.
 #[derive(Clone)]
-pub struct Shown {
-    /// What is looked at.
+pub struct Snapshot {
+    /// Scene, edits and picture.
     pub subject: Arc<Subject>,
-    /// Its samples so far.
+    /// Film with the samples so far.
     pub film: Option<Arc<Film>>,
-    /// The picture before there are samples.
-    pub draft: Arc<Draft>,
-    /// The picture without noise, which is what is shown where there is one.
+    /// Preview that stands in for pixels without samples.
+    pub preview: Arc<Preview>,
+    /// Denoised image, displayed instead of the film if there is one.
     pub denoised: Option<Arc<[Rgb]>>,
 }
 
-impl Shown {
-    /// The picture to make.
+impl Snapshot {
+    /// Returns the picture that is rendered.
     pub fn picture(&self) -> &Arc<Picture> {
         self.subject.picture()
     }
 
-    /// Hands the picture's rows to `rows`, from the top: denoised where it is shown so; where there are no samples yet, those
-    /// of the draft.
+    /// Passes the rows of the displayed image to `rows`, from the top: denoised if so displayed,
+    /// else from the film, with the preview where it has no samples.
     pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
         if let Some(pixels) = &self.denoised {
             return pixels.chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
         }
-        let (size, draft, gains) = (self.picture().size(), &self.draft, self.subject.gains());
-        let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| draft.at([x, y], size)).collect() };
+        let (size, preview, gains) = (self.picture().size(), &self.preview, self.subject.gains());
+        let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| preview.at([x, y], size)).collect() };
         let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows(&row(y))) };
-        for (number, band) in (0..).zip(film.layout().bands()) {
+        for (number, band) in (0..).zip(film.tiling().bands()) {
             let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
-            for tile in film.layout().in_band(number).filter_map(|tile| film.tile(tile as usize)) {
-                if tile.count() > 0 {
-                    tile.pixels().copy(&self.subject.light(&tile, &gains), &band, &mut pixels);
+            for tile in film.tiling().tiles_of_band(number).filter_map(|tile| film.tile(tile as usize)) {
+                if tile.samples_per_pixel() > 0 {
+                    tile.pixels().copy_into(&self.subject.light(&tile, &gains), &band, &mut pixels);
                 }
             }
             rows(&pixels)?;
@@ -89,96 +89,98 @@ impl Shown {
     }
 }
 
-impl Desk {
-    /// Whether what was being rendered is done, and whether the worker has anything to turn to.
+impl Mailbox {
+    /// Returns whether the current render job has ended, and whether the worker has new work.
     pub fn state(&self) -> (bool, bool) {
-        (self.done, self.calls())
+        (self.job_ended, self.has_work())
     }
 
-    /// Whether the worker has anything to turn to.
-    pub fn calls(&self) -> bool {
+    /// Returns whether the worker has new work.
+    pub fn has_work(&self) -> bool {
         self.closed || !self.edits.is_empty() || self.built.is_some()
     }
 }
 
 impl Shared {
-    /// The desk, for a moment.
-    pub fn desk(&self) -> MutexGuard<'_, Desk> {
-        // Poison only says that another thread panicked; every value here is whole at any time.
-        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Locks the mailbox.
+    pub fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
+        // Poisoning only means that another thread panicked: every value is consistent at any time.
+        self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts something on the worker's desk.
-    pub fn tell(&self, change: impl FnOnce(&mut Desk)) {
-        change(&mut self.desk());
+    /// Changes the mailbox and wakes the worker.
+    pub fn update(&self, change: impl FnOnce(&mut Mailbox)) {
+        change(&mut self.mailbox());
         self.work.notify_all();
     }
 
-    /// Asks for a change.
+    /// Queues an edit and returns the number of edits so far.
     pub fn edit(&self, edit: Edit) -> u64 {
-        let mut asked = 0;
-        self.tell(|desk| {
-            desk.edits.push_back(edit);
-            desk.asked += 1;
-            asked = desk.asked;
+        let mut edit_count = 0;
+        self.update(|mailbox| {
+            mailbox.edits.push_back(edit);
+            mailbox.edit_count += 1;
+            edit_count = mailbox.edit_count;
         });
-        asked
+        edit_count
     }
 
-    /// The worker waits until `ready`, or for so long; forever without.
-    pub fn rest(&self, timeout: Option<Duration>, ready: impl Fn(&Desk) -> bool) {
-        let desk = self.desk();
+    /// Blocks the worker until `ready` or the timeout; `None` waits without a limit.
+    pub fn wait_for_work(&self, timeout: Option<Duration>, ready: impl Fn(&Mailbox) -> bool) {
+        let mailbox = self.mailbox();
         match timeout {
             Some(timeout) => {
-                let waited = self.work.wait_timeout_while(desk, timeout, |desk| !ready(desk));
+                let waited = self.work.wait_timeout_while(mailbox, timeout, |mailbox| !ready(mailbox));
                 drop(waited.unwrap_or_else(PoisonError::into_inner));
             }
             None => {
-                let waited = self.work.wait_while(desk, |desk| !ready(desk));
+                let waited = self.work.wait_while(mailbox, |mailbox| !ready(mailbox));
                 drop(waited.unwrap_or_else(PoisonError::into_inner));
             }
         }
     }
 
-    /// Shows something new.
-    pub fn publish(&self, frame: Option<Frame>, mut status: Status, shown: Option<Shown>) {
-        let mut desk = self.desk();
-        let mut news = frame.is_some();
+    /// Publishes a status, with a new frame and snapshot if given, and notifies the clients.
+    pub fn publish(&self, frame: Option<Frame>, mut status: Status, snapshot: Option<Snapshot>) {
+        let mut mailbox = self.mailbox();
+        let mut changed = frame.is_some();
         if let Some(mut frame) = frame {
-            frame.number = desk.frame.as_ref().map_or(0, |frame| frame.number) + 1;
-            desk.frame = Some(Arc::new(frame));
+            frame.number = mailbox.frame.as_ref().map_or(0, |frame| frame.number) + 1;
+            mailbox.frame = Some(Arc::new(frame));
         }
-        status.number = desk.status.number;
-        if status != *desk.status {
+        status.number = mailbox.status.number;
+        if status != *mailbox.status {
             status.number += 1;
-            desk.status = Arc::new(status);
-            news = true;
+            mailbox.status = Arc::new(status);
+            changed = true;
         }
-        desk.shown = shown.or(desk.shown.take());
-        let wakes = if news { desk.wakes.clone() } else { Vec::new() };
-        drop(desk);
-        if news {
-            self.news.notify_all();
+        mailbox.snapshot = snapshot.or(mailbox.snapshot.take());
+        let callbacks = if changed { mailbox.callbacks.clone() } else { Vec::new() };
+        drop(mailbox);
+        if changed {
+            self.updates.notify_all();
         }
-        wakes.iter().for_each(|wake| wake());
+        callbacks.iter().for_each(|callback| callback());
     }
 
-    /// Says that nothing more will come, and why; what is shown stays.
+    /// Publishes the end of the session with an error; the displayed frame stays.
     pub fn end(&self, error: &str) {
-        let before = Status::clone(&self.desk().status);
+        let before = Status::clone(&self.mailbox().status);
         self.publish(None, Status { error: Some(error.into()), stage: Stage::Finished, ..before }, None);
     }
 
-    /// Waits for a frame or a status with a higher number.
+    /// Waits for a frame or a status with a higher number. Returns `false` on timeout.
     pub fn wait(&self, frame: u64, status: u64, timeout: Duration) -> bool {
-        let old = |desk: &Desk| desk.frame.as_ref().is_none_or(|f| f.number <= frame) && desk.status.number <= status;
-        let waited = self.news.wait_timeout_while(self.desk(), timeout, |desk| old(desk));
+        let old = |mailbox: &Mailbox| {
+            mailbox.frame.as_ref().is_none_or(|f| f.number <= frame) && mailbox.status.number <= status
+        };
+        let waited = self.updates.wait_timeout_while(self.mailbox(), timeout, |mailbox| old(mailbox));
         !waited.unwrap_or_else(PoisonError::into_inner).1.timed_out()
     }
 
-    /// Calls `wake` from now on.
-    pub fn on_news(&self, wake: Wake) {
-        self.desk().wakes.push(wake);
+    /// Registers a callback for new frames and statuses.
+    pub fn on_update(&self, callback: Callback) {
+        self.mailbox().callbacks.push(callback);
     }
 }
 
@@ -191,10 +193,10 @@ mod tests {
         let shared = Shared::default();
         let status = Status { scene: "chess".into(), samples: 3.0, ..Status::default() };
         shared.publish(None, status, None);
-        let seen = shared.desk().status.number;
+        let number = shared.mailbox().status.number;
         shared.end("error: no");
-        assert!(shared.wait(u64::MAX, seen, Duration::ZERO));
-        let status = Arc::clone(&shared.desk().status);
+        assert!(shared.wait(u64::MAX, number, Duration::ZERO));
+        let status = Arc::clone(&shared.mailbox().status);
         assert_eq!((status.error.as_deref(), status.stage), (Some("error: no"), Stage::Finished));
         assert_eq!((status.scene.as_str(), status.samples), ("chess", 3.0));
     }

@@ -1,94 +1,100 @@
-//! How things stand.
+//! Status of a session.
 
 use crate::Channel;
 use juggler::camera::film::Rect;
 use serde::Serialize;
 use serde_json::Value;
 
-/// What the session is at.
+/// Stage of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
-    /// A scene is read, or its world is built. What is shown is of before.
+    /// A scene is being read or its world is being built; the previous image stays on display.
     #[default]
     Loading,
-    /// The camera moves, or time: frames follow each other.
+    /// Camera or time is moving: coarse frames follow each other.
     Moving,
-    /// The picture gets better.
+    /// The image at rest is being refined.
     Refining,
-    /// It cannot get better; no thread does anything.
+    /// The image is complete; the session is idle.
     Finished,
 }
 
-/// How things stand: everything that panels show. As JSON for pages.
+/// Status of a session: all data that panels display. It is sent to web pages as JSON.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Status {
-    /// Counts up with every change of it.
+    /// Sequence number, which increases with every change.
     pub number: u64,
-    /// Edits that are taken account of.
+    /// Number of edits that have been applied.
     pub revision: u64,
-    /// What the session is at.
+    /// Current stage.
     pub stage: Stage,
-    /// The scene's name: that of its file, or of a built-in one.
+    /// Name of the scene: its file, or a built-in scene.
     pub scene: String,
-    /// What is wrong with the scene or the last edit, as `juggler check` says it (no colours); what is shown is of before.
+    /// Errors of the scene or the last edit, as `juggler check` prints them, without colors. The
+    /// last valid image stays on display.
     pub error: Option<String>,
-    /// Width and height of the whole picture.
+    /// Width and height of the whole image, in pixels.
     pub size: [u32; 2],
-    /// The part that is refined, when it is not all.
+    /// Region that is refined; `None` for the whole image.
     pub region: Option<Rect>,
-    /// What is shown.
+    /// Displayed channel.
     pub channel: Channel,
-    /// Samples of a pixel so far, the mean.
+    /// Mean number of samples per pixel so far.
     pub samples: f32,
-    /// Samples of a pixel in the end.
+    /// Number of samples per pixel of the finished image.
     pub samples_wanted: u32,
-    /// The estimated relative error of the picture, the root mean square; not known before 64 samples.
+    /// Estimated relative error of the image, the root mean square over its pixels; `None` before
+    /// 64 samples.
     pub noise: Option<f32>,
-    /// Which share of the light clamping has taken away, from 0 to 1; nothing where nothing is clamped, or known of it.
+    /// Fraction of the radiance that clamping removed, 0 to 1; `None` without clamping, or before
+    /// it is known.
     pub clamped: Option<f32>,
-    /// Frames a second, over the last ones of a motion.
+    /// Moving average of the frames per second during a motion.
     pub frames_per_second: f32,
-    /// Rays a second, lately.
+    /// Rays per second of the current render.
     pub rays_per_second: f32,
-    /// The pixels of a coarse frame are squares of so many of the picture; 1 when it is not coarse.
+    /// Edge length of a coarse frame's pixel blocks, in pixels; 1 at full resolution.
     pub coarseness: u32,
-    /// Threads that render.
+    /// Number of render threads.
     pub threads: usize,
-    /// Who renders which pixels of a frame.
+    /// Distribution of a frame's pixels to threads.
     pub scheduler: String,
-    /// Integrator by name.
+    /// Name of the integrator.
     pub integrator: String,
-    /// Its longest path, when it has one.
+    /// Maximum number of specular bounces of the integrator `classic`; `None` for other
+    /// integrators.
     pub max_depth: Option<u32>,
-    /// Whether the picture is to be shown denoised.
+    /// Whether denoising is switched on.
     pub denoise: bool,
-    /// Whether what is shown is denoised.
+    /// Whether the displayed frame is denoised.
     pub denoised: bool,
-    /// Sampler by name.
+    /// Name of the sampler.
     pub sampler: String,
-    /// Tone curve by name.
+    /// Name of the tone curve.
     pub tone: String,
-    /// Photographic stops.
+    /// Exposure in photographic stops.
     pub exposure: f32,
-    /// The scene's groups of lights by name, with the factors on their light; none where it names none.
+    /// Light groups of the scene by name, with their RGB gains; empty if the scene has none.
     pub light_groups: Vec<(String, [f32; 3])>,
-    /// Names of the scene's cameras, bookmarks included.
+    /// Names of the scene's cameras, including bookmarks.
     pub cameras: Vec<String>,
-    /// The camera as scene files describe it.
+    /// Current camera in the scene format.
     pub camera: Value,
-    /// The point of interest, scene units.
+    /// Point of interest, in world space.
     pub interest: [f32; 3],
-    /// The diagonal of a box around everything that has an end, scene units: what speeds are measured by.
+    /// Length of the diagonal of the box around all bounded objects, in scene units; navigation
+    /// speeds scale with it.
     pub extent: f32,
-    /// The frame that is shown.
+    /// Displayed frame of the animation.
     pub frame: f64,
-    /// How many frames the scene's animation has; 0 when it has none.
+    /// Number of frames of the animation; 0 without one.
     pub frames: u32,
-    /// Frames of the animation that make a second.
+    /// Frames per second of the animation.
     pub frame_rate: f64,
-    /// Whether it plays.
+    /// Whether the animation is playing.
     pub playing: bool,
-    /// When finished: the hash of the film, which is that of `juggler render`, with `--denoise` where [`Self::denoise`] is on.
+    /// BLAKE3 hash of the finished film: equal to that of `juggler render`, with `--denoise` if
+    /// [`Self::denoise`] is on.
     pub hash: Option<String>,
 }

@@ -1,7 +1,7 @@
-//! What is looked at: a scene, what people changed of it, and the picture that follows. No threads, no clocks: all that
-//! takes long is in [`Build::run`], which whoever holds the subject runs where it likes.
+//! Edited scene with the picture to render. It needs neither threads nor clocks: all long work is
+//! in [`BuildRequest::run`], which the owner runs where it likes.
 
-use crate::build::{Build, MOST_DENOISED, MOST_PIXELS, Task, pixels_of, text_of};
+use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, Task, error_text, pixel_count};
 use crate::{Edit, Setting, Status, pose};
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
@@ -13,116 +13,119 @@ use juggler::scene::document::read_text;
 use juggler::scene::import::Content;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
-use juggler::{MOST_GAIN, Picture, Settings, View};
+use juggler::{MAX_GAIN, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is looked at.
+/// Scene with its edits, camera and picture.
 #[derive(Clone)]
 pub struct Subject {
-    /// The name that it was opened by.
+    /// Name under which the scene was opened.
     pub name: String,
-    /// As its file has it, at frame 0.
+    /// Scene as its file describes it, at frame 0.
     pub(crate) file: Arc<Scene>,
-    /// With the values that were set, at the frame.
+    /// Scene with the edited values, at the current frame.
     pub(crate) scene: Arc<Scene>,
-    /// Values that were set, by place, in their order.
+    /// Edited values by JSON pointer, in the order of the edits.
     pub(crate) values: Vec<(String, Value)>,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
-    /// The size that a reset leads back to; the scene's without.
+    /// Size that a reset restores; `None` restores the scene's.
     pub(crate) size: Option<[u32; 2]>,
-    /// The camera where people moved it.
+    /// Camera that an edit has moved.
     pub(crate) camera: Option<AnyCamera>,
-    /// Cameras that were kept in memory, by name.
-    pub(crate) kept: Vec<(String, AnyCamera)>,
-    /// Factors on groups of lights, by name; 1 for all others.
+    /// Bookmarked cameras held in memory, by name.
+    pub(crate) bookmarks: Vec<(String, AnyCamera)>,
+    /// RGB gains of light groups, by name; 1 for all others.
     pub(crate) gains: Vec<(String, Rgb)>,
     pub(crate) upward: Vec3,
     pub(crate) interest: Vec3,
-    /// Whether the point of interest was chosen, and does not follow the picture's middle.
-    pub(crate) held: bool,
+    /// Whether the point of interest was chosen, and so does not follow the image center.
+    pub(crate) interest_is_chosen: bool,
     pub(crate) picture: Arc<Picture>,
 }
 
-/// What an edit asks for.
-pub enum Change {
-    /// Nothing of the picture.
+/// Effect of an edit.
+pub enum EditEffect {
+    /// The picture is unchanged.
     Nothing,
-    /// The picture is another one already: [`Subject::picture`].
+    /// [`Subject::picture`] is already a new one.
     View,
     /// A world must be built first.
-    Build(Box<Build>),
+    Build(Box<BuildRequest>),
 }
 
 fn can_be_denoised(size: [u32; 2]) -> Result<(), String> {
-    if pixels_of(size) <= MOST_DENOISED {
+    if pixel_count(size) <= MAX_DENOISED_PIXELS {
         return Ok(());
     }
     let [width, height] = size;
-    Err(format!("error: {width} x {height} are more pixels than the limit of {MOST_DENOISED} for the denoised preview"))
+    Err(format!(
+        "error: {width} x {height} are more pixels than the limit of {MAX_DENOISED_PIXELS} for the denoised preview"
+    ))
 }
 
-fn rebuild(build: Build) -> Change {
-    Change::Build(Box::new(build))
+fn rebuild(build: BuildRequest) -> EditEffect {
+    EditEffect::Build(Box::new(build))
 }
 
 impl Subject {
-    /// The picture to make.
+    /// Returns the picture to render.
     pub fn picture(&self) -> &Arc<Picture> {
         &self.picture
     }
 
-    /// The scene at the frame, with the values that were set.
+    /// Returns the scene with the edited values, at the current frame.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The point of interest.
+    /// Returns the point of interest, in world space.
     pub fn interest(&self) -> Vec3 {
         self.interest
     }
 
-    /// The frame.
+    /// Returns the current frame.
     pub fn frame(&self) -> f64 {
         self.frame
     }
 
-    /// Length and pace of the animation, when there is one.
+    /// Returns length and frame rate of the animation, if the scene has one.
     pub fn animation(&self) -> Option<Animation> {
         let animation = self.file.description.animation;
         (animation.frames > 1).then_some(animation)
     }
 
-    /// The diagonal of a box around everything that has an end, 1 when nothing has.
+    /// Returns the diagonal of the box around all bounded objects, in scene units; 1 if there are
+    /// none.
     pub fn extent(&self) -> f32 {
         let bounds = self.picture.world().bounds();
         if bounds.is_empty() { 1.0 } else { bounds.extent().length().max(f32::MIN_POSITIVE) }
     }
 
-    /// Names of the cameras.
+    /// Returns the names of all cameras, including bookmarks.
     pub fn cameras(&self) -> Vec<String> {
         let description = &self.scene.description;
         let single = description.camera.iter().map(|_| "camera".to_owned());
         let names = single.chain(description.cameras.keys().cloned());
-        names.chain(self.kept.iter().map(|(name, _)| name.clone())).collect()
+        names.chain(self.bookmarks.iter().map(|(name, _)| name.clone())).collect()
     }
 
-    /// Cameras that were kept in memory, as the member `cameras` of a scene file.
-    pub fn kept(&self) -> Value {
-        self.kept.iter().map(|(name, camera)| (name.clone(), camera_json(camera))).collect()
+    /// Returns the cameras bookmarked in memory as the member `cameras` of a scene file.
+    pub fn bookmarks(&self) -> Value {
+        self.bookmarks.iter().map(|(name, camera)| (name.clone(), camera_json(camera))).collect()
     }
 
-    /// Changes what can be changed at once, and says what else is to be done. After an error nothing has changed. Edits
-    /// that are not about the picture are ignored.
-    pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
+    /// Applies an edit, or returns the build it requires. An error leaves the subject unchanged.
+    /// Edits that do not concern the picture are ignored.
+    pub fn apply(&mut self, edit: &Edit) -> Result<EditEffect, String> {
         match edit {
             Edit::Scene(name) => Ok(rebuild(self.open(name))),
             Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
             Edit::Reset => Ok(rebuild(self.reset())),
             Edit::Set { path, value } => {
-                let mut build = self.build(Task::Have(Arc::clone(&self.file)));
+                let mut build = self.build(Task::InMemory(Arc::clone(&self.file)));
                 build.values.retain(|(other, _)| other != path);
                 build.values.push((path.clone(), value.clone()));
                 Ok(rebuild(build))
@@ -130,64 +133,72 @@ impl Subject {
             Edit::At(frame) => {
                 let frame = self.animation().map_or(0.0, |animation| frame.clamp(0.0, f64::from(animation.frames)));
                 if frame == self.frame || !frame.is_finite() {
-                    return Ok(Change::Nothing);
+                    return Ok(EditEffect::Nothing);
                 }
-                Ok(rebuild(Build { frame, ..self.build(Task::Have(Arc::clone(&self.file))) }))
+                Ok(rebuild(BuildRequest { frame, ..self.build(Task::InMemory(Arc::clone(&self.file))) }))
             }
             Edit::Setting(setting) => self.set(setting),
             Edit::Pivot(pixel) => {
                 self.pivot(*pixel);
-                Ok(Change::Nothing)
+                Ok(EditEffect::Nothing)
             }
-            Edit::Fly(_) | Edit::Orbit(_) | Edit::Zoom(_) | Edit::Focus(_) | Edit::Frame(_) => self.steer(edit),
-            Edit::Camera(name) => self.choose(name),
+            Edit::Fly(_) | Edit::Orbit(_) | Edit::Zoom(_) | Edit::Focus(_) | Edit::Frame(_) => self.navigate(edit),
+            Edit::Camera(name) => self.select_camera(name),
             Edit::Look(camera) => {
                 let camera =
                     serde_json::from_value(camera.clone()).map_err(|error| format!("error: camera: {error}"))?;
-                self.look(camera, true)
+                self.set_camera(camera, true)
             }
-            Edit::Bookmark(_) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) => Ok(Change::Nothing),
+            Edit::Bookmark(_) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) => Ok(EditEffect::Nothing),
         }
     }
 
-    /// Keeps the camera under a name, in memory.
-    pub fn keep(&mut self, name: &str) {
-        self.kept.retain(|(other, _)| other != name);
-        self.kept.push((name.to_owned(), self.picture.view().camera));
+    /// Bookmarks the current camera under a name, in memory.
+    pub fn add_bookmark(&mut self, name: &str) {
+        self.bookmarks.retain(|(other, _)| other != name);
+        self.bookmarks.push((name.to_owned(), self.picture.view().camera));
     }
 
-    /// The text of the scene's file with the camera kept in it, when there is a file that holds a scene.
+    /// Returns the text of the scene's file with the current camera added under a name; `None` if
+    /// no file holds the scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
         let path = Path::new(&self.name);
-        if Content::of_file(path).is_mesh() {
+        if Content::detect(path).is_mesh() {
             return None;
         }
         let text = read_text(path).ok()?;
-        let kept = with_camera(&text, name, &self.picture.view().camera);
-        Some(kept.map_err(|error| format!("error: the camera cannot be kept in `{}`: {error}", self.name)))
+        let edited = with_camera(&text, name, &self.picture.view().camera);
+        Some(edited.map_err(|error| format!("error: cannot save the camera in `{}`: {error}", self.name)))
     }
 
-    /// The files that the scene was read from, and those of its meshes.
+    /// Returns the files of the scene, including its meshes.
     pub fn files(&self) -> Vec<PathBuf> {
         self.file.paths()
     }
 
-    /// Another scene, looked at in the same way.
-    fn open(&self, name: &str) -> Build {
-        let mut build = Build { size: self.size, ..Build::open(name, self.settings.size) };
+    /// Requests another scene with the same size and denoiser.
+    fn open(&self, name: &str) -> BuildRequest {
+        let mut build = BuildRequest { size: self.size, ..BuildRequest::open(name, self.settings.size) };
         build.settings.denoiser = self.settings.denoiser;
         build
     }
 
-    /// The scene as its file has it, looked at in the same way.
-    fn reset(&self) -> Build {
+    /// Requests the scene as its file describes it, with the same denoiser.
+    fn reset(&self) -> BuildRequest {
         let settings = Settings { size: self.size, denoiser: self.settings.denoiser, ..Settings::default() };
         let (values, gains, camera) = (Vec::new(), Vec::new(), None);
-        Build { values, frame: 0.0, settings, camera, gains, ..self.build(Task::Have(Arc::clone(&self.file))) }
+        BuildRequest {
+            values,
+            frame: 0.0,
+            settings,
+            camera,
+            gains,
+            ..self.build(Task::InMemory(Arc::clone(&self.file)))
+        }
     }
 
-    fn build(&self, task: Task) -> Build {
-        Build {
+    fn build(&self, task: Task) -> BuildRequest {
+        BuildRequest {
             task,
             name: self.name.clone(),
             values: self.values.clone(),
@@ -195,20 +206,20 @@ impl Subject {
             settings: self.settings.clone(),
             size: self.size,
             camera: self.camera.clone(),
-            kept: self.kept.clone(),
+            bookmarks: self.bookmarks.clone(),
             gains: self.gains.clone(),
-            interest: self.held.then_some(self.interest),
-            before: Some((Arc::clone(&self.scene), Arc::clone(&self.picture))),
+            interest: self.interest_is_chosen.then_some(self.interest),
+            previous: Some((Arc::clone(&self.scene), Arc::clone(&self.picture))),
         }
     }
 
-    fn set(&mut self, setting: &Setting) -> Result<Change, String> {
+    fn set(&mut self, setting: &Setting) -> Result<EditEffect, String> {
         let mut settings = self.settings.clone();
         match setting {
-            Setting::Size(size) if pixels_of(*size) > MOST_PIXELS => {
+            Setting::Size(size) if pixel_count(*size) > MAX_PIXELS => {
                 let [width, height] = size;
                 return Err(format!(
-                    "error: {width} x {height} are more pixels than the limit of {MOST_PIXELS} for looking"
+                    "error: {width} x {height} are more pixels than the limit of {MAX_PIXELS} for interactive rendering"
                 ));
             }
             Setting::Size(size) if self.settings.denoiser.is_some() => {
@@ -223,9 +234,9 @@ impl Subject {
             Setting::Tone(name) => settings.curve = Some(name.clone()),
             Setting::Exposure(stops) => settings.exposure_stops = Some(*stops),
             Setting::Seed(seed) => settings.seed = Some(*seed),
-            Setting::Gain(group, factors) => return self.relight(group, *factors),
+            Setting::Gain(group, factors) => return self.set_gain(group, *factors),
             Setting::Denoise(on) => return self.denoise(*on),
-            Setting::Threads(_) | Setting::Scheduler(_) => return Ok(Change::Nothing),
+            Setting::Threads(_) | Setting::Scheduler(_) => return Ok(EditEffect::Nothing),
         }
         if matches!(setting, Setting::Integrator(name) if name != "classic") {
             settings.max_depth = None;
@@ -233,126 +244,127 @@ impl Subject {
         let description = &self.scene.description;
         let (mut render, mut tone) = ((*description.render).clone(), (*description.tone).clone());
         render.integrator.get_or_insert_with(|| self.scene.integrator_choice().integrator);
-        settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error))?;
+        settings.apply_to(&mut render, &mut tone).map_err(|error| error_text(&error))?;
         render.camera = self.picture.view().render.camera;
-        self.see(View { camera: self.picture.view().camera, render, tone })?;
+        self.set_view(View { camera: self.picture.view().camera, render, tone })?;
         self.settings = settings;
-        Ok(Change::View)
+        Ok(EditEffect::View)
     }
 
-    /// The film keeps what guides the denoiser, or keeps it no more: it begins anew.
-    fn denoise(&self, on: bool) -> Result<Change, String> {
+    /// Switches denoising. The film starts over with or without the denoiser's features.
+    fn denoise(&self, on: bool) -> Result<EditEffect, String> {
         let denoiser = on.then_some(Denoiser::Own);
         if self.settings.denoiser == denoiser {
-            return Ok(Change::Nothing);
+            return Ok(EditEffect::Nothing);
         }
         if on {
             can_be_denoised(self.picture.size())?;
         }
         let settings = Settings { denoiser, ..self.settings.clone() };
-        Ok(rebuild(Build { settings, ..self.build(Task::Have(Arc::clone(&self.file))) }))
+        Ok(rebuild(BuildRequest { settings, ..self.build(Task::InMemory(Arc::clone(&self.file))) }))
     }
 
-    fn relight(&mut self, group: &str, factors: [f32; 3]) -> Result<Change, String> {
+    fn set_gain(&mut self, group: &str, factors: [f32; 3]) -> Result<EditEffect, String> {
         let known = self.picture.layers().light_groups();
-        juggler::check_name("group of lights", group, known.iter().map(String::as_str)).map_err(|e| text_of(&e))?;
-        if !factors.iter().all(|factor| (0.0..=MOST_GAIN).contains(factor)) {
-            return Err(format!("error: factors on light are 0 to {MOST_GAIN}"));
+        juggler::check_name("light group", group, known.iter().map(String::as_str)).map_err(|e| error_text(&e))?;
+        if !factors.iter().all(|factor| (0.0..=MAX_GAIN).contains(factor)) {
+            return Err(format!("error: factors of light groups are 0 to {MAX_GAIN}"));
         }
         self.gains.retain(|(other, _)| other != group);
         self.gains.push((group.to_owned(), Rgb::from(factors)));
-        Ok(Change::View)
+        Ok(EditEffect::View)
     }
 
     fn gain(&self, group: &str) -> Rgb {
         self.gains.iter().find(|(name, _)| name == group).map_or(Rgb::WHITE, |(_, gain)| *gain)
     }
 
-    /// The factor on each of the picture's groups of lights, by number; nothing where all are 1.
+    /// Returns the gains of the picture's light groups, by index; empty if all are 1.
     pub fn gains(&self) -> Vec<Rgb> {
         let groups = self.picture.layers().light_groups();
         let gains: Vec<Rgb> = groups.iter().map(|group| self.gain(group)).collect();
         if gains.iter().all(|gain| *gain == Rgb::WHITE) { Vec::new() } else { gains }
     }
 
-    /// The light of a tile of the picture's film, groups of lights mixed by [`Self::gains`].
+    /// Returns the mean radiance of a tile's pixels with the light groups scaled by `gains`, see
+    /// [`Self::gains`].
     pub fn light(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
         if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, gains) }
     }
 
-    /// Whether the picture is to be shown denoised, and can be: with all lights as they are.
+    /// Returns whether denoising is on and possible: relit light groups cannot be denoised.
     #[cfg(feature = "native")]
     pub(crate) fn is_denoised(&self) -> bool {
         self.picture.layers().denoiser().is_some() && self.gains().is_empty()
     }
 
-    fn see(&mut self, view: View) -> Result<(), String> {
-        self.picture = Arc::new(self.picture.seen(view).map_err(|error| text_of(&error))?);
+    fn set_view(&mut self, view: View) -> Result<(), String> {
+        self.picture = Arc::new(self.picture.seen(view).map_err(|error| error_text(&error))?);
         Ok(())
     }
 
-    /// Another camera; `fresh` when it has nothing to do with the one before.
-    fn look(&mut self, camera: AnyCamera, fresh: bool) -> Result<Change, String> {
-        let upward = camera.upward();
-        self.see(View { camera: camera.clone(), ..self.picture.view() })?;
+    /// Switches to another camera; `fresh` if it is unrelated to the previous one.
+    fn set_camera(&mut self, camera: AnyCamera, fresh: bool) -> Result<EditEffect, String> {
+        let upward = camera.up();
+        self.set_view(View { camera: camera.clone(), ..self.picture.view() })?;
         self.camera = Some(camera);
         if fresh {
             self.upward = upward;
-            self.begin_interest();
-        } else if !self.held {
-            self.look_for_interest();
+            self.init_interest();
+        } else if !self.interest_is_chosen {
+            self.center_interest();
         }
-        Ok(Change::View)
+        Ok(EditEffect::View)
     }
 
-    fn choose(&mut self, name: &str) -> Result<Change, String> {
-        if let Some((_, camera)) = self.kept.iter().find(|(kept, _)| kept == name) {
-            return self.look(camera.clone(), true);
+    fn select_camera(&mut self, name: &str) -> Result<EditEffect, String> {
+        if let Some((_, camera)) = self.bookmarks.iter().find(|(other, _)| other == name) {
+            return self.set_camera(camera.clone(), true);
         }
         let settings = Settings { camera: Some(name.to_owned()), ..self.settings.clone() };
         let description = &self.scene.description;
         let known = self.cameras();
-        juggler::check_name("camera", name, known.iter().map(String::as_str)).map_err(|error| text_of(&error))?;
+        juggler::check_name("camera", name, known.iter().map(String::as_str)).map_err(|error| error_text(&error))?;
         let camera = description.cameras.get(name).or(description.camera.as_ref()).cloned();
         if let Some(camera) = camera {
-            self.look(camera.into_inner(), true)?;
+            self.set_camera(camera.into_inner(), true)?;
             (self.settings, self.camera) = (settings, None);
         }
-        Ok(Change::View)
+        Ok(EditEffect::View)
     }
 
-    fn steer(&mut self, edit: &Edit) -> Result<Change, String> {
+    fn navigate(&mut self, edit: &Edit) -> Result<EditEffect, String> {
         let camera = self.picture.view().camera;
         let upward = self.upward;
         let moved = match edit {
             Edit::Fly(fly) => pose::fly(&camera, upward, fly),
             Edit::Orbit(orbit) => {
-                self.held = true;
+                self.interest_is_chosen = true;
                 pose::orbit(&camera, upward, self.interest, orbit)
             }
             Edit::Zoom(factor) => pose::zoom(&camera, *factor),
             Edit::Focus(pixel) => {
-                let Some((point, _)) = self.seen_at(*pixel) else { return Ok(Change::Nothing) };
-                (self.interest, self.held) = (point, true);
+                let Some((point, _)) = self.pick(*pixel) else { return Ok(EditEffect::Nothing) };
+                (self.interest, self.interest_is_chosen) = (point, true);
                 pose::focus(&camera, point)
             }
             Edit::Frame(pixel) => {
-                let bounds = self.to_frame(*pixel);
-                (self.interest, self.held) = (bounds.center(), true);
+                let bounds = self.framing_bounds(*pixel);
+                (self.interest, self.interest_is_chosen) = (bounds.center(), true);
                 pose::frame(&camera, upward, &bounds, self.picture.size())
             }
             _ => None,
         };
-        let Some(moved) = moved.filter(|moved| *moved != camera) else { return Ok(Change::Nothing) };
-        let change = self.look(moved, false)?;
+        let Some(moved) = moved.filter(|moved| *moved != camera) else { return Ok(EditEffect::Nothing) };
+        let change = self.set_camera(moved, false)?;
         if matches!(edit, Edit::Fly(_)) {
-            self.lose_interest();
+            self.drop_hidden_interest();
         }
         Ok(change)
     }
 
-    /// Writes down how things stand.
-    pub fn describe(&self, status: &mut Status) {
+    /// Writes the subject's part of the status.
+    pub fn write_status(&self, status: &mut Status) {
         let View { camera, render, tone } = self.picture.view();
         self.name.clone_into(&mut status.scene);
         status.size = render.size;

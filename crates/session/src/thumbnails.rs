@@ -1,13 +1,13 @@
-//! Small pictures of the built-in scenes, part of the program, for choices of scenes.
+//! Thumbnails of the built-in scenes, embedded in the program.
 
-/// Small pictures by the name of their scene.
+/// Thumbnail files by the name of their scene.
 macro_rules! thumbnails {
     ($($name:literal),+ $(,)?) => {
         &[$(($name, include_bytes!(concat!("../thumbnails/", $name, ".jpg")))),+]
     };
 }
 
-/// Every small picture: one line for each file, at most 208 pixels wide and high.
+/// All thumbnails, JPEG files of at most 208 x 208 pixels.
 const THUMBNAILS: &[(&str, &[u8])] = thumbnails! {
     "blossom",
     "chess",
@@ -55,7 +55,7 @@ const THUMBNAILS: &[(&str, &[u8])] = thumbnails! {
     "two-spheres-refraction",
 };
 
-/// Small picture of a built-in scene, a JPEG; `None` for other names.
+/// Returns the thumbnail of a built-in scene as a JPEG file, or `None` for other names.
 pub fn thumbnail(scene: &str) -> Option<&'static [u8]> {
     THUMBNAILS.iter().find(|(name, _)| *name == scene).map(|(_, picture)| *picture)
 }

@@ -1,4 +1,5 @@
-//! The files of a scene, watched. Editors write beside a file and rename, so it is the folders that are watched.
+//! File watching. Editors write a new file and rename it, so the folders are watched rather than
+//! the files.
 
 use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::BTreeSet;
@@ -7,10 +8,11 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How long it must be quiet after a change: what is written in pieces is read once.
-const QUIET: Duration = Duration::from_millis(25);
+/// Time without events after which a change is reported, so that a file written in pieces is read
+/// once.
+const DEBOUNCE: Duration = Duration::from_millis(25);
 
-/// The files of a scene, watched until it is dropped.
+/// Watcher of a scene's files; dropping it stops the watch.
 pub struct Watch {
     watcher: RecommendedWatcher,
     folders: BTreeSet<PathBuf>,
@@ -18,7 +20,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Calls `changed` some time after any of the files has, which are none yet.
+    /// Creates a watcher without files. It calls `changed` after a change of any watched file.
     pub fn new(changed: impl Fn() + Send + 'static) -> Option<Self> {
         let files = Arc::new(Mutex::new(BTreeSet::new()));
         let (sender, receiver) = channel();
@@ -26,7 +28,7 @@ impl Watch {
         let wait = move || {
             while receiver.recv().is_ok() {
                 loop {
-                    match receiver.recv_timeout(QUIET) {
+                    match receiver.recv_timeout(DEBOUNCE) {
                         Ok(()) => {}
                         Err(RecvTimeoutError::Timeout) => break,
                         Err(RecvTimeoutError::Disconnected) => return,
@@ -39,16 +41,17 @@ impl Watch {
         Some(Self { watcher, folders: BTreeSet::new(), files })
     }
 
-    /// Watches these files, and no others.
+    /// Replaces the set of watched files.
     pub fn set(&mut self, files: &[PathBuf]) {
         let files: BTreeSet<PathBuf> = files.iter().flat_map(|file| names(file)).collect();
         let folders: BTreeSet<PathBuf> = files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
         for folder in self.folders.difference(&folders) {
-            // A folder that is gone is no longer watched anyway.
+            // A deleted folder is no longer watched.
             let _ = self.watcher.unwatch(folder);
         }
         for folder in folders.difference(&self.folders) {
-            // What cannot be watched is not shown by itself; `Edit::Reload` is still there.
+            // A folder that cannot be watched is not reloaded automatically; `Edit::Reload` still
+            // works.
             let _ = self.watcher.watch(folder, RecursiveMode::NonRecursive);
         }
         self.folders = folders;
@@ -64,13 +67,13 @@ fn handler(files: Arc<Mutex<BTreeSet<PathBuf>>>, sender: Sender<()>) -> impl Fn(
         }
         let files = files.lock().unwrap_or_else(PoisonError::into_inner);
         if event.paths.iter().any(|path| files.contains(path)) {
-            // Nobody listens only when the watch is being dropped.
+            // The receiver is gone only while the watcher is being dropped.
             let _ = sender.send(());
         }
     }
 }
 
-/// The names by which the system may speak of a file: where it stands, and where a link leads.
+/// Returns the names under which events may report a file: its own path and the target of a link.
 fn names(file: &Path) -> Vec<PathBuf> {
     let beside = || Some(std::fs::canonicalize(folder(file)).ok()?.join(file.file_name()?));
     [beside(), std::fs::canonicalize(file).ok()].into_iter().flatten().collect()

@@ -1,14 +1,14 @@
-//! The thread that turns edits into pictures: what is to be done, and when. How it is done: `rendering.rs`.
+//! Worker thread that turns edits into images: it decides what to do next; `rendering.rs` does it.
 
-use crate::build::Build;
-use crate::coarse::Pace;
+use crate::background_build::{BuildReason, LOADING_DELAY, RunningBuild};
+use crate::build::BuildRequest;
+use crate::coarse::RenderRate;
 use crate::denoising::Denoising;
-use crate::screen::{Canvas, Draft, Toner};
-use crate::session::Options;
-use crate::shared::{Shared, Shown};
-use crate::subject::{Change, Subject};
+use crate::screen::{Canvas, DisplayTransform, Preview};
+use crate::session::SessionOptions;
+use crate::shared::{Shared, Snapshot};
+use crate::subject::{EditEffect, Subject};
 use crate::watch::Watch;
-use crate::worlds::{Building, QUICK, Why};
 use crate::{Edit, Frame, Setting, Stage, Status};
 use juggler::Picture;
 use juggler::camera::film::{Film, Rect};
@@ -19,54 +19,54 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most threads that render.
+/// Maximum number of render threads.
 const MAX_THREADS: usize = 1024;
-/// How often it is looked whether the next frame of an animation is due.
+/// Polling interval for the next frame of an animation.
 const TICK: Duration = Duration::from_millis(4);
 
-/// The thread that turns edits into pictures.
+/// State of the worker thread.
 pub struct Worker {
     pub shared: Arc<Shared>,
-    pub options: Options,
+    pub options: SessionOptions,
     pub pool: Arc<ThreadPool>,
     pub scheduler: Scheduler,
     pub subject: Option<Arc<Subject>>,
-    /// Samples of the picture so far.
+    /// Samples of the current picture.
     pub film: Option<Arc<Film>>,
-    pub draft: Arc<Draft>,
-    /// The film's picture without noise.
+    pub preview: Arc<Preview>,
+    /// Denoised image of the film.
     pub denoising: Denoising,
     pub canvas: Option<Canvas>,
-    pub toner: Toner,
+    pub transform: DisplayTransform,
     pub region: Option<Rect>,
-    pub pace: Pace,
+    pub rate: RenderRate,
     pub status: Status,
-    /// The world that is being built.
-    pub building: Option<Building>,
-    /// The picture is another one than the draft shows.
-    pub moved: bool,
-    /// The film is to be shown anew.
-    pub retoned: bool,
-    /// When the last draft was ready.
+    /// Build that is running.
+    pub building: Option<RunningBuild>,
+    /// Whether the picture has changed since the last preview.
+    pub needs_preview: bool,
+    /// Whether the film must be displayed again with other tone, channel or gains.
+    pub needs_repaint: bool,
+    /// Time at which the last preview was ready.
     pub drawn: Instant,
-    /// Since when it plays, and from which frame.
+    /// Start time and start frame of the playback.
     pub playing: Option<(Instant, f64)>,
-    /// The scene that was asked for last.
-    wanted: String,
-    /// What is wrong with the scene's files.
-    pub broken: Option<String>,
+    /// Scene that was requested last.
+    requested_scene: String,
+    /// Errors in the scene's files.
+    pub scene_error: Option<String>,
     pub watch: Option<Watch>,
 }
 
-/// Threads that render; all cores when 0.
+/// Creates a thread pool; 0 threads use all cores.
 pub fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
     let builder = ThreadPoolBuilder::new().num_threads(threads.min(MAX_THREADS));
     builder.thread_name(|i| format!("session {i}")).build().ok().map(Arc::new)
 }
 
 impl Worker {
-    /// For a scene that will be built by [`Worker::open`].
-    pub fn new(shared: Arc<Shared>, options: Options, pool: Arc<ThreadPool>, status: Status) -> Self {
+    /// Creates a worker without a scene.
+    pub fn new(shared: Arc<Shared>, options: SessionOptions, pool: Arc<ThreadPool>, status: Status) -> Self {
         let watch = options.watch.then(|| {
             let shared = Arc::downgrade(&shared);
             Watch::new(move || {
@@ -76,95 +76,95 @@ impl Worker {
             })
         });
         Self {
-            wanted: status.scene.clone(),
+            requested_scene: status.scene.clone(),
             options,
             pool,
             scheduler: Scheduler::default(),
             subject: None,
             film: None,
-            draft: Arc::default(),
+            preview: Arc::default(),
             denoising: Denoising::default(),
             canvas: None,
-            toner: Toner::new(&Tone::default()),
+            transform: DisplayTransform::new(&Tone::default()),
             region: None,
-            pace: Pace::default(),
+            rate: RenderRate::default(),
             status,
             building: None,
-            moved: false,
-            retoned: false,
+            needs_preview: false,
+            needs_repaint: false,
             drawn: Instant::now(),
             playing: None,
-            broken: None,
+            scene_error: None,
             watch: watch.flatten(),
             shared,
         }
     }
 
-    /// Works until the session is closed.
-    pub fn run(mut self, build: Build) {
-        self.build(build, Why::Other);
-        while !self.shared.desk().closed {
-            self.take_built();
-            self.take_edits();
+    /// Runs until the session is closed.
+    pub fn run(mut self, build: BuildRequest) {
+        self.build(build, BuildReason::OtherScene);
+        while !self.shared.mailbox().closed {
+            self.adopt_build();
+            self.apply_edits();
             self.play();
-            if self.moved && self.building.is_none() {
+            if self.needs_preview && self.building.is_none() {
                 self.draw();
-            } else if self.retoned {
+            } else if self.needs_repaint {
                 self.repaint();
             } else if self.building.is_some() || self.playing.is_some() || !self.refine() {
-                self.rest();
+                self.wait_for_work();
             }
         }
     }
 
-    fn rest(&self) {
+    fn wait_for_work(&self) {
         let timeout = match self.building {
-            Some(_) if self.status.stage != Stage::Loading => Some(QUICK),
+            Some(_) if self.status.stage != Stage::Loading => Some(LOADING_DELAY),
             None if self.playing.is_some() => Some(TICK),
             _ => None,
         };
         let building = self.building.is_some();
-        self.shared.rest(timeout, |desk| {
-            // While a world is built, only another scene is of interest.
-            let edits = if building { desk.edits.iter().any(Edit::supersedes) } else { !desk.edits.is_empty() };
-            desk.closed || desk.built.is_some() || edits
+        self.shared.wait_for_work(timeout, |mailbox| {
+            // While a world is being built, only an edit that opens another scene wakes the worker.
+            let edits = if building { mailbox.edits.iter().any(Edit::supersedes) } else { !mailbox.edits.is_empty() };
+            mailbox.closed || mailbox.built.is_some() || edits
         });
     }
 
-    /// Shows how things stand, with a new frame or without.
+    /// Publishes the status, with a new frame if given.
     pub fn publish(&mut self, frame: Option<Frame>) {
-        let shown = self.subject.clone().map(|subject| Shown {
+        let snapshot = self.subject.clone().map(|subject| Snapshot {
             film: self.film.clone(),
-            draft: Arc::clone(&self.draft),
+            preview: Arc::clone(&self.preview),
             denoised: self.denoised_pixels(&subject),
             subject,
         });
-        self.shared.publish(frame, self.status.clone(), shown);
+        self.shared.publish(frame, self.status.clone(), snapshot);
     }
 
-    fn take_edits(&mut self) {
+    fn apply_edits(&mut self) {
         while let Some(edit) = self.next_edit() {
             if let Err(error) = self.apply(&edit) {
                 self.status.error = Some(error);
                 self.publish(None);
-            } else if !self.moved && !self.retoned && self.building.is_none() {
+            } else if !self.needs_preview && !self.needs_repaint && self.building.is_none() {
                 self.publish(None);
             }
         }
     }
 
     fn next_edit(&mut self) -> Option<Edit> {
-        let mut desk = self.shared.desk();
+        let mut mailbox = self.shared.mailbox();
         if self.building.is_some() {
-            // What came before it is about a scene that nobody wants to see any more.
-            let at = desk.edits.iter().position(Edit::supersedes)?;
-            desk.edits.drain(..at);
+            // Edits before it concern a scene that is being replaced.
+            let at = mailbox.edits.iter().position(Edit::supersedes)?;
+            mailbox.edits.drain(..at);
             self.status.revision += at as u64;
         }
         loop {
-            let edit = desk.edits.pop_front()?;
+            let edit = mailbox.edits.pop_front()?;
             self.status.revision += 1;
-            if !desk.edits.front().is_some_and(|next| next.replaces(&edit)) {
+            if !mailbox.edits.front().is_some_and(|next| next.replaces(&edit)) {
                 return Some(edit);
             }
         }
@@ -173,19 +173,19 @@ impl Worker {
     fn apply(&mut self, edit: &Edit) -> Result<(), String> {
         match edit {
             Edit::Show(channel) => {
-                self.moved |= self.status.channel != *channel;
+                self.needs_preview |= self.status.channel != *channel;
                 self.status.channel = *channel;
             }
-            Edit::Region(region) => self.confine(*region),
+            Edit::Region(region) => self.set_region(*region),
             Edit::Play(play) => {
                 let from = self.subject.as_ref().filter(|subject| *play && subject.animation().is_some());
                 self.playing = from.map(|subject| (Instant::now(), subject.frame()));
-                self.describe();
+                self.update_status();
             }
             Edit::Setting(Setting::Threads(threads)) => {
-                self.pool = pool(*threads).ok_or("error: the threads cannot be started")?;
-                self.pace.forget();
-                self.describe();
+                self.pool = pool(*threads).ok_or("error: cannot start threads")?;
+                self.rate.forget();
+                self.update_status();
             }
             Edit::Setting(Setting::Scheduler(name)) => {
                 self.scheduler = scheduler(name)?;
@@ -193,22 +193,24 @@ impl Worker {
             }
             Edit::Bookmark(name) => self.bookmark(name)?,
             Edit::Scene(name) => {
-                name.clone_into(&mut self.wanted);
+                name.clone_into(&mut self.requested_scene);
                 self.open()?;
             }
-            // The scene that was asked for was not to be had yet.
-            Edit::Reload if self.subject.as_ref().is_none_or(|subject| subject.name != self.wanted) => self.open()?,
+            // The requested scene could not be opened yet.
+            Edit::Reload if self.subject.as_ref().is_none_or(|subject| subject.name != self.requested_scene) => {
+                self.open()?;
+            }
             edit => self.apply_to_subject(edit)?,
         }
         Ok(())
     }
 
-    /// Opens the scene that was asked for last.
+    /// Opens the scene that was requested last.
     fn open(&mut self) -> Result<(), String> {
         if self.subject.is_some() {
-            return self.apply_to_subject(&Edit::Scene(self.wanted.clone()));
+            return self.apply_to_subject(&Edit::Scene(self.requested_scene.clone()));
         }
-        self.build(Build::open(&self.wanted, self.options.size), Why::Other);
+        self.build(BuildRequest::open(&self.requested_scene, self.options.size), BuildReason::OtherScene);
         Ok(())
     }
 
@@ -216,44 +218,44 @@ impl Worker {
         let Some(subject) = &mut self.subject else { return Ok(()) };
         let before = Arc::clone(subject.picture());
         match Arc::make_mut(subject).apply(edit)? {
-            Change::Nothing => self.describe(),
-            Change::Build(build) => {
-                let why = match edit {
-                    Edit::Scene(_) => Why::Other,
-                    Edit::Reload => Why::Files,
-                    _ => Why::Parts,
+            EditEffect::Nothing => self.update_status(),
+            EditEffect::Build(build) => {
+                let reason = match edit {
+                    Edit::Scene(_) => BuildReason::OtherScene,
+                    Edit::Reload => BuildReason::Files,
+                    _ => BuildReason::Edit,
                 };
-                self.build(*build, why);
+                self.build(*build, reason);
             }
-            Change::View => {
-                self.status.error.clone_from(&self.broken);
-                self.take_view(&before);
-                self.describe();
+            EditEffect::View => {
+                self.status.error.clone_from(&self.scene_error);
+                self.adopt_view(&before);
+                self.update_status();
             }
         }
         Ok(())
     }
 
-    /// The film goes on when its samples are those of the new picture too.
-    pub fn take_view(&mut self, before: &Picture) {
+    /// Adopts a new picture: the film continues if both share their samples.
+    pub fn adopt_view(&mut self, before: &Picture) {
         let Some(subject) = &self.subject else { return };
         let picture = subject.picture();
         if before.size() != picture.size() {
             self.region = None;
         }
         if before.shares_samples(picture) && self.film.is_some() {
-            self.retoned = true;
+            self.needs_repaint = true;
             self.status.samples_wanted = picture.samples();
-            self.refilm();
+            self.rebuild_film();
         } else {
-            (self.film, self.moved, self.denoising) = (None, true, Denoising::default());
+            (self.film, self.needs_preview, self.denoising) = (None, true, Denoising::default());
         }
     }
 
     fn bookmark(&mut self, name: &str) -> Result<(), String> {
         let Some(subject) = &mut self.subject else { return Ok(()) };
         match subject.with_bookmark(name) {
-            None => Arc::make_mut(subject).keep(name),
+            None => Arc::make_mut(subject).add_bookmark(name),
             Some(text) => {
                 let (text, file) = (text?, subject.name.clone());
                 let wrong = |error| format!("error: cannot write `{file}`: {error}");
@@ -261,13 +263,15 @@ impl Worker {
                 self.apply_to_subject(&Edit::Reload)?;
             }
         }
-        self.describe();
+        self.update_status();
         Ok(())
     }
 
     fn play(&mut self) {
         let (Some((since, from)), Some(subject)) = (self.playing, &self.subject) else { return };
-        let Some(animation) = subject.animation().filter(|_| self.building.is_none() && !self.moved) else { return };
+        let Some(animation) = subject.animation().filter(|_| self.building.is_none() && !self.needs_preview) else {
+            return;
+        };
         let at = from + since.elapsed().as_secs_f64() * animation.frames_per_second;
         let at = at.floor().rem_euclid(f64::from(animation.frames));
         if at != subject.frame()
@@ -277,14 +281,14 @@ impl Worker {
         }
     }
 
-    /// Brings the status up to date.
-    pub fn describe(&mut self) {
+    /// Updates the status.
+    pub fn update_status(&mut self) {
         let status = &mut self.status;
         status.threads = self.pool.current_num_threads();
         status.playing = self.playing.is_some();
         status.region = self.region;
         if let Some(subject) = &self.subject {
-            subject.describe(status);
+            subject.write_status(status);
         }
     }
 }

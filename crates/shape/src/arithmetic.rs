@@ -1,35 +1,36 @@
-//! Arithmetic that exact shapes share. It runs in `f64`: rays and shapes are given in `f32`, so products are
-//! exact and what is left of a cancellation is still good to more digits than an `f32` holds.
+//! Arithmetic shared by exact shapes, in `f64`: rays and shapes are given in `f32`, so products are
+//! exact, and the result of a cancellation has more digits than an `f32`.
 
 use super::Hit;
 use crate::surface::Surface;
-use juggler_math::{DVec3, Ray, Vec2, fun, robust};
+use juggler_math::{DVec3, Ray, Vec2, portable, robust};
 use std::f32::consts::PI;
 
 /// Origin and direction in double precision.
 #[inline]
-pub fn double(ray: &Ray) -> (DVec3, DVec3) {
+pub fn to_f64(ray: &Ray) -> (DVec3, DVec3) {
     (ray.origin.as_dvec3(), ray.direction.as_dvec3())
 }
 
-/// Both solutions of `a t² - 2 b t + c = 0`, the smaller first, for `a > 0` and a `discriminant` that stands
-/// for `b² - a c` and is not negative. Nothing cancels (Press et al., Numerical Recipes, section 5.6).
+/// Both solutions of `a t² - 2 b t + c = 0`, the smaller first, for `a > 0` and a `discriminant`
+/// `b² - a c` of at least 0. Avoids cancellation (Press et al., Numerical Recipes, section 5.6).
 #[inline]
 pub fn roots(a: f64, b: f64, c: f64, discriminant: f64) -> (f64, f64) {
     let [near, far] = root_fractions(a, b, c, discriminant);
     (near.0 / near.1, far.0 / far.1)
 }
 
-/// The [`roots`] before they are divided, numerator and denominator: often one of them is enough.
+/// The [`roots`] as numerators and denominators: often one of the divisions is enough.
 #[inline]
 pub fn root_fractions(a: f64, b: f64, c: f64, discriminant: f64) -> [(f64, f64); 2] {
     let q = b + discriminant.sqrt().copysign(b);
     if q < 0.0 { [(q, a), (c, q)] } else { [(c, q), (q, a)] }
 }
 
-/// Where a ray crosses the endless cylinder around the y axis.
+/// Distances at which a ray crosses the infinite cylinder around the y axis; `None` for a miss or a
+/// ray along the axis.
 #[inline]
-pub fn cross_tube(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
+pub fn intersect_infinite_cylinder(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
     let a = direction.x * direction.x + direction.z * direction.z;
     let beside = origin.x * direction.z - origin.z * direction.x;
     let discriminant = a * radius * radius - beside * beside;
@@ -41,47 +42,47 @@ pub fn cross_tube(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, 
     Some(roots(a, b, c, discriminant))
 }
 
-/// The first of two candidates, nearer one first, that the ray's range holds.
+/// First of two candidates, nearer one first, in the ray's range.
 #[inline]
 pub fn first_in_range(ray: &Ray, candidates: [(f64, u32); 2]) -> Option<Hit> {
-    candidates.into_iter().find_map(|(t, part)| in_range(ray, t, part))
+    candidates.into_iter().find_map(|(t, primitive)| in_range(ray, t, primitive))
 }
 
-/// The same ray for arithmetic in `f32`: its range ends before infinity, and is empty when the direction is so
-/// short that its inverse overflows.
+/// The ray for arithmetic in `f32`: its range ends before infinity, and is empty if the direction
+/// is so short that its inverse overflows.
 #[inline]
-pub fn within_floats(ray: &Ray) -> Ray {
+pub fn clamp_to_f32_range(ray: &Ray) -> Ray {
     let has_direction = ray.direction.abs().max_element() >= f32::MIN_POSITIVE;
-    ray.up_to(if has_direction { ray.t_max.min(f32::MAX) } else { -1.0 })
+    ray.with_t_max(if has_direction { ray.t_max.min(f32::MAX) } else { -1.0 })
 }
 
-/// A hit at `t` if the ray's range holds it once rounded; never at infinity.
+/// Hit at `t`, rounded, if it is in the ray's range and finite.
 #[inline(always)]
-pub fn in_range(ray: &Ray, t: f64, part: u32) -> Option<Hit> {
+pub fn in_range(ray: &Ray, t: f64, primitive: u32) -> Option<Hit> {
     let t = t as f32;
-    (t >= ray.t_min && t <= ray.t_max && t < f32::INFINITY).then_some(Hit { t, uv: Vec2::ZERO, part })
+    (t >= ray.t_min && t <= ray.t_max && t < f32::INFINITY).then_some(Hit { t, uv: Vec2::ZERO, primitive })
 }
 
-/// A surface point that was found in `f64` and is off by its rounding to `f32` alone.
+/// Surface at a point computed in `f64`, whose only error is the rounding to `f32`.
 pub fn rounded_surface(point: DVec3, normal: DVec3, uv: Vec2) -> Surface {
     let (point, normal) = (point.as_vec3(), normal.as_vec3());
     Surface::new(point, robust::gamma(2) * point.abs().dot(normal.abs()), normal, uv)
 }
 
-/// How far hits stay from edges, in sizes of a shape: more than a ray that leaves inwards is moved, so that it cannot
-/// start beyond the wall that joins there.
-pub const EDGE: f32 = robust::gamma(32);
+/// Distance of hits from edges, relative to the size of a shape: larger than the offset of a ray
+/// that leaves inwards, so that the ray cannot start beyond the adjacent face.
+pub const EDGE_MARGIN: f32 = robust::gamma(32);
 
-/// `value` between `low` and `high`, and not closer to them than `margin` where there is room.
+/// Clamps `value` to `low` and `high`, and to a distance of `margin` from both where there is room.
 #[inline]
 pub fn clamp_within(value: f32, low: f32, high: f32, margin: f32) -> f32 {
     let margin = margin.min(0.25 * (high - low));
     value.max(low + margin).min(high - margin)
 }
 
-/// The angle about the y axis as a fraction of a turn in [0, 1): 0 towards +x, a quarter towards -z
+/// Angle around the y axis as a fraction of a turn in [0, 1): 0 towards +x, a quarter towards -z
 /// (counter-clockwise seen from above).
-pub fn turn(x: f32, z: f32) -> f32 {
-    let fraction = fun::atan2(-z, x) / (2.0 * PI);
+pub fn azimuth_turns(x: f32, z: f32) -> f32 {
+    let fraction = portable::atan2(-z, x) / (2.0 * PI);
     if fraction < 0.0 { (fraction + 1.0).min(1.0 - f32::EPSILON) } else { fraction }
 }

@@ -1,22 +1,22 @@
-//! Checks of descriptions: every number finite and of a size whose square still fits a float.
+//! Validation of descriptions: every number is finite, and its square fits a float.
 
 use super::InvalidShape;
 use juggler_math::{Vec3, range};
 
-/// The greatest length or coordinate; its reciprocal is the smallest radius or edge.
+/// Largest length or coordinate; its reciprocal is the smallest radius or edge.
 pub const MAX_LENGTH: f32 = 1e18;
 
-/// An error that names its field.
+/// Error that names its field.
 pub fn invalid(field: impl Into<String>, message: impl Into<String>) -> InvalidShape {
     InvalidShape { field: field.into(), message: message.into() }
 }
 
-/// A number within a range.
+/// Checks that a number is within a range.
 pub fn number(field: &str, value: f32, low: f32, high: f32) -> Result<(), InvalidShape> {
-    range::outside(field, value, low, high).map_or(Ok(()), |message| Err(invalid(field, message)))
+    range::range_error(field, value, low, high).map_or(Ok(()), |message| Err(invalid(field, message)))
 }
 
-/// A coordinate or signed length.
+/// Checks a coordinate or signed length.
 pub fn coordinate(field: &str, value: f32) -> Result<(), InvalidShape> {
     if value.abs() <= MAX_LENGTH {
         return Ok(());
@@ -27,7 +27,7 @@ pub fn coordinate(field: &str, value: f32) -> Result<(), InvalidShape> {
     ))
 }
 
-/// A length above zero.
+/// Checks a length above zero.
 pub fn positive(field: &str, value: f32) -> Result<(), InvalidShape> {
     if (1.0 / MAX_LENGTH..=MAX_LENGTH).contains(&value) {
         return Ok(());
@@ -36,7 +36,7 @@ pub fn positive(field: &str, value: f32) -> Result<(), InvalidShape> {
     Err(invalid(field, format!("`{field}` must be a length above 0 ({limits}), is {value}")))
 }
 
-/// A point: three coordinates.
+/// Checks the three coordinates of a point.
 pub fn point(field: &str, value: Vec3) -> Result<(), InvalidShape> {
     value.to_array().into_iter().enumerate().try_for_each(|(axis, v)| coordinate(&format!("{field}[{axis}]"), v))
 }

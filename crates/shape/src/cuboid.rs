@@ -1,37 +1,41 @@
-//! A box with faces along the axes; turned and slanted boxes are made by a transform.
+//! An axis-aligned box; a transform rotates and shears it.
 //!
 //! ```
 //! use juggler_shape::{AnyShape, Cuboid};
-//! let shape: AnyShape = serde_json::from_str(r#"{"cuboid": {"min": [-1, 0, -1], "max": [1, 0.5, 1]}}"#)?;
+//! let shape: AnyShape = serde_json::from_str(
+//!     r#"{"cuboid": {"min": [-1, 0, -1], "max": [1, 0.5, 1]}}"#,
+//! )?;
 //! assert_eq!(shape, Cuboid { min: [-1.0, 0.0, -1.0].into(), max: [1.0, 0.5, 1.0].into() }.into());
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::Derivatives;
-use super::arithmetic::{EDGE, clamp_within, double, first_in_range};
-use super::solid_angle::{area_pdf, area_sample, pick};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::SurfaceDerivatives;
+use super::arithmetic::{EDGE_MARGIN, clamp_within, first_in_range, to_f64};
+use super::solid_angle::{area_pdf, area_sample, select_by_weight};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A box from one corner to the opposite one; by default the cube of edge 1 around the origin.
+/// An axis-aligned box from one corner to the opposite one; by default the cube of edge 1 around
+/// the origin.
 ///
-/// Surface coordinates: each face has the unit square. On the sides v grows with y and u to the right, seen from
-/// outside; top and bottom are seen with x to the right.
+/// Surface coordinates from 0 to 1 on each face. On the sides, v grows with y and u to the right,
+/// seen from outside. On top and bottom, u grows with x; v grows with -z on top and with z on the
+/// bottom.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Cuboid {
-    /// The corner with the least coordinates.
+    /// Corner of the smallest coordinates, in scene units.
     #[schemars(with = "[f32; 3]")]
     pub min: Vec3,
-    /// The corner with the greatest coordinates, each greater than that of `min`.
+    /// Corner of the largest coordinates, in scene units, each greater than that of `min`.
     #[schemars(with = "[f32; 3]")]
     pub max: Vec3,
 }
 
-/// So close to the surface, as a share of the longest edge, a point counts as on it.
+/// Distance from the surface, relative to the longest edge, up to which a point counts as on it.
 const TOUCHING: f32 = 1e-5;
 
 impl Default for Cuboid {
@@ -40,7 +44,7 @@ impl Default for Cuboid {
     }
 }
 
-/// A face is numbered `2 axis + side`, side 1 at `max`.
+/// Axis and side of a face, which is numbered `2 axis + side`; side 1 is at `max`.
 fn axis_and_side(face: u32) -> (usize, bool) {
     ((face as usize / 2).min(2), face % 2 == 1)
 }
@@ -51,9 +55,10 @@ impl Cuboid {
         if far { Vec3::AXES[axis] } else { -Vec3::AXES[axis] }
     }
 
-    /// Running sums of the areas of the faces that `from` sees: up to three from outside, all six
-    /// from inside and from the surface itself, where rounding decides on which side a point lies.
-    fn visible(&self, from: Vec3) -> [f64; 6] {
+    /// Running sums of the areas of the faces that are visible from `from`: up to three from
+    /// outside, all six from inside and from the surface itself, where rounding decides on which
+    /// side a point is.
+    fn visible_areas(&self, from: Vec3) -> [f64; 6] {
         let e = self.max - self.min;
         let areas = [e.y * e.z, e.z * e.x, e.x * e.y].map(f64::from);
         let margin = Vec3::splat(TOUCHING * e.max_element());
@@ -67,7 +72,8 @@ impl Cuboid {
         })
     }
 
-    /// `unit`: place of the point between both corners.
+    /// Surface coordinates on a face; `unit` is the position of the point between both corners, 0
+    /// to 1.
     fn uv(face: u32, unit: Vec3) -> Vec2 {
         let Vec3 { x, y, z } = unit;
         match face {
@@ -101,9 +107,9 @@ impl Shape for Cuboid {
         Aabb { min: self.min, max: self.max }
     }
 
-    /// Slabs (Kay and Kajiya 1986), each division exact to the last bit of an `f64`.
+    /// Slab test (Kay and Kajiya 1986), with correctly rounded divisions in `f64`.
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (origin, direction) = double(ray);
+        let (origin, direction) = to_f64(ray);
         let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
             let (o, d) = (origin[axis], direction[axis]);
@@ -124,23 +130,23 @@ impl Shape for Cuboid {
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let (origin, direction) = double(ray);
-        let (axis, far) = axis_and_side(hit.part);
+        let (origin, direction) = to_f64(ray);
+        let (axis, far) = axis_and_side(hit.primitive);
         let plane = if far { self.max[axis] } else { self.min[axis] };
         let t = (f64::from(plane) - origin[axis]) / direction[axis];
         let found = (origin + direction * t).as_vec3();
-        let margin = EDGE * (self.max - self.min).max_element();
+        let margin = EDGE_MARGIN * (self.max - self.min).max_element();
         let within = |axis: usize| clamp_within(found[axis], self.min[axis], self.max[axis], margin);
         let mut point = Vec3::new(within(0), within(1), within(2));
         point[axis] = plane;
         let unit = (point - self.min) / (self.max - self.min);
-        Surface::new(point, 0.0, Self::normal(hit.part), Self::uv(hit.part, unit))
+        Surface::new(point, 0.0, Self::normal(hit.primitive), Self::uv(hit.primitive, unit))
     }
 
-    fn derivatives(&self, _local: Vec3, hit: &Hit, _time: f32) -> Option<Derivatives> {
+    fn derivatives(&self, _local: Vec3, hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
         let size = self.max - self.min;
         let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
-        let (u, v) = match hit.part {
+        let (u, v) = match hit.primitive {
             0 => (z, y),
             1 => (-z, y),
             2 => (x, z),
@@ -148,16 +154,16 @@ impl Shape for Cuboid {
             4 => (-x, y),
             _ => (x, y),
         };
-        Derivatives::new(u, v)
+        SurfaceDerivatives::new(u, v)
     }
 
     fn area(&self) -> f32 {
         self.bounds().area()
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
-        let areas = self.visible(from);
-        let (face, rest) = pick(&areas, u.x)?;
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
+        let areas = self.visible_areas(from);
+        let (face, rest) = select_by_weight(&areas, u.x)?;
         let (axis, far) = axis_and_side(face as u32);
         let mut unit = Vec3::ZERO;
         unit[(axis + 1) % 3] = rest;
@@ -168,8 +174,8 @@ impl Shape for Cuboid {
     }
 
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
-        let areas = self.visible(from);
-        let [below, through] = [at.part.checked_sub(1), Some(at.part)]
+        let areas = self.visible_areas(from);
+        let [below, through] = [at.primitive.checked_sub(1), Some(at.primitive)]
             .map(|face| face.and_then(|face| areas.get(face as usize)).copied().unwrap_or(0.0));
         if through > below { area_pdf(from, at, areas[5] as f32) } else { 0.0 }
     }
@@ -177,7 +183,7 @@ impl Shape for Cuboid {
 
 #[cfg(any(test, feature = "testing"))]
 impl Cuboid {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let made = |min: [f32; 3], max: [f32; 3]| Self { min: min.into(), max: max.into() };
         vec![

@@ -1,4 +1,4 @@
-//! A piece of a round tube around the y axis, closed by two flat caps unless told otherwise.
+//! A cylinder around the y axis, closed by two flat caps unless `capped` is false.
 //!
 //! ```
 //! use juggler_shape::{AnyShape, Cylinder};
@@ -9,32 +9,35 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::arithmetic::{EDGE, clamp_within, cross_tube, double, first_in_range, turn};
-use super::derivatives::{Derivatives, about_y, of_disk};
-use super::solid_angle::{area_pdf, area_sample, pick};
-use super::tube::tube_surface;
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::arithmetic::{
+    EDGE_MARGIN, azimuth_turns, clamp_within, first_in_range, intersect_infinite_cylinder, to_f64,
+};
+use super::derivatives::{SurfaceDerivatives, disk_derivatives, dpdu_about_y};
+use super::solid_angle::{area_pdf, area_sample, select_by_weight};
+use super::tube::infinite_cylinder_surface;
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
-use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3, fun};
+use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 
-/// A round cylinder around the y axis from `y_min` to `y_max`.
+/// A circular cylinder around the y axis from `y_min` to `y_max`.
 ///
-/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z); v goes from 0 at
-/// `y_min` to 1 at `y_max` on the side, from 0 at the rim to 1 in the middle on the caps.
+/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z); v goes
+/// from 0 at `y_min` to 1 at `y_max` on the side, from 0 at the rim to 1 at the center on the caps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Cylinder {
-    /// Radius in scene units.
+    /// Radius in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f32,
-    /// Where it begins on the y axis.
+    /// Lower end on the y axis, in scene units.
     pub y_min: f32,
-    /// Where it ends on the y axis; greater than `y_min`.
+    /// Upper end on the y axis, in scene units; greater than `y_min`.
     pub y_max: f32,
-    /// Whether disks close both ends and make it a solid; without them one can look into it.
+    /// Whether disks close both ends and make the cylinder a solid; without them, the inside is
+    /// visible.
     pub capped: bool,
 }
 
@@ -44,7 +47,7 @@ impl Default for Cylinder {
     }
 }
 
-/// So close to the surface, as a share of its size, a point counts as on it.
+/// Distance from the surface, relative to the size, up to which a point counts as on it.
 const TOUCHING: f32 = 1e-5;
 
 /// Parts: the side where a ray enters the tube, the side where it leaves it, and the caps.
@@ -54,34 +57,35 @@ const BOTTOM: u32 = 2;
 const TOP: u32 = 3;
 
 impl Cylinder {
-    fn has(&self, y: f64) -> bool {
+    fn contains_y(&self, y: f64) -> bool {
         (f64::from(self.y_min)..=f64::from(self.y_max)).contains(&y)
     }
 
-    /// Where a ray is between the planes of both ends, each with the cap it crosses.
+    /// Interval of a ray between the planes of both ends; each bound has the cap that the ray
+    /// crosses.
     fn between_ends(&self, origin: DVec3, direction: DVec3) -> Option<[(f64, u32); 2]> {
         if direction.y == 0.0 {
-            return self.has(origin.y).then_some([(f64::NEG_INFINITY, BOTTOM), (f64::INFINITY, TOP)]);
+            return self.contains_y(origin.y).then_some([(f64::NEG_INFINITY, BOTTOM), (f64::INFINITY, TOP)]);
         }
         let bottom = ((f64::from(self.y_min) - origin.y) / direction.y, BOTTOM);
         let top = ((f64::from(self.y_max) - origin.y) / direction.y, TOP);
         Some(if direction.y > 0.0 { [bottom, top] } else { [top, bottom] })
     }
 
-    /// Where a ray is inside the endless tube.
+    /// Interval of a ray inside the infinite cylinder.
     fn inside_tube(&self, origin: DVec3, direction: DVec3) -> Option<[(f64, u32); 2]> {
         let radius = f64::from(self.radius);
         if direction.x == 0.0 && direction.z == 0.0 {
             let inside = origin.x * origin.x + origin.z * origin.z <= radius * radius;
             return inside.then_some([(f64::NEG_INFINITY, SIDE), (f64::INFINITY, FAR_SIDE)]);
         }
-        cross_tube(origin, direction, radius).map(|(near, far)| [(near, SIDE), (far, FAR_SIDE)])
+        intersect_infinite_cylinder(origin, direction, radius).map(|(near, far)| [(near, SIDE), (far, FAR_SIDE)])
     }
 
-    /// Areas that `from` can see of side, bottom and top, as running sums, and half the angle of
-    /// the visible side. From inside and from the surface itself that is everything, and so it is
-    /// for an open one, which may hide parts of itself.
-    fn visible(&self, from: Vec3) -> ([f64; 3], f32) {
+    /// Running sums of the areas of side, bottom and top that are visible from `from`, and half the
+    /// angle of the visible side. From inside and from the surface itself, everything is visible;
+    /// an open cylinder, which may occlude itself, counts as wholly visible too.
+    fn visible_areas(&self, from: Vec3) -> ([f64; 3], f32) {
         let across = Vec2::new(from.x, from.z).length();
         let margin = TOUCHING * self.radius.max(self.y_max - self.y_min);
         let (above, below) = (from.y > self.y_max + margin, from.y < self.y_min - margin);
@@ -89,7 +93,7 @@ impl Cylinder {
         let everything = !self.capped || !(above || below || beside);
         let half_angle = match (everything, beside) {
             (true, _) => PI,
-            (false, true) => fun::acos(self.radius / across),
+            (false, true) => portable::acos(self.radius / across),
             (false, false) => 0.0,
         };
         let cap = |seen: bool| {
@@ -99,15 +103,15 @@ impl Cylinder {
         ([side, side + cap(below), side + cap(below) + cap(above)], half_angle)
     }
 
-    fn cap_surface(&self, ray: &Ray, part: u32) -> Surface {
-        let (origin, direction) = double(ray);
-        let (y, normal) = if part == TOP { (self.y_max, Vec3::Y) } else { (self.y_min, Vec3::NEG_Y) };
+    fn cap_surface(&self, ray: &Ray, primitive: u32) -> Surface {
+        let (origin, direction) = to_f64(ray);
+        let (y, normal) = if primitive == TOP { (self.y_max, Vec3::Y) } else { (self.y_min, Vec3::NEG_Y) };
         let t = (f64::from(y) - origin.y) / direction.y;
         let found = (origin + direction * t).as_vec3();
-        let across = Vec2::new(found.x, found.z).clamp_length_max(self.radius * (1.0 - EDGE));
+        let across = Vec2::new(found.x, found.z).clamp_length_max(self.radius * (1.0 - EDGE_MARGIN));
         let point = Vec3::new(across.x, y, across.y);
         let inwards = 1.0 - across.length() / self.radius;
-        Surface::new(point, 0.0, normal, Vec2::new(turn(point.x, point.z), inwards.max(0.0)))
+        Surface::new(point, 0.0, normal, Vec2::new(azimuth_turns(point.x, point.z), inwards.max(0.0)))
     }
 }
 
@@ -129,12 +133,14 @@ impl Shape for Cylinder {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (origin, direction) = double(ray);
+        let (origin, direction) = to_f64(ray);
         let tube = self.inside_tube(origin, direction)?;
         if !self.capped {
             return first_in_range(
                 ray,
-                tube.map(|(t, part)| (if self.has(origin.y + direction.y * t) { t } else { f64::NAN }, part)),
+                tube.map(|(t, primitive)| {
+                    (if self.contains_y(origin.y + direction.y * t) { t } else { f64::NAN }, primitive)
+                }),
             );
         }
         let ends = self.between_ends(origin, direction)?;
@@ -144,21 +150,21 @@ impl Shape for Cylinder {
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        if hit.part == BOTTOM || hit.part == TOP {
-            return self.cap_surface(ray, hit.part);
+        if hit.primitive == BOTTOM || hit.primitive == TOP {
+            return self.cap_surface(ray, hit.primitive);
         }
-        let side = tube_surface(self.radius, ray, hit);
-        let margin = EDGE * self.radius.max(self.y_max - self.y_min);
+        let side = infinite_cylinder_surface(self.radius, ray, hit);
+        let margin = EDGE_MARGIN * self.radius.max(self.y_max - self.y_min);
         let point = side.point.with_y(clamp_within(side.point.y, self.y_min, self.y_max, margin));
         let v = (point.y - self.y_min) / (self.y_max - self.y_min);
         Surface { point, local: point, uv: side.uv.with_y(v), ..side }
     }
 
-    fn derivatives(&self, local: Vec3, hit: &Hit, _time: f32) -> Option<Derivatives> {
-        if hit.part == BOTTOM || hit.part == TOP {
-            return of_disk(local, self.radius);
+    fn derivatives(&self, local: Vec3, hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        if hit.primitive == BOTTOM || hit.primitive == TOP {
+            return disk_derivatives(local, self.radius);
         }
-        Derivatives::new(about_y(local), Vec3::Y * (self.y_max - self.y_min))
+        SurfaceDerivatives::new(dpdu_about_y(local), Vec3::Y * (self.y_max - self.y_min))
     }
 
     fn area(&self) -> f32 {
@@ -166,26 +172,26 @@ impl Shape for Cylinder {
         2.0 * PI * self.radius * (self.y_max - self.y_min + caps)
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
-        let (areas, half_angle) = self.visible(from);
-        let (part, rest) = pick(&areas, u.x)?;
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
+        let (areas, half_angle) = self.visible_areas(from);
+        let (primitive, rest) = select_by_weight(&areas, u.x)?;
         let area = areas[2] as f32;
-        if part > 0 {
-            let (y, normal) = if part == 1 { (self.y_min, Vec3::NEG_Y) } else { (self.y_max, Vec3::Y) };
-            let (sin, cos) = fun::sin_cos_turns(u.y);
+        if primitive > 0 {
+            let (y, normal) = if primitive == 1 { (self.y_min, Vec3::NEG_Y) } else { (self.y_max, Vec3::Y) };
+            let (sin, cos) = portable::sin_cos_turns(u.y);
             let across = self.radius * rest.sqrt();
             return area_sample(from, Vec3::new(across * cos, y, across * sin), normal, area);
         }
         let towards = Vec2::new(from.x, from.z).normalize_or(Vec2::X);
-        let (sin, cos) = fun::sin_cos(half_angle * (2.0 * rest - 1.0));
+        let (sin, cos) = portable::sin_cos(half_angle * (2.0 * rest - 1.0));
         let normal = Vec3::new(towards.x * cos - towards.y * sin, 0.0, towards.y * cos + towards.x * sin);
         let y = self.y_min + u.y * (self.y_max - self.y_min);
         area_sample(from, normal * self.radius + Vec3::Y * y, normal, area)
     }
 
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
-        let ([side, bottom, all], half_angle) = self.visible(from);
-        let is_picked = match at.part {
+        let ([side, bottom, all], half_angle) = self.visible_areas(from);
+        let is_picked = match at.primitive {
             BOTTOM => bottom > side,
             TOP => all > bottom,
             _ => half_angle == PI || at.normal.dot(from - at.point) > 0.0,
@@ -196,7 +202,7 @@ impl Shape for Cylinder {
 
 #[cfg(any(test, feature = "testing"))]
 impl Cylinder {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let made = |radius, y_min, y_max, capped| Self { radius, y_min, y_max, capped };
         vec![

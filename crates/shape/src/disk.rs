@@ -7,28 +7,28 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::arithmetic::{in_range, turn};
-use super::derivatives::{Derivatives, of_disk};
-use super::plane::cross_ground;
+use super::arithmetic::{azimuth_turns, in_range};
+use super::derivatives::{SurfaceDerivatives, disk_derivatives};
+use super::plane::intersect_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
-use juggler_math::{Aabb, Ray, Vec2, Vec3, fun};
+use juggler_math::{Aabb, Ray, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 
-/// A disk in the plane y = 0 around the origin, with or without a hole; its front is above.
+/// A disk in the plane y = 0 around the origin, with or without a hole; its front faces +y.
 ///
-/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v goes from 0 at the
-/// outer rim to 1 at the inner one or the centre.
+/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v goes
+/// from 0 at the outer rim to 1 at the inner rim or the center.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Disk {
-    /// Outer radius in scene units.
+    /// Outer radius in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f32,
-    /// Radius of the hole in scene units, less than `radius`; 0 for none.
+    /// Radius of the hole in scene units, 0 to less than `radius`; 0 for no hole.
     #[schemars(range(min = 0))]
     pub inner_radius: f32,
 }
@@ -56,7 +56,7 @@ impl Shape for Disk {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (t, point) = cross_ground(ray);
+        let (t, point) = intersect_ground(ray);
         let hit = in_range(ray, t, 0)?;
         let (inner, outer) = (f64::from(self.inner_radius), f64::from(self.radius));
         (inner * inner..=outer * outer).contains(&point.length_squared()).then_some(hit)
@@ -64,23 +64,23 @@ impl Shape for Disk {
 
     fn surface(&self, ray: &Ray, _hit: &Hit) -> Surface {
         let edge = Vec3::splat(self.radius);
-        let point = cross_ground(ray).1.as_vec3().clamp(-edge, edge);
+        let point = intersect_ground(ray).1.as_vec3().clamp(-edge, edge);
         let inwards = (self.radius - point.length()) / (self.radius - self.inner_radius);
-        Surface::new(point, 0.0, Vec3::Y, Vec2::new(turn(point.x, point.z), inwards.clamp(0.0, 1.0)))
+        Surface::new(point, 0.0, Vec3::Y, Vec2::new(azimuth_turns(point.x, point.z), inwards.clamp(0.0, 1.0)))
     }
 
-    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
-        of_disk(local, self.radius - self.inner_radius)
+    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        disk_derivatives(local, self.radius - self.inner_radius)
     }
 
     fn area(&self) -> f32 {
         PI * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
         let hole = self.inner_radius / self.radius;
         let distance = self.radius * (hole * hole + u.x * (1.0 - hole * hole)).sqrt();
-        let (sin, cos) = fun::sin_cos_turns(u.y);
+        let (sin, cos) = portable::sin_cos_turns(u.y);
         area_sample(from, Vec3::new(cos, 0.0, sin) * distance, Vec3::Y, self.area())
     }
 
@@ -91,7 +91,7 @@ impl Shape for Disk {
 
 #[cfg(any(test, feature = "testing"))]
 impl Disk {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         [(1.0, 0.0), (2.0, 1.5), (1e-4, 0.0), (1e6, 1e5), (1.0, 0.999)]
             .map(|(radius, inner_radius)| Self { radius, inner_radius })

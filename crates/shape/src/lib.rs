@@ -4,16 +4,16 @@ use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 mod arithmetic;
-mod carried;
 mod check;
 #[cfg(test)]
 mod contract;
 mod derivatives;
-mod facet;
+mod reproject;
 mod solid_angle;
 pub mod surface;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
+mod triangle_geometry;
 
 mod cuboid;
 mod cylinder;
@@ -26,96 +26,100 @@ mod sphere;
 mod triangle;
 mod tube;
 
-pub use arithmetic::within_floats;
-pub use derivatives::Derivatives;
-pub use mesh::{MeshData, Morph};
-pub use sphere::{cross_sphere, intersect_sphere, longitude_latitude, sphere_surface};
+pub use arithmetic::clamp_to_f32_range;
+pub use derivatives::SurfaceDerivatives;
+pub use mesh::{MeshData, MorphTarget};
+pub use sphere::{intersect_sphere, longitude_latitude, sphere_interval, sphere_surface};
 
-/// What a ray found: 16 bytes, all that traversal carries.
+/// Intersection of a ray with a shape: 16 bytes, all that traversal carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray, in units of the ray's direction.
+    /// Distance along the ray, in units of the length of its direction.
     pub t: f32,
-    /// Whatever the shape needs to find the surface again (barycentrics of a triangle).
+    /// Parameters from which the shape finds the surface again: the barycentrics of a triangle's
+    /// second and third corner.
     pub uv: Vec2,
-    /// Triangle or face.
-    pub part: u32,
+    /// Index of the triangle or face.
+    pub primitive: u32,
 }
 
-/// A point chosen on a surface.
+/// Point sampled on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSample {
+pub struct ShapeSample {
     /// The point, object space.
     pub point: Vec3,
-    /// Unit normal there.
+    /// Unit normal at the point, object space.
     pub normal: Vec3,
-    /// Density per steradian seen from the place that asked.
+    /// Density per steradian, seen from the reference point.
     pub pdf: f32,
 }
 
-/// A point of a shape's surface, where a ray met it.
+/// Point of a shape's surface where a ray hits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point, object space.
     pub point: Vec3,
     /// Unit normal of the surface there, object space.
     pub normal: Vec3,
-    /// Triangle or face, as in [`Hit`].
-    pub part: u32,
+    /// Index of the triangle or face, as in [`Hit`].
+    pub primitive: u32,
 }
 
-/// Why a shape cannot be: the field at fault and what it should be.
+/// Error of an invalid shape: the field at fault and the values that are allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct InvalidShape {
     /// Path of the field inside the shape, as in the scene file: `radius`, `vertices[3]`.
     pub field: String,
-    /// What is wrong, and what would be right.
+    /// Message to people: the mistake, and the values that are allowed.
     pub message: String,
 }
 
-/// A solid or surface in object space. A ray's direction need not be unit: distances are in its units.
+/// A solid or surface in object space. The direction of a ray need not be a unit vector: distances
+/// are in units of its length.
 pub trait Shape: Send + Sync {
-    /// Checks numbers that only together make sense and derives what tracing needs (a mesh builds its
-    /// hierarchy here). Called once before anything else.
+    /// Validates the description and derives the data that intersection needs, such as a mesh's
+    /// hierarchy. Called once before anything else.
     fn prepare(&mut self) -> Result<(), InvalidShape>;
-    /// A box around everything; [`Aabb::INFINITE`] for a shape without end.
+    /// Bounding box; [`Aabb::INFINITE`] for an unbounded shape.
     fn bounds(&self) -> Aabb;
     /// The nearest hit in the ray's range.
     fn intersect(&self, ray: &Ray) -> Option<Hit>;
-    /// Whether anything is hit in the ray's range.
+    /// Whether the ray hits anything in its range.
     fn occludes(&self, ray: &Ray) -> bool {
         self.intersect(ray).is_some()
     }
-    /// The surface at a hit that [`Shape::intersect`] gave for this ray.
+    /// The surface at a hit that [`Shape::intersect`] returned for this ray.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
-    /// How the surface runs along its coordinates at a hit, object space. `local` is the point, as [`Surface::local`] has
-    /// it for materials that are textured, `time` that of the ray.
-    fn derivatives(&self, local: Vec3, hit: &Hit, time: f32) -> Option<Derivatives>;
-    /// Area of the whole surface; infinite for a shape without end, which cannot be a lamp.
+    /// Derivatives of position by surface coordinates at a hit, object space; `None` where they do
+    /// not span the surface. `local` is the point, as [`Surface::local`] has it, `time` that of the
+    /// ray.
+    fn derivatives(&self, local: Vec3, hit: &Hit, time: f32) -> Option<SurfaceDerivatives>;
+    /// Area of the whole surface; infinite for an unbounded shape, which cannot be a light.
     fn area(&self) -> f32;
-    /// A point on the surface for `u` in the unit square; `None` when that one is seen edge-on or the shape has no
-    /// end. A shape that is not convex may hide it behind itself: then it lights nothing.
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample>;
-    /// Density per steradian, seen from `from`, with which [`Shape::sample`] picks a point of this
-    /// surface; 0 for a point that it never picks from there.
+    /// Samples a point on the surface, seen from `from`, by `u` in the unit square; `None` if the
+    /// point is seen edge-on or the shape is unbounded. A shape that is not convex may occlude the
+    /// point itself.
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample>;
+    /// Density per steradian, seen from `from`, of [`Shape::sample`] at this point of the surface;
+    /// 0 for a point that it never samples from there.
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32;
-    /// How many triangles it is made of; 0 for exact shapes.
+    /// Number of triangles; 0 for exact shapes.
     fn triangles(&self) -> usize {
         0
     }
-    /// Bytes on the heap, those of a hierarchy of its own not among them.
+    /// Bytes on the heap, without a hierarchy.
     fn heap_bytes(&self) -> usize {
         0
     }
-    /// Bytes of a hierarchy of its own.
+    /// Bytes of the shape's hierarchy.
     fn bvh_bytes(&self) -> usize {
         0
     }
 }
 
 juggler_math::closed_set! {
-    /// Every shape. In JSON: `{"sphere": {"radius": 1}}`.
+    /// Any shape. In JSON: `{"sphere": {"radius": 1}}`.
     pub enum AnyShape: Shape {
         sphere::Sphere,
         plane::Plane,

@@ -1,4 +1,4 @@
-//! The plane y = 0, without end: a ray meets it at `t = -o.y / d.y`.
+//! The infinite plane y = 0; a ray hits it at `t = -o.y / d.y`.
 //!
 //! ```
 //! use juggler_shape::{AnyShape, Plane};
@@ -7,25 +7,25 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::Derivatives;
+use super::SurfaceDerivatives;
 use super::arithmetic::in_range;
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The plane y = 0, without end; its front is above.
+/// The infinite plane y = 0; its front faces +y.
 ///
 /// Surface coordinates: u is x, v is z, in scene units.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Plane {}
 
-/// Where a ray meets the plane y = 0: the distance and the point, exactly on the plane.
+/// Distance and point where a ray crosses the plane y = 0; the point is exactly on the plane.
 #[inline]
-pub fn cross_ground(ray: &Ray) -> (f64, DVec3) {
-    let (origin, direction) = super::arithmetic::double(ray);
+pub fn intersect_ground(ray: &Ray) -> (f64, DVec3) {
+    let (origin, direction) = super::arithmetic::to_f64(ray);
     let t = -origin.y / direction.y;
     (t, DVec3::new(origin.x + direction.x * t, 0.0, origin.z + direction.z * t))
 }
@@ -45,21 +45,21 @@ impl Shape for Plane {
     }
 
     fn surface(&self, ray: &Ray, _hit: &Hit) -> Surface {
-        // A plane goes on where floats end.
+        // The plane extends beyond the range of floats.
         let end = Vec3::splat(f32::MAX);
-        let point = cross_ground(ray).1.as_vec3().clamp(-end, end);
+        let point = intersect_ground(ray).1.as_vec3().clamp(-end, end);
         Surface::new(point, 0.0, Vec3::Y, Vec2::new(point.x, point.z))
     }
 
-    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
-        Derivatives::new(Vec3::X, Vec3::Z)
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        SurfaceDerivatives::new(Vec3::X, Vec3::Z)
     }
 
     fn area(&self) -> f32 {
         f32::INFINITY
     }
 
-    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<SurfaceSample> {
+    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<ShapeSample> {
         None
     }
 
@@ -70,7 +70,7 @@ impl Shape for Plane {
 
 #[cfg(any(test, feature = "testing"))]
 impl Plane {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

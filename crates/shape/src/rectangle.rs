@@ -7,24 +7,24 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::Derivatives;
+use super::SurfaceDerivatives;
 use super::arithmetic::in_range;
-use super::plane::cross_ground;
+use super::plane::intersect_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rectangle in the plane y = 0, centred on the origin; its front is above.
+/// A rectangle in the plane y = 0, centered on the origin; its front faces +y.
 ///
-/// Surface coordinates from 0 to 1: u grows with x, v against z, so that a picture seen from above with -z up
-/// stands upright.
+/// Surface coordinates from 0 to 1: u grows with x, v with -z, so that an image is upright seen
+/// from above with -z up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Rectangle {
-    /// Edge lengths along x and z in scene units.
+    /// Edge lengths along x and z in scene units, above 0.
     #[schemars(extend("items" = {"type": "number", "format": "float", "exclusiveMinimum": 0}))]
     pub size: [f32; 2],
 }
@@ -52,27 +52,27 @@ impl Shape for Rectangle {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (t, point) = cross_ground(ray);
+        let (t, point) = intersect_ground(ray);
         let hit = in_range(ray, t, 0)?;
         point.abs().cmple(self.corner().as_dvec3()).all().then_some(hit)
     }
 
     fn surface(&self, ray: &Ray, _hit: &Hit) -> Surface {
         let corner = self.corner();
-        let point = cross_ground(ray).1.as_vec3().clamp(-corner, corner);
+        let point = intersect_ground(ray).1.as_vec3().clamp(-corner, corner);
         let uv = Vec2::new(0.5 + point.x / self.size[0], 0.5 - point.z / self.size[1]);
         Surface::new(point, 0.0, Vec3::Y, uv)
     }
 
-    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
-        Derivatives::new(Vec3::X * self.size[0], Vec3::NEG_Z * self.size[1])
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        SurfaceDerivatives::new(Vec3::X * self.size[0], Vec3::NEG_Z * self.size[1])
     }
 
     fn area(&self) -> f32 {
         self.size[0] * self.size[1]
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
         let point = Vec3::new((u.x - 0.5) * self.size[0], 0.0, (u.y - 0.5) * self.size[1]);
         area_sample(from, point, Vec3::Y, self.area())
     }
@@ -84,7 +84,7 @@ impl Shape for Rectangle {
 
 #[cfg(any(test, feature = "testing"))]
 impl Rectangle {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         [[1.0, 1.0], [4.0, 3.0], [1e-3, 2.0], [1e6, 1e6], [1e-4, 2e-4]].map(|size| Self { size }).to_vec()
     }

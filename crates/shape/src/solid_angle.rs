@@ -1,34 +1,34 @@
-//! Points picked evenly by area, and their density as the place that asks sees it.
+//! Uniform sampling by area, and its density by solid angle.
 
-use super::{SurfacePoint, SurfaceSample};
+use super::{ShapeSample, SurfacePoint};
 use juggler_math::Vec3;
 
-/// Density per steradian seen from `from` of a point that is picked evenly among `area`: `distance² / (area cos)`
-/// (PBR 4th ed., section 4.2.3).
-pub fn density(from: Vec3, point: Vec3, normal: Vec3, area: f32) -> f32 {
-    // In f64: squares of small distances do not vanish, those of large ones do not overflow.
-    let way = point.as_dvec3() - from.as_dvec3();
-    let squared = way.length_squared();
-    let cosine = (way.dot(normal.as_dvec3()) / squared.sqrt()).abs();
+/// Density per steradian, seen from `from`, of a point sampled uniformly on `area`:
+/// `distance² / (area cos)` (PBR 4th ed., section 4.2.3).
+pub fn solid_angle_density(from: Vec3, point: Vec3, normal: Vec3, area: f32) -> f32 {
+    // In f64, squared distances neither underflow nor overflow.
+    let offset = point.as_dvec3() - from.as_dvec3();
+    let squared = offset.length_squared();
+    let cosine = (offset.dot(normal.as_dvec3()) / squared.sqrt()).abs();
     (squared / (f64::from(area) * cosine)) as f32
 }
 
-/// A point picked evenly among `area`, if `from` does not see it edge-on.
-pub fn area_sample(from: Vec3, point: Vec3, normal: Vec3, area: f32) -> Option<SurfaceSample> {
-    let pdf = density(from, point, normal, area);
-    (pdf > 0.0 && pdf < f32::INFINITY).then_some(SurfaceSample { point, normal, pdf })
+/// Sample of a point that is uniform on `area`; `None` if `from` sees it edge-on.
+pub fn area_sample(from: Vec3, point: Vec3, normal: Vec3, area: f32) -> Option<ShapeSample> {
+    let pdf = solid_angle_density(from, point, normal, area);
+    (pdf > 0.0 && pdf < f32::INFINITY).then_some(ShapeSample { point, normal, pdf })
 }
 
-/// Density per steradian, seen from `from`, of a point that is picked evenly among `area`; 0 where
-/// it is seen edge-on.
+/// Density per steradian, seen from `from`, of a point sampled uniformly on `area`; 0 if it is seen
+/// edge-on.
 pub fn area_pdf(from: Vec3, at: &SurfacePoint, area: f32) -> f32 {
-    let pdf = density(from, at.point, at.normal, area);
+    let pdf = solid_angle_density(from, at.point, at.normal, area);
     if pdf < f32::INFINITY { pdf } else { 0.0 }
 }
 
-/// Picks one of several parts by weight: its index, and `u` stretched to the unit interval again.
-/// `cumulative` holds running sums of weights, its last entry their total.
-pub fn pick(cumulative: &[f64], u: f32) -> Option<(usize, f32)> {
+/// Selects one of several parts by weight: its index, and `u` remapped to the unit interval; `None`
+/// if there is none. `cumulative` holds running sums of weights, its last entry their total.
+pub fn select_by_weight(cumulative: &[f64], u: f32) -> Option<(usize, f32)> {
     let total = *cumulative.last()?;
     let target = f64::from(u) * total;
     let index = cumulative.partition_point(|&sum| sum <= target).min(cumulative.len() - 1);

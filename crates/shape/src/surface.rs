@@ -1,46 +1,49 @@
-//! Where a ray met a surface, seen once per path vertex and never while traversing.
+//! Surface where a ray hits, computed once per path vertex and not during traversal.
 
 use juggler_math::{Ray, Transform, Vec2, Vec3, robust};
 
-/// A point on a surface. Shapes make it in object space; the world turns it into world space.
+/// Point on a surface with its local geometry. Shapes return it in object space; the world
+/// transforms it to world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// The point, pulled back onto the surface after rounding.
+    /// The point, moved back onto the surface after rounding.
     pub point: Vec3,
-    /// How far a ray that leaves from `point` must start from it, along `normal`, to be off the surface for
-    /// sure: bounds the distance between `point` and the true surface, and what intersecting rounds.
-    pub error: f32,
-    /// Unit normal of the true surface, outwards (for flat shapes: their stated front).
+    /// Distance from `point`, along `normal`, at which a ray that leaves must start to be off the
+    /// surface: bounds the distance between `point` and the exact surface, and the rounding of
+    /// intersections.
+    pub position_error: f32,
+    /// Unit normal of the exact surface, outwards; for flat shapes, towards their front.
     pub normal: Vec3,
-    /// Unit normal that shading uses, on the same side; equals `normal` unless a mesh brings its own.
+    /// Unit normal for shading, on the same side; equals `normal` unless the shape has shading
+    /// normals.
     pub shading_normal: Vec3,
-    /// Surface coordinates; the range is each shape's to say.
+    /// Surface coordinates; each shape documents their range.
     pub uv: Vec2,
-    /// The point in object space, for textures that stick to the object.
+    /// The point in object space, for textures in object space.
     pub local: Vec3,
-    /// What `shading_normal` is in object space, for such textures.
+    /// `shading_normal` in object space, for such textures.
     pub local_normal: Vec3,
-    /// What the ray that is looked along covers, for textures; a point unless somebody says otherwise.
+    /// Footprint of the ray, for texture filtering; a point by default.
     pub footprint: Footprint,
 }
 
-/// Diameters of the patch of a surface that a ray stands for; 0 for a point alone.
+/// Diameters of the patch of a surface that a ray covers; 0 for a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// In world units.
+    /// Diameter in world units.
     pub world: f32,
-    /// In units of object space.
+    /// Diameter in units of object space.
     pub local: f32,
-    /// In units of the surface coordinates.
+    /// Diameter in units of the surface coordinates.
     pub uv: f32,
 }
 
-/// How a surface runs along its coordinates at a point, normals aside: what normal maps and stretched highlights stand in.
+/// Derivatives of position by surface coordinates, for normal maps and anisotropic highlights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangents {
     /// ∂p/∂u, world space; need not be unit.
     pub u: Vec3,
-    /// ∂p/∂v, world space; need not be unit, nor at a right angle to `u`.
+    /// ∂p/∂v, world space; need not be unit, nor orthogonal to `u`.
     pub v: Vec3,
     /// ∂p/∂u in object space.
     pub local_u: Vec3,
@@ -49,25 +52,35 @@ pub struct Tangents {
 }
 
 impl Surface {
-    /// A point with one normal.
+    /// Surface whose shading normal is its normal.
     #[inline]
-    pub fn new(point: Vec3, error: f32, normal: Vec3, uv: Vec2) -> Self {
+    pub fn new(point: Vec3, position_error: f32, normal: Vec3, uv: Vec2) -> Self {
         let footprint = Footprint::default();
-        Self { point, error, normal, shading_normal: normal, uv, local: point, local_normal: normal, footprint }
+        Self {
+            point,
+            position_error,
+            normal,
+            shading_normal: normal,
+            uv,
+            local: point,
+            local_normal: normal,
+            footprint,
+        }
     }
 
-    /// The same point in world space.
+    /// Transforms the surface to world space.
     #[inline]
     pub fn to_world(&self, transform: &Transform) -> Self {
         let point = transform.point(self.point);
         let normal = transform.normal(self.normal);
         let shading_normal =
             if self.shading_normal == self.normal { normal } else { transform.normal(self.shading_normal) };
-        // How far apart two planes along the surface come to lie that were one unit apart.
+        // Scale of distances along the normal.
         let stretch = transform.vector(self.normal).dot(normal).abs();
         Self {
             point,
-            error: (self.error + f32::MIN_POSITIVE) * stretch + self.rounding(transform, point, normal, stretch),
+            position_error: (self.position_error + f32::MIN_POSITIVE) * stretch
+                + self.rounding(transform, point, normal, stretch),
             normal,
             shading_normal,
             uv: self.uv,
@@ -77,29 +90,33 @@ impl Surface {
         }
     }
 
-    /// What rounding can move the point along the world `normal` on its way to the world, and a ray's origin
-    /// on its way back to object space (running error analysis: PBR 4th ed., section 6.8.1).
+    /// Bound on the rounding error, along the world `normal`, of the point on its way to world
+    /// space and of a ray's origin on its way back to object space (running error analysis: PBR 4th
+    /// ed., section 6.8.1).
     fn rounding(&self, transform: &Transform, point: Vec3, normal: Vec3, stretch: f32) -> f32 {
         let there = transform.matrix().abs() * self.point.abs() + transform.origin().abs();
         let back = transform.inverse_matrix().abs() * (point - transform.origin()).abs();
         robust::gamma(5) * (there.dot(normal.abs()) + back.dot(self.normal.abs()) * stretch)
     }
 
-    /// A ray without end from here, free of this surface.
+    /// Unbounded ray from this point that does not hit this surface at its origin.
     #[inline]
-    pub fn spawn(&self, direction: Vec3, time: f32) -> Ray {
-        // Even an exact point on an axis plane has to move off it, in object space too (see `to_world`).
-        let error = self.error + f32::MIN_POSITIVE;
-        let origin = robust::offset_origin(self.point, error, self.normal, direction);
+    pub fn spawn_ray(&self, direction: Vec3, time: f32) -> Ray {
+        // Even an exact point on an axis plane must move off it, in object space too (see
+        // `to_world`).
+        let position_error = self.position_error + f32::MIN_POSITIVE;
+        let origin = robust::offset_origin(self.point, position_error, self.normal, direction);
         Ray { time, ..Ray::new(origin, direction) }
     }
 
-    /// A ray from here to a place `distance` away (or infinitely far) that ends just before it: what the place lies on is not met. That
-    /// holds for rays that come down on it by more than some 12 degrees; flatter ones may meet it, for what a rounded
-    /// direction misses of the place grows along such a ray without bound.
+    /// Ray from this point to another, `distance` away (or at infinity), that ends just before it
+    /// and so does not hit the surface of the other point. That holds for rays at more than some 12
+    /// degrees to that surface; flatter ones may hit it, since the error of a rounded direction
+    /// grows along such a ray without bound.
     #[inline]
-    pub fn spawn_to(&self, direction: Vec3, distance: f32, time: f32) -> Ray {
-        // Off at the end are: the direction by a few half ulps of the distance, start and place by the error.
-        self.spawn(direction, time).up_to(distance * (1.0 - robust::gamma(256)) - 16.0 * self.error)
+    pub fn spawn_ray_to(&self, direction: Vec3, distance: f32, time: f32) -> Ray {
+        // Errors at the end: a few half ulps of the distance from the direction, and the error of
+        // both points.
+        self.spawn_ray(direction, time).with_t_max(distance * (1.0 - robust::gamma(256)) - 16.0 * self.position_error)
     }
 }

@@ -2,48 +2,52 @@
 //!
 //! ```
 //! use juggler_shape::{AnyShape, Triangle};
-//! let shape: AnyShape = serde_json::from_str(r#"{"triangle": {"vertices": [[0, 0, 0], [2, 0, 0], [0, 2, 0]]}}"#)?;
-//! assert_eq!(shape, Triangle::new([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Into::into)).into());
+//! let shape: AnyShape = serde_json::from_str(
+//!     r#"{"triangle": {"vertices": [[0, 0, 0], [2, 0, 0], [0, 2, 0]]}}"#,
+//! )?;
+//! let vertices = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+//! assert_eq!(shape, Triangle::new(vertices.map(Into::into)).into());
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::Derivatives;
-use super::arithmetic::within_floats;
-use super::facet::Facet;
+use super::SurfaceDerivatives;
+use super::arithmetic::clamp_to_f32_range;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::triangle_geometry::TriangleGeometry;
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_bvh::intersect_triangle;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One triangle. Its front is where the vertices run counter-clockwise.
+/// A triangle. Its vertices run counter-clockwise seen from the front.
 ///
 /// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the vertices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Triangle {
-    /// The three corners, not on one line.
+    /// The three corners in scene units, not collinear.
     #[schemars(with = "[[f32; 3]; 3]")]
     pub vertices: [Vec3; 3],
-    /// Shading normals at the corners, blended in between.
+    /// Shading normals at the corners, of any length above 0, interpolated over the triangle.
+    /// Without them, the triangle is shaded flat.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[[f32; 3]; 3]>")]
     pub normals: Option<[Vec3; 3]>,
-    /// Surface coordinates of the corners.
+    /// Surface coordinates of the corners, interpolated over the triangle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[[f32; 2]; 3]>")]
     pub uvs: Option<[Vec2; 3]>,
 }
 
 impl Triangle {
-    /// A flat triangle.
+    /// Triangle without shading normals and surface coordinates.
     pub fn new(vertices: [Vec3; 3]) -> Self {
         Self { vertices, normals: None, uvs: None }
     }
 
-    fn facet(&self) -> Facet {
-        Facet { corners: self.vertices, normals: self.normals, uvs: self.uvs }
+    fn geometry(&self) -> TriangleGeometry {
+        TriangleGeometry { corners: self.vertices, normals: self.normals, uvs: self.uvs }
     }
 }
 
@@ -59,7 +63,7 @@ impl Shape for Triangle {
             }
             check::point(&format!("uvs[{i}]"), self.uvs.map_or(Vec2::ZERO, |uvs| uvs[i]).extend(0.0))?;
         }
-        if self.facet().area() > 0.0 {
+        if self.geometry().area() > 0.0 {
             return Ok(());
         }
         Err(check::invalid("vertices", "`vertices` enclose no area: they lie on one line"))
@@ -71,24 +75,24 @@ impl Shape for Triangle {
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let [a, b, c] = self.vertices;
-        let (t, u, v) = intersect_triangle(&within_floats(ray), a, b, c)?;
-        Some(Hit { t, uv: Vec2::new(u, v), part: 0 })
+        let (t, u, v) = intersect_triangle(&clamp_to_f32_range(ray), a, b, c)?;
+        Some(Hit { t, uv: Vec2::new(u, v), primitive: 0 })
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        self.facet().surface(ray, hit.uv)
+        self.geometry().surface(ray, hit.uv)
     }
 
-    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
-        self.facet().derivatives()
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        self.geometry().derivatives()
     }
 
     fn area(&self) -> f32 {
-        self.facet().area() as f32
+        self.geometry().area() as f32
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
-        let (point, normal) = self.facet().point(warp::uniform_triangle(u).truncate().as_dvec2());
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
+        let (point, normal) = self.geometry().point(warp::uniform_triangle(u).truncate().as_dvec2());
         area_sample(from, point, normal, self.area())
     }
 
@@ -103,7 +107,7 @@ impl Shape for Triangle {
 
 #[cfg(any(test, feature = "testing"))]
 impl Triangle {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let made = |vertices: [[f32; 3]; 3]| Self::new(vertices.map(Vec3::from));
         let smooth = Self {
@@ -126,7 +130,8 @@ mod tests {
     use super::*;
     use juggler_math::testing::Random;
 
-    /// A ray that leaves is not taken back however slender the triangle, nor does it start farther off for it.
+    /// A ray that leaves a slender triangle does not hit it again, and starts no farther off than
+    /// from other triangles.
     #[test]
     fn slender_triangles_need_no_more_room_than_others() {
         let mut random = Random::new(35);
@@ -136,7 +141,7 @@ mod tests {
                 let c = a + along * random.f32() + random.unit_vector() / slender;
                 let triangle = Triangle::new([a, a + along, c]);
                 let at = warp::uniform_triangle(random.vec2()).truncate().as_dvec2();
-                let (point, normal) = triangle.facet().point(at);
+                let (point, normal) = triangle.geometry().point(at);
                 let aim = Ray::new(point + random.unit_vector(), Vec3::ZERO);
                 let aim = Ray { direction: point - aim.origin, ..aim };
                 let Some(hit) = triangle.intersect(&aim) else { continue };
@@ -145,7 +150,7 @@ mod tests {
                 if direction.dot(normal).abs() < 1e-4 {
                     continue;
                 }
-                let ray = surface.spawn(direction, 0.0);
+                let ray = surface.spawn_ray(direction, 0.0);
                 assert!(triangle.intersect(&ray).is_none(), "{triangle:?} {surface:?} {direction}");
                 let moved = ray.origin.distance(surface.point);
                 assert!(moved <= 12.0 * f32::EPSILON * (far + 1.0), "{triangle:?} {surface:?}: {moved}");

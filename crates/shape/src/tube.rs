@@ -1,4 +1,4 @@
-//! A round tube around the y axis, without end: `x² + z² = r²`.
+//! An infinite cylinder around the y axis: `x² + z² = r²`.
 //!
 //! ```
 //! use juggler_shape::{AnyShape, Tube};
@@ -7,21 +7,22 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::arithmetic::{cross_tube, double, first_in_range, rounded_surface, turn};
-use super::derivatives::{Derivatives, about_y};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::arithmetic::{azimuth_turns, first_in_range, intersect_infinite_cylinder, rounded_surface, to_f64};
+use super::derivatives::{SurfaceDerivatives, dpdu_about_y};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A round tube around the y axis, without end.
+/// An infinite circular cylinder around the y axis.
 ///
-/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v is y in scene units.
+/// Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v is y
+/// in scene units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Tube {
-    /// Radius in scene units.
+    /// Radius in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f32,
 }
@@ -32,18 +33,19 @@ impl Default for Tube {
     }
 }
 
-/// The side of a round tube at a hit: `hit.part` is 0 where the ray enters and 1 where it leaves.
-pub fn tube_surface(radius: f32, ray: &Ray, hit: &Hit) -> Surface {
-    let (origin, direction) = double(ray);
+/// Surface of an infinite cylinder at a hit: `hit.primitive` is 0 where the ray enters and 1 where
+/// it leaves.
+pub fn infinite_cylinder_surface(radius: f32, ray: &Ray, hit: &Hit) -> Surface {
+    let (origin, direction) = to_f64(ray);
     let radius = f64::from(radius);
-    let t = cross_tube(origin, direction, radius)
-        .map_or(f64::from(hit.t), |(near, far)| if hit.part == 0 { near } else { far });
+    let t = intersect_infinite_cylinder(origin, direction, radius)
+        .map_or(f64::from(hit.t), |(near, far)| if hit.primitive == 0 { near } else { far });
     let found = origin + direction * t;
     let normal = DVec3::new(found.x, 0.0, found.z).normalize_or(DVec3::X);
-    // A tube goes on where floats end.
+    // The cylinder extends beyond the range of floats.
     let end = f64::from(f32::MAX);
     let point = normal * radius + DVec3::Y * found.y.clamp(-end, end);
-    rounded_surface(point, normal, Vec2::new(turn(normal.x as f32, normal.z as f32), point.y as f32))
+    rounded_surface(point, normal, Vec2::new(azimuth_turns(normal.x as f32, normal.z as f32), point.y as f32))
 }
 
 impl Shape for Tube {
@@ -56,24 +58,24 @@ impl Shape for Tube {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (origin, direction) = double(ray);
-        let (near, far) = cross_tube(origin, direction, f64::from(self.radius))?;
+        let (origin, direction) = to_f64(ray);
+        let (near, far) = intersect_infinite_cylinder(origin, direction, f64::from(self.radius))?;
         first_in_range(ray, [(near, 0), (far, 1)])
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        tube_surface(self.radius, ray, hit)
+        infinite_cylinder_surface(self.radius, ray, hit)
     }
 
-    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
-        Derivatives::new(about_y(local), Vec3::Y)
+    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<SurfaceDerivatives> {
+        SurfaceDerivatives::new(dpdu_about_y(local), Vec3::Y)
     }
 
     fn area(&self) -> f32 {
         f32::INFINITY
     }
 
-    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<SurfaceSample> {
+    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<ShapeSample> {
         None
     }
 
@@ -84,7 +86,7 @@ impl Shape for Tube {
 
 #[cfg(any(test, feature = "testing"))]
 impl Tube {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         [1.0, 0.3, 1e-4, 1e5].map(|radius| Self { radius }).to_vec()
     }

@@ -1,46 +1,49 @@
-//! A brick wall in the pattern's x and y, which every other row may be shifted in.
+//! Brick wall in x and y of the pattern, with rows that are shifted against each other.
 //!
 //! ```json
-//! {"brick": {"scale": 4, "width": 0.5, "height": 0.25, "mortar_width": 0.02, "brick": "#a04030", "variation": 0.3}}
+//! {"brick": {"scale": 4, "width": 0.5, "height": 0.25, "mortar_width": 0.02,
+//! "brick": "#a04030", "variation": 0.3}}
 //! ```
 
 use super::CompiledTexture;
-use super::lattice::{hash, kept, pulses};
-use super::mapping::{Map, Place};
+use super::lattice::{filter_amplitude, filtered_pulse_train, hash};
+use super::mapping::{CompiledMapping, PatternPoint};
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, Mapping, SharedTexture, Slot, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::hash::unit_f32;
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A brick wall in the pattern's x and y.
+/// Brick wall in x and y of the pattern, with mortar joints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Brick {
-    /// Colour of the bricks.
+    /// Color of the bricks.
     pub brick: Input<Rgb>,
-    /// Colour of the joints between them.
+    /// Color of the mortar joints.
     pub mortar: Input<Rgb>,
-    /// From one brick to the next.
+    /// Width of a brick with its joint, in units of the pattern.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub width: f32,
-    /// From one row to the next.
+    /// Height of a row with its joint, in units of the pattern.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub height: f32,
-    /// How wide joints are; part of `width` and `height`.
+    /// Width of the mortar joints, in units of the pattern. At most `width` and `height`, which
+    /// include it.
     #[schemars(range(min = 0))]
     pub mortar_width: f32,
-    /// How far each row is shifted against the one below, in widths.
+    /// Offset of each row against the row below, in brick widths, -1e6 to 1e6.
     pub shift: f32,
-    /// How much darker the darkest brick is than the brightest, as a share of its colour.
+    /// Largest random darkening of bricks, as a share of their color. 0 makes all bricks equal.
     #[schemars(range(min = 0, max = 1))]
     pub variation: f32,
-    /// Another number, other bricks are dark.
+    /// Seed of the random darkening.
     pub seed: u32,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -73,7 +76,7 @@ impl Texture for Brick {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let (brick, mortar) = (resolver.color("brick", &self.brick)?, resolver.color("mortar", &self.mortar)?);
         let Self { width, height, mortar_width, shift, variation, seed, .. } = *self;
         let map = self.mapping.compile(Space::Uv);
@@ -81,7 +84,7 @@ impl Texture for Brick {
     }
 }
 
-/// A [`Brick`] with its names looked up.
+/// A [`Brick`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledBrick {
     brick: Slot<Rgb>,
@@ -92,33 +95,33 @@ pub struct CompiledBrick {
     shift: f32,
     variation: f32,
     seed: u32,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledBrick {
-    /// Share of brick at a place, and how bright that brick is. Where a footprint covers several rows, they count as not
-    /// shifted against each other.
-    fn at(&self, place: Place) -> (f32, f32) {
+    /// Share of brick in the footprint, and brightness of the brick at its center. Rows inside one
+    /// footprint count as not shifted against each other.
+    fn at(&self, pattern: PatternPoint) -> (f32, f32) {
         let (width, height) = (f64::from(self.width), f64::from(self.height));
-        let y = f64::from(place.point.y) / height;
-        let row = fun::floor_f64(y);
+        let y = f64::from(pattern.point.y) / height;
+        let row = portable::floor_f64(y);
         let shift = f64::from(self.shift) * row;
-        let x = f64::from(place.point.x) / width - (shift - fun::floor_f64(shift));
-        // Half of the joint lies before, half behind.
+        let x = f64::from(pattern.point.x) / width - (shift - portable::floor_f64(shift));
+        // Center the joint on the border between bricks.
         let along = |at: f64, size: f32| {
             let share = self.mortar_width / size;
-            pulses((at - fun::floor_f64(at)) as f32 - 0.5 * share, 1.0 - share, place.width / size)
+            filtered_pulse_train((at - portable::floor_f64(at)) as f32 - 0.5 * share, 1.0 - share, pattern.width / size)
         };
         let bricks = along(x, self.width) * along(y, self.height);
-        let random = unit_f32(hash([fun::floor_f64(x) as i64, row as i64, 0], self.seed));
-        let random = 0.5 + (random - 0.5) * kept(place.width / self.width.min(self.height));
+        let random = unit_f32(hash([portable::floor_f64(x) as i64, row as i64, 0], self.seed));
+        let random = 0.5 + (random - 0.5) * filter_amplitude(pattern.width / self.width.min(self.height));
         (bricks, 1.0 - self.variation * random)
     }
 }
 
 impl CompiledTexture for CompiledBrick {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let (bricks, bright) = self.at(self.map.place(at));
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let (bricks, bright) = self.at(self.map.pattern_point(at));
         let color =
             |share: f32, slot: &Slot<Rgb>| if share > 0.0 { textures.color(slot, at) * share } else { Rgb::BLACK };
         color(1.0 - bricks, &self.mortar) + color(bricks, &self.brick) * bright
@@ -127,7 +130,7 @@ impl CompiledTexture for CompiledBrick {
 
 #[cfg(any(test, feature = "testing"))]
 impl Brick {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { width: 1e-6, height: 1e-6, mortar_width: 1e-6, variation: 1.0, ..Self::default() }]
     }
@@ -180,11 +183,11 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_the_colours_that_were_given() {
+    fn colors_are_the_colors_that_were_given() {
         let read = reader(r#"{"brick": {"brick": [0.5, 0.25, 0.1], "mortar": [0.1, 0.2, 0.3], "variation": 0}}"#);
-        assert_eq!(read(&Lookup::default()), Rgb::new(0.1, 0.2, 0.3));
+        assert_eq!(read(&TextureLookup::default()), Rgb::new(0.1, 0.2, 0.3));
         let uv = juggler_math::Vec2::new(0.125, 0.06);
-        assert_eq!(read(&Lookup { uv, ..Lookup::default() }), Rgb::new(0.5, 0.25, 0.1));
+        assert_eq!(read(&TextureLookup { uv, ..TextureLookup::default() }), Rgb::new(0.5, 0.25, 0.1));
     }
 
     #[test]

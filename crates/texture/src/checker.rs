@@ -1,49 +1,50 @@
-//! A checkerboard of two colours: squares on a surface or cubes in space.
+//! A checkerboard of two colors: squares on a surface or cubes in space.
 //!
 //! ```json
 //! {"checker": {"size": 25, "even": [1, 1, 0], "odd": [0, 1, 0], "space": "local", "axes": "xz"}}
 //! ```
 //!
-//! A point is even where the sum of ⌊(x − offset) / size⌋ over its `axes` is even. Across a flat surface
-//! leave out the axis that stands on it: there the cell would hang on rounding.
+//! A point is even if the sum of ⌊(x - offset) / size⌋ over its `axes` is even. On a flat surface,
+//! leave out the axis of its normal, along which rounding would choose the cell.
 
 use super::CompiledTexture;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, SharedTexture, Slot, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A checkerboard of two colours.
+/// Checkerboard of two colors: squares over (u, v) or on a plane, cubes in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Checker {
-    /// Edge of one cell, in units of `space`.
+    /// Edge length of a cell, in units of `space`.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub size: f32,
-    /// Colour of the cell on the positive side of `offset`.
+    /// Color of the cell on the positive side of `offset`.
     pub even: Input<Rgb>,
-    /// Colour of its neighbours.
+    /// Color of the adjacent cells.
     pub odd: Input<Rgb>,
-    /// The coordinates that the cells divide.
+    /// Coordinate space of the cells.
     pub space: Space,
-    /// Which of the coordinates count.
+    /// Axes that the cells divide. The pattern is constant along all others.
     pub axes: Axes,
-    /// A corner of the cells.
+    /// Position of a corner of the cells, in `space`.
     #[schemars(with = "[f32; 3]")]
     pub offset: Vec3,
 }
 
-/// Some of the three coordinates.
+/// Axes that the cells of a checkerboard divide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Axes {
-    /// All: cubes; over (u, v): squares.
+    /// All three axes: cubes in space, squares over (u, v).
     #[default]
     Xyz,
-    /// Squares on level ground.
+    /// Squares on horizontal ground.
     Xz,
     /// Squares on a wall that faces z.
     Xy,
@@ -64,12 +65,12 @@ impl Default for Checker {
     }
 }
 
-/// Whether `x` lies in an odd cell of edge `size`: whether ⌊x / size⌋ is odd. Divides in double precision,
-/// so neighbouring floats fall into the right cells even where coordinates exceed the size by millions.
+/// Whether ⌊x / size⌋ is odd. The division in double precision puts adjacent floats into the right
+/// cells even if coordinates exceed the size by a factor of millions.
 #[inline]
 pub fn is_odd_cell(x: f32, size: f32) -> bool {
     let cells = f64::from(x) / f64::from(size);
-    // Truncation and a correction: a plain instruction, where `floor` may be a call.
+    // Truncate and correct: a single instruction, where `floor` may be a call.
     let towards_zero = cells as i64;
     (towards_zero ^ i64::from(cells < towards_zero as f64)) & 1 == 1
 }
@@ -84,7 +85,7 @@ impl Texture for Checker {
         check::vector("offset", self.offset)
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         Ok(Arc::new(CompiledChecker {
             size: self.size,
             even: resolver.color("even", &self.even)?,
@@ -96,7 +97,7 @@ impl Texture for Checker {
     }
 }
 
-/// A [`Checker`] with its names looked up.
+/// A [`Checker`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledChecker {
     size: f32,
@@ -108,7 +109,7 @@ pub struct CompiledChecker {
 }
 
 impl CompiledTexture for CompiledChecker {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
         let p = at.point(self.space) - self.offset;
         let odd = |x: f32| is_odd_cell(x, self.size);
         let odd = match self.axes {
@@ -123,7 +124,7 @@ impl CompiledTexture for CompiledChecker {
 
 #[cfg(any(test, feature = "testing"))]
 impl Checker {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let ground = Self { size: 107.0, space: Space::World, axes: Axes::Xz, ..Self::default() };
         vec![Self::default(), ground, Self { space: Space::Local, offset: Vec3::ONE, ..Self::default() }]
@@ -161,7 +162,7 @@ mod tests {
     #[test]
     fn spaces_and_axes() {
         let (uv, local) = (Vec2::new(1.5, 0.5), Vec3::new(0.5, 1.5, 2.5));
-        let at = Lookup { uv, local, world: Vec3::splat(1.5), ..Lookup::default() };
+        let at = TextureLookup { uv, local, world: Vec3::splat(1.5), ..TextureLookup::default() };
         let odd = |space, axes, offset| {
             let checker =
                 Checker { space, axes, offset, even: Rgb::BLACK.into(), odd: Rgb::WHITE.into(), ..Checker::default() };

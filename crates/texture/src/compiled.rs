@@ -1,48 +1,48 @@
-//! Textures as shading asks them: names are numbers, and nothing is left to be worked out twice.
+//! Compiled textures: names are resolved, and derived values are precomputed.
 
 use super::constant::CompiledConstant;
-use super::{Lookup, Pyramid, Slot, TextureTable};
+use super::{MipMap, Slot, TextureLookup, TextureTable};
 use juggler_math::Rgb;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A texture with its names looked up.
+/// A texture with its names resolved.
 pub trait CompiledTexture: Debug + Send + Sync {
-    /// Color at a point, linear light; finite. `textures` is the table that the texture belongs to.
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb;
+    /// Color at a point, in linear light; finite. `textures` is the table that holds the texture.
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb;
 
-    /// Pixels of an image, if the texture is one.
-    fn pixels(&self) -> Option<&Arc<Pyramid>> {
+    /// Pixels of an image texture; `None` for all other textures.
+    fn pixels(&self) -> Option<&Arc<MipMap>> {
         None
     }
 }
 
-/// What a description becomes.
-pub type Compiled = Arc<dyn CompiledTexture>;
+/// Texture that shading evaluates.
+pub type SharedTexture = Arc<dyn CompiledTexture>;
 
-/// Texture that stands for one that is wrong.
-pub fn black() -> Compiled {
+/// Black texture, in place of an invalid one.
+pub fn black() -> SharedTexture {
     Arc::new(CompiledConstant(Slot::Value(Rgb::BLACK)))
 }
 
-/// Two colours, looked up only as far as they are needed.
+/// Two colors to blend. Colors of weight 0 are not evaluated.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair {
-    /// At 0.
+pub struct ColorBlend {
+    /// Color at weight 0.
     pub low: Slot<Rgb>,
-    /// At 1.
+    /// Color at weight 1.
     pub high: Slot<Rgb>,
 }
 
-impl Pair {
-    /// The colour at a share from 0 to 1.
-    pub fn at(&self, share: f32, textures: &TextureTable, at: &Lookup) -> Rgb {
-        if share <= 0.0 {
+impl ColorBlend {
+    /// Blended color; `weight` from 0 to 1 is the weight of `high`.
+    pub fn eval(&self, weight: f32, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        if weight <= 0.0 {
             textures.color(&self.low, at)
-        } else if share >= 1.0 {
+        } else if weight >= 1.0 {
             textures.color(&self.high, at)
         } else {
-            textures.color(&self.low, at).lerp(textures.color(&self.high, at), share)
+            textures.color(&self.low, at).lerp(textures.color(&self.high, at), weight)
         }
     }
 }

@@ -1,48 +1,48 @@
-//! From named descriptions to a table of numbers.
+//! Compiles texture descriptions into a [`TextureTable`].
 
 use super::check;
-use super::{AnyTexture, Compiled, Image, Input, InvalidTexture, Pyramid, Slot, TextureId, TextureTable, compiled};
+use super::{AnyTexture, Image, Input, InvalidTexture, MipMap, SharedTexture, Slot, TextureId, TextureTable, compiled};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How deep textures may lie in each other.
+/// Maximum depth of textures nested in each other.
 pub const MAX_NESTING: u32 = 32;
 
-/// How many lookups one lookup may lead to: a texture that names another twice, which names another twice, and so on,
-/// would take forever.
+/// Maximum number of texture evaluations that one lookup may cause. Textures that each name the
+/// next one twice would otherwise take exponential time.
 pub const MAX_LOOKUPS: u32 = 1024;
 
-/// Why a texture cannot be compiled.
+/// Error in a texture's description.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TextureError {
-    /// A number that cannot be.
+    /// A value is invalid.
     #[error(transparent)]
     Invalid(#[from] InvalidTexture),
-    /// A texture that the scene has not.
+    /// The scene has no texture of this name.
     #[error("no texture is called `{name}`")]
     Unknown {
-        /// The field that names it.
+        /// Field that contains the name.
         field: String,
         /// The name.
         name: String,
     },
-    /// Textures within textures without end.
+    /// A texture contains itself.
     #[error("the texture `{name}` contains itself")]
     Cycle {
-        /// The field that closes the circle.
+        /// Field that closes the cycle.
         field: String,
         /// The name.
         name: String,
     },
-    /// A picture that cannot be read.
+    /// An image cannot be read.
     #[error("{0}")]
     Image(String),
-    /// Textures within textures, too many.
-    #[error("textures lie more than {MAX_NESTING} deep in each other here")]
+    /// Textures are nested deeper than [`MAX_NESTING`].
+    #[error("textures are nested more than {MAX_NESTING} deep here")]
     TooDeep,
-    /// Textures that name textures that name textures, several times each.
-    #[error("one lookup of this texture leads to more than {MAX_LOOKUPS} lookups of others")]
+    /// One lookup causes more evaluations than [`MAX_LOOKUPS`].
+    #[error("one lookup of this texture needs more than {MAX_LOOKUPS} lookups of other textures")]
     TooMany,
 }
 
@@ -58,39 +58,39 @@ impl TextureError {
         }
     }
 
-    /// Whether all that is wrong is a name that the scene has not.
+    /// Whether the error is an unknown name.
     pub fn is_unknown_name(&self) -> bool {
         matches!(self, Self::Unknown { .. })
     }
 }
 
-/// Where the pictures of image textures come from.
+/// Source of the images of image textures.
 pub trait Images {
-    /// The pixels of an image texture of that name; or why there are none.
-    fn image(&self, texture: &str, image: &Image) -> Result<Arc<Pyramid>, String>;
+    /// Pixels of the image of the texture named `texture`, or a message about the failure.
+    fn image(&self, texture: &str, image: &Image) -> Result<Arc<MipMap>, String>;
 }
 
-/// There are none.
+/// Source that has no images.
 pub struct NoImages;
 
 impl Images for NoImages {
-    fn image(&self, _: &str, image: &Image) -> Result<Arc<Pyramid>, String> {
-        Err(format!("cannot read `{}`: no files are read here", image.file))
+    fn image(&self, _: &str, image: &Image) -> Result<Arc<MipMap>, String> {
+        Err(format!("cannot read `{}`: no image files are available here", image.file))
     }
 }
 
-/// What asking a texture costs.
+/// Cost of one lookup of a texture.
 #[derive(Clone, Copy, Debug)]
-struct Weight {
+struct LookupCost {
     lookups: u32,
     depth: u32,
 }
 
-impl Weight {
-    const ALONE: Self = Self { lookups: 1, depth: 1 };
+impl LookupCost {
+    const SINGLE: Self = Self { lookups: 1, depth: 1 };
 
-    /// Of a texture that asks the other `times` times.
-    fn asking(self, other: Self, times: u32) -> Self {
+    /// Cost of a texture that evaluates another one `times` times per lookup.
+    fn with_uses(self, other: Self, times: u32) -> Self {
         let lookups = self.lookups.saturating_add(other.lookups.saturating_mul(times));
         Self { lookups, depth: self.depth.max(other.depth.saturating_add(1)) }
     }
@@ -102,18 +102,18 @@ enum State {
     Done(TextureId),
 }
 
-/// Looks up what a texture names while it is compiled.
-pub struct Resolver<'a> {
+/// Resolves the names in a texture's description while it is compiled.
+pub struct TextureResolver<'a> {
     states: BTreeMap<String, State>,
-    textures: Vec<(Compiled, Weight)>,
+    textures: Vec<(SharedTexture, LookupCost)>,
     errors: Vec<(String, TextureError)>,
     images: &'a dyn Images,
-    /// The one that is being compiled.
+    /// Name of the texture that is being compiled.
     name: String,
-    /// How many textures are being compiled, one asked for by the other.
+    /// Number of nested compilations in progress.
     depth: u32,
-    /// What the one that is being compiled costs so far.
-    weight: Weight,
+    /// Cost of the texture that is being compiled, so far.
+    cost: LookupCost,
 }
 
 /// Compiles textures; see [`TextureTable::compile`].
@@ -124,18 +124,18 @@ pub fn compile(
     let states: BTreeMap<_, _> =
         named.into_iter().map(|(name, texture)| (name, State::Waiting(Box::new(texture)))).collect();
     let names: Vec<String> = states.keys().cloned().collect();
-    let mut resolver = Resolver {
+    let mut resolver = TextureResolver {
         states,
         textures: Vec::new(),
         errors: Vec::new(),
         images,
         name: String::new(),
         depth: 0,
-        weight: Weight::ALONE,
+        cost: LookupCost::SINGLE,
     };
     let mut table = TextureTable::default();
     for name in names {
-        // A name that is there and not in progress is found.
+        // A known name that is not in progress always resolves.
         if let Ok(id) = resolver.by_name(&name, &name) {
             table.names.insert(name, id);
         }
@@ -145,37 +145,38 @@ pub fn compile(
     (table, resolver.errors)
 }
 
-impl Resolver<'_> {
-    /// The colour that `field` says or names.
+impl TextureResolver<'_> {
+    /// Resolves the color of `field`.
     pub fn color(&mut self, field: &str, input: &Input<Rgb>) -> Result<Slot<Rgb>, TextureError> {
         check::color(field, input)?;
         self.slot(field, input, 1)
     }
 
-    /// The number that `field` says or names.
+    /// Resolves the number of `field`.
     pub fn number(&mut self, field: &str, input: &Input<f32>) -> Result<Slot<f32>, TextureError> {
         self.slot(field, input, 1)
     }
 
-    /// The same for a field that is asked `times` times at each lookup.
+    /// Resolves an input that each lookup evaluates `times` times.
     pub fn slot<T: Clone>(&mut self, field: &str, input: &Input<T>, times: u32) -> Result<Slot<T>, TextureError> {
         match input {
             Input::Value(value) => Ok(Slot::Value(value.clone())),
             Input::Texture(name) => {
                 let id = self.by_name(field, name)?;
-                let other = self.textures.get(id.0 as usize).map_or(Weight::ALONE, |(_, weight)| *weight);
-                self.weight = self.weight.asking(other, times);
+                let other = self.textures.get(id.0 as usize).map_or(LookupCost::SINGLE, |(_, cost)| *cost);
+                self.cost = self.cost.with_uses(other, times);
                 Ok(Slot::Texture(id))
             }
         }
     }
 
-    /// The pixels of an image.
-    pub fn image(&mut self, image: &Image) -> Result<Arc<Pyramid>, TextureError> {
+    /// Pixels of an image texture.
+    pub fn image(&mut self, image: &Image) -> Result<Arc<MipMap>, TextureError> {
         self.images.image(&self.name, image).map_err(TextureError::Image)
     }
 
-    /// An error inside a texture is charged to that texture, once, not to those who use it.
+    /// Id of a named texture, which is compiled on first use. An error inside it is reported once,
+    /// for the texture itself and not for its users.
     fn by_name(&mut self, field: &str, name: &str) -> Result<TextureId, TextureError> {
         let Some(state) = self.states.get_mut(name) else {
             return Err(TextureError::Unknown { field: field.to_owned(), name: name.to_owned() });
@@ -193,7 +194,7 @@ impl Resolver<'_> {
         self.name = outer;
         let compiled = compiled.unwrap_or_else(|error| {
             self.errors.push((name.to_owned(), error));
-            (compiled::black(), Weight::ALONE)
+            (compiled::black(), LookupCost::SINGLE)
         });
         let id = TextureId(u32::try_from(self.textures.len()).unwrap_or(u32::MAX));
         self.textures.push(compiled);
@@ -201,20 +202,20 @@ impl Resolver<'_> {
         Ok(id)
     }
 
-    fn compile(&mut self, texture: &AnyTexture) -> Result<(Compiled, Weight), TextureError> {
+    fn compile(&mut self, texture: &AnyTexture) -> Result<(SharedTexture, LookupCost), TextureError> {
         if self.depth >= MAX_NESTING {
             return Err(TextureError::TooDeep);
         }
         texture.check()?;
-        let outer = std::mem::replace(&mut self.weight, Weight::ALONE);
+        let outer = std::mem::replace(&mut self.cost, LookupCost::SINGLE);
         self.depth += 1;
         let compiled = texture.compile(self);
         self.depth -= 1;
-        let weight = std::mem::replace(&mut self.weight, outer);
+        let cost = std::mem::replace(&mut self.cost, outer);
         match compiled? {
-            _ if weight.depth > MAX_NESTING => Err(TextureError::TooDeep),
-            _ if weight.lookups > MAX_LOOKUPS => Err(TextureError::TooMany),
-            compiled => Ok((compiled, weight)),
+            _ if cost.depth > MAX_NESTING => Err(TextureError::TooDeep),
+            _ if cost.lookups > MAX_LOOKUPS => Err(TextureError::TooMany),
+            compiled => Ok((compiled, cost)),
         }
     }
 }
@@ -222,7 +223,7 @@ impl Resolver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Lookup, Mix};
+    use crate::{Mix, TextureLookup};
 
     fn compile_json(json: &str) -> (TextureTable, Vec<String>) {
         let named: BTreeMap<String, AnyTexture> = serde_json::from_str(json).unwrap();
@@ -238,8 +239,8 @@ mod tests {
         );
         assert!(errors.is_empty(), "{errors:?}");
         let slot = table.resolve("diffuse", &Input::<Rgb>::Texture("a".into())).unwrap();
-        assert_eq!(table.color(&slot, &Lookup::default()), Rgb::new(0.0, 0.25, 0.5));
-        let at = Lookup { uv: juggler_math::Vec2::new(1.5, 0.5), ..Lookup::default() };
+        assert_eq!(table.color(&slot, &TextureLookup::default()), Rgb::new(0.0, 0.25, 0.5));
+        let at = TextureLookup { uv: juggler_math::Vec2::new(1.5, 0.5), ..TextureLookup::default() };
         assert_eq!(table.color(&slot, &at), Rgb::new(1.0, 0.0, 0.0));
     }
 

@@ -1,21 +1,24 @@
-//! The same colour everywhere: a name for a colour that several textures and materials share.
+//! Constant color: a name for a color that several textures and materials share.
 //!
 //! ```json
 //! {"constant": {"color": "#c0a060"}}
 //! ```
 
 use super::CompiledTexture;
-use super::{Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Texture, TextureError, TextureTable, check};
+use super::{
+    Input, InvalidTexture, SharedTexture, Slot, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+    check,
+};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The same colour everywhere.
+/// Constant color, which several textures and materials can share by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Constant {
-    /// The colour.
+    /// The color.
     pub color: Input<Rgb>,
 }
 
@@ -30,24 +33,24 @@ impl Texture for Constant {
         check::color("color", &self.color)
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         Ok(Arc::new(CompiledConstant(resolver.color("color", &self.color)?)))
     }
 }
 
-/// A [`Constant`] with its name looked up.
+/// A [`Constant`] with its name resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledConstant(pub Slot<Rgb>);
 
 impl CompiledTexture for CompiledConstant {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
         textures.color(&self.0, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Constant {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }

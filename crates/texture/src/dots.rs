@@ -1,15 +1,16 @@
-//! Dots in the cells of a grid: circles over (u, v), balls in space.
+//! Dots in the cells of a grid: circles over (u, v), spheres in space.
 //!
 //! ```json
 //! {"dots": {"scale": 20, "radius": 0.3, "jitter": 1, "dot": "#ffffff", "ground": "#c02030"}}
 //! ```
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::lattice::{cell, hash, kept, numbers, smoothstep};
-use super::mapping::Map;
+use super::compiled::ColorBlend;
+use super::lattice::{cell, filter_amplitude, hash, smoothstep, unit_cube_point};
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, Mapping, SharedTexture, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
@@ -17,26 +18,27 @@ use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Dots, one a cell of the pattern's grid.
+/// Dots, one per unit cell of the pattern: circles over (u, v), spheres in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Dots {
-    /// Colour of the dots.
+    /// Color of the dots.
     pub dot: Input<Rgb>,
-    /// Colour between them.
+    /// Color between the dots.
     pub ground: Input<Rgb>,
-    /// Radius of a dot; cells are 1 wide.
+    /// Radius of a dot, in cell widths.
     #[schemars(range(min = 0, max = 0.5))]
     pub radius: f32,
-    /// Share of the radius over which a dot fades out.
+    /// Share of the radius over which a dot fades out. 0 makes its edge sharp.
     #[schemars(range(min = 0, max = 1))]
     pub softness: f32,
-    /// How far dots are moved off the middle of their cells: at 1 they may touch its border.
+    /// Random offset of dots from the centers of their cells, as a share of the room in the cell:
+    /// at 1, dots may touch its border.
     #[schemars(range(min = 0, max = 1))]
     pub jitter: f32,
-    /// Another number, other places.
+    /// Seed of the random offsets.
     pub seed: u32,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -65,8 +67,9 @@ impl Texture for Dots {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("ground", &self.ground)?, high: resolver.color("dot", &self.dot)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors =
+            ColorBlend { low: resolver.color("ground", &self.ground)?, high: resolver.color("dot", &self.dot)? };
         let Self { radius, softness, jitter, seed, .. } = *self;
         let flat = self.mapping.space_or(Space::Uv) == Space::Uv;
         let mut compiled = CompiledDots {
@@ -79,7 +82,7 @@ impl Texture for Dots {
             mean: 0.0,
             map: self.mapping.compile(Space::Uv),
         };
-        // Shells of a dot, by their areas.
+        // Integrate the profile over shells of a dot.
         let shell = |i: u32| {
             let r = (i as f32 + 0.5) / 64.0 * radius;
             let size = if flat { 2.0 * PI * r } else { 4.0 * PI * r * r };
@@ -90,23 +93,24 @@ impl Texture for Dots {
     }
 }
 
-/// A [`Dots`] with its names looked up.
+/// A [`Dots`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledDots {
-    colors: Pair,
+    colors: ColorBlend,
     radius: f32,
     softness: f32,
     jitter: f32,
     seed: u32,
-    /// Whether dots are circles, not balls.
+    /// Whether dots are circles instead of spheres.
     flat: bool,
-    /// Share of dots in the whole.
+    /// Mean weight of the dot color.
     mean: f32,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledDots {
-    /// How much of a dot there is at a distance from its middle.
+    /// Weight of the dot color at a distance from the center, filtered over a footprint of diameter
+    /// `width`.
     fn profile(&self, distance: f32, width: f32) -> f32 {
         let inner = self.radius * (1.0 - self.softness) - 0.5 * width;
         1.0 - smoothstep(inner, self.radius + 0.5 * width, distance)
@@ -114,22 +118,22 @@ impl CompiledDots {
 }
 
 impl CompiledTexture for CompiledDots {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let (cell, within) = cell(if self.flat { place.point.with_z(0.0) } else { place.point });
-        let way = (numbers(hash(cell, self.seed)) - 0.5) * (self.jitter * (1.0 - 2.0 * self.radius));
-        let off = within - (Vec3::splat(0.5) + way);
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
+        let (cell, within) = cell(if self.flat { pattern.point.with_z(0.0) } else { pattern.point });
+        let offset = (unit_cube_point(hash(cell, self.seed)) - 0.5) * (self.jitter * (1.0 - 2.0 * self.radius));
+        let off = within - (Vec3::splat(0.5) + offset);
         let off = if self.flat { off.with_z(0.0) } else { off };
-        let share = self.profile(off.length(), place.width);
-        self.colors.at(self.mean + (share - self.mean) * kept(place.width), textures, at)
+        let share = self.profile(off.length(), pattern.width);
+        self.colors.eval(self.mean + (share - self.mean) * filter_amplitude(pattern.width), textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Dots {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let balls = Self { mapping: Mapping::of(Space::Local), jitter: 1.0, softness: 1.0, ..Self::default() };
+        let balls = Self { mapping: Mapping::in_space(Space::Local), jitter: 1.0, softness: 1.0, ..Self::default() };
         vec![Self::default(), balls, Self { radius: 0.0, dot: Rgb::new(0.5, 0.1, 0.2).into(), ..Self::default() }]
     }
 }
@@ -163,12 +167,13 @@ mod tests {
     #[test]
     fn over_uv_they_are_circles_that_cover_their_share() {
         let read = reader(r#"{"dots": {"scale": 4, "radius": 0.4, "jitter": 1, "dot": 1, "ground": 0}}"#);
-        let at = |i: u32, j: u32| Lookup { uv: Vec2::new(i as f32, j as f32) / 200.0, ..Lookup::default() };
+        let at =
+            |i: u32, j: u32| TextureLookup { uv: Vec2::new(i as f32, j as f32) / 200.0, ..TextureLookup::default() };
         let count =
             (0..800).flat_map(|i| (0..800).map(move |j| (i, j))).filter(|(i, j)| read(&at(*i, *j)).r == 1.0).count();
         let share = count as f32 / 640_000.0;
         assert!((share - PI * 0.16).abs() < 0.005, "{share}");
-        let far = read(&Lookup { uv_footprint: 1.0, ..Lookup::default() }).r;
+        let far = read(&TextureLookup { uv_footprint: 1.0, ..TextureLookup::default() }).r;
         assert!((far - PI * 0.16).abs() < 0.002, "{far}");
     }
 

@@ -1,52 +1,53 @@
-//! Noises of many sizes added up: clouds, dirt, rough ground (fractional Brownian motion; Musgrave in Ebert et al.,
-//! Texturing and Modeling, 2003, chapter 14).
+//! Fractional Brownian motion: octaves of noise, for clouds, dirt and rough ground (Musgrave in
+//! Ebert et al., Texturing and Modeling, 2003, chapter 14).
 //!
 //! ```json
-//! {"fbm": {"space": "local", "scale": 2, "octaves": 8, "gain": 0.6, "low": "#3060c0", "high": [1, 1, 1]}}
+//! {"fbm": {"space": "local", "scale": 2, "octaves": 8, "gain": 0.6,
+//! "low": "#3060c0", "high": [1, 1, 1]}}
 //! ```
 
 use super::CompiledTexture;
-use super::heights::{CompiledHeights, Heights};
-use super::{Compiled, InvalidTexture, Lookup, Resolver, Texture, TextureError, TextureTable};
+use super::noise_blend::{CompiledNoiseBlend, NoiseBlend};
+use super::{InvalidTexture, SharedTexture, Texture, TextureError, TextureLookup, TextureResolver, TextureTable};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Noises of many sizes added up: clouds, dirt, rough ground.
+/// Fractional Brownian motion: a sum of octaves of noise. Use it for clouds, dirt and rough ground.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Fbm {
-    /// Between which colours, of which noises, and where.
+    /// Colors, octaves and placement.
     #[serde(flatten)]
-    pub heights: Heights,
+    pub noise_blend: NoiseBlend,
 }
 
 impl Texture for Fbm {
     fn check(&self) -> Result<(), InvalidTexture> {
-        self.heights.check()
+        self.noise_blend.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Arc::new(CompiledFbm(self.heights.compile(resolver)?)))
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        Ok(Arc::new(CompiledFbm(self.noise_blend.compile(resolver)?)))
     }
 }
 
-/// A [`Fbm`] with its names looked up.
+/// A [`Fbm`] with its names resolved.
 #[derive(Clone, Debug)]
-pub struct CompiledFbm(CompiledHeights);
+pub struct CompiledFbm(CompiledNoiseBlend);
 
 impl CompiledTexture for CompiledFbm {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        self.0.at(textures, at, |octaves, place| 0.5 + 0.5 * octaves.signed(place))
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        self.0.eval(textures, at, |octaves, pattern| 0.5 + 0.5 * octaves.fbm(pattern))
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Fbm {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        Heights::examples().map(|heights| Self { heights }).to_vec()
+        NoiseBlend::examples().map(|noise_blend| Self { noise_blend }).to_vec()
     }
 }
 

@@ -1,66 +1,68 @@
-//! Colours that run into each other along a line or around a point.
+//! Color gradient along a line or around a point.
 //!
 //! ```json
 //! {"gradient": {"space": "local", "start": [0, -1, 0], "end": [0, 1, 0], "stops": [
-//!     {"position": 0, "color": "#202060"}, {"position": 0.5, "color": [1, 1, 1]}, {"position": 1, "color": "#802020"}]}}
+//!     {"position": 0, "color": "#202060"}, {"position": 0.5, "color": [1, 1, 1]},
+//!     {"position": 1, "color": "#802020"}]}}
 //! ```
 //!
-//! The position of a point p is (p − start) · (end − start) / |end − start|², or |p − start| / |end − start|
-//! for the radial shape. Colours are mixed in linear light; before the first and behind the last stop the
-//! colour stays.
+//! With d = end - start, the position of a point p is (p - start) · d / |d|², or |p - start| / |d|
+//! for the radial shape. Colors are interpolated in linear light. Before the first and after
+//! the last stop, the color is constant.
 
 use super::CompiledTexture;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, SharedTexture, Slot, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Colours that run into each other.
+/// Color gradient along a line or around a point, interpolated in linear light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Gradient {
-    /// The colours with their positions, in rising order; two at one position make a sharp edge.
+    /// Stops in order of rising position. Two stops at one position form a sharp edge.
     #[schemars(length(min = 1))]
     pub stops: Vec<Stop>,
-    /// The coordinates of `start` and `end`.
+    /// Coordinate space of `start` and `end`.
     pub space: Space,
-    /// Where position 0 is.
+    /// Point of position 0; the center of a radial gradient.
     #[schemars(with = "[f32; 3]")]
     pub start: Vec3,
-    /// Where position 1 is.
+    /// Point of position 1, different from `start`.
     #[schemars(with = "[f32; 3]")]
     pub end: Vec3,
-    /// How positions grow.
+    /// Shape of the gradient.
     pub shape: GradientShape,
 }
 
-/// A colour at a position.
+/// Color at a position of a gradient or ramp.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stop {
-    /// 0 at the gradient's start, 1 at its end.
+    /// Position: from 0 at a gradient's start to 1 at its end, or the number that a ramp maps.
     pub position: f32,
-    /// The colour there.
+    /// Color at the position.
     pub color: Input<Rgb>,
 }
 
 impl Stop {
-    /// A colour at a position.
+    /// Constant color at a position.
     pub fn new(position: f32, color: Rgb) -> Self {
         Self { position, color: color.into() }
     }
 }
 
-/// How positions grow.
+/// Shape of a gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GradientShape {
-    /// Along the direction from start to end.
+    /// Positions grow along the direction from start to end.
     #[default]
     Linear,
-    /// With the distance from the start.
+    /// Positions grow with the distance from the start.
     Radial,
 }
 
@@ -76,7 +78,7 @@ impl Default for Gradient {
     }
 }
 
-/// Checks that there are stops, finite and in order.
+/// Checks that there are stops, all finite and in order of position.
 pub(super) fn check_stops(stops: &[Stop]) -> Result<(), InvalidTexture> {
     if stops.is_empty() {
         return Err(InvalidTexture::new("stops", "a gradient needs at least one stop"));
@@ -84,37 +86,37 @@ pub(super) fn check_stops(stops: &[Stop]) -> Result<(), InvalidTexture> {
     for (i, stop) in stops.iter().enumerate() {
         let color = check::color("color", &stop.color);
         if !stop.position.is_finite() || color.is_err() {
-            return Err(InvalidTexture::new(format!("stops[{i}]"), "positions and colours must be finite"));
+            return Err(InvalidTexture::new(format!("stops[{i}]"), "positions and colors must be finite"));
         }
     }
     if let Some(i) = stops.windows(2).position(|pair| matches!(pair, [a, b] if a.position > b.position)) {
         let field = format!("stops[{}].position", i + 1);
-        return Err(InvalidTexture::new(field, "positions must rise from stop to stop"));
+        return Err(InvalidTexture::new(field, "positions must not decrease from stop to stop"));
     }
     Ok(())
 }
 
-/// The colours of stops, by position.
+/// Stops with names resolved, in order of position.
 #[derive(Clone, Debug)]
 pub struct CompiledStops(Vec<(f32, Slot<Rgb>)>);
 
 impl CompiledStops {
-    /// Looks up the names of all stops.
-    pub fn new(stops: &[Stop], resolver: &mut Resolver<'_>) -> Result<Self, TextureError> {
+    /// Resolves the names of all stops.
+    pub fn new(stops: &[Stop], resolver: &mut TextureResolver<'_>) -> Result<Self, TextureError> {
         let stops = stops.iter().enumerate();
         let slot =
             |(i, stop): (usize, &Stop)| Ok((stop.position, resolver.color(&format!("stops[{i}].color"), &stop.color)?));
         stops.map(slot).collect::<Result<_, _>>().map(Self)
     }
 
-    /// The colour at a position; `bend` makes of the share between two stops another one.
-    pub fn at(&self, position: f32, bend: fn(f32) -> f32, textures: &TextureTable, at: &Lookup) -> Rgb {
+    /// Color at a position. `remap` remaps the fraction between two stops.
+    pub fn at(&self, position: f32, remap: fn(f32) -> f32, textures: &TextureTable, at: &TextureLookup) -> Rgb {
         let color = |slot: &Slot<Rgb>| textures.color(slot, at);
-        // The first stop beyond; `position` lies between it and the one before.
+        // Find the first stop beyond `position`.
         let next = self.0.iter().position(|(stop, _)| position < *stop);
         let before = next.unwrap_or(self.0.len()).checked_sub(1).and_then(|i| self.0.get(i));
         match (before, next.and_then(|i| self.0.get(i))) {
-            (Some((a, from)), Some((b, to))) => color(from).lerp(color(to), bend((position - a) / (b - a))),
+            (Some((a, from)), Some((b, to))) => color(from).lerp(color(to), remap((position - a) / (b - a))),
             (Some((_, stop)), None) | (None, Some((_, stop))) => color(stop),
             (None, None) => Rgb::BLACK,
         }
@@ -128,20 +130,20 @@ impl Texture for Gradient {
         if !(length >= f32::MIN_POSITIVE && length.is_finite()) {
             return Err(InvalidTexture::new(
                 "end",
-                "`start` and `end` must be two different points, neither too far nor too near",
+                "`start` and `end` must be two different points, neither too far apart nor too close together",
             ));
         }
         Ok(())
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let Self { space, start, end, shape, .. } = *self;
         let stops = CompiledStops::new(&self.stops, resolver)?;
         Ok(Arc::new(CompiledGradient { stops, space, start, end, shape }))
     }
 }
 
-/// A [`Gradient`] with its names looked up.
+/// A [`Gradient`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledGradient {
     stops: CompiledStops,
@@ -162,14 +164,14 @@ impl CompiledGradient {
 }
 
 impl CompiledTexture for CompiledGradient {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
         self.stops.at(self.position(at.point(self.space)), |share| share, textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Gradient {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let radial = Self { shape: GradientShape::Radial, space: Space::World, ..Self::default() };
         vec![Self::default(), radial]
@@ -185,7 +187,10 @@ mod tests {
     fn at(json: &str, p: Vec3) -> Rgb {
         let gradient: Gradient = serde_json::from_str(json).unwrap();
         gradient.check().unwrap();
-        color(&gradient.into(), &Lookup { uv: Vec2::new(p.x, p.y), local: p, world: p * 2.0, ..Lookup::default() })
+        color(
+            &gradient.into(),
+            &TextureLookup { uv: Vec2::new(p.x, p.y), local: p, world: p * 2.0, ..TextureLookup::default() },
+        )
     }
 
     fn near(a: Rgb, b: [f32; 3]) -> bool {
@@ -193,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_between_stops_are_mixed() {
+    fn colors_between_stops_are_mixed() {
         let json = r#"{"space": "local", "start": [0, -1, 0], "end": [0, 3, 0], "stops": [{"position": 0, "color": [1, 0, 0]},
             {"position": 0.5, "color": [0, 1, 0]}, {"position": 0.5, "color": [0, 0, 1]}, {"position": 1, "color": [1, 1, 1]}]}"#;
         for (y, color) in [

@@ -1,70 +1,75 @@
-//! A picture laid over a surface.
+//! Image texture.
 //!
 //! ```json
 //! {"image": {"file": "textures/wood.png", "scale": [2, 3, 1], "wrap": "mirror"}}
 //! ```
 //!
-//! The picture fills x and y of its pattern from 0 to 1, its lower left corner at the origin; over (u, v) that is once over the
-//! surface. Elsewhere it is seen along z.
+//! The image covers x and y of its pattern from 0 to 1, with its lower left corner at the origin.
+//! Over (u, v), that is the unit square; in object and world space, the image is projected along z.
 
 use super::CompiledTexture;
-use super::mapping::Map;
-use super::pixels::{Filter, Pyramid, Wrap};
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check};
+use super::mapping::CompiledMapping;
+use super::pixels::{Filter, MipMap, Wrap};
+use super::{
+    InvalidTexture, Mapping, SharedTexture, Space, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+    check,
+};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A picture laid over a surface: PNG, JPEG, WebP, OpenEXR, Radiance HDR or PFM.
+/// Image texture: PNG, JPEG, WebP, OpenEXR, Radiance HDR or PFM.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Image {
-    /// The picture, relative to the scene file.
+    /// Path of the image file, relative to the scene file.
     pub file: String,
-    /// What its numbers mean. Data that is no colour, such as roughness, heights and normals, is `linear` most often.
+    /// Encoding of the image's values. Set it to `linear` for data that is not color, such as
+    /// roughness, heights and normals.
     #[serde(default)]
     pub color_space: ColorSpace,
-    /// Which of its channels count.
+    /// Channels that the texture uses.
     #[serde(default)]
     pub channel: Channel,
-    /// Takes 1 − what is there, before `factor`.
+    /// Inverts values to 1 - value, before `factor`.
     #[serde(default)]
     pub invert: bool,
-    /// A factor on what is there.
+    /// Factor on the values, -1e6 to 1e6.
     #[serde(default = "one")]
     pub factor: f32,
-    /// What lies beyond its borders.
+    /// Continuation beyond the image's borders.
     #[serde(default)]
     pub wrap: Wrap,
-    /// The same for its upper and lower border, where that differs.
+    /// Continuation beyond the upper and lower border, where it differs from `wrap`.
     #[serde(default)]
     pub wrap_v: Option<Wrap>,
-    /// How a place between texels gets its colour.
+    /// Filter that interpolates and averages texels.
     #[serde(default)]
     pub filter: Filter,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
 
-/// What a picture's numbers mean. Alpha is a plain share always.
+/// Encoding of an image's values. Alpha is always linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ColorSpace {
-    /// What the file says; if it says nothing, levels (PNG, JPEG, WebP) are sRGB and floats (EXR, HDR, PFM) linear light.
+    /// The file's own statement; without it, sRGB for integers (PNG, JPEG, WebP) and linear light
+    /// for floats (EXR, HDR, PFM).
     #[default]
     Auto,
-    /// Colours by the curve of sRGB.
+    /// Transfer function of sRGB.
     Srgb,
-    /// The numbers themselves: linear light, or no light at all.
+    /// Linear light, or values that are not light.
     Linear,
 }
 
-/// Which of a picture's channels count; one alone gives a grey.
+/// Channels of an image that a texture uses. A single channel gives gray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
-    /// The colour.
+    /// Red, green and blue.
     #[default]
     Rgb,
     /// Red.
@@ -73,9 +78,9 @@ pub enum Channel {
     G,
     /// Blue.
     B,
-    /// Alpha; 1 in pictures without.
+    /// Alpha; 1 in images without alpha.
     A,
-    /// The colour's luminance.
+    /// Luminance of the color.
     Luminance,
 }
 
@@ -84,7 +89,7 @@ fn one() -> f32 {
 }
 
 impl Image {
-    /// The picture in that file, all else by default.
+    /// Image texture of a file, otherwise with defaults.
     pub fn new(file: impl Into<String>) -> Self {
         Self {
             file: file.into(),
@@ -109,7 +114,7 @@ impl Texture for Image {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         Ok(Arc::new(CompiledImage {
             pixels: resolver.image(self)?,
             channel: self.channel,
@@ -125,21 +130,21 @@ impl Texture for Image {
 /// An [`Image`] with its pixels.
 #[derive(Clone, Debug)]
 pub struct CompiledImage {
-    pixels: Arc<Pyramid>,
+    pixels: Arc<MipMap>,
     channel: Channel,
     invert: bool,
     factor: f32,
     wrap: [Wrap; 2],
     filter: Filter,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTexture for CompiledImage {
-    fn eval(&self, _textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.wide_place(at);
-        // Rows count from the top.
+    fn eval(&self, _textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.filtered_point(at);
+        // Rows of the image start at the top.
         let [r, g, b, a] =
-            self.pixels.sample([place.point.x, 1.0 - place.point.y], place.width, self.wrap, self.filter);
+            self.pixels.sample([pattern.point.x, 1.0 - pattern.point.y], pattern.width, self.wrap, self.filter);
         let color = match self.channel {
             Channel::Rgb => Rgb::new(r, g, b),
             Channel::R => Rgb::splat(r),
@@ -151,17 +156,17 @@ impl CompiledTexture for CompiledImage {
         color.map(|v| if self.invert { 1.0 - v } else { v } * self.factor)
     }
 
-    fn pixels(&self) -> Option<&Arc<Pyramid>> {
+    fn pixels(&self) -> Option<&Arc<MipMap>> {
         Some(&self.pixels)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Image {
-    /// For the contract tests, which have a picture of that name.
+    /// Examples for the contract tests, which have an image of that name.
     pub fn examples() -> Vec<Self> {
         let other = Self { wrap_v: Some(Wrap::Black), channel: Channel::A, invert: true, ..Self::new("test") };
-        let planar = Self { mapping: Mapping::of(Space::Local), filter: Filter::Bilinear, ..Self::new("test") };
+        let planar = Self { mapping: Mapping::in_space(Space::Local), filter: Filter::Bilinear, ..Self::new("test") };
         vec![Self::new("test"), other, planar]
     }
 }
@@ -174,10 +179,11 @@ mod tests {
 
     fn read(more: &str, u: f32, v: f32) -> Rgb {
         let json = format!(r#"{{"image": {{"file": "test", "filter": "nearest"{more}}}}}"#);
-        reader(&json)(&Lookup { uv: Vec2::new(u, v), ..Lookup::default() })
+        reader(&json)(&TextureLookup { uv: Vec2::new(u, v), ..TextureLookup::default() })
     }
 
-    /// The test picture, from the top: 0.1 0.2 | 0.3 0.4 in red; green is twice, blue 1 minus, alpha half of it.
+    /// The test image, from the top: 0.1 0.2 | 0.3 0.4 in red; green is twice, blue 1 minus, alpha
+    /// half of red.
     #[test]
     fn v_points_up_and_channels_are_chosen() {
         for (u, v, red) in [(0.2, 0.8, 0.1), (0.7, 0.8, 0.2), (0.2, 0.2, 0.3), (0.7, 0.2, 0.4), (1.2, -0.8, 0.3)] {
@@ -191,7 +197,7 @@ mod tests {
             let luminance = Rgb::new(red, red * 2.0, 1.0 - red).luminance();
             assert_eq!(read(r#", "channel": "luminance""#, u, v), Rgb::splat(luminance));
         }
-        // A quarter turn: what was right is up.
+        // A quarter turn moves the right side to the top.
         assert_eq!(
             read(r#", "channel": "r", "rotate_degrees": [0, 0, 90], "offset": [1, 0, 0]"#, 0.2, 0.2),
             Rgb::splat(0.1)

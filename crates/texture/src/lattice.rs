@@ -1,32 +1,32 @@
-//! Randomness that stays where it is: hashes of the cells of a lattice, and smooth noise between its points.
+//! Hashes of lattice cells, and smooth noise between lattice points.
 
 use juggler_math::hash::{combine, unit_f32};
-use juggler_math::{Vec3, fun};
+use juggler_math::{Vec3, portable};
 
-/// Cells of a lattice by their whole coordinates; they repeat after 2^32.
+/// Integer coordinates of a lattice cell. Hashes repeat after 2^32 cells.
 pub type Cell = [i64; 3];
 
-/// The cell of a point, and the point within it, from 0 to 1.
+/// Cell of a point, and the point's position in the cell, 0 to 1 along each axis.
 #[inline]
 pub fn cell(p: Vec3) -> (Cell, Vec3) {
     let floor = p.floor();
-    // Infinite coordinates saturate, and have no place within their cell.
+    // Infinite coordinates saturate, and their position in the cell is NaN.
     ([floor.x as i64, floor.y as i64, floor.z as i64], p - floor)
 }
 
-/// A hash of a cell.
+/// Hash of a cell.
 #[inline]
 pub fn hash([x, y, z]: Cell, seed: u32) -> u32 {
     combine(combine(combine(seed, x as u32), y as u32), z as u32)
 }
 
-/// Three numbers from 0 to 1 that belong to a hash.
+/// Three numbers from 0 to 1 that derive from a hash.
 #[inline]
-pub fn numbers(hash: u32) -> Vec3 {
+pub fn unit_cube_point(hash: u32) -> Vec3 {
     Vec3::new(unit_f32(hash), unit_f32(combine(hash, 1)), unit_f32(combine(hash, 2)))
 }
 
-/// The middles of a cube's edges: Perlin's directions.
+/// Perlin's gradients: the midpoints of a cube's edges.
 const DIRECTIONS: [[f32; 3]; 12] = [
     [1.0, 1.0, 0.0],
     [-1.0, 1.0, 0.0],
@@ -43,21 +43,21 @@ const DIRECTIONS: [[f32; 3]; 12] = [
 ];
 
 #[inline]
-fn slope(hash: u32, off: Vec3) -> f32 {
+fn gradient_dot(hash: u32, off: Vec3) -> f32 {
     let index = (u64::from(hash) * DIRECTIONS.len() as u64) >> 32;
     Vec3::from(DIRECTIONS[index as usize]).dot(off)
 }
 
-/// Gradient noise from −1 to 1 with features about one unit wide: 0 at all lattice points, its mean is 0 (Perlin,
-/// Improving Noise, 2002; the directions are picked by a hash instead of a table).
+/// Gradient noise from -1 to 1 with features about one unit wide. It is 0 at all lattice points and
+/// 0 in the mean (Perlin, Improving Noise, 2002; a hash instead of a table chooses the gradients).
 pub fn noise(p: Vec3, seed: u32) -> f32 {
     let ([x, y, z], at) = cell(p);
     let fade = at * at * at * (at * (at * 6.0 - 15.0) + 10.0);
     let column = |dx: i64| combine(seed, (x.wrapping_add(dx)) as u32);
     let row = |column: u32, dy: i64| combine(column, (y.wrapping_add(dy)) as u32);
     let along_z = |row: u32, dx: f32, dy: f32| {
-        let low = slope(combine(row, z as u32), at - Vec3::new(dx, dy, 0.0));
-        let high = slope(combine(row, z.wrapping_add(1) as u32), at - Vec3::new(dx, dy, 1.0));
+        let low = gradient_dot(combine(row, z as u32), at - Vec3::new(dx, dy, 0.0));
+        let high = gradient_dot(combine(row, z.wrapping_add(1) as u32), at - Vec3::new(dx, dy, 1.0));
         low + (high - low) * fade.z
     };
     let along_y = |column: u32, dx: f32| {
@@ -66,11 +66,11 @@ pub fn noise(p: Vec3, seed: u32) -> f32 {
     };
     let low = along_y(column(0), 0.0);
     let value = low + (along_y(column(1), 1.0) - low) * fade.x;
-    // Corners together reach a little beyond 1, very seldom.
+    // The sum rarely exceeds 1, and by little.
     value.clamp(-1.0, 1.0)
 }
 
-/// 0 below `low`, 1 above `high`, and a smooth way between; a step where both are the same.
+/// Smoothstep: 0 below `low`, 1 above `high`, a cubic in between; a step if both are equal.
 #[inline]
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     if high > low {
@@ -83,26 +83,26 @@ pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     }
 }
 
-/// How much of a pattern with one period a unit is left in a footprint that wide: all where it has four or more samples a
-/// period, nothing well beyond the limit of Nyquist.
+/// Share of the amplitude that a filter of diameter `width` keeps of a pattern with period 1: all
+/// of it at four or more samples per period, none well beyond the Nyquist limit.
 #[inline]
-pub fn kept(width: f32) -> f32 {
+pub fn filter_amplitude(width: f32) -> f32 {
     1.0 - smoothstep(0.25, 0.75, width)
 }
 
-/// The share of `[x − width / 2, x + width / 2]` that lies in the first `duty` of each unit: a train of pulses seen
-/// through a box (Apodaca and Gritz, Advanced RenderMan, 2000, section 11.3).
-pub fn pulses(x: f32, duty: f32, width: f32) -> f32 {
+/// Share of `[x - width / 2, x + width / 2]` that lies in the first `duty` of each unit: a
+/// box-filtered train of pulses (Apodaca and Gritz, Advanced RenderMan, 2000, section 11.3).
+pub fn filtered_pulse_train(x: f32, duty: f32, width: f32) -> f32 {
     let (x, duty, width) = (f64::from(x), f64::from(duty), f64::from(width));
     let sum = |x: f64| {
-        let whole = fun::floor_f64(x);
+        let whole = portable::floor_f64(x);
         whole * duty + (x - whole).min(duty)
     };
     if !x.is_finite() {
         return duty as f32;
     }
     if width < 1e-6 {
-        return if x - fun::floor_f64(x) < duty { 1.0 } else { 0.0 };
+        return if x - portable::floor_f64(x) < duty { 1.0 } else { 0.0 };
     }
     (((sum(x + width * 0.5) - sum(x - width * 0.5)) / width) as f32).clamp(0.0, 1.0)
 }
@@ -169,14 +169,30 @@ mod tests {
                 f64::from(u8::from(x - x.floor() < f64::from(duty)))
             };
             let mean: f64 = (0..20_000).map(inside).sum::<f64>() / 20_000.0;
-            assert!((f64::from(pulses(x, duty, width)) - mean).abs() < 2e-3, "{x} {duty} {width}");
+            assert!((f64::from(filtered_pulse_train(x, duty, width)) - mean).abs() < 2e-3, "{x} {duty} {width}");
         }
-        assert_eq!((pulses(0.2, 0.5, 0.0), pulses(-0.2, 0.5, 0.0), pulses(7.4, 0.5, 0.0)), (1.0, 0.0, 1.0));
+        assert_eq!(
+            (
+                filtered_pulse_train(0.2, 0.5, 0.0),
+                filtered_pulse_train(-0.2, 0.5, 0.0),
+                filtered_pulse_train(7.4, 0.5, 0.0)
+            ),
+            (1.0, 0.0, 1.0)
+        );
     }
 
     #[test]
     fn what_is_too_fine_goes_smoothly() {
-        assert_eq!((kept(0.0), kept(0.25), kept(0.5), kept(0.75), kept(1e30)), (1.0, 1.0, 0.5, 0.0, 0.0));
+        assert_eq!(
+            (
+                filter_amplitude(0.0),
+                filter_amplitude(0.25),
+                filter_amplitude(0.5),
+                filter_amplitude(0.75),
+                filter_amplitude(1e30)
+            ),
+            (1.0, 1.0, 0.5, 0.0, 0.0)
+        );
         assert_eq!((smoothstep(1.0, 1.0, 0.9), smoothstep(1.0, 1.0, 1.0)), (0.0, 1.0));
     }
 }

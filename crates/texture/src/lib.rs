@@ -1,7 +1,7 @@
-//! Textures: a colour for every point of a surface.
+//! Textures: a color at every point of a surface.
 //!
-//! A description may name other textures for its colours and numbers. All of a scene's are compiled together into a
-//! [`TextureTable`], where names have become numbers.
+//! A description may name other textures for its colors and numbers. All textures of a scene are
+//! compiled together into a [`TextureTable`], which replaces names by ids.
 
 use juggler_math::{Vec2, Vec3};
 use schemars::JsonSchema;
@@ -22,11 +22,11 @@ mod constant;
 mod dots;
 mod fbm;
 mod gradient;
-mod heights;
 mod image;
 mod marble;
 mod mix;
 mod noise;
+mod noise_blend;
 mod ramp;
 mod triplanar;
 mod turbulence;
@@ -39,60 +39,61 @@ mod wood;
 mod contract;
 
 pub use checker::{Axes, is_odd_cell};
-pub use compiled::{Compiled, CompiledTexture};
-pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, Resolver, TextureError};
+pub use compiled::{CompiledTexture, SharedTexture};
+pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, TextureError, TextureResolver};
 pub use gradient::{GradientShape, Stop};
 pub use image::{Channel, ColorSpace};
 pub use mapping::{Mapping, Scale};
 pub use mix::MixMode;
 pub use octaves::Octaves;
-pub use pixels::{Filter, Pyramid, Texel, Wrap};
+pub use pixels::{Filter, MipMap, Texel, Wrap};
 pub use ramp::Steps;
 pub use table::{Slot, TextureId, TextureTable, UnknownTexture};
 pub use voronoi::{Feature, Metric};
 pub use wave::{WaveProfile, WaveShape};
 
-/// Where a texture is asked.
+/// Point of a surface at which textures are evaluated, with its footprint.
 ///
-/// A footprint is the diameter of the patch that the answer stands for, what the ray's cone covers: what is finer is
-/// smoothed away. 0 asks for the point alone.
+/// The footprint is the diameter of the ray's cone at the surface. Textures filter out finer
+/// detail; 0 disables the filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Lookup {
-    /// Surface coordinates.
+pub struct TextureLookup {
+    /// Surface coordinates (u, v).
     pub uv: Vec2,
-    /// The point in object space.
+    /// Point in object space.
     pub local: Vec3,
-    /// The point in world space.
+    /// Point in world space.
     pub world: Vec3,
-    /// Unit normal that shading uses, world space.
+    /// Unit shading normal in world space.
     pub normal: Vec3,
-    /// Unit normal that shading uses, object space.
+    /// Unit shading normal in object space.
     pub local_normal: Vec3,
-    /// Footprint in world units.
+    /// Footprint in units of world space.
     pub footprint: f32,
     /// Footprint in units of object space.
     pub local_footprint: f32,
-    /// Footprint in units of the surface coordinates.
+    /// Footprint in surface coordinates.
     pub uv_footprint: f32,
-    /// Whether patterns that are computed show the point alone, as in classic pictures; those from files never do.
-    pub sharp: bool,
+    /// Whether procedural textures ignore the footprint, as in classic pictures. Image textures
+    /// never do.
+    pub unfiltered: bool,
 }
 
-/// The coordinates that a texture lives in.
+/// Coordinate space of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Space {
     /// Surface coordinates: the point (u, v, 0).
     #[default]
     Uv,
-    /// Object space: the pattern is carved into the object and moves with it.
+    /// Object space: the pattern moves with the object, as if the object were carved from it.
     Local,
-    /// World space: the pattern stands still.
+    /// World space: the pattern stays in place when objects move.
     World,
 }
 
-impl Lookup {
-    /// The point in that space.
+impl TextureLookup {
+    /// Point in a coordinate space.
     pub fn point(&self, space: Space) -> Vec3 {
         match space {
             Space::Uv => self.uv.extend(0.0),
@@ -101,7 +102,7 @@ impl Lookup {
         }
     }
 
-    /// The footprint in units of that space.
+    /// Footprint in units of a coordinate space.
     pub fn footprint_in(&self, space: Space) -> f32 {
         match space {
             Space::Uv => self.uv_footprint,
@@ -111,13 +112,13 @@ impl Lookup {
     }
 }
 
-/// Why a texture cannot be: the field at fault and what it should be.
+/// Invalid value in a texture's description, with the field at fault.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct InvalidTexture {
     /// Path of the field inside the texture, as in the scene file: `size`, `stops[1].position`.
     pub field: String,
-    /// What is wrong, and what would be right.
+    /// Message about the error and the valid values.
     pub message: String,
 }
 
@@ -127,12 +128,12 @@ impl InvalidTexture {
     }
 }
 
-/// A colour for every point.
+/// Description of a texture.
 pub trait Texture: Send + Sync {
-    /// Checks numbers. A texture that fails still has a colour everywhere, but hardly the one that was meant.
+    /// Checks all values.
     fn check(&self) -> Result<(), InvalidTexture>;
-    /// Looks up every name, once. Called only for what passes its check.
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError>;
+    /// Resolves the names of a description that passes [`Texture::check`].
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError>;
 }
 
 juggler_math::closed_set! {
@@ -158,11 +159,11 @@ juggler_math::closed_set! {
     }
 }
 
-/// A number or color, or a texture that gives it at every point: written in place, or by its name.
+/// Constant number or color, or a texture that gives it at every point, inline or by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a number, a colour or the name of a texture")]
+#[serde(untagged, expecting = "a number, a color or the name of a texture")]
 pub enum Input<T> {
-    /// The same everywhere.
+    /// Constant value.
     Value(T),
     /// Name of a texture of the scene.
     Texture(String),

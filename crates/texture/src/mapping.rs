@@ -1,36 +1,38 @@
-//! Where a pattern lies: which coordinates, how large, how turned, where its origin is.
+//! Placement of patterns: coordinate space, scale, rotation and offset.
 
-use super::{InvalidTexture, Lookup, Space, check};
-use juggler_math::{Vec3, fun};
+use super::{InvalidTexture, Space, TextureLookup, check};
+use juggler_math::{Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where a pattern lies. A point p of `space` sees the pattern at scale · turn⁻¹ (p − offset).
+/// Placement of a pattern: with R the rotation, the point p of `space` shows the pattern at scale ·
+/// R⁻¹ (p - offset).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mapping {
-    /// Coordinates in which the pattern lies. Solid patterns (`noise`, `fbm`, `turbulence`, `marble`, `wood`, `voronoi`,
-    /// `triplanar`) lie in object space by default, all others in surface coordinates (u, v).
+    /// Coordinate space of the pattern. Solid patterns (`noise`, `fbm`, `turbulence`, `marble`,
+    /// `wood`, `voronoi`, `triplanar`) default to object space, all others to surface coordinates
+    /// (u, v).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub space: Option<Space>,
-    /// How many units of the pattern fit in one unit of `space`: 2 makes it twice as fine. One number, or one for each
-    /// axis of the pattern.
+    /// Units of the pattern per unit of `space`: 2 makes the pattern twice as fine. One number, or
+    /// one for each axis of the pattern; not 0.
     pub scale: Scale,
-    /// Turns the pattern about its origin, right-handed: first about x, then about y, then about z. Over (u, v) only the
-    /// last makes sense.
+    /// Rotation of the pattern about its origin, right-handed: first about x, then about y, then
+    /// about z. Over (u, v), only the rotation about z is meaningful.
     pub rotate_degrees: [f32; 3],
-    /// Where the pattern's origin lies, in `space`.
+    /// Position of the pattern's origin, in `space`.
     #[schemars(with = "[f32; 3]")]
     pub offset: Vec3,
 }
 
-/// A factor, or one for each axis; none may be 0.
+/// One factor, or one for each axis; none may be 0. Negative factors mirror the pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Scale {
-    /// The same along all axes.
+    /// Same factor along all axes.
     Even(f32),
-    /// Along x, y and z.
+    /// Factors along x, y and z.
     Each([f32; 3]),
 }
 
@@ -41,16 +43,16 @@ impl Default for Scale {
 }
 
 impl Mapping {
-    /// Of a pattern in that space, all else as it is.
-    pub fn of(space: Space) -> Self {
+    /// Mapping of a pattern in a coordinate space, otherwise with defaults.
+    pub fn in_space(space: Space) -> Self {
         Self { space: Some(space), ..Self::default() }
     }
 
-    /// Checks numbers.
+    /// Checks all values.
     pub(super) fn check(&self) -> Result<(), InvalidTexture> {
         let scale = self.factors().abs();
         if !(scale.min_element() >= 1e-18 && scale.max_element() <= 1e18) {
-            return Err(InvalidTexture::new("scale", "`scale` must not be 0 and its size at most 1e18"));
+            return Err(InvalidTexture::new("scale", "`scale` must not be 0, and at most 1e18 in magnitude"));
         }
         check::vector("rotate_degrees", self.rotate_degrees.into())?;
         check::vector("offset", self.offset)
@@ -63,79 +65,83 @@ impl Mapping {
         }
     }
 
-    /// The coordinates in which the pattern lies; `default` where the scene does not say.
+    /// Coordinate space of the pattern; `default` if the scene does not set it.
     pub(super) fn space_or(&self, default: Space) -> Space {
         self.space.unwrap_or(default)
     }
 
-    /// The mapping as lookups use it, in the space `default` where the scene does not say.
-    pub(super) fn compile(&self, default: Space) -> Map {
-        let [x, y, z] = self.rotate_degrees.map(|degrees| fun::sin_cos_turns(degrees / 360.0));
-        // Where the pattern's axes point.
+    /// Mapping for lookups; `default` is the coordinate space if the scene does not set it.
+    pub(super) fn compile(&self, default: Space) -> CompiledMapping {
+        let [x, y, z] = self.rotate_degrees.map(|degrees| portable::sin_cos_turns(degrees / 360.0));
+        // Rotate about x, y and z.
         let turn = |v: Vec3| {
             let v = Vec3::new(v.x, v.y * x.1 - v.z * x.0, v.y * x.0 + v.z * x.1);
             let v = Vec3::new(v.x * y.1 + v.z * y.0, v.y, v.z * y.1 - v.x * y.0);
             Vec3::new(v.x * z.1 - v.y * z.0, v.x * z.0 + v.y * z.1, v.z)
         };
         let factors = self.factors();
-        Map {
+        CompiledMapping {
             space: self.space_or(default),
             rows: [turn(Vec3::X) * factors.x, turn(Vec3::Y) * factors.y, turn(Vec3::Z) * factors.z],
             offset: self.offset,
-            growth: factors.abs().max_element(),
+            max_scale: factors.abs().max_element(),
         }
     }
 }
 
-/// A [`Mapping`] as numbers.
+/// Compiled form of a [`Mapping`].
 #[derive(Clone, Copy, Debug)]
-pub struct Map {
+pub struct CompiledMapping {
     pub space: Space,
     rows: [Vec3; 3],
     offset: Vec3,
-    /// How much longer a line may become on its way to the pattern.
-    growth: f32,
+    /// Largest factor on lengths from `space` to the pattern.
+    max_scale: f32,
 }
 
-/// A place in a pattern.
+/// Point of a pattern with its footprint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
-    /// In the pattern's units; finite.
+pub struct PatternPoint {
+    /// Point in units of the pattern; finite.
     pub point: Vec3,
-    /// Diameter of the footprint in the pattern's units; 0 for a point.
+    /// Diameter of the footprint in units of the pattern; 0 for a point.
     pub width: f32,
 }
 
-impl Place {
-    /// A point alone.
+impl PatternPoint {
+    /// Point without a footprint.
     #[cfg(test)]
-    pub fn sharp(point: Vec3) -> Self {
+    pub fn unfiltered(point: Vec3) -> Self {
         Self { point, width: 0.0 }
     }
 }
 
-impl Map {
-    /// Where a lookup meets the pattern.
-    pub fn place(&self, at: &Lookup) -> Place {
-        if at.sharp { Place { point: self.point(at.point(self.space)), width: 0.0 } } else { self.wide_place(at) }
+impl CompiledMapping {
+    /// Point of the pattern for a lookup, without a footprint if the lookup is unfiltered.
+    pub fn pattern_point(&self, at: &TextureLookup) -> PatternPoint {
+        if at.unfiltered {
+            PatternPoint { point: self.point(at.point(self.space)), width: 0.0 }
+        } else {
+            self.filtered_point(at)
+        }
     }
 
-    /// The same for what is never sharp.
-    pub fn wide_place(&self, at: &Lookup) -> Place {
+    /// Point of the pattern for a lookup, always with its footprint.
+    pub fn filtered_point(&self, at: &TextureLookup) -> PatternPoint {
         let point = self.point(at.point(self.space));
-        // Not-a-number is no width either.
-        let width = (at.footprint_in(self.space) * self.growth).max(0.0);
-        Place { point, width: if width.is_finite() { width } else { 0.0 } }
+        // `max` turns NaN into 0.
+        let width = (at.footprint_in(self.space) * self.max_scale).max(0.0);
+        PatternPoint { point, width: if width.is_finite() { width } else { 0.0 } }
     }
 
-    /// A point of the space in the pattern's coordinates; the origin for one that has none.
+    /// Point of `space` in pattern coordinates; the origin if the result is not finite.
     pub fn point(&self, p: Vec3) -> Vec3 {
         let p = p - self.offset;
         let point = Vec3::new(self.rows[0].dot(p), self.rows[1].dot(p), self.rows[2].dot(p));
         if point.is_finite() { point } else { Vec3::ZERO }
     }
 
-    /// A unit vector of the space in the pattern's coordinates, unit again.
+    /// Unit vector of `space` in pattern coordinates, again of unit length.
     pub fn direction(&self, v: Vec3) -> Vec3 {
         let [x, y, z] = self.rows.map(Vec3::normalize_or_zero);
         Vec3::new(x.dot(v), y.dot(v), z.dot(v))
@@ -148,7 +154,7 @@ mod tests {
     use juggler_math::Vec2;
     use juggler_math::testing::close3;
 
-    fn map(json: &str) -> Map {
+    fn map(json: &str) -> CompiledMapping {
         let mapping: Mapping = serde_json::from_str(json).unwrap();
         mapping.check().unwrap();
         mapping.compile(Space::Uv)
@@ -160,10 +166,10 @@ mod tests {
         assert_eq!(map("{}").point(p), p);
         assert_eq!(map(r#"{"scale": 2, "offset": [1, 0, 0]}"#).point(p), Vec3::new(0.0, 4.0, 6.0));
         assert_eq!(map(r#"{"scale": [1, 10, -1]}"#).point(p), Vec3::new(1.0, 20.0, -3.0));
-        // The pattern's x axis points along y after a quarter turn about z: what lies along y is at its x.
+        // A quarter turn about z points the pattern's x axis along y.
         let quarter = map(r#"{"rotate_degrees": [0, 0, 90], "scale": [5, 1, 1], "offset": [1, 1, 1]}"#);
         assert!(close3(quarter.point(Vec3::new(1.0, 2.0, 1.0)), Vec3::X * 5.0, 1e-6));
-        // x to z about x, then z to x about y, then x to y about z.
+        // The rotations take y to z about x, z to x about y, then x to y about z.
         let three = map(r#"{"rotate_degrees": [90, 90, 90]}"#);
         assert!(close3(three.point(Vec3::Y), Vec3::Y, 1e-6), "{:?}", three.point(Vec3::Y));
         assert!(close3(three.point(Vec3::X), Vec3::Z, 1e-6) && close3(three.point(-Vec3::Z), Vec3::X, 1e-6));
@@ -171,20 +177,20 @@ mod tests {
 
     #[test]
     fn widths_grow_with_the_scale_and_nothing_is_infinite() {
-        let at = Lookup {
+        let at = TextureLookup {
             uv: Vec2::new(0.5, f32::NAN),
             local: Vec3::splat(1e38),
             world: Vec3::splat(2.0),
             footprint: 0.5,
             local_footprint: f32::NAN,
             uv_footprint: f32::INFINITY,
-            ..Lookup::default()
+            ..TextureLookup::default()
         };
         let scaled = Mapping { scale: Scale::Each([1.0, -4.0, 2.0]), ..Mapping::default() };
-        let place = |space| scaled.compile(space).place(&at);
-        assert_eq!(place(Space::World), Place { point: Vec3::new(2.0, -8.0, 4.0), width: 2.0 });
-        assert_eq!(place(Space::Uv), Place::default());
-        assert_eq!(place(Space::Local), Place::default());
+        let pattern = |space| scaled.compile(space).pattern_point(&at);
+        assert_eq!(pattern(Space::World), PatternPoint { point: Vec3::new(2.0, -8.0, 4.0), width: 2.0 });
+        assert_eq!(pattern(Space::Uv), PatternPoint::default());
+        assert_eq!(pattern(Space::Local), PatternPoint::default());
     }
 
     #[test]

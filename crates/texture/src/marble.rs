@@ -1,42 +1,45 @@
-//! Marble: parallel veins stirred by turbulence (Perlin, An Image Synthesizer, 1985).
+//! Marble: parallel veins distorted by turbulence (Perlin, An Image Synthesizer, 1985).
 //!
 //! ```json
-//! {"marble": {"space": "local", "scale": 2, "distortion": 3, "stone": "#e8e4dc", "vein": "#302c38"}}
+//! {"marble": {"space": "local", "scale": 2, "distortion": 3,
+//! "stone": "#e8e4dc", "vein": "#302c38"}}
 //! ```
 //!
-//! With p a point of the pattern, a vein's share is (1/2 + 1/2 sin 2π(p.x + `distortion` · turbulence(p)))^`sharpness`.
+//! With p a point of the pattern, the weight of the vein color is (1/2 + 1/2 sin 2π(p.x +
+//! `distortion` · turbulence(p)))^`sharpness`.
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::lattice::kept;
-use super::mapping::Map;
+use super::compiled::ColorBlend;
+use super::lattice::filter_amplitude;
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
-    check,
+    Input, InvalidTexture, Mapping, Octaves, SharedTexture, Space, Texture, TextureError, TextureLookup,
+    TextureResolver, TextureTable, check,
 };
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Marble: parallel veins, one a unit along x, stirred by turbulence.
+/// Marble: parallel veins, one per unit of the pattern along x, distorted by turbulence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Marble {
-    /// Colour between the veins.
+    /// Color between the veins.
     pub stone: Input<Rgb>,
-    /// Colour of the veins.
+    /// Color of the veins.
     pub vein: Input<Rgb>,
-    /// How far veins are stirred, in distances between them.
+    /// Amplitude of the distortion, in distances between veins. 0 keeps veins straight.
     #[schemars(range(min = 0, max = 1000))]
     pub distortion: f32,
-    /// How thin veins are: 1 as wide as the stone between them.
+    /// Exponent of the vein profile. 1 makes veins as wide as the stone between them, larger values
+    /// make them thinner.
     #[schemars(range(min = 0.01, max = 1000))]
     pub sharpness: f32,
-    /// The turbulence that stirs them.
+    /// Turbulence that distorts the veins.
     #[serde(flatten)]
     pub octaves: Octaves,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -64,8 +67,9 @@ impl Texture for Marble {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("stone", &self.stone)?, high: resolver.color("vein", &self.vein)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors =
+            ColorBlend { low: resolver.color("stone", &self.stone)?, high: resolver.color("vein", &self.vein)? };
         let Self { distortion, sharpness, octaves, .. } = *self;
         let mean = (0..256).map(|i| profile((i as f32 + 0.5) / 256.0, sharpness)).sum::<f32>() / 256.0;
         let map = self.mapping.compile(Space::Local);
@@ -73,37 +77,37 @@ impl Texture for Marble {
     }
 }
 
-/// How much of a vein there is at a phase, in turns.
+/// Weight of the vein color at a phase, in turns.
 fn profile(turns: f32, sharpness: f32) -> f32 {
-    fun::powf(0.5 + 0.5 * fun::sin_cos_turns(turns - turns.floor()).0, sharpness)
+    portable::powf(0.5 + 0.5 * portable::sin_cos_turns(turns - turns.floor()).0, sharpness)
 }
 
-/// A [`Marble`] with its names looked up.
+/// A [`Marble`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledMarble {
-    colors: Pair,
+    colors: ColorBlend,
     distortion: f32,
     sharpness: f32,
-    /// Share of veins in the whole.
+    /// Mean weight of the vein color.
     mean: f32,
     octaves: Octaves,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTexture for CompiledMarble {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let sharp = profile(place.point.x + self.distortion * self.octaves.unsigned(place), self.sharpness);
-        let share = self.mean + (sharp - self.mean) * kept(place.width);
-        self.colors.at(share, textures, at)
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
+        let unfiltered = profile(pattern.point.x + self.distortion * self.octaves.turbulence(pattern), self.sharpness);
+        let share = self.mean + (unfiltered - self.mean) * filter_amplitude(pattern.width);
+        self.colors.eval(share, textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Marble {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let mapping = Mapping::of(Space::Local);
+        let mapping = Mapping::in_space(Space::Local);
         vec![Self::default(), Self { mapping, distortion: 1000.0, sharpness: 0.01, ..Self::default() }]
     }
 }

@@ -1,34 +1,37 @@
-//! Two textures or colours put together: mixed, added, multiplied and so on.
+//! Blend of two textures or colors: mixed, added, multiplied and so on.
 //!
 //! ```json
 //! {"mix": {"a": "wood", "b": "#402010", "amount": "scratches", "mode": "multiply"}}
 //! ```
 //!
-//! The colour is a + amount · (f(a, b) − a), where f is the mode, in linear light and channel by channel (the separable blend
-//! modes of W3C, Compositing and Blending Level 1, section 9).
+//! The color is a + amount · (f(a, b) - a), with f the blend mode, in linear light and per channel
+//! (the separable blend modes of W3C, Compositing and Blending Level 1, section 9).
 
 use super::CompiledTexture;
-use super::{Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Texture, TextureError, TextureTable, check};
+use super::{
+    Input, InvalidTexture, SharedTexture, Slot, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+    check,
+};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Two textures or colours put together.
+/// Blend of two textures or colors, in linear light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mix {
-    /// What there is.
+    /// Base color a.
     pub a: Input<Rgb>,
-    /// What comes to it.
+    /// Color b that is blended with the base color.
     pub b: Input<Rgb>,
-    /// How much of it: 0 leaves `a` as it is; of a texture the luminance counts.
+    /// Weight of the blend, 0 to 1; of a texture, the luminance. 0 leaves `a` unchanged.
     pub amount: Input<f32>,
-    /// How the two come together.
+    /// Blend mode.
     pub mode: MixMode,
 }
 
-/// How two colours a and b come together, channel by channel.
+/// Blend mode of two colors a and b, per channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MixMode {
@@ -37,17 +40,17 @@ pub enum MixMode {
     Mix,
     /// a + b.
     Add,
-    /// a − b, at least 0.
+    /// a - b, at least 0.
     Subtract,
     /// a · b.
     Multiply,
-    /// a + b − a · b: lightens.
+    /// a + b - a · b, which lightens.
     Screen,
-    /// How far apart they are.
+    /// Absolute difference of a and b.
     Difference,
-    /// The lighter.
+    /// Larger of a and b.
     Lighten,
-    /// The darker.
+    /// Smaller of a and b.
     Darken,
 }
 
@@ -58,7 +61,7 @@ impl Default for Mix {
 }
 
 impl MixMode {
-    fn of(self, a: f32, b: f32) -> f32 {
+    fn blend(self, a: f32, b: f32) -> f32 {
         match self {
             Self::Mix => b,
             Self::Add => a + b,
@@ -82,14 +85,14 @@ impl Texture for Mix {
         }
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let (a, b) = (resolver.color("a", &self.a)?, resolver.color("b", &self.b)?);
         let amount = resolver.number("amount", &self.amount)?;
         Ok(Arc::new(CompiledMix { a, b, amount, mode: self.mode }))
     }
 }
 
-/// A [`Mix`] with its names looked up.
+/// A [`Mix`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledMix {
     a: Slot<Rgb>,
@@ -99,7 +102,7 @@ pub struct CompiledMix {
 }
 
 impl CompiledTexture for CompiledMix {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
         let amount = textures.number(&self.amount, at).clamp(0.0, 1.0);
         let a = textures.color(&self.a, at);
         if amount <= 0.0 {
@@ -107,8 +110,8 @@ impl CompiledTexture for CompiledMix {
         }
         let b = textures.color(&self.b, at);
         let channel = |a: f32, b: f32| {
-            let mixed = a + amount * (self.mode.of(a, b) - a);
-            // Products of products may leave the range of numbers.
+            let mixed = a + amount * (self.mode.blend(a, b) - a);
+            // Nested products may overflow.
             if mixed.is_finite() { mixed } else { a }
         };
         Rgb::new(channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b))
@@ -117,7 +120,7 @@ impl CompiledTexture for CompiledMix {
 
 #[cfg(any(test, feature = "testing"))]
 impl Mix {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let huge = Self { a: Rgb::splat(1e37).into(), b: Rgb::splat(-1e37).into(), ..Self::default() };
         let modes = [MixMode::Multiply, MixMode::Screen, MixMode::Difference];
@@ -147,7 +150,7 @@ mod tests {
             let at = |amount: f32| {
                 let json =
                     format!(r#"{{"a": [0.25, 2, 0], "b": [0.5, 0.25, 0], "mode": "{mode}", "amount": {amount}}}"#);
-                reader(&format!(r#"{{"mix": {json}}}"#))(&Lookup::default())
+                reader(&format!(r#"{{"mix": {json}}}"#))(&TextureLookup::default())
             };
             assert_eq!(at(1.0), Rgb::new(red, green, 0.0), "{mode}");
             assert_eq!(at(0.0), Rgb::new(0.25, 2.0, 0.0), "{mode}");

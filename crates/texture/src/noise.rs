@@ -1,32 +1,32 @@
-//! Smooth random spots of one size (Perlin, Improving Noise, 2002).
+//! Gradient noise of one frequency (Perlin, Improving Noise, 2002).
 //!
 //! ```json
 //! {"noise": {"space": "local", "scale": 4, "low": "#203010", "high": "#80a040"}}
 //! ```
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::mapping::Map;
+use super::compiled::ColorBlend;
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check,
-    lattice,
+    Input, InvalidTexture, Mapping, SharedTexture, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check, lattice,
 };
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Smooth random spots, about one unit of the pattern wide.
+/// Gradient noise of one frequency, with features about one unit of the pattern wide.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Noise {
-    /// Colour of the lowest places.
+    /// Color where the noise is lowest.
     pub low: Input<Rgb>,
-    /// Colour of the highest places.
+    /// Color where the noise is highest.
     pub high: Input<Rgb>,
-    /// Another number, another noise.
+    /// Seed of the noise.
     pub seed: u32,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -44,34 +44,34 @@ impl Texture for Noise {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors = ColorBlend { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         Ok(Arc::new(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
     }
 }
 
-/// A [`Noise`] with its names looked up.
+/// A [`Noise`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledNoise {
-    colors: Pair,
+    colors: ColorBlend,
     seed: u32,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTexture for CompiledNoise {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let share = 0.5 + 0.5 * lattice::noise(place.point, self.seed) * lattice::kept(place.width);
-        self.colors.at(share, textures, at)
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
+        let share = 0.5 + 0.5 * lattice::noise(pattern.point, self.seed) * lattice::filter_amplitude(pattern.width);
+        self.colors.eval(share, textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Noise {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let world = Self { low: Rgb::new(0.5, 0.1, 0.2).into(), high: Rgb::splat(0.7).into(), ..Self::default() };
-        vec![Self::default(), Self { mapping: Mapping::of(Space::World), seed: 5, ..world }]
+        vec![Self::default(), Self { mapping: Mapping::in_space(Space::World), seed: 5, ..world }]
     }
 }
 

@@ -1,27 +1,28 @@
-//! Sums of noise, each half as large and twice as fine as the one before (Perlin, An Image Synthesizer, 1985; Musgrave in
-//! Ebert et al., Texturing and Modeling, 2003).
+//! Octaves of noise, each smaller and finer than the one before (Perlin, An Image Synthesizer,
+//! 1985; Musgrave in Ebert et al., Texturing and Modeling, 2003).
 
-use super::lattice::{kept, noise, numbers};
-use super::mapping::Place;
+use super::lattice::{filter_amplitude, noise, unit_cube_point};
+use super::mapping::PatternPoint;
 use super::{InvalidTexture, check};
 use juggler_math::hash::combine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How noises of several sizes are added up.
+/// Octaves of noise that are added up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Octaves {
-    /// How many noises are added up.
+    /// Number of octaves. Each one adds finer detail.
     #[schemars(range(min = 1, max = 16))]
     pub octaves: u32,
-    /// How much finer each is than the one before.
+    /// Frequency of each octave over that of the one before.
     #[schemars(range(min = 1, max = 16))]
     pub lacunarity: f32,
-    /// How large each is against the one before.
+    /// Amplitude of each octave over that of the one before. Larger values make the pattern
+    /// rougher.
     #[schemars(range(min = 0, max = 1))]
     pub gain: f32,
-    /// Another number, another noise.
+    /// Seed of the noise.
     pub seed: u32,
 }
 
@@ -32,38 +33,38 @@ impl Default for Octaves {
 }
 
 impl Octaves {
-    /// Checks numbers.
+    /// Checks all values.
     pub(super) fn check(&self) -> Result<(), InvalidTexture> {
         check::in_range("octaves", self.octaves as f32, 1.0, 16.0)?;
         check::in_range("lacunarity", self.lacunarity, 1.0, 16.0)?;
         check::in_range("gain", self.gain, 0.0, 1.0)
     }
 
-    /// The sum, from −1 to 1; its mean is 0.
-    pub(super) fn signed(&self, place: Place) -> f32 {
-        self.sum(place, |value| value, 0.0)
+    /// Sum of signed noise (fractional Brownian motion), from -1 to 1 with mean 0.
+    pub(super) fn fbm(&self, pattern: PatternPoint) -> f32 {
+        self.sum(pattern, |value| value, 0.0)
     }
 
-    /// The sum of what is left without signs, from 0 to 1: folds at the zeros of each noise.
-    pub(super) fn unsigned(&self, place: Place) -> f32 {
-        self.sum(place, f32::abs, MEAN_OF_FOLDED)
+    /// Sum of absolute noise (turbulence), from 0 to 1, with creases at the zeros of each octave.
+    pub(super) fn turbulence(&self, pattern: PatternPoint) -> f32 {
+        self.sum(pattern, f32::abs, MEAN_OF_ABSOLUTE_NOISE)
     }
 
-    /// Octaves that the footprint covers are replaced by their mean.
-    fn sum(&self, place: Place, fold: fn(f32) -> f32, mean: f32) -> f32 {
+    /// Sum of octaves over the sum of amplitudes. Octaves finer than the footprint fade to `mean`.
+    fn sum(&self, pattern: PatternPoint, fold: fn(f32) -> f32, mean: f32) -> f32 {
         let (mut sum, mut all) = (0.0, 0.0);
         let (mut amplitude, mut frequency) = (1.0, 1.0f32);
         for octave in 0..self.octaves.min(16) {
-            let kept = kept(place.width * frequency);
-            let value = if kept > 0.0 {
+            let filter = filter_amplitude(pattern.width * frequency);
+            let value = if filter > 0.0 {
                 let seed = combine(self.seed, octave);
-                // Moved, so that zeros of the lattices do not fall together.
-                let point = place.point * frequency + numbers(seed);
+                // Offset each octave, so that the zeros of their lattices do not coincide.
+                let point = pattern.point * frequency + unit_cube_point(seed);
                 fold(if point.is_finite() { noise(point, seed) } else { 0.0 })
             } else {
                 mean
             };
-            sum += amplitude * (mean + (value - mean) * kept);
+            sum += amplitude * (mean + (value - mean) * filter);
             all += amplitude;
             amplitude *= self.gain;
             frequency *= self.lacunarity;
@@ -72,8 +73,8 @@ impl Octaves {
     }
 }
 
-/// The mean of noise without its sign, measured.
-const MEAN_OF_FOLDED: f32 = 0.22;
+/// Mean of absolute noise, measured.
+const MEAN_OF_ABSOLUTE_NOISE: f32 = 0.22;
 
 #[cfg(test)]
 mod tests {
@@ -85,16 +86,23 @@ mod tests {
     fn means_are_as_stated() {
         let mut random = Random::new(710);
         let (count, octaves) = (20_000, Octaves { octaves: 1, ..Octaves::default() });
-        let places: Vec<Place> = (0..count).map(|_| Place::sharp(random.point(1e3))).collect();
-        let mean = |f: &dyn Fn(Place) -> f32| places.iter().map(|p| f64::from(f(*p))).sum::<f64>() / f64::from(count);
-        let signed = mean(&|place| octaves.signed(place));
-        let unsigned = mean(&|place| octaves.unsigned(place));
-        assert!(signed.abs() < 0.01 && (unsigned - f64::from(MEAN_OF_FOLDED)).abs() < 0.005, "{signed} {unsigned}");
-        let far = |p: &Place| Place { width: 1e3, ..*p };
-        assert!(places.iter().all(|p| octaves.signed(far(p)) == 0.0 && octaves.unsigned(far(p)) == MEAN_OF_FOLDED));
+        let places: Vec<PatternPoint> = (0..count).map(|_| PatternPoint::unfiltered(random.point(1e3))).collect();
+        let mean =
+            |f: &dyn Fn(PatternPoint) -> f32| places.iter().map(|p| f64::from(f(*p))).sum::<f64>() / f64::from(count);
+        let signed = mean(&|pattern| octaves.fbm(pattern));
+        let unsigned = mean(&|pattern| octaves.turbulence(pattern));
+        assert!(
+            signed.abs() < 0.01 && (unsigned - f64::from(MEAN_OF_ABSOLUTE_NOISE)).abs() < 0.005,
+            "{signed} {unsigned}"
+        );
+        let far = |p: &PatternPoint| PatternPoint { width: 1e3, ..*p };
+        assert!(
+            places.iter().all(|p| octaves.fbm(far(p)) == 0.0 && octaves.turbulence(far(p)) == MEAN_OF_ABSOLUTE_NOISE)
+        );
     }
 
-    /// The mean square of differences over a distance falls with the distance: by how much says the spectrum.
+    /// The mean square of differences over a distance grows with the distance as the spectrum
+    /// implies.
     #[test]
     fn finer_octaves_are_smaller() {
         let mut random = Random::new(711);
@@ -103,12 +111,13 @@ mod tests {
             let square = |_| {
                 let p = random.point(500.0);
                 let step = random.unit_vector() * distance;
-                let d = octaves.signed(Place::sharp(p + step)) - octaves.signed(Place::sharp(p));
+                let d = octaves.fbm(PatternPoint::unfiltered(p + step)) - octaves.fbm(PatternPoint::unfiltered(p));
                 f64::from(d * d)
             };
             (0..4000).map(square).sum::<f64>() / 4000.0
         };
-        // Amplitudes as 1 / frequency: differences grow about as the distance, squares with its square (and a logarithm).
+        // Amplitudes fall as 1 / frequency, so that squared differences grow about as the squared
+        // distance, up to a logarithm.
         let [far, middle, near] = [0.2, 0.05, 0.0125].map(&mut mean_square);
         for ratio in [far / middle, middle / near] {
             assert!((5.0..16.5).contains(&ratio), "{far} {middle} {near}");
@@ -122,12 +131,13 @@ mod tests {
         let mut random = Random::new(712);
         for _ in 0..100 {
             let point = random.point(50.0);
-            // The second octave has frequency 2: at a width of 0.375 it is gone, the first is still whole.
-            let blurred = octaves.signed(Place { point, width: 0.376 }) * (1.0 + 0.5 + 0.25 + 0.125 + 0.0625);
-            let first = one.signed(Place::sharp(point)) * kept(0.376);
+            // The second octave has frequency 2: at a width of 0.376 it is gone, the first one is
+            // not.
+            let blurred = octaves.fbm(PatternPoint { point, width: 0.376 }) * (1.0 + 0.5 + 0.25 + 0.125 + 0.0625);
+            let first = one.fbm(PatternPoint::unfiltered(point)) * filter_amplitude(0.376);
             assert!((blurred - first).abs() < 1e-5);
-            assert_eq!(octaves.signed(Place { point, width: 1e-9 }), octaves.signed(Place::sharp(point)));
+            assert_eq!(octaves.fbm(PatternPoint { point, width: 1e-9 }), octaves.fbm(PatternPoint::unfiltered(point)));
         }
-        assert!(octaves.signed(Place::sharp(Vec3::splat(f32::MAX))).is_finite());
+        assert!(octaves.fbm(PatternPoint::unfiltered(Vec3::splat(f32::MAX))).is_finite());
     }
 }

@@ -1,45 +1,47 @@
-//! A number made a colour: the value of another texture looked up along stops.
+//! Color ramp: maps the value of another texture to a color by interpolation between stops.
 //!
 //! ```json
 //! {"ramp": {"input": "clouds", "interpolation": "smooth", "stops": [
 //!     {"position": 0.4, "color": "#3060c0"}, {"position": 0.6, "color": [1, 1, 1]}]}}
 //! ```
 //!
-//! Before the first and behind the last stop the colour stays.
+//! Before the first and after the last stop, the color is constant.
 
 use super::CompiledTexture;
 use super::gradient::{CompiledStops, check_stops};
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Stop, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, SharedTexture, Slot, Stop, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A number made a colour.
+/// Color ramp: maps a number, such as the luminance of a texture, to a color by interpolation
+/// between stops.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Ramp {
-    /// The number: most often the name of a texture, of which the luminance counts.
+    /// Number to map; of a texture, the luminance.
     pub input: Input<f32>,
-    /// The colours with their positions, in rising order; two at one position make a sharp edge.
+    /// Stops in order of rising position. Two stops at one position form a sharp edge.
     #[schemars(length(min = 1))]
     pub stops: Vec<Stop>,
-    /// How colours run from one stop to the next.
+    /// Interpolation between stops.
     pub interpolation: Steps,
 }
 
-/// How colours run from one stop to the next.
+/// Interpolation between the stops of a ramp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Steps {
-    /// Evenly, in linear light.
+    /// Linear interpolation, in linear light.
     #[default]
     Linear,
-    /// Without a bend at the stops.
+    /// Smoothstep interpolation, with slope 0 at the stops.
     Smooth,
-    /// Not at all: each colour stays up to the next stop.
+    /// No interpolation: each color holds up to the next stop.
     Hold,
 }
 
@@ -58,14 +60,14 @@ impl Texture for Ramp {
         check_stops(&self.stops)
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let input = resolver.number("input", &self.input)?;
         let stops = CompiledStops::new(&self.stops, resolver)?;
         Ok(Arc::new(CompiledRamp { input, stops, interpolation: self.interpolation }))
     }
 }
 
-/// A [`Ramp`] with its names looked up.
+/// A [`Ramp`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledRamp {
     input: Slot<f32>,
@@ -74,19 +76,19 @@ pub struct CompiledRamp {
 }
 
 impl CompiledTexture for CompiledRamp {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let bend: fn(f32) -> f32 = match self.interpolation {
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let remap: fn(f32) -> f32 = match self.interpolation {
             Steps::Linear => |share| share,
             Steps::Smooth => |share| share * share * (3.0 - 2.0 * share),
             Steps::Hold => |_| 0.0,
         };
-        self.stops.at(textures.number(&self.input, at), bend, textures, at)
+        self.stops.at(textures.number(&self.input, at), remap, textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Ramp {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { interpolation: Steps::Smooth, ..Self::default() }]
     }
@@ -98,12 +100,12 @@ mod tests {
     use crate::contract::reader;
 
     #[test]
-    fn numbers_become_colours() {
+    fn numbers_become_colors() {
         let at = |input: &str, interpolation: &str| {
             let stops =
                 r#"[{"position": 0, "color": 1}, {"position": 2, "color": [3, 5, 9]}, {"position": 2, "color": 7}]"#;
             let json = format!(r#"{{"input": {input}, "interpolation": "{interpolation}", "stops": {stops}}}"#);
-            reader(&format!(r#"{{"ramp": {json}}}"#))(&Lookup::default())
+            reader(&format!(r#"{{"ramp": {json}}}"#))(&TextureLookup::default())
         };
         assert_eq!(at("-1", "linear"), Rgb::splat(1.0));
         assert_eq!(at("0.5", "linear"), Rgb::new(1.5, 2.0, 3.0));

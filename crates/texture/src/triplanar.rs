@@ -1,33 +1,37 @@
-//! A flat texture from three sides: seen along x, y and z, and blended by where the surface faces. No surface
-//! coordinates are needed, and nothing is stretched.
+//! Triplanar projection: a texture is projected along x, y and z and blended by the normal. It
+//! needs no surface coordinates and stretches little.
 //!
 //! ```json
 //! {"triplanar": {"texture": "planks", "space": "world", "scale": 0.5, "sharpness": 8}}
 //! ```
 //!
-//! With n the normal, side i weighs |nᵢ|^`sharpness` over the sum of all three (Geiss, Generating Complex Procedural Terrains
-//! Using the GPU, GPU Gems 3, 2007, section 1.5, with powers). Seen from outside, v points up (away for y), u to the right.
+//! With n the normal, the projection along axis i has the weight |nᵢ|^`sharpness` over the sum of
+//! all three (Geiss, Generating Complex Procedural Terrains Using the GPU, GPU Gems 3, 2007,
+//! section 1.5, with powers). Seen from outside, v points up (away for y), u to the right.
 
 use super::CompiledTexture;
-use super::mapping::Map;
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, Mapping, SharedTexture, Slot, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
-use juggler_math::{Rgb, Vec2, Vec3, fun};
+use juggler_math::{Rgb, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A flat texture from three sides, blended by where the surface faces.
+/// Triplanar projection of a texture along x, y and z, blended by the normal. Use it for surfaces
+/// without suitable surface coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Triplanar {
-    /// The texture; where it asks for surface coordinates, it gets those of each side.
+    /// Texture that is projected. It receives the coordinates of each projection as (u, v).
     pub texture: Input<Rgb>,
-    /// How abruptly one side takes over from the other.
+    /// Exponent of the blend weights. Larger values make the transition between projections
+    /// sharper.
     #[schemars(range(min = 0.1, max = 1000))]
     pub sharpness: f32,
-    /// Where the sides lie; `space` is `local` or `world`, and stands for `local` when it is `uv`.
+    /// Placement of the projections. `space` is `local` or `world`; `uv` counts as `local`.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -45,7 +49,7 @@ impl Texture for Triplanar {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let space = self.mapping.space.filter(|space| *space != Space::Uv);
         let map = Mapping { space, ..self.mapping }.compile(Space::Local);
         let texture = resolver.slot("texture", &self.texture, 3)?;
@@ -53,33 +57,33 @@ impl Texture for Triplanar {
     }
 }
 
-/// A [`Triplanar`] with its name looked up.
+/// A [`Triplanar`] with its name resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledTriplanar {
     texture: Slot<Rgb>,
     sharpness: f32,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTriplanar {
-    /// How much each side counts; together 1.
+    /// Weights of the three projections, with sum 1.
     fn weights(&self, normal: Vec3) -> Vec3 {
         let size = normal.abs();
-        // Against the largest, so that no power vanishes with all others.
+        // Divide by the largest component, so that its power cannot underflow.
         let size = size / size.max_element();
         if !size.is_finite() {
             return Vec3::Y;
         }
-        let weights = Vec3::from(size.to_array().map(|v| fun::powf(v, self.sharpness)));
+        let weights = Vec3::from(size.to_array().map(|v| portable::powf(v, self.sharpness)));
         weights / weights.element_sum()
     }
 }
 
 impl CompiledTexture for CompiledTriplanar {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.wide_place(at);
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.filtered_point(at);
         let normal = self.map.direction(if self.map.space == Space::World { at.normal } else { at.local_normal });
-        let (weights, p) = (self.weights(normal), place.point);
+        let (weights, p) = (self.weights(normal), pattern.point);
         let facing = |n: f32| if n < 0.0 { -1.0 } else { 1.0 };
         let sides = [
             (weights.x, Vec2::new(-p.z * facing(normal.x), p.y)),
@@ -87,7 +91,7 @@ impl CompiledTexture for CompiledTriplanar {
             (weights.z, Vec2::new(p.x * facing(normal.z), p.y)),
         ];
         let side = |(weight, uv): (f32, Vec2)| {
-            let at = Lookup { uv, uv_footprint: place.width, ..*at };
+            let at = TextureLookup { uv, uv_footprint: pattern.width, ..*at };
             textures.color(&self.texture, &at) * weight
         };
         sides.into_iter().filter(|(weight, _)| *weight > 0.0).map(side).fold(Rgb::BLACK, |sum, side| sum + side)
@@ -96,9 +100,9 @@ impl CompiledTexture for CompiledTriplanar {
 
 #[cfg(any(test, feature = "testing"))]
 impl Triplanar {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self::default(), Self { mapping: Mapping::of(Space::World), sharpness: 1000.0, ..Self::default() }]
+        vec![Self::default(), Self { mapping: Mapping::in_space(Space::World), sharpness: 1000.0, ..Self::default() }]
     }
 }
 
@@ -107,7 +111,7 @@ mod tests {
     use super::*;
     use crate::AnyTexture;
 
-    fn read(json: &str, at: &Lookup) -> Rgb {
+    fn read(json: &str, at: &TextureLookup) -> Rgb {
         let uv: AnyTexture = serde_json::from_str(r#"{"uv": {}}"#).unwrap();
         let table = TextureTable::new([("uv".into(), uv), ("t".into(), serde_json::from_str(json).unwrap())]);
         table.color(&table.resolve("t", &Input::Texture("t".into())).unwrap(), at)
@@ -125,7 +129,7 @@ mod tests {
             (Vec3::Z, 0.1, 0.2),
             (-Vec3::Z, 0.9, 0.2),
         ] {
-            let at = Lookup { world, normal, ..Lookup::default() };
+            let at = TextureLookup { world, normal, ..TextureLookup::default() };
             let color = read(json, &at);
             assert!((color.r - u).abs() < 1e-6 && (color.g - v).abs() < 1e-6, "{normal}: {color:?}");
         }
@@ -134,7 +138,7 @@ mod tests {
     #[test]
     fn weights_add_up_and_follow_their_power() {
         let compiled = |sharpness| {
-            let map = Mapping::of(Space::World).compile(Space::Local);
+            let map = Mapping::in_space(Space::World).compile(Space::Local);
             CompiledTriplanar { texture: Slot::Value(Rgb::WHITE), sharpness, map }
         };
         let normal = Vec3::new(2.0, -1.0, 0.0) / 5f32.sqrt();
@@ -147,7 +151,7 @@ mod tests {
     #[test]
     fn object_space_has_a_normal_of_its_own() {
         let local = Vec3::new(0.1, 0.2, 0.3);
-        let at = Lookup { local, normal: Vec3::X, local_normal: Vec3::Z, ..Lookup::default() };
+        let at = TextureLookup { local, normal: Vec3::X, local_normal: Vec3::Z, ..TextureLookup::default() };
         let color = read(r#"{"triplanar": {"texture": "uv", "space": "local", "scale": 2}}"#, &at);
         assert!((color.r - 0.2).abs() < 1e-6 && (color.g - 0.4).abs() < 1e-6, "{color:?}");
     }

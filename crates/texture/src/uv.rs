@@ -1,23 +1,27 @@
-//! Coordinates as colours, to see how they run: the fractions of x, y and z as red, green and blue.
+//! Coordinates as colors, to check mappings: the fractional parts of x, y and z are red, green and
+//! blue.
 //!
 //! ```json
 //! {"uv": {"scale": 10}}
 //! ```
 
 use super::CompiledTexture;
-use super::mapping::Map;
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable};
+use super::mapping::CompiledMapping;
+use super::{
+    InvalidTexture, Mapping, SharedTexture, Space, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Coordinates as colours, to see how they run.
+/// Coordinates as colors, to check mappings: the fractional parts of x, y and z are red, green and
+/// blue.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Uv {
     #[serde(flatten)]
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     pub mapping: Mapping,
 }
 
@@ -26,27 +30,27 @@ impl Texture for Uv {
         self.mapping.check()
     }
 
-    fn compile(&self, _: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+    fn compile(&self, _: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         Ok(Arc::new(CompiledUv { map: self.mapping.compile(Space::Uv) }))
     }
 }
 
-/// A [`Uv`] ready to be asked.
+/// A compiled [`Uv`].
 #[derive(Clone, Debug)]
 pub struct CompiledUv {
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTexture for CompiledUv {
-    fn eval(&self, _textures: &TextureTable, at: &Lookup) -> Rgb {
-        let p = self.map.place(at).point;
+    fn eval(&self, _textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let p = self.map.pattern_point(at).point;
         (p - p.floor()).to_array().into()
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Uv {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }
@@ -59,8 +63,8 @@ mod tests {
     use juggler_math::Vec2;
 
     #[test]
-    fn fractions_are_colours() {
-        let at = Lookup { uv: Vec2::new(0.25, -0.25), ..Lookup::default() };
+    fn fractions_are_colors() {
+        let at = TextureLookup { uv: Vec2::new(0.25, -0.25), ..TextureLookup::default() };
         assert_eq!(reader(r#"{"uv": {}}"#)(&at), Rgb::new(0.25, 0.75, 0.0));
         assert_eq!(reader(r#"{"uv": {"scale": 6}}"#)(&at), Rgb::new(0.5, 0.5, 0.0));
     }

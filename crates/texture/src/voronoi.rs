@@ -1,18 +1,20 @@
-//! Cells about scattered points: stones, scales, cracked ground (Worley, A Cellular Texture Basis Function, 1996, with
-//! one point a cell of the lattice).
+//! Cellular noise: distances to scattered feature points, for stones, scales and cracked ground
+//! (Worley, A Cellular Texture Basis Function, 1996, with one point per lattice cell).
 //!
 //! ```json
-//! {"voronoi": {"space": "local", "scale": 5, "feature": "f2_minus_f1", "low": 0, "high": "#c0b090"}}
+//! {"voronoi": {"space": "local", "scale": 5, "feature": "f2_minus_f1",
+//! "low": 0, "high": "#c0b090"}}
 //! ```
 //!
-//! Over (u, v) the points lie in the plane, otherwise in space.
+//! Over (u, v) the feature points lie in the plane, otherwise in space.
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::lattice::{cell, hash, kept, numbers};
-use super::mapping::Map;
+use super::compiled::ColorBlend;
+use super::lattice::{cell, filter_amplitude, hash, unit_cube_point};
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check,
+    Input, InvalidTexture, Mapping, SharedTexture, Space, Texture, TextureError, TextureLookup, TextureResolver,
+    TextureTable, check,
 };
 use juggler_math::hash::combine;
 use juggler_math::{Rgb, Vec3};
@@ -20,53 +22,55 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Cells about scattered points, one a unit of the pattern.
+/// Cellular noise around scattered feature points, one per unit cell of the pattern. Use it for
+/// stones, scales and cracked ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Voronoi {
-    /// Colour where the feature is 0.
+    /// Color where the feature is 0.
     pub low: Input<Rgb>,
-    /// Colour where the feature is 1 or more.
+    /// Color where the feature is 1 or more.
     pub high: Input<Rgb>,
-    /// What is measured.
+    /// Feature that chooses the color.
     pub feature: Feature,
-    /// How distances are measured.
+    /// Metric of distances to the feature points.
     pub metric: Metric,
-    /// How far points are scattered: at 0 they form a grid.
+    /// Random offset of the feature points in their cells: 0 forms a grid, 1 scatters them over
+    /// whole cells.
     #[schemars(range(min = 0, max = 1))]
     pub jitter: f32,
-    /// Another number, other points.
+    /// Seed of the feature points and cell colors.
     pub seed: u32,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
 
-/// What is measured of the points about.
+/// Feature of cellular noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Feature {
-    /// Distance to the nearest.
+    /// F1: distance to the nearest feature point.
     #[default]
     F1,
-    /// Distance to the second nearest.
+    /// F2: distance to the second nearest feature point.
     F2,
-    /// How much farther the second nearest is: 0 along the borders of cells.
+    /// F2 - F1, which is 0 along the borders of cells.
     F2MinusF1,
-    /// A colour for each cell, between `low` and `high` in each channel by itself.
+    /// Random color per cell, between `low` and `high` in each channel independently.
     Cell,
 }
 
-/// How distances are measured.
+/// Metric of distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Metric {
-    /// As the crow flies.
+    /// Euclidean distance.
     #[default]
     Euclidean,
-    /// Along the axes, all ways added up.
+    /// Sum of the distances along the axes.
     Manhattan,
-    /// The longest way along an axis.
+    /// Largest of the distances along the axes.
     Chebyshev,
 }
 
@@ -92,39 +96,39 @@ impl Texture for Voronoi {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors = ColorBlend { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         let flat = self.mapping.space_or(Space::Local) == Space::Uv;
-        let points = Points { metric: self.metric, jitter: self.jitter, seed: self.seed, flat };
+        let points = FeaturePoints { metric: self.metric, jitter: self.jitter, seed: self.seed, flat };
         let (feature, map) = (self.feature, self.mapping.compile(Space::Local));
-        // Any 512 places will do for the mean.
-        let share = |i| points.near(numbers(combine(9, i)) * 64.0).feature(feature);
+        // Estimate the mean from 512 points.
+        let share = |i| points.nearest(unit_cube_point(combine(9, i)) * 64.0).feature(feature);
         let mean = (0..512).map(share).sum::<f32>() / 512.0;
         Ok(Arc::new(CompiledVoronoi { colors, feature, points, mean, map }))
     }
 }
 
-/// Where the points lie.
+/// Scattered feature points.
 #[derive(Clone, Copy, Debug)]
-struct Points {
+struct FeaturePoints {
     metric: Metric,
     jitter: f32,
     seed: u32,
-    /// Whether they lie in the plane z = 0.
+    /// Whether the points lie in the plane z = 0.
     flat: bool,
 }
 
-/// The two nearest points.
+/// Distances to the two nearest feature points.
 #[derive(Clone, Copy, Debug)]
-struct Near {
+struct NearestPoints {
     first: f32,
     second: f32,
-    /// Belongs to the first.
+    /// Hash of the nearest point's cell.
     hash: u32,
 }
 
-impl Near {
-    /// A number from 0 to 1.
+impl NearestPoints {
+    /// Value of a feature, 0 to 1.
     fn feature(self, feature: Feature) -> f32 {
         match feature {
             Feature::F1 => self.first.min(1.0),
@@ -135,15 +139,15 @@ impl Near {
     }
 }
 
-impl Points {
-    fn near(&self, p: Vec3) -> Near {
+impl FeaturePoints {
+    fn nearest(&self, p: Vec3) -> NearestPoints {
         let (cell, at) = cell(if self.flat { p.with_z(0.0) } else { p });
-        let mut near = Near { first: f32::MAX, second: f32::MAX, hash: 0 };
+        let mut nearest = NearestPoints { first: f32::MAX, second: f32::MAX, hash: 0 };
         let edge = at.min(1.0 - at);
         let edge = if self.flat { edge.x.min(edge.y) } else { edge.min_element() };
         for ring in 0..=4_i64 {
-            // What lies in this ring is at least as far away as its inner border.
-            if ring > 0 && near.second <= ring as f32 - 1.0 + edge {
+            // Stop once this ring of cells is farther away than the second nearest point.
+            if ring > 0 && nearest.second <= ring as f32 - 1.0 + edge {
                 break;
             }
             let depth = if self.flat { 0..=0 } else { -ring..=ring };
@@ -151,67 +155,67 @@ impl Points {
                 let inside = z.abs() < ring && y.abs() < ring;
                 let step = if inside { 2 * ring } else { 1 };
                 for x in (-ring..=ring).step_by(step.max(1) as usize) {
-                    self.visit(cell, [x, y, z], at, &mut near);
+                    self.visit(cell, [x, y, z], at, &mut nearest);
                 }
             }
         }
-        near
+        nearest
     }
 
-    fn visit(&self, cell: [i64; 3], [x, y, z]: [i64; 3], at: Vec3, near: &mut Near) {
+    fn visit(&self, cell: [i64; 3], [x, y, z]: [i64; 3], at: Vec3, nearest: &mut NearestPoints) {
         let [i, j, k] = cell;
         let hash = hash([i.wrapping_add(x), j.wrapping_add(y), k.wrapping_add(z)], self.seed);
-        let point = Vec3::new(x as f32, y as f32, z as f32) + 0.5 + (numbers(hash) - 0.5) * self.jitter;
-        let way = (point - at).abs();
-        let way = if self.flat { way.with_z(0.0) } else { way };
+        let point = Vec3::new(x as f32, y as f32, z as f32) + 0.5 + (unit_cube_point(hash) - 0.5) * self.jitter;
+        let offset = (point - at).abs();
+        let offset = if self.flat { offset.with_z(0.0) } else { offset };
         let distance = match self.metric {
-            Metric::Euclidean => way.length(),
-            Metric::Manhattan => way.element_sum(),
-            Metric::Chebyshev => way.max_element(),
+            Metric::Euclidean => offset.length(),
+            Metric::Manhattan => offset.element_sum(),
+            Metric::Chebyshev => offset.max_element(),
         };
-        if distance < near.first {
-            *near = Near { first: distance, second: near.first, hash };
-        } else if distance < near.second {
-            near.second = distance;
+        if distance < nearest.first {
+            *nearest = NearestPoints { first: distance, second: nearest.first, hash };
+        } else if distance < nearest.second {
+            nearest.second = distance;
         }
     }
 }
 
-/// A [`Voronoi`] with its names looked up.
+/// A [`Voronoi`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledVoronoi {
-    colors: Pair,
+    colors: ColorBlend,
     feature: Feature,
-    points: Points,
+    points: FeaturePoints,
     mean: f32,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl CompiledTexture for CompiledVoronoi {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let kept = kept(place.width);
-        if kept <= 0.0 {
-            return self.colors.at(self.mean, textures, at);
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
+        let filter = filter_amplitude(pattern.width);
+        if filter <= 0.0 {
+            return self.colors.eval(self.mean, textures, at);
         }
-        let near = self.points.near(place.point);
+        let nearest = self.points.nearest(pattern.point);
         if self.feature == Feature::Cell {
-            let shares = (numbers(combine(near.hash, 3)) - 0.5) * kept + 0.5;
+            let shares = (unit_cube_point(combine(nearest.hash, 3)) - 0.5) * filter + 0.5;
             let (low, high) = (textures.color(&self.colors.low, at), textures.color(&self.colors.high, at));
             return low + (high - low) * Rgb::from(shares.to_array());
         }
-        self.colors.at(self.mean + (near.feature(self.feature) - self.mean) * kept, textures, at)
+        self.colors.eval(self.mean + (nearest.feature(self.feature) - self.mean) * filter, textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Voronoi {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let features = [Feature::F1, Feature::F2, Feature::F2MinusF1, Feature::Cell];
         let metrics = [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev, Metric::Euclidean];
         let spaces = [Space::Uv, Space::Local, Space::World, Space::World];
-        let mapping = spaces.map(Mapping::of);
+        let mapping = spaces.map(Mapping::in_space);
         let high = || Rgb::new(0.5, 0.25, 0.75).into();
         let example = |i: usize| Self {
             feature: features[i],
@@ -230,19 +234,19 @@ mod tests {
     use crate::contract::{keeps_its_mean, numbers as read_numbers, reader};
     use juggler_math::testing::Random;
 
-    /// By looking at all points far around.
-    fn brute_force(points: &Points, p: Vec3) -> Near {
+    /// Reference: visits all cells of a large neighborhood.
+    fn brute_force(points: &FeaturePoints, p: Vec3) -> NearestPoints {
         let (cell, at) = cell(if points.flat { p.with_z(0.0) } else { p });
-        let mut near = Near { first: f32::MAX, second: f32::MAX, hash: 0 };
+        let mut nearest = NearestPoints { first: f32::MAX, second: f32::MAX, hash: 0 };
         let depth = if points.flat { 0 } else { 4 };
         for z in -depth..=depth {
             for y in -4..=4 {
                 for x in -4..=4 {
-                    points.visit(cell, [x, y, z], at, &mut near);
+                    points.visit(cell, [x, y, z], at, &mut nearest);
                 }
             }
         }
-        near
+        nearest
     }
 
     #[test]
@@ -250,10 +254,10 @@ mod tests {
         let mut random = Random::new(720);
         for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
             for flat in [false, true] {
-                let points = Points { metric, jitter: 1.0, seed: 4, flat };
+                let points = FeaturePoints { metric, jitter: 1.0, seed: 4, flat };
                 for _ in 0..400 {
                     let p = random.point(1e3);
-                    let (fast, slow) = (points.near(p), brute_force(&points, p));
+                    let (fast, slow) = (points.nearest(p), brute_force(&points, p));
                     assert_eq!((fast.first, fast.second, fast.hash), (slow.first, slow.second, slow.hash));
                     assert!(fast.first <= fast.second);
                 }
@@ -281,16 +285,16 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_of_one_colour_each() {
+    fn cells_are_of_one_color_each() {
         let read = reader(r#"{"voronoi": {"space": "world", "feature": "cell"}}"#);
-        let points = Points { metric: Metric::Euclidean, jitter: 1.0, seed: 0, flat: false };
+        let points = FeaturePoints { metric: Metric::Euclidean, jitter: 1.0, seed: 0, flat: false };
         let mut random = Random::new(721);
         let mut colors = Vec::new();
         for _ in 0..300 {
             let world = random.point(3.0);
-            let color = read(&Lookup { world, ..Lookup::default() });
+            let color = read(&TextureLookup { world, ..TextureLookup::default() });
             assert!(color.to_array().iter().all(|v| (0.0..=1.0).contains(v)));
-            colors.push((points.near(world).hash, color));
+            colors.push((points.nearest(world).hash, color));
         }
         colors.sort_by_key(|(hash, _)| *hash);
         assert!(colors.windows(2).all(|pair| (pair[0].0 == pair[1].0) == (pair[0].1 == pair[1].1)));

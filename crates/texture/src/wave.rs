@@ -1,70 +1,72 @@
-//! Waves: bands across x or rings about the origin, straight or bent by noise.
+//! Waves: bands across x or rings around the origin, optionally distorted by noise.
 //!
 //! ```json
-//! {"wave": {"space": "world", "shape": "rings", "profile": "sine", "distortion": 0.5, "low": 0, "high": "#2080ff"}}
+//! {"wave": {"space": "world", "shape": "rings", "profile": "sine", "distortion": 0.5,
+//! "low": 0, "high": "#2080ff"}}
 //! ```
 //!
-//! The phase is p.x or |p|, plus `distortion` · fbm(p); the colour follows its fraction by the profile.
+//! The phase is p.x or |p|, plus `distortion` · fBm(p). The profile maps its fractional part to a
+//! blend weight of both colors.
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::lattice::{kept, pulses};
-use super::mapping::Map;
+use super::compiled::ColorBlend;
+use super::lattice::{filter_amplitude, filtered_pulse_train};
+use super::mapping::CompiledMapping;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
-    check,
+    Input, InvalidTexture, Mapping, Octaves, SharedTexture, Space, Texture, TextureError, TextureLookup,
+    TextureResolver, TextureTable, check,
 };
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Waves: bands or rings, one a unit.
+/// Waves with a period of one unit of the pattern: bands or rings, optionally distorted by noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Wave {
-    /// Colour of the troughs.
+    /// Color of the troughs.
     pub low: Input<Rgb>,
-    /// Colour of the crests.
+    /// Color of the crests.
     pub high: Input<Rgb>,
-    /// Which way waves run.
+    /// Direction of the waves.
     pub shape: WaveShape,
-    /// What one wave is like.
+    /// Shape of one period.
     pub profile: WaveProfile,
-    /// How far waves are bent, in lengths of a wave.
+    /// Amplitude of the distortion, in wavelengths. 0 keeps waves regular.
     #[schemars(range(min = 0, max = 1000))]
     pub distortion: f32,
-    /// The noise that bends them.
+    /// Noise that distorts the waves.
     #[serde(flatten)]
     pub octaves: Octaves,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
 
-/// Which way waves run.
+/// Direction of waves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WaveShape {
     /// Along the pattern's x axis.
     #[default]
     Bands,
-    /// Away from the pattern's origin; over (u, v) circles.
+    /// Away from the pattern's origin: spheres in space, circles over (u, v).
     Rings,
 }
 
-/// What one wave is like, over its length from 0 to 1.
+/// Shape of one period of a wave, whose phase runs from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WaveProfile {
-    /// Round: the trough at 0, the crest in the middle.
+    /// Sine: trough at 0, crest at 1/2.
     #[default]
     Sine,
-    /// Rises evenly and falls at once.
+    /// Sawtooth: rises linearly and drops at 1.
     Saw,
-    /// Rises evenly to the middle, and falls as evenly.
+    /// Triangle: rises linearly up to 1/2, then falls linearly.
     Triangle,
-    /// The crest in the first half, the trough in the second.
+    /// Square: crest in the first half, trough in the second.
     Square,
 }
 
@@ -91,59 +93,59 @@ impl Texture for Wave {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors = ColorBlend { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         let Self { shape, profile, distortion, octaves, .. } = *self;
         Ok(Arc::new(CompiledWave { colors, shape, profile, distortion, octaves, map: self.mapping.compile(Space::Uv) }))
     }
 }
 
-/// A [`Wave`] with its names looked up.
+/// A [`Wave`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledWave {
-    colors: Pair,
+    colors: ColorBlend,
     shape: WaveShape,
     profile: WaveProfile,
     distortion: f32,
     octaves: Octaves,
-    map: Map,
+    map: CompiledMapping,
 }
 
 impl WaveProfile {
-    /// The height at a phase, from 0 to 1 and 1/2 in the mean; `width` is that of the footprint.
+    /// Height at a phase, 0 to 1 with mean 1/2, filtered over a footprint of diameter `width`.
     fn height(self, phase: f32, width: f32) -> f32 {
         let at = phase - phase.floor();
-        let sharp = match self {
-            Self::Sine => 0.5 - 0.5 * fun::sin_cos_turns(at).1,
+        let unfiltered = match self {
+            Self::Sine => 0.5 - 0.5 * portable::sin_cos_turns(at).1,
             Self::Saw => at,
             Self::Triangle => 1.0 - (2.0 * at - 1.0).abs(),
-            Self::Square => return pulses(phase, 0.5, width),
+            Self::Square => return filtered_pulse_train(phase, 0.5, width),
         };
-        0.5 + (sharp - 0.5) * kept(width)
+        0.5 + (unfiltered - 0.5) * filter_amplitude(width)
     }
 }
 
 impl CompiledTexture for CompiledWave {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
         let straight = match self.shape {
-            WaveShape::Bands => place.point.x,
-            WaveShape::Rings => place.point.length(),
+            WaveShape::Bands => pattern.point.x,
+            WaveShape::Rings => pattern.point.length(),
         };
-        let bent = if self.distortion > 0.0 { self.distortion * self.octaves.signed(place) } else { 0.0 };
+        let bent = if self.distortion > 0.0 { self.distortion * self.octaves.fbm(pattern) } else { 0.0 };
         let phase = straight + bent;
         let phase = if phase.is_finite() { phase } else { 0.0 };
-        self.colors.at(self.profile.height(phase, place.width), textures, at)
+        self.colors.eval(self.profile.height(phase, pattern.width), textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Wave {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let rings = Self { shape: WaveShape::Rings, distortion: 5.0, ..Self::default() };
         let profiles = [WaveProfile::Sine, WaveProfile::Saw, WaveProfile::Triangle, WaveProfile::Square];
-        let mapping = Mapping::of(Space::World);
+        let mapping = Mapping::in_space(Space::World);
         profiles
             .map(|profile| Self { profile, mapping, ..rings.clone() })
             .into_iter()
@@ -179,7 +181,7 @@ mod tests {
                 let ring = rings(Vec3::new(0.0, radius * 0.6, radius * 0.8), 0.0);
                 assert!((ring - bands(Vec3::X * radius, 0.0)).abs() < 1e-5, "{profile} {radius}");
             }
-            // The noise lies on the same lattice as the waves: not all phases are quite as frequent.
+            // Noise and waves share a lattice, so that phases are not quite equally frequent.
             keeps_its_mean(
                 &format!(r#"{{"wave": {{"space": "world", "profile": "{profile}", "distortion": 2}}}}"#),
                 0.02,

@@ -1,19 +1,21 @@
-//! Wood: rings about the pattern's y axis, where the heart of the trunk is, wavy and with fibres along it.
+//! Wood: wavy growth rings around the pattern's y axis, with fibers along it.
 //!
 //! ```json
-//! {"wood": {"space": "local", "scale": 8, "rotate_degrees": [0, 0, 80], "light": "#c08040", "dark": "#603010"}}
+//! {"wood": {"space": "local", "scale": 8, "rotate_degrees": [0, 0, 80],
+//! "light": "#c08040", "dark": "#603010"}}
 //! ```
 //!
-//! Within each ring early wood darkens slowly towards late wood, and the next ring starts abruptly (Peachey, Solid Texturing
-//! of Complex Surfaces, 1985, has rings about an axis; the profile and the fibres are ours).
+//! Each ring darkens slowly from early wood to late wood, and the next ring starts abruptly.
+//! Peachey (Solid Texturing of Complex Surfaces, 1985) has rings around an axis; the profile and
+//! the fibers are our own.
 
 use super::CompiledTexture;
-use super::compiled::Pair;
-use super::lattice::{kept, noise, smoothstep};
-use super::mapping::{Map, Place};
+use super::compiled::ColorBlend;
+use super::lattice::{filter_amplitude, noise, smoothstep};
+use super::mapping::{CompiledMapping, PatternPoint};
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
-    check,
+    Input, InvalidTexture, Mapping, Octaves, SharedTexture, Space, Texture, TextureError, TextureLookup,
+    TextureResolver, TextureTable, check,
 };
 use juggler_math::hash::combine;
 use juggler_math::{Rgb, Vec3};
@@ -21,30 +23,31 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Share of a ring that early wood takes.
-const EARLY: f32 = 0.8;
-/// Fibres in a ring's width, and how many times as long as thick they are.
-const FIBRES: f32 = 12.0;
-const SLENDER: f32 = 30.0;
+/// Share of a ring that is early wood.
+const EARLY_WOOD_SHARE: f32 = 0.8;
+/// Number of fibers in the width of a ring.
+const FIBERS_PER_RING: f32 = 12.0;
+/// Length of fibers over their thickness.
+const FIBER_ASPECT: f32 = 30.0;
 
-/// Wood: rings about the pattern's y axis, one a unit.
+/// Wood: wavy growth rings around the pattern's y axis, one per unit, with fibers along it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Wood {
-    /// Colour of early wood.
+    /// Color of early wood.
     pub light: Input<Rgb>,
-    /// Colour of late wood, at the end of each ring.
+    /// Color of late wood, at the end of each ring.
     pub dark: Input<Rgb>,
-    /// How far rings are from being round, in widths of a ring.
+    /// Amplitude of the rings' distortion, in widths of a ring. 0 makes them circular.
     #[schemars(range(min = 0, max = 1000))]
     pub distortion: f32,
-    /// How much fibres show.
+    /// Strength of the fibers. 0 hides them.
     #[schemars(range(min = 0, max = 1))]
     pub grain: f32,
-    /// The noise that bends the rings.
+    /// Noise that distorts the rings.
     #[serde(flatten)]
     pub octaves: Octaves,
-    /// Where the pattern lies.
+    /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]
     pub mapping: Mapping,
 }
@@ -72,34 +75,39 @@ impl Texture for Wood {
         self.mapping.check()
     }
 
-    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let colors = Pair { low: resolver.color("light", &self.light)?, high: resolver.color("dark", &self.dark)? };
+    fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
+        let colors =
+            ColorBlend { low: resolver.color("light", &self.light)?, high: resolver.color("dark", &self.dark)? };
         let Self { distortion, grain, octaves, .. } = *self;
         Ok(Arc::new(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile(Space::Local) }))
     }
 }
 
-/// A [`Wood`] with its names looked up.
+/// A [`Wood`] with its names resolved.
 #[derive(Clone, Debug)]
 pub struct CompiledWood {
-    colors: Pair,
+    colors: ColorBlend,
     distortion: f32,
     grain: f32,
     octaves: Octaves,
-    map: Map,
+    map: CompiledMapping,
 }
 
-/// How dark a ring is at a share of its width; 1/2 in the mean.
+/// Darkness of a ring at a fraction of its width, 0 to 1 with mean 1/2.
 fn ring(at: f32) -> f32 {
-    if at < EARLY { smoothstep(0.0, EARLY, at) } else { 1.0 - smoothstep(EARLY, 1.0, at) }
+    if at < EARLY_WOOD_SHARE {
+        smoothstep(0.0, EARLY_WOOD_SHARE, at)
+    } else {
+        1.0 - smoothstep(EARLY_WOOD_SHARE, 1.0, at)
+    }
 }
 
 impl CompiledWood {
-    fn fibre(&self, place: Place) -> f32 {
-        let kept = kept(place.width * FIBRES);
-        let p = place.point * Vec3::new(FIBRES, FIBRES / SLENDER, FIBRES);
-        if self.grain > 0.0 && kept > 0.0 && p.is_finite() {
-            self.grain * kept * noise(p, combine(self.octaves.seed, 77))
+    fn fiber(&self, pattern: PatternPoint) -> f32 {
+        let filter = filter_amplitude(pattern.width * FIBERS_PER_RING);
+        let p = pattern.point * Vec3::new(FIBERS_PER_RING, FIBERS_PER_RING / FIBER_ASPECT, FIBERS_PER_RING);
+        if self.grain > 0.0 && filter > 0.0 && p.is_finite() {
+            self.grain * filter * noise(p, combine(self.octaves.seed, 77))
         } else {
             0.0
         }
@@ -107,22 +115,22 @@ impl CompiledWood {
 }
 
 impl CompiledTexture for CompiledWood {
-    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let p = place.point;
-        let bent = (p.x * p.x + p.z * p.z).sqrt() + self.distortion * self.octaves.signed(place);
+    fn eval(&self, textures: &TextureTable, at: &TextureLookup) -> Rgb {
+        let pattern = self.map.pattern_point(at);
+        let p = pattern.point;
+        let bent = (p.x * p.x + p.z * p.z).sqrt() + self.distortion * self.octaves.fbm(pattern);
         let bent = if bent.is_finite() { bent } else { 0.0 };
-        let rings = 0.5 + (ring(bent - bent.floor()) - 0.5) * kept(place.width);
-        let share = rings + self.fibre(place);
-        self.colors.at(share.clamp(0.0, 1.0), textures, at)
+        let rings = 0.5 + (ring(bent - bent.floor()) - 0.5) * filter_amplitude(pattern.width);
+        let share = rings + self.fiber(pattern);
+        self.colors.eval(share.clamp(0.0, 1.0), textures, at)
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Wood {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let mapping = Mapping::of(Space::Local);
+        let mapping = Mapping::in_space(Space::Local);
         vec![Self::default(), Self { mapping, distortion: 1000.0, grain: 1.0, ..Self::default() }]
     }
 }
@@ -146,13 +154,13 @@ mod tests {
     }
 
     #[test]
-    fn fibres_run_along_y() {
+    fn fibers_run_along_y() {
         let read = numbers(r#"{"wood": {"space": "world", "distortion": 0, "grain": 0.5, "light": 0, "dark": 1}}"#);
         let change = |step: Vec3| -> f32 {
             let p = |i: i32| Vec3::new(0.3, 0.1, 0.2) + Vec3::Y * i as f32 * 0.11;
             (0..200).map(|i| (read(p(i) + step, 0.0) - read(p(i), 0.0)).abs()).sum()
         };
-        // Along z the ring itself changes little beside its fibres.
+        // Along z, the ring itself changes little compared with its fibers.
         assert!(change(Vec3::Z * 0.04) > 4.0 * change(Vec3::Y * 0.04));
     }
 

@@ -1,15 +1,15 @@
-//! The window: what it holds, and one pass of it.
+//! The window: its state, and one pass over it.
 
-use crate::Options;
+use crate::ViewerOptions;
 use crate::chooser::Chooser;
-use crate::keys::{self, Command, Held};
-use crate::lens::Lens;
+use crate::frame_rate::FrameRate;
+use crate::keys::{self, Command, HeldKeys};
 use crate::overlay;
-use crate::panel::{Around, Panel, next_name};
-use crate::picture::{Placement, Screen};
-use crate::pilot::Pilot;
+use crate::panel::{Panel, PanelContext, next_name};
+use crate::picture::{FrameTexture, Placement};
+use crate::pixel_extent::PixelExtent;
+use crate::pointer::PointerInput;
 use crate::probe::{self, Probing};
-use crate::rate::Rate;
 use crate::saving::Saving;
 use crate::title::title;
 use crate::{help, region, style, timeline};
@@ -18,67 +18,67 @@ use juggler_session::{Channel, Edit, Session, Setting, Stage, Status};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How often the camera is moved while a key is held.
+/// Time between two steps of the camera while a key is held.
 const STEP: Duration = Duration::from_millis(15);
-/// How often it is looked whether a notice is to go away.
+/// Time between two checks whether a notice has expired.
 const NOTICE: Duration = Duration::from_millis(500);
-/// What the exposure keys add, stops.
+/// Exposure step of the keys, in photographic stops.
 const STOPS: f32 = 0.25;
 
-/// Everything in the window.
+/// State of the window.
 pub struct Viewer {
     session: Session,
-    screen: Screen,
-    pilot: Pilot,
-    held: Held,
+    texture: FrameTexture,
+    pointer: PointerInput,
+    held: HeldKeys,
     panel: Panel,
     shows_panel: bool,
     chooser: Chooser,
     shows_help: bool,
     probing: Probing,
     saving: Saving,
-    rate: Rate,
+    rate: FrameRate,
     title: String,
-    /// Which of the scene's cameras was asked for last.
+    /// Index of the scene's camera that was selected last.
     camera: usize,
-    /// Where the picture may lie, and the pixel under the pointer.
+    /// Area of the window that is left for the image, then the pixel under the pointer.
     area: Rect,
-    under: Option<[u32; 2]>,
+    hovered_pixel: Option<[u32; 2]>,
 }
 
 impl Viewer {
-    /// The window of a session; it is drawn anew whenever there is news.
-    pub fn new(session: Session, options: Options, context: &eframe::CreationContext<'_>) -> Self {
+    /// Creates the window of a session, which is repainted on every new frame or status.
+    pub fn new(session: Session, options: ViewerOptions, context: &eframe::CreationContext<'_>) -> Self {
         style::apply(&context.egui_ctx);
         let context = context.egui_ctx.clone();
-        session.on_news(move || context.request_repaint());
+        session.on_update(move || context.request_repaint());
         let mut chooser = Chooser::default();
         chooser.set_open(options.choose);
         Self {
             session,
-            screen: Screen::default(),
-            pilot: Pilot::default(),
-            held: Held::default(),
+            texture: FrameTexture::default(),
+            pointer: PointerInput::default(),
+            held: HeldKeys::default(),
             panel: Panel::default(),
             shows_panel: true,
             chooser,
             shows_help: false,
             probing: Probing::default(),
             saving: Saving::default(),
-            rate: Rate::default(),
+            rate: FrameRate::default(),
             title: String::new(),
             camera: 0,
             area: Rect::NOTHING,
-            under: None,
+            hovered_pixel: None,
         }
     }
 
-    /// Whether something lies over the whole picture.
+    /// Returns whether a dialog covers the image.
     fn is_covered(&self) -> bool {
         self.chooser.is_open() || self.shows_help
     }
 
-    /// Keys; none while something is written in a field.
+    /// Reads the keys, unless a text field has the focus.
     fn keys(&mut self, context: &Context, status: &Status, edits: &mut Vec<Edit>) -> Vec<Command> {
         if context.text_edit_focused() {
             return Vec::new();
@@ -90,21 +90,21 @@ impl Viewer {
             return commands;
         }
         let (held, fast, seconds) =
-            context.input(|input| (self.held.look(input), input.modifiers.shift, input.stable_dt));
+            context.input(|input| (self.held.update(input), input.modifiers.shift, input.stable_dt));
         if !held.is_empty() {
-            edits.extend(self.pilot.controls.keys(&held, fast, seconds, Lens::of(status).reach));
+            edits.extend(self.pointer.controls.keys(&held, fast, seconds, PixelExtent::from_status(status).reach));
             context.request_repaint_after(STEP);
         }
         commands
     }
 
-    fn obey(&mut self, context: &Context, command: Command, status: &Status, edits: &mut Vec<Edit>) {
+    fn execute(&mut self, context: &Context, command: Command, status: &Status, edits: &mut Vec<Edit>) {
         match command {
-            Command::Faster => self.pilot.controls.change_speed(1),
-            Command::Slower => self.pilot.controls.change_speed(-1),
-            Command::OtherMode => self.pilot.controls.mode = self.pilot.controls.mode.other(),
-            Command::Probe => self.probing = self.probing.next(self.under),
-            Command::Magnify => self.pilot.view.toggle(),
+            Command::Faster => self.pointer.controls.change_speed(1),
+            Command::Slower => self.pointer.controls.change_speed(-1),
+            Command::OtherMode => self.pointer.controls.mode = self.pointer.controls.mode.other(),
+            Command::Probe => self.probing = self.probing.next(self.hovered_pixel),
+            Command::Magnify => self.pointer.view.toggle(),
             Command::Panel => self.shows_panel = !self.shows_panel,
             Command::Scenes => self.chooser.set_open(!self.chooser.is_open()),
             Command::Help => self.shows_help = !self.shows_help,
@@ -118,7 +118,7 @@ impl Viewer {
             }
             Command::Close => {
                 (self.shows_help, self.probing) = (false, Probing::Off);
-                self.saving.forget();
+                self.saving.dismiss();
                 self.chooser.set_open(false);
             }
             Command::NextCamera => {
@@ -126,47 +126,47 @@ impl Viewer {
                 edits.extend(status.cameras.get(self.camera).cloned().map(Edit::Camera));
             }
             Command::Quit => context.send_viewport_cmd(ViewportCommand::Close),
-            other => edits.extend(asked(other, status)),
+            other => edits.extend(edit_of(other, status)),
         }
     }
 
-    /// The picture with what is drawn on it.
+    /// Shows the image with its overlays.
     fn picture(&mut self, ui: &mut Ui, status: &Status, edits: &mut Vec<Edit>) {
         let response = ui.allocate_rect(ui.max_rect(), Sense::click_and_drag());
         self.area = response.rect;
         if !self.is_covered() {
-            hold_keyboard(ui, &response);
+            take_focus(ui, &response);
         }
         let frame = self.session.frame();
         let size = frame.as_ref().map_or(status.size, |frame| frame.size);
-        let placement = self.pilot.view.place(response.rect, size, ui.ctx().pixels_per_point());
+        let placement = self.pointer.view.place(response.rect, size, ui.ctx().pixels_per_point());
         if let Some(frame) = frame {
             let still = status.stage != Stage::Moving;
-            if self.screen.take(ui.ctx(), &frame, placement.scale, still) {
+            if self.texture.upload(ui.ctx(), &frame, placement.scale, still) {
                 self.rate.count(ui.input(|input| input.time));
             }
         }
-        self.under = response.hover_pos().and_then(|at| placement.pixel(at));
-        self.pilot.steer(ui, &response, &placement, status, edits);
+        self.hovered_pixel = response.hover_pos().and_then(|at| placement.pixel(at));
+        self.pointer.handle(ui, &response, &placement, status, edits);
         self.draw(ui, &placement, status);
     }
 
     fn draw(&self, ui: &Ui, placement: &Placement, status: &Status) {
         let painter = ui.painter_at(self.area);
-        self.screen.draw(&painter, placement);
+        self.texture.draw(&painter, placement);
         if let Some(part) = &status.region {
             region::draw(&painter, placement, part, 1.0);
         }
-        region::draw_draft(&painter, placement, self.pilot.draft, ui.input(|input| input.pointer.latest_pos()));
-        if let Some(pixel) = self.probing.pixel(self.under) {
+        region::draw_selection(&painter, placement, self.pointer.drag, ui.input(|input| input.pointer.latest_pos()));
+        if let Some(pixel) = self.probing.pixel(self.hovered_pixel) {
             probe::show(ui, &painter, &self.session, placement, pixel);
         }
     }
 
-    /// What lies over the picture.
+    /// Shows dialogs and messages over the image.
     fn overlays(&mut self, context: &Context, status: &Status, edits: &mut Vec<Edit>) {
         if let Some(text) = &status.error {
-            overlay::mistake(context, self.area, text);
+            overlay::error(context, self.area, text);
         } else if !self.shows_panel {
             overlay::line(context, self.area, status);
         }
@@ -187,13 +187,13 @@ impl Viewer {
         if self.shows_panel {
             let scale = ui.ctx().pixels_per_point();
             let window = [self.area.width(), self.area.height()].map(|edge| (edge * scale).max(16.0) as u32);
-            let (controls, saving) = (&mut self.pilot.controls, &mut self.saving);
-            self.panel.show(ui, &mut Around { status, controls, saving, window, edits, commands });
+            let (controls, saving) = (&mut self.pointer.controls, &mut self.saving);
+            self.panel.show(ui, &mut PanelContext { status, controls, saving, window, edits, commands });
         }
         timeline::show(ui, status, edits);
     }
 
-    fn name_window(&mut self, context: &Context, status: &Status) {
+    fn update_title(&mut self, context: &Context, status: &Status) {
         let title = title(status, self.rate.per_second());
         if title != self.title {
             context.send_viewport_cmd(ViewportCommand::Title(title.clone()));
@@ -206,7 +206,7 @@ impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         let status: Arc<Status> = self.session.status();
-        self.saving.look(context.input(|input| input.time));
+        self.saving.poll(context.input(|input| input.time));
         let mut edits = Vec::new();
         let mut commands = self.keys(&context, &status, &mut edits);
         self.panels(ui, &status, &mut edits, &mut commands);
@@ -215,16 +215,16 @@ impl eframe::App for Viewer {
             .show(ui, |ui| self.picture(ui, &status, &mut edits));
         self.overlays(&context, &status, &mut edits);
         if !commands.is_empty() {
-            // What they change is drawn in the next pass.
+            // The next pass shows the effect of the commands.
             context.request_repaint();
         }
         for command in commands {
-            self.obey(&context, command, &status, &mut edits);
+            self.execute(&context, command, &status, &mut edits);
         }
         for edit in edits {
             self.session.edit(edit);
         }
-        self.name_window(&context, &status);
+        self.update_title(&context, &status);
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
@@ -232,8 +232,8 @@ impl eframe::App for Viewer {
     }
 }
 
-/// Tab and arrows belong to the picture unless a field has the keyboard.
-fn hold_keyboard(ui: &Ui, picture: &Response) {
+/// Gives Tab and the arrow keys to the image unless a field has the focus.
+fn take_focus(ui: &Ui, picture: &Response) {
     let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
     ui.memory_mut(|memory| {
         if memory.focused().is_none() {
@@ -243,8 +243,8 @@ fn hold_keyboard(ui: &Ui, picture: &Response) {
     });
 }
 
-/// What the session is asked for by a command.
-fn asked(command: Command, status: &Status) -> Option<Edit> {
+/// Returns the edit of a command, if it has one.
+fn edit_of(command: Command, status: &Status) -> Option<Edit> {
     Some(match command {
         Command::FrameAll => Edit::Frame(None),
         Command::Bookmark => Edit::Bookmark(next_name(&status.cameras)),

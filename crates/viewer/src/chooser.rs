@@ -1,4 +1,4 @@
-//! The choice of scenes: the built-in ones as pictures, and a field for files.
+//! Scene chooser: thumbnails of the built-in scenes, and a text field for files.
 
 use crate::style;
 use crate::thumbnails::Thumbnails;
@@ -8,12 +8,12 @@ use eframe::egui::{
 };
 use juggler::scene::{BuiltIn, built_in_scenes};
 
-/// Width and height of a card's picture.
+/// Size of a card's thumbnail, in points.
 const CARD: Vec2 = vec2(208.0, 117.0);
-/// Room for its name.
+/// Height of a card's caption, in points.
 const NAME: f32 = 26.0;
 
-/// The choice of scenes.
+/// State of the scene chooser.
 #[derive(Default)]
 pub struct Chooser {
     open: bool,
@@ -23,18 +23,18 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// Whether it lies over the picture.
+    /// Returns whether the chooser is open.
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// Opens or closes it.
+    /// Opens or closes the chooser.
     pub fn set_open(&mut self, open: bool) {
         (self.open, self.just_opened) = (open, open);
         self.text.clear();
     }
 
-    /// Shows it when it is open; the scene that was chosen.
+    /// Shows the chooser if it is open, and returns the chosen scene.
     pub fn show(&mut self, context: &Context, current: &str) -> Option<String> {
         if !self.open {
             return None;
@@ -60,7 +60,7 @@ impl Chooser {
         modal.inner
     }
 
-    /// The field; a path, or the first scene that fits, when Enter was pressed in it.
+    /// Shows the text field. Enter returns the path in it, or the first matching scene.
     fn field(&mut self, ui: &mut Ui) -> Option<String> {
         let hint = "name of a scene, or path of a file";
         let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(f32::INFINITY));
@@ -74,8 +74,8 @@ impl Chooser {
     fn cards(&mut self, ui: &mut Ui, columns: usize, current: &str) -> Option<String> {
         let mut clicked = None;
         ui.spacing_mut().item_spacing = vec2(10.0, 10.0);
-        let fitting: Vec<&BuiltIn> = fitting(&self.text).collect();
-        for row in fitting.chunks(columns) {
+        let matching: Vec<&BuiltIn> = matching(&self.text).collect();
+        for row in matching.chunks(columns) {
             ui.horizontal(|ui| {
                 for scene in row {
                     if self.card(ui, scene, scene.name == current) {
@@ -87,14 +87,14 @@ impl Chooser {
         clicked
     }
 
-    /// One scene; whether it was clicked.
+    /// Shows one scene, and returns whether it was clicked.
     fn card(&mut self, ui: &mut Ui, scene: &BuiltIn, current: bool) -> bool {
         let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, NAME), Sense::click());
         if ui.is_rect_visible(rect) {
             let picture = Rect::from_min_size(rect.min, CARD);
             let painter = ui.painter();
             painter.rect_filled(picture, 4, style::BACKGROUND);
-            if let Some(texture) = self.thumbnails.of(scene.name, ui.ctx()) {
+            if let Some(texture) = self.thumbnails.get(scene.name, ui.ctx()) {
                 painter.image(texture.id(), picture, cover(texture.size_vec2()), Color32::WHITE);
             }
             let color = if response.hovered() || current { style::ACCENT } else { style::EDGE };
@@ -107,13 +107,13 @@ impl Chooser {
     }
 }
 
-/// The scenes whose names have all the words in them.
-fn fitting(text: &str) -> impl Iterator<Item = &'static BuiltIn> {
+/// Returns the scenes whose names contain all words.
+fn matching(text: &str) -> impl Iterator<Item = &'static BuiltIn> {
     let words: Vec<String> = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
     built_in_scenes().iter().filter(move |scene| words.iter().all(|word| scene.name.contains(word.as_str())))
 }
 
-/// What was meant by a text: a file, or the first scene that fits.
+/// Returns the scene that a text selects: a file, or the first matching built-in scene.
 fn chosen(text: &str) -> Option<String> {
     let text = text.trim();
     if text.is_empty() {
@@ -121,11 +121,11 @@ fn chosen(text: &str) -> Option<String> {
     }
     let is_path = std::path::Path::new(text).is_file() || text.contains(['/', '\\', '.']);
     let exact = built_in_scenes().iter().find(|scene| scene.name == text);
-    let first = || exact.or_else(|| fitting(text).next()).map(|scene| scene.name.to_owned());
+    let first = || exact.or_else(|| matching(text).next()).map(|scene| scene.name.to_owned());
     if is_path { Some(text.to_owned()) } else { first().or_else(|| Some(text.to_owned())) }
 }
 
-/// The middle of a picture in the shape of a card.
+/// Returns the central part of an image with the aspect ratio of a card, in texture coordinates.
 fn cover(size: Vec2) -> Rect {
     let scale = (CARD.x / size.x).max(CARD.y / size.y);
     let share = vec2(CARD.x / (size.x * scale), CARD.y / (size.y * scale));
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn what_is_typed_finds_scenes() {
-        let names = |text| fitting(text).map(|scene| scene.name).collect::<Vec<_>>();
+        let names = |text| matching(text).map(|scene| scene.name).collect::<Vec<_>>();
         assert_eq!(names("").len(), built_in_scenes().len());
         assert_eq!(names("Blitz pool"), ["scalablitz-pool"]);
         assert_eq!(chosen("pool"), Some("scalablitz-pool".into()));

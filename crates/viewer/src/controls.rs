@@ -1,40 +1,40 @@
-//! From what is pressed and dragged to what the session is asked for. No window in here.
+//! Conversion of key presses and drags to edits, independent of the window.
 
 use crate::keys::Motion;
-use crate::lens::Lens;
+use crate::pixel_extent::PixelExtent;
 use juggler_session::{Edit, Fly, Orbit};
 
-/// How much of its reach the camera flies in a second at speed 1.
+/// Flight distance in one second at speed 1, as a fraction of [`PixelExtent::reach`].
 const REACH_PER_SECOND: f32 = 0.25;
-/// How fast keys turn it.
+/// Rotation speed of the keys, in degrees per second.
 const DEGREES_PER_SECOND: f32 = 60.0;
-/// How fast keys zoom: the logarithm of the factor of a second.
+/// Zoom speed of the keys: logarithm of the factor per second.
 const ZOOM_PER_SECOND: f32 = 1.0;
-/// What Shift does to all three.
+/// Factor of all three speeds while Shift is held.
 const FAST: f32 = 4.0;
-/// What a press of the speed keys does.
+/// Factor of one press of a speed key.
 const SPEED_STEP: f32 = 1.5;
-/// How far a drag over a point of the screen turns the scene, degrees.
+/// Orbit angle of a drag, in degrees per point.
 const ORBIT_DEGREES: f32 = 0.35;
-/// How far a drag turns a camera whose pixels span no angle.
+/// Rotation of an orthographic camera by a drag, in degrees per point.
 const PARALLEL_DEGREES: f32 = 0.15;
-/// Points of the wheel for a factor of e.
+/// Scroll distance of a zoom by the factor e, in points.
 const WHEEL_POINTS: f32 = 400.0;
-/// The longest step of time that is believed: after a pause, nothing jumps.
+/// Maximum time step, in seconds, which avoids jumps after a pause.
 const LONGEST_STEP: f32 = 0.1;
 
-/// What a drag does.
+/// Effect of a drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// Turns the camera where it stands.
+    /// Rotates the camera about its own position.
     #[default]
     Fly,
-    /// Turns the scene about the point of interest.
+    /// Rotates the camera about the point of interest.
     Orbit,
 }
 
 impl Mode {
-    /// The other one.
+    /// Returns the other mode.
     pub fn other(self) -> Self {
         match self {
             Self::Fly => Self::Orbit,
@@ -43,12 +43,12 @@ impl Mode {
     }
 }
 
-/// How the camera is steered.
+/// Settings of camera navigation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controls {
-    /// What a drag does.
+    /// Effect of a drag.
     pub mode: Mode,
-    /// Speed of the keys, 1 being a quarter of the lens's reach a second.
+    /// Speed of the keys; at 1, the camera flies a quarter of [`PixelExtent::reach`] per second.
     pub speed: f32,
 }
 
@@ -59,15 +59,15 @@ impl Default for Controls {
 }
 
 impl Controls {
-    /// Speeds that can be chosen.
+    /// Range of `speed`.
     pub const SPEEDS: std::ops::RangeInclusive<f32> = 0.01..=100.0;
 
-    /// So many steps faster, or slower.
+    /// Increases the speed by some steps; negative steps decrease it.
     pub fn change_speed(&mut self, steps: i32) {
         self.speed = (self.speed * SPEED_STEP.powi(steps)).clamp(*Self::SPEEDS.start(), *Self::SPEEDS.end());
     }
 
-    /// Keys that are held for some seconds.
+    /// Returns the edits of keys that were held for some seconds.
     pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, reach: f32) -> Vec<Edit> {
         let seconds = seconds.min(LONGEST_STEP) * if fast { FAST } else { 1.0 };
         let mut zoom = 0.0;
@@ -95,15 +95,15 @@ impl Controls {
         flown.into_iter().chain((zoom != 0.0).then(|| Edit::Zoom(zoom.exp()))).collect()
     }
 
-    /// A drag with the main button over so many points of the screen, each of which shows `pixels` of the picture: what
-    /// was under the pointer stays there.
-    pub fn drag(&self, [x, y]: [f32; 2], pixels: f32, lens: &Lens) -> Option<Edit> {
+    /// Returns the edit of a drag with the primary button over some points, each of which spans
+    /// `pixels` image pixels. In fly mode, the content under the pointer follows it.
+    pub fn drag(&self, [x, y]: [f32; 2], pixels: f32, extent: &PixelExtent) -> Option<Edit> {
         if x == 0.0 && y == 0.0 {
             return None;
         }
         Some(match self.mode {
             Mode::Fly => {
-                let angle = lens.degrees_per_pixel * pixels;
+                let angle = extent.degrees_per_pixel * pixels;
                 let degrees = if angle > 0.0 { angle } else { PARALLEL_DEGREES };
                 Edit::Fly(Fly { yaw_degrees: -x * degrees, pitch_degrees: y * degrees, ..Fly::default() })
             }
@@ -114,13 +114,14 @@ impl Controls {
         })
     }
 
-    /// A drag with Shift or the middle button: the point of interest stays under the pointer.
-    pub fn slide(&self, [x, y]: [f32; 2], pixels: f32, lens: &Lens) -> Option<Edit> {
-        let units = lens.units_per_pixel * pixels;
+    /// Returns the edit of a drag with Shift or the middle button: the point of interest follows
+    /// the pointer.
+    pub fn pan(&self, [x, y]: [f32; 2], pixels: f32, extent: &PixelExtent) -> Option<Edit> {
+        let units = extent.units_per_pixel * pixels;
         (x != 0.0 || y != 0.0).then(|| Edit::Fly(Fly { right: -x * units, up: y * units, ..Fly::default() }))
     }
 
-    /// The wheel, turned by so many points, away from the hand being positive.
+    /// Returns the edit of a scroll by some points; positive values zoom in.
     pub fn wheel(&self, points: f32) -> Option<Edit> {
         let factor = (points / WHEEL_POINTS).exp().clamp(0.1, 10.0);
         (points != 0.0).then(|| match self.mode {
@@ -134,7 +135,7 @@ impl Controls {
 mod tests {
     use super::*;
 
-    const LENS: Lens = Lens { degrees_per_pixel: 0.1, units_per_pixel: 0.02, reach: 10.0 };
+    const EXTENT: PixelExtent = PixelExtent { degrees_per_pixel: 0.1, units_per_pixel: 0.02, reach: 10.0 };
 
     fn flown(edit: Option<Edit>) -> Fly {
         match edit {
@@ -184,19 +185,20 @@ mod tests {
 
     #[test]
     fn what_is_under_the_pointer_stays_there() {
-        let fly = flown(Controls::default().drag([10.0, 4.0], 2.0, &LENS));
+        let fly = flown(Controls::default().drag([10.0, 4.0], 2.0, &EXTENT));
         assert!((fly.yaw_degrees + 2.0).abs() < 1e-4 && (fly.pitch_degrees - 0.8).abs() < 1e-4, "{fly:?}");
-        let slide = flown(Controls::default().slide([10.0, 4.0], 2.0, &LENS));
-        assert!((slide.right + 0.4).abs() < 1e-5 && (slide.up - 0.16).abs() < 1e-5, "{slide:?}");
-        assert_eq!(Controls::default().drag([0.0, 0.0], 2.0, &LENS), None);
-        let parallel = flown(Controls::default().drag([1.0, 0.0], 1.0, &Lens { degrees_per_pixel: 0.0, ..LENS }));
+        let pan = flown(Controls::default().pan([10.0, 4.0], 2.0, &EXTENT));
+        assert!((pan.right + 0.4).abs() < 1e-5 && (pan.up - 0.16).abs() < 1e-5, "{pan:?}");
+        assert_eq!(Controls::default().drag([0.0, 0.0], 2.0, &EXTENT), None);
+        let parallel =
+            flown(Controls::default().drag([1.0, 0.0], 1.0, &PixelExtent { degrees_per_pixel: 0.0, ..EXTENT }));
         assert!(parallel.yaw_degrees < 0.0);
     }
 
     #[test]
     fn orbiting_turns_the_scene() {
         let controls = Controls { mode: Mode::Fly.other(), ..Controls::default() };
-        let Some(Edit::Orbit(orbit)) = controls.drag([20.0, 10.0], 2.0, &LENS) else { panic!("no orbit") };
+        let Some(Edit::Orbit(orbit)) = controls.drag([20.0, 10.0], 2.0, &EXTENT) else { panic!("no orbit") };
         assert!(orbit.yaw_degrees > 0.0 && orbit.pitch_degrees > 0.0 && orbit.closer == 1.0);
         let Some(Edit::Orbit(closer)) = controls.wheel(40.0) else { panic!("no orbit") };
         assert!(closer.closer > 1.05 && closer.yaw_degrees == 0.0);

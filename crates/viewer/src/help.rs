@@ -1,10 +1,10 @@
-//! All keys and gestures over the picture, as the table has them.
+//! Help dialog with all keys and gestures of the table.
 
-use crate::keys::{Binding, GROUPS, Group, With};
+use crate::keys::{Binding, GROUPS, Group, Modifier};
 use crate::style;
 use eframe::egui::{self, Context, Grid, Id, Key, RichText, Ui};
 
-/// Shows them; whether they are to be closed.
+/// Shows the help, and returns whether to close it.
 pub fn show(context: &Context) -> bool {
     let modal = egui::Modal::new(Id::unique("help"))
         .frame(style::floating().fill(style::SURFACE).inner_margin(18))
@@ -23,9 +23,9 @@ fn groups(ui: &mut Ui, groups: &[Group]) {
     for group in groups {
         ui.label(RichText::new(group.name).color(style::ACCENT).size(15.0));
         Grid::new(group.name).num_columns(2).show(ui, |ui| {
-            for (keys, says) in rows(group) {
+            for (keys, help) in rows(group) {
                 ui.label(RichText::new(keys).monospace());
-                ui.label(RichText::new(says).color(style::QUIET));
+                ui.label(RichText::new(help).color(style::QUIET));
                 ui.end_row();
             }
         });
@@ -33,28 +33,28 @@ fn groups(ui: &mut Ui, groups: &[Group]) {
     }
 }
 
-/// What is to be pressed, and what it does; keys that follow each other and do the same share a row.
+/// Returns rows of keys and their effect; consecutive keys with the same effect share a row.
 fn rows(group: &Group) -> Vec<(String, &'static str)> {
     let mut rows: Vec<(String, &'static str)> =
-        group.gestures.iter().map(|(gesture, says)| ((*gesture).to_owned(), *says)).collect();
+        group.gestures.iter().map(|(gesture, help)| ((*gesture).to_owned(), *help)).collect();
     let gestures = rows.len();
     for binding in group.bindings {
         match rows.get_mut(gestures..).and_then(<[_]>::last_mut) {
-            Some((keys, says)) if *says == binding.says => *keys = format!("{keys}  {}", written(binding)),
-            _ => rows.push((written(binding), binding.says)),
+            Some((keys, help)) if *help == binding.help => *keys = format!("{keys}  {}", written(binding)),
+            _ => rows.push((written(binding), binding.help)),
         }
     }
     rows
 }
 
-/// `W ↑`, `Ctrl S`.
+/// Formats the keys of a binding: `W ↑`, `Ctrl S`.
 fn written(binding: &Binding) -> String {
     let keys: Vec<&str> = binding.keys.iter().map(|key| name(*key)).collect();
-    let control = if binding.with == With::Control { "Ctrl " } else { "" };
+    let control = if binding.modifier == Modifier::Control { "Ctrl " } else { "" };
     format!("{control}{}", keys.join(" "))
 }
 
-/// Arrows as the letters at hand have them.
+/// Returns the name of a key; arrows as characters of the font.
 fn name(key: Key) -> &'static str {
     match key {
         Key::ArrowUp => "↑",
@@ -73,18 +73,18 @@ mod tests {
     fn every_binding_is_there() {
         let all: Vec<(String, &str)> = GROUPS.iter().flat_map(rows).collect();
         for binding in GROUPS.iter().flat_map(|group| group.bindings) {
-            let row = all.iter().find(|(keys, says)| *says == binding.says && keys.contains(&written(binding)));
+            let row = all.iter().find(|(keys, help)| *help == binding.help && keys.contains(&written(binding)));
             assert!(row.is_some(), "{binding:?}");
         }
-        let yaw = all.iter().filter(|(_, says)| *says == "yaw").count();
+        let yaw = all.iter().filter(|(_, help)| *help == "yaw").count();
         assert_eq!(yaw, 1);
     }
 
     #[test]
     fn the_documentation_has_them_all() {
         let page = include_str!("../../../docs/viewer.md");
-        for (keys, says) in GROUPS.iter().flat_map(rows) {
-            let row = format!("| {keys} | {says} |");
+        for (keys, help) in GROUPS.iter().flat_map(rows) {
+            let row = format!("| {keys} | {help} |");
             assert!(page.contains(&row), "docs/viewer.md lacks the row\n{row}");
         }
     }

@@ -1,18 +1,18 @@
-//! Every key and every gesture in one table: the input acts by it, the help shows it.
+//! Table of all keys and gestures, used by the input and by the help.
 
 use eframe::egui::{Event, InputState, Key, Modifiers};
 use std::collections::HashSet;
 
-/// What keys do.
+/// Effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Goes on as long as the key is held.
+    /// Continuous motion while the key is held.
     Hold(Motion),
-    /// Happens once when the key goes down.
+    /// Single command when the key is pressed.
     Press(Command),
 }
 
-/// A motion of the camera along or about its own axes, or of its lens.
+/// Motion of the camera along or about its own axes, or zoom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     Forward,
@@ -31,7 +31,7 @@ pub enum Motion {
     Wider,
 }
 
-/// What happens once.
+/// Command that is executed once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     Faster,
@@ -61,57 +61,57 @@ pub enum Command {
     Quit,
 }
 
-/// Which of the modifiers has to be held. Motions and most keys do not ask.
+/// Modifiers that a binding requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum With {
-    /// Any but control.
+pub enum Modifier {
+    /// Any modifiers except Control.
     Any,
-    /// Control; on a Mac, command.
+    /// Control; Command on a Mac.
     Control,
 }
 
-/// One row of the table.
+/// Row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Binding {
-    /// Any of these keys.
+    /// Alternative keys.
     pub keys: &'static [Key],
-    /// Together with it.
-    pub with: With,
-    /// What it does.
+    /// Required modifiers.
+    pub modifier: Modifier,
+    /// Effect of the keys.
     pub action: Action,
-    /// What the help says; rows with the same words in a row are shown as one.
-    pub says: &'static str,
+    /// Help text; consecutive rows with the same text are merged.
+    pub help: &'static str,
 }
 
-/// A heading of the help with its rows.
+/// Section of the help.
 pub struct Group {
-    /// The heading.
+    /// Heading.
     pub name: &'static str,
-    /// Things to do with the mouse, and what they do.
+    /// Mouse gestures with their effects.
     pub gestures: &'static [(&'static str, &'static str)],
-    /// Keys.
+    /// Key bindings.
     pub bindings: &'static [Binding],
 }
 
-/// The key that turns a drag into the choice of a region.
+/// Key that turns a drag into the selection of a region.
 pub const REGION: Key = Key::R;
 
-/// What the digits are for.
+/// Help text of the digit keys.
 const CHANNELS: &str = "what is shown: the picture, albedo, normals ...";
 
-const fn hold(keys: &'static [Key], motion: Motion, says: &'static str) -> Binding {
-    Binding { keys, with: With::Any, action: Action::Hold(motion), says }
+const fn hold(keys: &'static [Key], motion: Motion, help: &'static str) -> Binding {
+    Binding { keys, modifier: Modifier::Any, action: Action::Hold(motion), help }
 }
 
-const fn press(keys: &'static [Key], command: Command, says: &'static str) -> Binding {
-    Binding { keys, with: With::Any, action: Action::Press(command), says }
+const fn press(keys: &'static [Key], command: Command, help: &'static str) -> Binding {
+    Binding { keys, modifier: Modifier::Any, action: Action::Press(command), help }
 }
 
-const fn control(keys: &'static [Key], command: Command, says: &'static str) -> Binding {
-    Binding { keys, with: With::Control, action: Action::Press(command), says }
+const fn control(keys: &'static [Key], command: Command, help: &'static str) -> Binding {
+    Binding { keys, modifier: Modifier::Control, action: Action::Press(command), help }
 }
 
-/// The table.
+/// All sections of the table.
 pub const GROUPS: &[Group] = &[
     Group {
         name: "Camera",
@@ -141,15 +141,15 @@ pub const GROUPS: &[Group] = &[
             press(&[Key::Plus, Key::Equals], Command::Faster, "speed"),
             press(&[Key::Minus], Command::Slower, "speed"),
             press(&[Key::M], Command::OtherMode, "fly or orbit"),
-            press(&[Key::F], Command::FrameAll, "everything into view"),
+            press(&[Key::F], Command::FrameAll, "bring everything into view"),
             press(&[Key::V], Command::NextCamera, "next camera of the scene"),
-            press(&[Key::B], Command::Bookmark, "keep this camera"),
+            press(&[Key::B], Command::Bookmark, "bookmark this camera"),
         ],
     },
     Group {
         name: "Picture",
         gestures: &[
-            ("R drag", "refine only this part"),
+            ("R drag", "refine only this region"),
             ("Ctrl wheel", "magnify the picture"),
             ("right drag", "shift the magnified picture"),
         ],
@@ -175,9 +175,9 @@ pub const GROUPS: &[Group] = &[
         name: "Time",
         gestures: &[],
         bindings: &[
-            press(&[Key::Space], Command::Play, "play, stop"),
-            press(&[Key::Comma], Command::PreviousFrame, "frame before, after"),
-            press(&[Key::Period], Command::NextFrame, "frame before, after"),
+            press(&[Key::Space], Command::Play, "play or stop"),
+            press(&[Key::Comma], Command::PreviousFrame, "previous, next frame"),
+            press(&[Key::Period], Command::NextFrame, "previous, next frame"),
         ],
     },
     Group {
@@ -190,31 +190,31 @@ pub const GROUPS: &[Group] = &[
             press(&[Key::F11], Command::FullScreen, "full screen"),
             press(&[Key::F5], Command::Reload, "read the scene again"),
             press(&[Key::Home], Command::Reset, "undo all changes"),
-            press(&[Key::Escape], Command::Close, "close what lies over the picture"),
+            press(&[Key::Escape], Command::Close, "close dialogs and overlays"),
             control(&[Key::Q], Command::Quit, "quit"),
         ],
     },
 ];
 
-/// All rows of the table.
+/// Returns all key bindings.
 fn bindings() -> impl Iterator<Item = &'static Binding> {
     GROUPS.iter().flat_map(|group| group.bindings)
 }
 
 impl Binding {
     fn fits(&self, key: Key, modifiers: Modifiers) -> bool {
-        self.keys.contains(&key) && modifiers.command == (self.with == With::Control)
+        self.keys.contains(&key) && modifiers.command == (self.modifier == Modifier::Control)
     }
 }
 
-/// Keys that are held, and what they move.
+/// Set of motion keys that are held.
 #[derive(Default)]
-pub struct Held(HashSet<Key>);
+pub struct HeldKeys(HashSet<Key>);
 
-impl Held {
-    /// The motions whose keys are held now. A press counts with the modifiers that it came with: those that are held by now
-    /// may be others, and Control with S must not move anything while its keys come up.
-    pub fn look(&mut self, input: &InputState) -> Vec<Motion> {
+impl HeldKeys {
+    /// Updates the held keys and returns their motions. A press counts with the modifiers of its
+    /// event: Control S must not move the camera when Control is released first.
+    pub fn update(&mut self, input: &InputState) -> Vec<Motion> {
         for event in &input.events {
             if let Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event {
                 self.0.remove(key);
@@ -226,7 +226,7 @@ impl Held {
     }
 }
 
-/// Rows of the table that move something.
+/// Returns all bindings of motions.
 fn motions() -> impl Iterator<Item = (&'static Binding, Motion)> {
     bindings().filter_map(|row| match row.action {
         Action::Hold(motion) => Some((row, motion)),
@@ -234,8 +234,7 @@ fn motions() -> impl Iterator<Item = (&'static Binding, Motion)> {
     })
 }
 
-/// What was asked for since the last look. A press counts with the modifiers that it came with, and once however long it
-/// lasts.
+/// Returns the commands of the pressed keys. A press counts once, with the modifiers of its event.
 pub fn pressed(input: &InputState) -> Vec<Command> {
     let presses = input.events.iter().filter_map(|event| match event {
         Event::Key { key, pressed: true, repeat: false, modifiers, .. } => Some((*key, *modifiers)),
@@ -257,21 +256,21 @@ mod tests {
     use super::*;
     use eframe::egui::RawInput;
 
-    /// What egui makes of keys that go down with some modifiers, which then are others.
+    /// Returns egui's input after key presses with some modifiers, which then change.
     fn input(keys: &[Key], modifiers: Modifiers, then: Modifiers) -> InputState {
         let context = eframe::egui::Context::default();
         let event = |key: &Key| Event::Key { key: *key, physical_key: None, pressed: true, repeat: false, modifiers };
         let events = keys.iter().map(event).chain([Event::ModifiersChanged(then)]).collect();
-        let mut seen = InputState::default();
+        let mut state = InputState::default();
         let mut output = context.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
-            seen = ui.input(Clone::clone);
+            state = ui.input(Clone::clone);
         });
         output.textures_delta.clear();
-        seen
+        state
     }
 
     fn held(input: &InputState) -> Vec<Motion> {
-        Held::default().look(input)
+        HeldKeys::default().update(input)
     }
 
     #[test]
@@ -279,10 +278,10 @@ mod tests {
         let mut seen = HashSet::new();
         for row in bindings() {
             for key in row.keys {
-                assert!(seen.insert((*key, row.with == With::Control)), "{key:?}");
+                assert!(seen.insert((*key, row.modifier == Modifier::Control)), "{key:?}");
                 assert_ne!(*key, REGION);
             }
-            assert!(!row.says.is_empty());
+            assert!(!row.help.is_empty());
         }
     }
 
@@ -291,9 +290,9 @@ mod tests {
         let both = input(&[Key::W, Key::ArrowLeft, Key::Tab], Modifiers::NONE, Modifiers::NONE);
         assert_eq!(held(&both), [Motion::Forward, Motion::Left]);
         assert_eq!(pressed(&both), [Command::Panel]);
-        let mut keys = Held::default();
-        keys.look(&both);
-        assert_eq!(keys.look(&InputState::default()), [], "they came up");
+        let mut keys = HeldKeys::default();
+        keys.update(&both);
+        assert_eq!(keys.update(&InputState::default()), [], "they came up");
     }
 
     #[test]

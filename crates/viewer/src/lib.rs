@@ -1,24 +1,26 @@
-//! A window to walk around in a scene: what `juggler view` opens. The picture, the scene and the camera belong to a
-//! [`Session`]; here are its window, keys and panels.
+//! Native viewer window, which `juggler view` opens. A [`Session`] owns image, scene and camera;
+//! this crate has the window, keys and panels.
 //!
-//! - `keys`: every key and gesture in one table, read by the input and by the help;
-//! - `controls`: what was pressed and dragged → [`Edit`](juggler_session::Edit)s, without a window;
-//! - `picture`: the frame on the screen, and which pixel the pointer is on;
-//! - `app` puts the rest together: `panel`, `timeline`, `chooser`, `probe`, `region`, `help`, `overlay`.
+//! - `keys`: table of all keys and gestures, used by the input and by the help;
+//! - `controls`: conversion of key presses and drags to [`Edit`](juggler_session::Edit)s,
+//!   independent of the window;
+//! - `picture`: the displayed frame, and the pixel under the pointer;
+//! - `app` combines the other modules: `panel`, `timeline`, `chooser`, `probe`, `region`, `help`,
+//!   `overlay`.
 
 mod app;
 mod chooser;
 mod controls;
+mod frame_rate;
 mod help;
 mod keys;
-mod lens;
 mod lights;
 mod overlay;
 mod panel;
 mod picture;
-mod pilot;
+mod pixel_extent;
+mod pointer;
 mod probe;
-mod rate;
 mod region;
 mod saving;
 mod style;
@@ -29,37 +31,37 @@ mod title;
 use eframe::egui;
 use juggler_session::Session;
 
-/// Width and height of the window in points when it opens.
+/// Initial size of the window, in points.
 const WINDOW: [f32; 2] = [1280.0, 800.0];
-/// The smallest window.
-const SMALLEST: [f32; 2] = [480.0, 320.0];
+/// Minimum size of the window, in points.
+const MIN_WINDOW: [f32; 2] = [480.0, 320.0];
 
-/// Why there is no window.
+/// Error of opening a window.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
-    /// Nothing to show it on.
+    /// There is no display.
     #[error("no window can be opened: there is no display (neither DISPLAY nor WAYLAND_DISPLAY leads to one)")]
     NoDisplay,
-    /// The system gives none: no permission, no OpenGL.
+    /// The system refuses the window, for example without OpenGL.
     #[error("no window can be opened: {0}")]
     NoWindow(String),
 }
 
-/// What a window is opened with.
+/// Options with which a window is opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
-    /// Whether it begins with the choice of scenes.
+pub struct ViewerOptions {
+    /// Whether the scene chooser is open at first.
     pub choose: bool,
 }
 
-/// Shows a session in a window until that is closed.
-pub fn run(session: Session, options: Options) -> Result<(), ViewerError> {
+/// Shows a session in a window; returns when the window is closed.
+pub fn run(session: Session, options: ViewerOptions) -> Result<(), ViewerError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("juggler")
         .with_app_id("juggler")
         .with_icon(style::icon())
         .with_inner_size(WINDOW)
-        .with_min_inner_size(SMALLEST);
+        .with_min_inner_size(MIN_WINDOW);
     let native = eframe::NativeOptions { viewport, persist_window: false, ..eframe::NativeOptions::default() };
     eframe::run_native("juggler", native, Box::new(|context| Ok(Box::new(app::Viewer::new(session, options, context)))))
         .map_err(|error| match error {

@@ -1,18 +1,20 @@
-//! Groups of lights in the panel: how strong each is, and in which colour. The picture is mixed anew, not traced.
+//! Light mixer in the panel: intensity and color of each light group. Changes relight the image
+//! without tracing it again.
 
 use crate::panel::row;
 use eframe::egui::{Slider, SliderClamping, Ui};
 use juggler_session::{Edit, Setting};
 
-/// The strongest that a slider makes a group.
-const MOST: f32 = 4.0;
+/// Maximum intensity of the slider.
+const MAX_INTENSITY: f32 = 4.0;
 
-/// A row for each group; `edits` receives what is changed.
+/// Shows a row for each light group, and appends changes to `edits`.
 pub fn show(ui: &mut Ui, groups: &[(String, [f32; 3])], edits: &mut Vec<Edit>) {
     for (name, gain) in groups {
-        let (mut strength, mut color) = parts(*gain);
+        let (mut strength, mut color) = intensity_and_color(*gain);
         let changed = row(ui, name, |ui| {
-            let slider = Slider::new(&mut strength, 0.0..=MOST).clamping(SliderClamping::Never).fixed_decimals(2);
+            let slider =
+                Slider::new(&mut strength, 0.0..=MAX_INTENSITY).clamping(SliderClamping::Never).fixed_decimals(2);
             let strength = ui.add(slider);
             let color = ui.color_edit_button_rgb(&mut color);
             strength.changed() || color.changed()
@@ -24,8 +26,8 @@ pub fn show(ui: &mut Ui, groups: &[(String, [f32; 3])], edits: &mut Vec<Edit>) {
     }
 }
 
-/// A gain as a strength and a colour whose strongest channel is 1: white where there is none.
-fn parts(gain: [f32; 3]) -> (f32, [f32; 3]) {
+/// Splits a gain into intensity and a color whose largest channel is 1; white for a gain of 0.
+fn intensity_and_color(gain: [f32; 3]) -> (f32, [f32; 3]) {
     let strength = gain.into_iter().fold(0.0, f32::max);
     (strength, if strength > 0.0 { gain.map(|factor| factor / strength) } else { [1.0; 3] })
 }
@@ -35,9 +37,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gains_are_strengths_times_colours() {
-        assert_eq!(parts([1.0, 1.0, 1.0]), (1.0, [1.0, 1.0, 1.0]));
-        assert_eq!(parts([2.0, 1.0, 0.5]), (2.0, [1.0, 0.5, 0.25]));
-        assert_eq!(parts([0.0; 3]), (0.0, [1.0; 3]));
+    fn gains_are_strengths_times_colors() {
+        assert_eq!(intensity_and_color([1.0, 1.0, 1.0]), (1.0, [1.0, 1.0, 1.0]));
+        assert_eq!(intensity_and_color([2.0, 1.0, 0.5]), (2.0, [1.0, 0.5, 0.25]));
+        assert_eq!(intensity_and_color([0.0; 3]), (0.0, [1.0; 3]));
     }
 }

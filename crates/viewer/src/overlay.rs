@@ -1,11 +1,11 @@
-//! What is said over the picture: mistakes, and in a line how things stand when the panel is folded.
+//! Messages over the image: errors, notices, and a status line while the panel is hidden.
 
 use crate::style;
 use eframe::egui::{self, Align2, Context, Id, Rect, RichText, ScrollArea, vec2};
 use juggler_session::{Stage, Status};
 
-/// Shows a mistake over the last good picture, in the words of `juggler check`.
-pub fn mistake(context: &Context, area: Rect, text: &str) {
+/// Shows an error over the last valid image, as `juggler check` prints it.
+pub fn error(context: &Context, area: Rect, text: &str) {
     egui::Area::new(Id::unique("mistake"))
         .order(egui::Order::Foreground)
         .pivot(Align2::LEFT_BOTTOM)
@@ -21,7 +21,7 @@ pub fn mistake(context: &Context, area: Rect, text: &str) {
         });
 }
 
-/// What was done, or what went wrong, in the middle of the upper edge.
+/// Shows a success or failure at the middle of the upper edge.
 pub fn notice(context: &Context, area: Rect, notice: &Result<String, String>) {
     egui::Area::new(Id::unique("notice"))
         .order(egui::Order::Foreground)
@@ -40,7 +40,7 @@ pub fn notice(context: &Context, area: Rect, notice: &Result<String, String>) {
         });
 }
 
-/// One line at the lower left.
+/// Shows the status line at the lower left.
 pub fn line(context: &Context, area: Rect, status: &Status) {
     egui::Area::new(Id::unique("line"))
         .interactable(false)
@@ -53,7 +53,7 @@ pub fn line(context: &Context, area: Rect, status: &Status) {
         });
 }
 
-/// `12 of 64 samples · noise 1.2 % · 12.3 Mrays/s`.
+/// Formats the status: `12 of 64 samples · noise 1.2 % · 12.3 Mrays/s`.
 pub fn summary(status: &Status) -> String {
     let mut parts = Vec::new();
     match status.stage {
@@ -83,7 +83,7 @@ fn moving(status: &Status) -> String {
     if status.coarseness > 1 { format!("{fps}, 1/{} size", status.coarseness) } else { fps }
 }
 
-/// `12.3 Mrays/s`.
+/// Formats a ray rate: `12.3 Mrays/s`.
 pub fn rays(per_second: f32) -> String {
     if per_second >= 1e6 {
         format!("{:.1} Mrays/s", per_second / 1e6)

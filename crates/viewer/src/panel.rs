@@ -1,4 +1,4 @@
-//! The panel at the right: everything that can be set, with how things stand above it.
+//! Settings panel at the right, with the status above the settings.
 
 use crate::controls::{Controls, Mode};
 use crate::keys::Command;
@@ -18,27 +18,27 @@ use juggler::names;
 use juggler_session::{Channel, Edit, Setting, Stage, Status};
 use std::collections::BTreeMap;
 
-/// Width of the panel.
+/// Width of the panel, in points.
 const WIDTH: f32 = 316.0;
-/// Channels beside each other.
+/// Number of columns of channel buttons.
 const CHANNEL_COLUMNS: usize = 4;
-/// Sizes of the picture that are offered.
+/// Offered image sizes.
 const SIZES: [[u32; 2]; 6] = [[320, 240], [640, 480], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160]];
-/// The schedulers, and what they do.
+/// Schedulers with their descriptions.
 const SCHEDULERS: [(&str, &str); 3] = [
     ("work-stealing", "idle threads steal tiles from busy ones"),
     ("row-queue", "a shared counter hands out rows"),
     ("static-rows", "each thread has its own block of rows"),
 ];
 
-/// What the panel keeps between two looks.
+/// State of the panel.
 pub struct Panel {
     integrators: Vec<String>,
     samplers: Vec<String>,
     curves: Vec<String>,
     cores: usize,
     bookmark: String,
-    /// The last frame rate under each scheduler.
+    /// Last frame rate under each scheduler.
     rates: BTreeMap<String, f32>,
 }
 
@@ -55,82 +55,82 @@ impl Default for Panel {
     }
 }
 
-/// What the panel reads, and what it changes in the window.
-pub struct Around<'a> {
-    /// How things stand.
+/// State that the panel reads, and outputs that it fills.
+pub struct PanelContext<'a> {
+    /// Status of the session.
     pub status: &'a Status,
-    /// How the camera is steered.
+    /// Settings of camera navigation.
     pub controls: &'a mut Controls,
-    /// Where the picture is saved.
+    /// State of saving.
     pub saving: &'a mut Saving,
-    /// Pixels of the screen that the picture may have.
+    /// Size of the image area, in screen pixels.
     pub window: [u32; 2],
-    /// Receives what the session is asked for.
+    /// Receives edits for the session.
     pub edits: &'a mut Vec<Edit>,
-    /// Receives what the window is asked for.
+    /// Receives commands for the window.
     pub commands: &'a mut Vec<Command>,
 }
 
 impl Panel {
-    /// Shows it.
-    pub fn show(&mut self, ui: &mut Ui, around: &mut Around<'_>) {
-        if around.status.stage == Stage::Moving && around.status.frames_per_second > 0.0 {
-            self.rates.insert(around.status.scheduler.clone(), around.status.frames_per_second);
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        if context.status.stage == Stage::Moving && context.status.frames_per_second > 0.0 {
+            self.rates.insert(context.status.scheduler.clone(), context.status.frames_per_second);
         }
         let frame = egui::Frame::new().fill(style::SURFACE).inner_margin(egui::Margin::symmetric(14, 12));
         egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
-            head(ui, around);
+            head(ui, context);
             ui.separator();
-            self.sections(ui, around);
+            self.sections(ui, context);
         });
     }
 
-    /// All that can be set; what is of use to few is folded at first.
-    fn sections(&mut self, ui: &mut Ui, around: &mut Around<'_>) -> ScrollAreaOutput<()> {
+    /// Shows all sections; rarely used ones are closed at first.
+    fn sections(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) -> ScrollAreaOutput<()> {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            section(ui, "Camera", true, |ui| self.camera(ui, around));
-            section(ui, "Picture", true, |ui| self.picture(ui, around));
-            if !around.status.light_groups.is_empty() {
-                section(ui, "Lights", true, |ui| lights::show(ui, &around.status.light_groups, around.edits));
+            section(ui, "Camera", true, |ui| self.camera(ui, context));
+            section(ui, "Picture", true, |ui| self.picture(ui, context));
+            if !context.status.light_groups.is_empty() {
+                section(ui, "Lights", true, |ui| lights::show(ui, &context.status.light_groups, context.edits));
             }
-            section(ui, "Show", true, |ui| channels(ui, around));
-            section(ui, "Save", true, |ui| save(ui, around));
-            section(ui, "Machine", false, |ui| self.machine(ui, around));
+            section(ui, "Show", true, |ui| channels(ui, context));
+            section(ui, "Save", true, |ui| save(ui, context));
+            section(ui, "Machine", false, |ui| self.machine(ui, context));
         })
     }
 
-    fn camera(&mut self, ui: &mut Ui, around: &mut Around<'_>) {
+    fn camera(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         row(ui, "drag", |ui| {
             for (mode, name) in [(Mode::Fly, "fly"), (Mode::Orbit, "orbit")] {
-                ui.selectable_value(&mut around.controls.mode, mode, name);
+                ui.selectable_value(&mut context.controls.mode, mode, name);
             }
         });
         row(ui, "speed", |ui| {
-            ui.add(Slider::new(&mut around.controls.speed, Controls::SPEEDS).logarithmic(true).max_decimals(2));
+            ui.add(Slider::new(&mut context.controls.speed, Controls::SPEEDS).logarithmic(true).max_decimals(2));
         });
-        let cameras = &around.status.cameras;
+        let cameras = &context.status.cameras;
         if !cameras.is_empty() {
             let chosen = row(ui, "go to", |ui| choice(ui, "camera", "a camera", cameras));
-            around.edits.extend(chosen.map(Edit::Camera));
+            context.edits.extend(chosen.map(Edit::Camera));
         }
-        row(ui, "keep as", |ui| {
+        row(ui, "bookmark", |ui| {
             let hint = next_name(cameras);
             ui.add(TextEdit::singleline(&mut self.bookmark).hint_text(&hint).desired_width(118.0));
-            if ui.button("Keep").on_hover_text("a bookmark of this camera, in the scene file").clicked() {
+            if ui.button("Save").on_hover_text("saves this camera in the scene file, as a bookmark").clicked() {
                 let name = std::mem::take(&mut self.bookmark);
-                around.edits.push(Edit::Bookmark(if name.trim().is_empty() { hint } else { name }));
+                context.edits.push(Edit::Bookmark(if name.trim().is_empty() { hint } else { name }));
             }
         });
         row(ui, "", |ui| {
-            button(ui, around, "Frame all", Command::FrameAll);
-            button(ui, around, "Undo all", Command::Reset);
+            button(ui, context, "Frame all", Command::FrameAll);
+            button(ui, context, "Undo all", Command::Reset);
         });
     }
 
-    fn picture(&self, ui: &mut Ui, around: &mut Around<'_>) {
-        let status = around.status;
-        let mut set = |setting| around.edits.push(Edit::Setting(setting));
-        if let Some(size) = row(ui, "size", |ui| sizes(ui, status.size, around.window)) {
+    fn picture(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let status = context.status;
+        let mut set = |setting| context.edits.push(Edit::Setting(setting));
+        if let Some(size) = row(ui, "size", |ui| sizes(ui, status.size, context.window)) {
             set(Setting::Size(size));
         }
         let integrator = row(ui, "integrator", |ui| choice(ui, "integrator", &status.integrator, &self.integrators));
@@ -143,39 +143,39 @@ impl Panel {
             let depth = row(ui, "max depth", |ui| number(ui, depth, 0..=64, false));
             depth.map(Setting::MaxDepth).map(&mut set);
         }
-        self.color(ui, around);
-        row(ui, "at rest", |ui| {
+        self.color(ui, context);
+        row(ui, "when idle", |ui| {
             let mut denoise = status.denoise;
             if ui.checkbox(&mut denoise, "denoise").on_hover_text("key N").changed() {
-                around.commands.push(Command::Denoise);
+                context.commands.push(Command::Denoise);
             }
             if status.region.is_some() {
-                button(ui, around, "Whole picture", Command::WholePicture);
+                button(ui, context, "Whole picture", Command::WholePicture);
             }
         });
     }
 
-    fn color(&self, ui: &mut Ui, around: &mut Around<'_>) {
-        let mut stops = around.status.exposure;
+    fn color(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let mut stops = context.status.exposure;
         let slider = Slider::new(&mut stops, -8.0..=8.0).fixed_decimals(2);
         if row(ui, "exposure", |ui| ui.add(slider).changed()) {
-            around.edits.push(Edit::Setting(Setting::Exposure(stops)));
+            context.edits.push(Edit::Setting(Setting::Exposure(stops)));
         }
-        let curve = row(ui, "tone curve", |ui| choice(ui, "curve", &around.status.tone, &self.curves));
-        around.edits.extend(curve.map(|curve| Edit::Setting(Setting::Tone(curve))));
+        let curve = row(ui, "tone curve", |ui| choice(ui, "curve", &context.status.tone, &self.curves));
+        context.edits.extend(curve.map(|curve| Edit::Setting(Setting::Tone(curve))));
     }
 
-    fn machine(&self, ui: &mut Ui, around: &mut Around<'_>) {
-        let status = around.status;
+    fn machine(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let status = context.status;
         let most = self.cores.max(status.threads) as u32;
         if let Some(threads) = row(ui, "threads", |ui| number(ui, status.threads as u32, 1..=most, false)) {
-            around.edits.push(Edit::Setting(Setting::Threads(threads as usize)));
+            context.edits.push(Edit::Setting(Setting::Threads(threads as usize)));
         }
         for (name, does) in SCHEDULERS {
             ui.horizontal(|ui| {
                 let chosen = status.scheduler == name;
                 if ui.add(Button::selectable(chosen, name).min_size(vec2(118.0, 22.0))).on_hover_text(does).clicked() {
-                    around.edits.push(Edit::Setting(Setting::Scheduler(name.into())));
+                    context.edits.push(Edit::Setting(Setting::Scheduler(name.into())));
                 }
                 if let Some(rate) = self.rates.get(name) {
                     ui.label(RichText::new(format!("{rate:.1} frames/s")).color(style::QUIET));
@@ -185,9 +185,9 @@ impl Panel {
     }
 }
 
-/// The scene, and how far its picture is.
-fn head(ui: &mut Ui, around: &mut Around<'_>) {
-    let status = around.status;
+/// Shows the scene's name and the progress of its image.
+fn head(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let status = context.status;
     ui.horizontal(|ui| {
         let name = RichText::new(short(&status.scene)).size(17.0);
         let width = ui.available_width() - 70.0;
@@ -195,7 +195,7 @@ fn head(ui: &mut Ui, around: &mut Around<'_>) {
             ui.set_min_width(width);
             ui.add(egui::Label::new(name).truncate());
         });
-        button(ui, around, "Scenes", Command::Scenes);
+        button(ui, context, "Scenes", Command::Scenes);
     });
     let share = if status.samples_wanted == 0 { 0.0 } else { status.samples / status.samples_wanted as f32 };
     let color = if status.stage == Stage::Finished { style::QUIET } else { style::ACCENT };
@@ -211,7 +211,7 @@ fn section(ui: &mut Ui, name: &str, open: bool, contents: impl FnOnce(&mut Ui)) 
     });
 }
 
-/// A name, and beside it what it names.
+/// Shows a label with a control beside it.
 pub fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let (place, _) = ui.allocate_exact_size(vec2(76.0, 22.0), egui::Sense::hover());
@@ -222,13 +222,13 @@ pub fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R
     .inner
 }
 
-fn button(ui: &mut Ui, around: &mut Around<'_>, words: &str, command: Command) {
+fn button(ui: &mut Ui, context: &mut PanelContext<'_>, words: &str, command: Command) {
     if ui.button(words).clicked() {
-        around.commands.push(command);
+        context.commands.push(command);
     }
 }
 
-/// One of several names; the one that was chosen, when another was.
+/// Shows a choice of names, and returns the name if another is selected.
 fn choice(ui: &mut Ui, id: &str, current: &str, names: &[String]) -> Option<String> {
     let mut chosen = None;
     ComboBox::from_id_salt(id).width(190.0).selected_text(current).show_ui(ui, |ui| {
@@ -261,14 +261,14 @@ fn number(ui: &mut Ui, current: u32, range: std::ops::RangeInclusive<u32>, logar
     (ui.add(slider).changed() && value != current).then_some(value)
 }
 
-fn channels(ui: &mut Ui, around: &mut Around<'_>) {
+fn channels(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.spacing_mut().button_padding.x = 3.0;
     Grid::new("channels").num_columns(CHANNEL_COLUMNS).spacing(vec2(4.0, 4.0)).show(ui, |ui| {
         for (place, channel) in Channel::ALL.into_iter().enumerate() {
-            let words = Button::selectable(channel == around.status.channel, channel_name(channel));
+            let words = Button::selectable(channel == context.status.channel, channel_name(channel));
             let hint = format!("key {}", place + 1);
             if ui.add(words.min_size(vec2(68.0, 22.0))).on_hover_text(hint).clicked() {
-                around.edits.push(Edit::Show(channel));
+                context.edits.push(Edit::Show(channel));
             }
             if (place + 1).is_multiple_of(CHANNEL_COLUMNS) {
                 ui.end_row();
@@ -290,18 +290,18 @@ fn channel_name(channel: Channel) -> &'static str {
     }
 }
 
-fn save(ui: &mut Ui, around: &mut Around<'_>) {
+fn save(ui: &mut Ui, context: &mut PanelContext<'_>) {
     row(ui, "file", |ui| {
-        let hint = around.saving.path(&around.status.scene).display().to_string();
-        ui.add(TextEdit::singleline(&mut around.saving.text).hint_text(hint).desired_width(134.0));
-        let busy = around.saving.is_busy();
+        let hint = context.saving.path(&context.status.scene).display().to_string();
+        ui.add(TextEdit::singleline(&mut context.saving.text).hint_text(hint).desired_width(134.0));
+        let busy = context.saving.is_busy();
         if ui.add_enabled(!busy, Button::new("Save")).clicked() {
-            around.commands.push(Command::Save);
+            context.commands.push(Command::Save);
         }
     });
 }
 
-/// A name for a camera that no other has.
+/// Returns a name that no camera has.
 pub fn next_name(cameras: &[String]) -> String {
     let free = |number: &usize| !cameras.contains(&format!("view-{number}"));
     format!("view-{}", (1..=cameras.len() + 1).find(free).unwrap_or(1))
@@ -311,25 +311,31 @@ pub fn next_name(cameras: &[String]) -> String {
 mod tests {
     use super::*;
 
-    /// How many points of the panel's sections a window of this size does not show.
+    /// Returns the hidden height of the panel's sections, in points, in a window of this size.
     fn hidden(status: &Status, size: [f32; 2]) -> f32 {
         let context = egui::Context::default();
         style::apply(&context);
         let (mut panel, mut controls, mut saving) = (Panel::default(), Controls::default(), Saving::default());
         let mut hidden = 0.0;
-        // Sections are as large as they were in the pass before.
+        // The layout of a section uses its size in the previous pass.
         for _ in 0..3 {
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size.into()));
             let mut output = context.run_ui(egui::RawInput { screen_rect, ..egui::RawInput::default() }, |ui| {
                 let (mut edits, mut commands) = (Vec::new(), Vec::new());
                 let (edits, commands) = (&mut edits, &mut commands);
-                let mut around =
-                    Around { status, controls: &mut controls, saving: &mut saving, window: [1; 2], edits, commands };
+                let mut context = PanelContext {
+                    status,
+                    controls: &mut controls,
+                    saving: &mut saving,
+                    window: [1; 2],
+                    edits,
+                    commands,
+                };
                 let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 12));
                 egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
-                    head(ui, &mut around);
+                    head(ui, &mut context);
                     ui.separator();
-                    let output = panel.sections(ui, &mut around);
+                    let output = panel.sections(ui, &mut context);
                     hidden = output.content_size.y - output.inner_rect.height();
                 });
             });

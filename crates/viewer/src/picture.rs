@@ -1,4 +1,4 @@
-//! The frame on the screen: its texture, its place, and which pixel lies under which point.
+//! Displayed frame: its texture, its placement, and conversions between points and pixels.
 
 use crate::style;
 use eframe::egui::{
@@ -7,33 +7,33 @@ use eframe::egui::{
 use juggler_session::Frame;
 use std::sync::Arc;
 
-/// Most by which pixels are magnified.
-const MOST: f32 = 64.0;
-/// Least.
-const LEAST: f32 = 1.0 / 16.0;
+/// Maximum magnification.
+const MAX_SCALE: f32 = 64.0;
+/// Minimum magnification.
+const MIN_SCALE: f32 = 1.0 / 16.0;
 
-/// How large the picture is shown.
+/// Magnification and position of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct View {
-    /// Pixels of the screen for one of the picture; as many as fit when there is none.
+pub struct ImageView {
+    /// Screen pixels per image pixel; `None` fits the image to its area.
     pub scale: Option<f32>,
-    /// By how many points the picture is off the middle.
+    /// Offset of the image from the center of its area, in points.
     pub offset: Vec2,
 }
 
-/// Where the picture lies on the screen.
+/// Placement of the image on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Its edges, points of the screen.
+    /// Edges of the image, in points.
     pub rect: Rect,
-    /// Its pixels.
+    /// Width and height of the image, in pixels.
     size: [u32; 2],
-    /// Pixels of the screen for one of the picture.
+    /// Screen pixels per image pixel.
     pub scale: f32,
 }
 
-impl View {
-    /// Where a picture lies in an area of the screen.
+impl ImageView {
+    /// Places an image of `size` pixels in an area of the screen.
     pub fn place(&self, area: Rect, size: [u32; 2], pixels_per_point: f32) -> Placement {
         let size = size.map(|edge| edge.max(1));
         let [width, height] = size.map(|edge| edge as f32 / pixels_per_point);
@@ -46,63 +46,64 @@ impl View {
         Placement { rect, size, scale }
     }
 
-    /// Between all of it and its very pixels.
+    /// Switches between fitting the image and 100 %.
     pub fn toggle(&mut self) {
         let scale = if self.scale.is_none() { Some(1.0) } else { None };
         *self = Self { scale, offset: Vec2::ZERO };
     }
 
-    /// Magnifies by a factor; what is at `fixed` stays there.
+    /// Magnifies by a factor about the point `fixed`.
     pub fn magnify(&mut self, factor: f32, fixed: Pos2, area: Rect, placement: &Placement) {
-        let scale = (placement.scale * factor).clamp(LEAST, MOST);
+        let scale = (placement.scale * factor).clamp(MIN_SCALE, MAX_SCALE);
         let middle = placement.rect.center() + (fixed - placement.rect.center()) * (1.0 - scale / placement.scale);
         *self = Self { scale: Some(scale), offset: middle - area.center() };
     }
 }
 
 impl Placement {
-    /// The place in the picture under a point, in pixels from its top left; nothing outside of it.
-    pub fn film(&self, at: Pos2) -> Option<[f32; 2]> {
+    /// Returns the film position under a point, in pixels; `None` outside of the image.
+    pub fn film_position(&self, at: Pos2) -> Option<[f32; 2]> {
         let inside = self.rect.contains(at);
         let place = (at - self.rect.min) * self.pixels_per_point();
         inside.then(|| [place.x.min(self.size[0] as f32 - 0.001), place.y.min(self.size[1] as f32 - 0.001)])
     }
 
-    /// The pixel under a point.
+    /// Returns the pixel under a point; `None` outside of the image.
     pub fn pixel(&self, at: Pos2) -> Option<[u32; 2]> {
-        self.film(at).map(|place| place.map(|edge| edge as u32))
+        self.film_position(at).map(|place| place.map(|edge| edge as u32))
     }
 
-    /// The pixel that is nearest to a point, wherever that is.
+    /// Returns the pixel that is nearest to a point.
     pub fn nearest(&self, at: Pos2) -> [u32; 2] {
         let place = (at - self.rect.min) * self.pixels_per_point();
         let [width, height] = self.size;
         [(place.x.max(0.0) as u32).min(width - 1), (place.y.max(0.0) as u32).min(height - 1)]
     }
 
-    /// Where some pixels lie: from one's top left to another's bottom right.
+    /// Returns the rectangle from the upper left corner of one pixel to the lower right corner of
+    /// another, in points.
     pub fn span(&self, from: [u32; 2], to: [u32; 2]) -> Rect {
         let point = |x: f32, y: f32| self.rect.min + vec2(x, y) / self.pixels_per_point();
         Rect::from_min_max(point(from[0] as f32, from[1] as f32), point(to[0] as f32 + 1.0, to[1] as f32 + 1.0))
     }
 
-    /// Pixels of the picture a point.
+    /// Returns the number of image pixels per point.
     pub fn pixels_per_point(&self) -> f32 {
         self.size[0] as f32 / self.rect.width().max(1e-3)
     }
 }
 
-/// The texture of the newest frame.
+/// Texture of the newest frame.
 #[derive(Default)]
-pub struct Screen {
+pub struct FrameTexture {
     texture: Option<TextureHandle>,
     frame: u64,
     options: TextureOptions,
 }
 
-impl Screen {
-    /// Takes over a frame unless it is there already; whether it was new.
-    pub fn take(&mut self, context: &Context, frame: &Frame, scale: f32, still: bool) -> bool {
+impl FrameTexture {
+    /// Uploads a frame unless it is displayed already. Returns whether it was new.
+    pub fn upload(&mut self, context: &Context, frame: &Frame, scale: f32, still: bool) -> bool {
         let pixels = match (frame.samples == 0.0, still) {
             (true, _) => Pixels::Coarse,
             (false, false) => Pixels::Passing,
@@ -122,7 +123,7 @@ impl Screen {
         new
     }
 
-    /// Draws it.
+    /// Draws the frame.
     pub fn draw(&self, painter: &Painter, placement: &Placement) {
         if let Some(texture) = &self.texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
@@ -132,18 +133,18 @@ impl Screen {
     }
 }
 
-/// What a frame's pixels are.
+/// Kind of a frame's pixels, which decides their filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pixels {
-    /// Fewer than the picture has.
+    /// Coarser than image pixels.
     Coarse,
-    /// Those of the picture, soon to be replaced by the next.
+    /// Image pixels that the next frame will soon replace.
     Passing,
-    /// Those of a picture that stays.
+    /// Image pixels at rest.
     Finished,
 }
 
-/// How pixels are made larger or smaller: finished ones stay squares, coarse ones flow into each other.
+/// Returns the texture filter: coarse pixels are interpolated, magnified image pixels stay squares.
 fn filter(scale: f32, pixels: Pixels) -> TextureOptions {
     let square = pixels != Pixels::Coarse && (scale >= 2.0 || scale == 1.0);
     let magnification = if square { TextureFilter::Nearest } else { TextureFilter::Linear };
@@ -151,7 +152,7 @@ fn filter(scale: f32, pixels: Pixels) -> TextureOptions {
     TextureOptions { magnification, mipmap_mode, ..TextureOptions::LINEAR }
 }
 
-/// A frame as egui wants it, with every so-manieth pixel when it is too large for the graphics card.
+/// Converts a frame for egui; a frame too large for the graphics card is subsampled.
 fn image(frame: &Frame, most: usize) -> Arc<ColorImage> {
     let (width, height) = (frame.width as usize, frame.height as usize);
     let step = width.max(height).div_ceil(most.max(1)).max(1);
@@ -178,16 +179,16 @@ mod tests {
 
     #[test]
     fn fits_and_keeps_its_shape() {
-        let wide = View::default().place(AREA, [1600, 900], 1.0);
+        let wide = ImageView::default().place(AREA, [1600, 900], 1.0);
         assert_eq!((wide.rect.width(), wide.rect.height(), wide.scale), (800.0, 450.0, 0.5));
         assert_eq!(wide.rect.center(), AREA.center());
-        let high = View::default().place(AREA, [300, 600], 2.0);
+        let high = ImageView::default().place(AREA, [300, 600], 2.0);
         assert_eq!((high.rect.width(), high.rect.height(), high.scale), (300.0, 600.0, 2.0));
     }
 
     #[test]
     fn points_and_pixels() {
-        let placement = View::default().place(AREA, [1600, 900], 1.0);
+        let placement = ImageView::default().place(AREA, [1600, 900], 1.0);
         assert_eq!(placement.pixel(placement.rect.min), Some([0, 0]));
         assert_eq!(placement.pixel(placement.rect.center()), Some([800, 450]));
         assert_eq!(placement.pixel(placement.rect.max), Some([1599, 899]));
@@ -199,16 +200,16 @@ mod tests {
 
     #[test]
     fn what_is_under_the_pointer_stays_when_magnified() {
-        let mut view = View::default();
+        let mut view = ImageView::default();
         let before = view.place(AREA, [1600, 900], 1.0);
         let pointer = pos2(300.0, 400.0);
         view.magnify(3.0, pointer, AREA, &before);
         let after = view.place(AREA, [1600, 900], 1.0);
         assert_eq!(after.scale, 1.5);
-        let [was, is] = [before, after].map(|placement| placement.film(pointer).unwrap());
+        let [was, is] = [before, after].map(|placement| placement.film_position(pointer).unwrap());
         assert!((was[0] - is[0]).abs() < 1.0 && (was[1] - is[1]).abs() < 1.0, "{was:?} {is:?}");
         view.toggle();
-        assert_eq!(view, View::default());
+        assert_eq!(view, ImageView::default());
     }
 
     #[test]

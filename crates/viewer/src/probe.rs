@@ -1,65 +1,65 @@
-//! What is known about the pixel under the pointer, or about one that is pinned.
+//! Probe display for the pixel under the pointer, or for a pinned pixel.
 
 use crate::picture::Placement;
 use crate::style;
 use eframe::egui::{self, Color32, Grid, Id, Painter, Pos2, RichText, Stroke, StrokeKind, Ui, vec2};
-use juggler_session::{Probe, Session};
+use juggler_session::{PixelInfo, Session};
 
-/// Which pixel is probed.
+/// Mode of the probe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Probing {
-    /// None.
+    /// No pixel is probed.
     #[default]
     Off,
-    /// The one under the pointer.
+    /// Probes the pixel under the pointer.
     Follow,
-    /// This one.
+    /// Probes this pixel.
     Pinned([u32; 2]),
 }
 
 impl Probing {
-    /// What the key does: follow, pin where the pointer is, off.
-    pub fn next(self, under: Option<[u32; 2]>) -> Self {
-        match (self, under) {
+    /// Returns the mode after a press of the key: follow, pin, off.
+    pub fn next(self, hovered: Option<[u32; 2]>) -> Self {
+        match (self, hovered) {
             (Self::Off, _) => Self::Follow,
             (Self::Follow, Some(pixel)) => Self::Pinned(pixel),
             _ => Self::Off,
         }
     }
 
-    /// The pixel that is probed.
-    pub fn pixel(self, under: Option<[u32; 2]>) -> Option<[u32; 2]> {
+    /// Returns the probed pixel.
+    pub fn pixel(self, hovered: Option<[u32; 2]>) -> Option<[u32; 2]> {
         match self {
             Self::Off => None,
-            Self::Follow => under,
+            Self::Follow => hovered,
             Self::Pinned(pixel) => Some(pixel),
         }
     }
 }
 
-/// Shows what is known about the pixel beside it.
+/// Shows the data of a pixel beside it.
 pub fn show(ui: &Ui, painter: &Painter, session: &Session, placement: &Placement, pixel: [u32; 2]) {
     let spot = placement.span(pixel, pixel);
     let mark = spot.expand((6.0 - spot.width() / 2.0).max(1.0));
     painter.rect_stroke(mark.expand(1.0), 1, Stroke::new(1.0, Color32::BLACK), StrokeKind::Outside);
     painter.rect_stroke(mark, 1, Stroke::new(1.0, style::ACCENT), StrokeKind::Outside);
-    let Some(probe) = session.probe(pixel) else { return };
+    let Some(info) = session.probe(pixel) else { return };
     egui::Area::new(Id::unique("probe"))
         .order(egui::Order::Foreground)
         .interactable(false)
         .constrain_to(ui.ctx().content_rect())
         .fixed_pos(beside(mark.right_bottom()))
-        .show(ui.ctx(), |ui| style::floating().show(ui, |ui| table(ui, &probe)));
+        .show(ui.ctx(), |ui| style::floating().show(ui, |ui| table(ui, &info)));
 }
 
 fn beside(corner: Pos2) -> Pos2 {
     corner + vec2(10.0, 10.0)
 }
 
-fn table(ui: &mut Ui, probe: &Probe) {
+fn table(ui: &mut Ui, info: &PixelInfo) {
     ui.spacing_mut().item_spacing = vec2(12.0, 3.0);
     Grid::new("probe").num_columns(2).show(ui, |ui| {
-        for (name, value) in rows(probe) {
+        for (name, value) in rows(info) {
             ui.label(RichText::new(name).color(style::QUIET));
             ui.label(RichText::new(value).monospace());
             ui.end_row();
@@ -67,27 +67,27 @@ fn table(ui: &mut Ui, probe: &Probe) {
     });
 }
 
-/// What the table says.
-fn rows(probe: &Probe) -> Vec<(&'static str, String)> {
-    let [x, y] = probe.pixel;
+/// Returns the rows of the table.
+fn rows(info: &PixelInfo) -> Vec<(&'static str, String)> {
+    let [x, y] = info.pixel;
     let three = |[a, b, c]: [f32; 3]| format!("{} {} {}", number(a), number(b), number(c));
     let noise = |level: f32| format!("{:.1} %", level * 100.0);
     let rows = [
         ("pixel", Some(format!("{x}, {y}"))),
-        ("colour", Some(probe.color.map_or("none yet".into(), three))),
-        ("samples", Some(probe.samples.to_string())),
-        ("noise", probe.noise.map(noise)),
-        ("depth", Some(probe.depth.map_or("nothing there".into(), number))),
-        ("position", probe.position.map(three)),
-        ("normal", probe.normal.map(three)),
-        ("object", probe.object.map(|object| object.to_string())),
-        ("shape", probe.shape.clone()),
-        ("material", probe.material.clone()),
+        ("color", Some(info.color.map_or("none yet".into(), three))),
+        ("samples", Some(info.samples.to_string())),
+        ("noise", info.noise.map(noise)),
+        ("depth", Some(info.depth.map_or("nothing there".into(), number))),
+        ("position", info.position.map(three)),
+        ("normal", info.normal.map(three)),
+        ("object", info.object.map(|object| object.to_string())),
+        ("shape", info.shape.clone()),
+        ("material", info.material.clone()),
     ];
     rows.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
 }
 
-/// A number in four digits.
+/// Formats a number with four digits.
 fn number(value: f32) -> String {
     let size = value.abs();
     if value == 0.0 {
@@ -122,9 +122,9 @@ mod tests {
 
     #[test]
     fn what_is_not_known_is_not_shown() {
-        let names = |probe: &Probe| rows(probe).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
-        assert_eq!(names(&Probe::default()), ["pixel", "colour", "samples", "depth"]);
-        let hit = Probe { depth: Some(2.0), material: Some("red".into()), ..Probe::default() };
-        assert_eq!(names(&hit), ["pixel", "colour", "samples", "depth", "material"]);
+        let names = |info: &PixelInfo| rows(info).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+        assert_eq!(names(&PixelInfo::default()), ["pixel", "color", "samples", "depth"]);
+        let hit = PixelInfo { depth: Some(2.0), material: Some("red".into()), ..PixelInfo::default() };
+        assert_eq!(names(&hit), ["pixel", "color", "samples", "depth", "material"]);
     }
 }

@@ -1,37 +1,37 @@
-//! A part of the picture, drawn up with the pointer.
+//! Selection of an image region with the pointer.
 
 use crate::picture::Placement;
 use crate::style;
 use eframe::egui::{Painter, Pos2, Stroke, StrokeKind};
 use juggler::camera::film::Rect;
 
-/// Fewer pixels than that across are a slip of the hand.
-const LEAST: u32 = 4;
+/// Minimum edge of a region, in pixels; smaller selections are ignored.
+const MIN_EDGE: u32 = 4;
 
-/// The corner where the drag began, as long as it lasts.
+/// Region that is being selected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Draft {
-    /// A point of the screen.
+pub struct RegionDrag {
+    /// Start of the drag, in points of the screen; `None` without one.
     pub from: Option<Pos2>,
 }
 
-/// The pixels between two corners; nothing when they are too few to be meant.
+/// Returns the region between two pixels; `None` if it is too small.
 pub fn between(a: [u32; 2], b: [u32; 2]) -> Option<Rect> {
     let [(x, width), (y, height)] =
         [0, 1].map(|axis| (a[axis].min(b[axis]), a[axis].abs_diff(b[axis]).saturating_add(1)));
-    (width >= LEAST && height >= LEAST).then_some(Rect { x, y, width, height })
+    (width >= MIN_EDGE && height >= MIN_EDGE).then_some(Rect { x, y, width, height })
 }
 
-/// Draws what is drawn up.
-pub fn draw_draft(painter: &Painter, placement: &Placement, draft: Draft, pointer: Option<Pos2>) {
-    if let (Some(from), Some(to)) = (draft.from, pointer)
+/// Draws the region that is being selected.
+pub fn draw_selection(painter: &Painter, placement: &Placement, drag: RegionDrag, pointer: Option<Pos2>) {
+    if let (Some(from), Some(to)) = (drag.from, pointer)
         && let Some(region) = between(placement.nearest(from), placement.nearest(to))
     {
         draw(painter, placement, &region, 2.0);
     }
 }
 
-/// Draws the edge of a region.
+/// Draws the outline of a region.
 pub fn draw(painter: &Painter, placement: &Placement, region: &Rect, width: f32) {
     let last = [region.x + region.width.max(1) - 1, region.y + region.height.max(1) - 1];
     let edge = placement.span([region.x, region.y], last);

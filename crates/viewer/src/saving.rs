@@ -1,27 +1,27 @@
-//! Saving a picture: on a thread of its own, since large pictures take a while to encode.
+//! Saving of images on a separate thread, since large images take long to encode.
 
 use crate::title::short;
 use juggler_session::Session;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
-/// Seconds for which a saved file is told.
-const TOLD: f64 = 5.0;
+/// Seconds for which a success is displayed.
+const NOTICE_SECONDS: f64 = 5.0;
 
-/// A path to save to, and how the last attempt went.
+/// Destination path, and result of the last attempt.
 #[derive(Default)]
 pub struct Saving {
-    /// What stands in the field; empty stands for [`Saving::path`]'s choice.
+    /// Content of the path field; empty for the default of [`Saving::path`].
     pub text: String,
-    /// The file that was written, or why none was, and when in seconds.
-    said: Option<(Result<String, String>, f64)>,
-    /// The name of the file that is being written.
+    /// Saved file or error, with the time in seconds.
+    result: Option<(Result<String, String>, f64)>,
+    /// File that is being written.
     writing: String,
     work: Option<Receiver<Result<String, String>>>,
 }
 
 impl Saving {
-    /// Where the picture goes: by default into the current folder, named after the scene.
+    /// Returns the destination; by default a file in the current folder, named after the scene.
     pub fn path(&self, scene: &str) -> PathBuf {
         match self.text.trim() {
             "" => PathBuf::from(format!("{}.png", short(scene))),
@@ -29,12 +29,12 @@ impl Saving {
         }
     }
 
-    /// Whether a picture is being written.
+    /// Returns whether an image is being written.
     pub fn is_busy(&self) -> bool {
         self.work.is_some()
     }
 
-    /// Starts to write the picture as it is now; `wake` is called when that is done.
+    /// Starts to write the current image, and calls `wake` at the end.
     pub fn start(&mut self, session: &Session, scene: &str, wake: impl FnOnce() + Send + 'static) {
         if self.is_busy() {
             return;
@@ -44,38 +44,38 @@ impl Saving {
         let (sender, receiver) = channel();
         let write = move || {
             let full = || std::path::absolute(&path).unwrap_or_else(|_| path.clone()).display().to_string();
-            let said = session.save(&path).map(|()| full()).map_err(|error| error.to_string());
-            let _ = sender.send(said);
+            let result = session.save(&path).map(|()| full()).map_err(|error| error.to_string());
+            let _ = sender.send(result);
             wake();
         };
         match std::thread::Builder::new().name("save".into()).spawn(write) {
-            Ok(_) => (self.work, self.said) = (Some(receiver), None),
-            Err(error) => self.said = Some((Err(error.to_string()), f64::INFINITY)),
+            Ok(_) => (self.work, self.result) = (Some(receiver), None),
+            Err(error) => self.result = Some((Err(error.to_string()), f64::INFINITY)),
         }
     }
 
-    /// Takes note of what was written; `now` in seconds.
-    pub fn look(&mut self, now: f64) {
-        if let Some(said) = self.work.as_ref().and_then(|work| work.try_recv().ok()) {
-            (self.said, self.work) = (Some((said, now)), None);
+    /// Polls for the result; `now` is the time in seconds.
+    pub fn poll(&mut self, now: f64) {
+        if let Some(result) = self.work.as_ref().and_then(|work| work.try_recv().ok()) {
+            (self.result, self.work) = (Some((result, now)), None);
         }
     }
 
-    /// What is to be shown of it: the file that is being written; for some seconds the file that was, with its folder; or
-    /// what went wrong, until the next attempt or [`Self::forget`].
+    /// Returns the message to display: the file that is being written, the saved file for some
+    /// seconds, or an error until the next attempt or [`Self::dismiss`].
     pub fn notice(&self, now: f64) -> Option<Result<String, String>> {
         if self.is_busy() {
             return Some(Ok(format!("saving {}", self.writing)));
         }
-        match self.said.as_ref()? {
-            (Ok(file), at) => (now - at < TOLD).then(|| Ok(format!("saved {file}"))),
+        match self.result.as_ref()? {
+            (Ok(file), at) => (now - at < NOTICE_SECONDS).then(|| Ok(format!("saved {file}"))),
             (Err(why), _) => Some(Err(format!("not saved: {why}"))),
         }
     }
 
-    /// Says no more of the last attempt.
-    pub fn forget(&mut self) {
-        self.said = None;
+    /// Discards the last result.
+    pub fn dismiss(&mut self) {
+        self.result = None;
     }
 }
 
@@ -87,18 +87,18 @@ mod tests {
     fn what_was_saved_is_told_for_a_while_and_a_failure_until_it_is_seen() {
         let mut saving = Saving::default();
         assert_eq!(saving.notice(0.0), None);
-        saving.said = Some((Ok("/pictures/a.png".into()), 10.0));
+        saving.result = Some((Ok("/pictures/a.png".into()), 10.0));
         assert_eq!(saving.notice(11.0), Some(Ok("saved /pictures/a.png".into())));
-        assert_eq!(saving.notice(10.0 + TOLD), None);
-        saving.said = Some((Err("no space".into()), 10.0));
+        assert_eq!(saving.notice(10.0 + NOTICE_SECONDS), None);
+        saving.result = Some((Err("no space".into()), 10.0));
         assert_eq!(saving.notice(1000.0), Some(Err("not saved: no space".into())));
-        saving.forget();
+        saving.dismiss();
         assert_eq!(saving.notice(1000.0), None);
     }
 
     #[test]
     fn the_file_that_is_written_is_named() {
-        let options = juggler_session::Options { size: Some([24, 18]), threads: 1, ..Default::default() };
+        let options = juggler_session::SessionOptions { size: Some([24, 18]), threads: 1, ..Default::default() };
         let session = Session::open("one-sphere", options);
         while session.status().stage != juggler_session::Stage::Finished {
             session.wait(u64::MAX, session.status().number, std::time::Duration::from_millis(50));
@@ -110,7 +110,7 @@ mod tests {
         saving.start(&session, "one-sphere", move || done.send(()).unwrap());
         assert_eq!(saving.notice(0.0), Some(Ok(format!("saving {}", file.display()))));
         woken.recv().unwrap();
-        saving.look(3.0);
+        saving.poll(3.0);
         assert_eq!(saving.notice(3.5), Some(Ok(format!("saved {}", file.display()))));
         std::fs::remove_file(file).unwrap();
     }

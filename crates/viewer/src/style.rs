@@ -1,27 +1,27 @@
-//! How it looks: dark and quiet, so that the picture is what one sees.
+//! Visual style: dark and low in contrast, so that the image stands out.
 
 use eframe::egui::{self, Color32, Context, CornerRadius, FontId, IconData, Stroke, TextStyle, Theme, vec2};
 
-/// Behind the picture.
+/// Background of the image.
 pub const BACKGROUND: Color32 = Color32::from_rgb(14, 15, 17);
-/// A line round the picture.
+/// Outlines, also that of the image.
 pub const EDGE: Color32 = Color32::from_rgb(34, 36, 40);
-/// Panels and what lies over the picture.
+/// Panels and dialogs.
 pub const SURFACE: Color32 = Color32::from_rgb(23, 24, 28);
-/// Fields and buttons on them.
+/// Fields and buttons.
 const FIELD: Color32 = Color32::from_rgb(37, 39, 45);
-/// The same under the pointer.
+/// Fields and buttons under the pointer.
 const FIELD_HOVERED: Color32 = Color32::from_rgb(48, 51, 58);
-/// Words.
+/// Text.
 pub const TEXT: Color32 = Color32::from_rgb(214, 216, 221);
-/// Words that stand back.
+/// Secondary text.
 pub const QUIET: Color32 = Color32::from_rgb(139, 144, 154);
-/// What is chosen, and what moves on.
+/// Selected items and progress.
 pub const ACCENT: Color32 = Color32::from_rgb(240, 168, 72);
-/// What is wrong.
+/// Errors.
 pub const WRONG: Color32 = Color32::from_rgb(240, 110, 95);
 
-/// Sets colours, letters and spaces.
+/// Applies colors, fonts and spacing.
 pub fn apply(context: &Context) {
     context.set_theme(Theme::Dark);
     context.all_styles_mut(|style| {
@@ -73,7 +73,7 @@ fn colors(visuals: &mut egui::Visuals) {
     }
 }
 
-/// A frame for what lies over the picture.
+/// Returns the frame of dialogs over the image.
 pub fn floating() -> egui::Frame {
     egui::Frame::new()
         .fill(SURFACE.gamma_multiply(0.94))
@@ -82,7 +82,7 @@ pub fn floating() -> egui::Frame {
         .inner_margin(10)
 }
 
-/// The window's icon: three mirror balls.
+/// Returns the window icon: three shaded spheres.
 pub fn icon() -> IconData {
     const EDGE: u32 = 64;
     let balls = [(20.0, 42.0, 13.0), (44.0, 42.0, 13.0), (32.0, 19.0, 13.0)];

@@ -1,17 +1,17 @@
-//! Small pictures of the built-in scenes on the graphics card, each decoded when it first comes into view.
+//! Thumbnail textures of the built-in scenes, decoded when they first come into view.
 
 use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
-use juggler::imaging::{Limits, Samples, decode_raster};
+use juggler::imaging::{Limits, RasterSamples, decode_raster};
 use std::collections::HashMap;
 use std::io::Cursor;
 
-/// Those that came into view.
+/// Textures by scene name; `None` for a thumbnail that cannot be decoded.
 #[derive(Default)]
 pub struct Thumbnails(HashMap<&'static str, Option<TextureHandle>>);
 
 impl Thumbnails {
-    /// The one of a built-in scene.
-    pub fn of(&mut self, name: &'static str, context: &Context) -> Option<&TextureHandle> {
+    /// Returns the thumbnail of a built-in scene.
+    pub fn get(&mut self, name: &'static str, context: &Context) -> Option<&TextureHandle> {
         let load = || image(name).map(|image| context.load_texture(name, image, TextureOptions::LINEAR));
         self.0.entry(name).or_insert_with(load).as_ref()
     }
@@ -20,7 +20,7 @@ impl Thumbnails {
 fn image(name: &str) -> Option<ColorImage> {
     let file = juggler_session::thumbnail(name)?;
     let raster = decode_raster(name, Cursor::new(file), &Limits::default()).ok()?;
-    let Samples::Bytes(levels) = raster.samples else { return None };
+    let RasterSamples::Bytes(levels) = raster.samples else { return None };
     let size = [raster.layout.width, raster.layout.height].map(|edge| edge as usize);
     let color = |pixel: &[u8]| match *pixel {
         [red, green, blue] => Color32::from_rgb(red, green, blue),
@@ -49,8 +49,8 @@ mod tests {
     #[test]
     fn pictures_are_decoded_once() {
         let (context, mut thumbnails) = (Context::default(), Thumbnails::default());
-        let first = thumbnails.of("juggler", &context).map(TextureHandle::id);
+        let first = thumbnails.get("juggler", &context).map(TextureHandle::id);
         assert!(first.is_some());
-        assert_eq!(thumbnails.of("juggler", &context).map(TextureHandle::id), first);
+        assert_eq!(thumbnails.get("juggler", &context).map(TextureHandle::id), first);
     }
 }

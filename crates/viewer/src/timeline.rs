@@ -1,13 +1,13 @@
-//! Time of an animated scene: play, stop, any moment.
+//! Timeline of an animated scene.
 
 use crate::style;
 use eframe::egui::{self, Button, RichText, Slider, Ui};
 use juggler_session::{Edit, Status};
 
-/// How near to its repetition an animation is shown.
+/// Distance that the slider keeps from the last frame, where the animation repeats, in frames.
 const END: f64 = 0.01;
 
-/// Shows a strip at the bottom when the scene is animated.
+/// Shows the timeline at the bottom if the scene is animated.
 pub fn show(ui: &mut Ui, status: &Status, edits: &mut Vec<Edit>) {
     if status.frames < 2 {
         return;
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, status: &Status, edits: &mut Vec<Edit>) {
     });
 }
 
-/// The whole frame that is so many frames away, round and round.
+/// Returns the edit to the whole frame some frames away; the animation repeats.
 pub fn step(status: &Status, frames: f64) -> Option<Edit> {
     (status.frames > 1).then(|| Edit::At((status.frame.round() + frames).rem_euclid(f64::from(status.frames))))
 }

@@ -1,10 +1,10 @@
-//! The window's title says how things stand, for people and for scripts.
+//! Window title with the status, for people and for scripts.
 
 use juggler_session::{Stage, Status};
 use std::path::Path;
 
-/// `juggler - marbles - 12/64`; `loading`, `error` and `frame 7` where they fit, and while it moves how many frames of the
-/// picture are shown in a second.
+/// Formats the title: `juggler - marbles - 12/64`, with `loading`, `error` and `frame 7` where they
+/// apply, and the displayed frame rate during a motion.
 pub fn title(status: &Status, shown_per_second: f32) -> String {
     let mut title = format!("juggler - {}", short(&status.scene));
     let mut add = |text: String| {
@@ -25,7 +25,7 @@ pub fn title(status: &Status, shown_per_second: f32) -> String {
     title
 }
 
-/// A scene's name without folder and ending.
+/// Returns a scene's name without folder and extension.
 pub fn short(scene: &str) -> &str {
     Path::new(scene).file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture")
 }

@@ -1,25 +1,28 @@
-//! Juggler in the browser alone: compiled for WebAssembly, rendered by workers of a page that needs no server.
+//! Juggler in the browser: compiled to WebAssembly and run by the workers of a page that needs no
+//! server.
 //!
-//! Each worker has a [`Painter`]: the whole scene, from the same camera as all others, and a [`Share`] of the picture. It
-//! renders in slices of some milliseconds and sends what became better as [`Patches`]. The page puts them together on a
-//! [`Board`], which shows, hashes and saves the picture. Workers share no memory, so the page needs no special headers.
+//! Each worker has a [`WorkerRenderer`] with the whole scene, the same camera, and a
+//! [`WorkerShare`] of the image. It renders in slices of some milliseconds and sends updated tiles
+//! as [`PixelRects`]. The page assembles them in a [`Compositor`], which displays, hashes and saves
+//! the image. Workers share no memory, so the page needs no special HTTP headers.
 //!
-//! Here is all that can be tested without a browser; `glue` names it for JavaScript, the page is in `web/page`.
+//! The modules other than `bindings`, the JavaScript interface, are tested without a browser. The
+//! page is in `web/page`.
 
-mod board;
 #[cfg(target_family = "wasm")]
-mod glue;
-mod painter;
-mod patches;
+mod bindings;
+mod compositor;
+mod pixel_rects;
+mod renderer;
 mod share;
-mod slice;
+mod worker_film;
 
-pub use board::{Board, Outline};
-pub use painter::Painter;
-pub use patches::Patches;
-pub use share::Share;
+pub use compositor::{Compositor, RenderInfo};
+pub use pixel_rects::PixelRects;
+pub use renderer::WorkerRenderer;
+pub use share::WorkerShare;
 
-/// The built-in scenes in JSON: `[{"name": ..., "title": ...}, ...]`.
+/// Returns the built-in scenes in JSON: `[{"name": ..., "title": ...}, ...]`.
 pub fn scenes() -> String {
     let title = |scene: &juggler::scene::BuiltIn| {
         let known = juggler::scene::Scene::built_in(scene.name);

@@ -1,34 +1,35 @@
-//! Which worker renders what. Nothing here can change a bit of the picture.
+//! Distribution of the work to workers; it does not affect the image.
 
-use juggler::camera::film::{Layout, Rect};
+use juggler::camera::film::{Rect, Tiling};
 
-/// Rows of a coarse frame that go to one worker together.
-const BAND: u32 = 8;
+/// Number of consecutive rows of a coarse frame that one worker renders.
+const BAND_ROWS: u32 = 8;
 
-/// One worker's part of the work.
+/// Share of one worker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share {
-    /// Which of the workers, from 0.
+pub struct WorkerShare {
+    /// Index of the worker, from 0.
     pub index: u32,
-    /// How many there are, at least 1.
-    pub of: u32,
+    /// Number of workers, at least 1.
+    pub count: u32,
 }
 
-impl Share {
+impl WorkerShare {
     fn has(&self, number: u64) -> bool {
-        number % u64::from(self.of.max(1)) == u64::from(self.index)
+        number % u64::from(self.count.max(1)) == u64::from(self.index)
     }
 
-    /// The numbers of its tiles. Neighbours go to different workers, in both directions: what takes long lies together.
-    pub fn tiles(&self, layout: &Layout) -> impl Iterator<Item = u64> {
-        let columns = u64::from(layout.columns().max(1));
-        (0..layout.tiles()).filter(move |number| self.has(number % columns + number / columns))
+    /// Returns the indices of the worker's tiles. Adjacent tiles go to different workers, since
+    /// expensive tiles are clustered.
+    pub fn tiles(&self, tiling: &Tiling) -> impl Iterator<Item = u64> {
+        let columns = u64::from(tiling.columns().max(1));
+        (0..tiling.tile_count()).filter(move |number| self.has(number % columns + number / columns))
     }
 
-    /// Its rows of a coarse frame, in bands.
+    /// Returns the worker's rows of a coarse frame, in bands.
     pub fn bands(&self, width: u32, height: u32) -> impl Iterator<Item = Rect> {
-        let bands = (0..height).step_by(BAND as usize).zip(0..).filter(|(_, number)| self.has(*number));
-        bands.map(move |(y, _)| Rect { x: 0, y, width, height: BAND.min(height - y) })
+        let bands = (0..height).step_by(BAND_ROWS as usize).zip(0..).filter(|(_, number)| self.has(*number));
+        bands.map(move |(y, _)| Rect { x: 0, y, width, height: BAND_ROWS.min(height - y) })
     }
 }
 
@@ -38,14 +39,16 @@ mod tests {
 
     #[test]
     fn all_is_dealt_once_and_evenly() {
-        let layout = Layout::new(Rect { x: 0, y: 0, width: 640, height: 477 });
-        for of in 1..8 {
-            let shares: Vec<Share> = (0..of).map(|index| Share { index, of }).collect();
-            let mut tiles: Vec<u64> = shares.iter().flat_map(|share| share.tiles(&layout)).collect();
+        let tiling = Tiling::new(Rect { x: 0, y: 0, width: 640, height: 477 });
+        for count in 1..8 {
+            let shares: Vec<WorkerShare> = (0..count).map(|index| WorkerShare { index, count }).collect();
+            let mut tiles: Vec<u64> = shares.iter().flat_map(|share| share.tiles(&tiling)).collect();
             tiles.sort_unstable();
-            assert_eq!(tiles, (0..layout.tiles()).collect::<Vec<_>>());
-            let even = layout.tiles() / u64::from(of);
-            assert!(shares.iter().all(|share| (share.tiles(&layout).count() as u64).abs_diff(even) <= u64::from(of)));
+            assert_eq!(tiles, (0..tiling.tile_count()).collect::<Vec<_>>());
+            let even = tiling.tile_count() / u64::from(count);
+            assert!(
+                shares.iter().all(|share| (share.tiles(&tiling).count() as u64).abs_diff(even) <= u64::from(count))
+            );
             let mut rows: Vec<u32> = shares
                 .iter()
                 .flat_map(|share| share.bands(9, 61))

@@ -1,12 +1,13 @@
-//! Polished balls, by way of which lights light other things: paths from there would find the lights by chance only.
+//! Specular spheres through which paths sample lights (caustics). A path that starts at a diffuse
+//! surface would find those lights by chance only.
 
-use super::standing::{Standing, standing};
-use super::{Level, Receiver, World};
-use crate::manifold::{Ball, Way, cosine};
+use super::world_shapes::{WorldShape, collect_shapes};
+use super::{Geometry, LightSampleContext, World};
+use crate::manifold::{SpecularPath, SpecularSphere, cos_from_sin};
 use arrayvec::ArrayVec;
 use juggler_bsdf::Bsdf;
 use juggler_material::medium::Medium;
-use juggler_material::{MaterialId, MaterialTable, View};
+use juggler_material::{MaterialId, MaterialTable, ShadingView};
 use juggler_math::{Frame, Motion, Rgb, Vec2, Vec3, warp};
 use juggler_shape::AnyShape;
 use juggler_shape::surface::Surface;
@@ -14,115 +15,125 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-/// More balls than this and only the largest are asked: asking takes a look at each.
-const MOST: usize = 16;
+/// Maximum number of sampled spheres: only the largest are kept, since each vertex evaluates all of
+/// them.
+const MAX_CASTERS: usize = 16;
 
-/// Of more than this only the first are looked at: with instances there may be any number.
-const MOST_FOUND: usize = 1 << 12;
+/// Maximum number of candidate shapes examined, because instancing may multiply them without limit.
+const MAX_CANDIDATES: usize = 1 << 12;
 
-/// What all balls together must look like, as a share of half the sky times what they reflect, for one to be asked for sure.
-const ALWAYS: f32 = 0.5;
+/// Total weight of all visible spheres, reflectance times solid angle over 2π, from which one of
+/// them is always selected.
+const FULL_WEIGHT: f32 = 0.5;
 
-/// The share of directions that are those of balls: at most, and by what they are worth.
-const GUIDED: f32 = 0.15;
-const GUIDED_BY_WORTH: f32 = 8.0;
+/// Maximum fraction of BSDF samples that are replaced by directions towards spheres, and that
+/// fraction per unit of weight.
+const MAX_GUIDED: f32 = 0.15;
+const GUIDED_PER_WEIGHT: f32 = 8.0;
 
-/// Balls whose surfaces are nowhere further apart than this, in radii, coincide.
+/// Two spheres coincide if their surfaces are nowhere further apart than this, in radii.
 const COINCIDENT: f32 = 2e-4;
 
-/// A polished ball in its place.
+/// A sphere of specular material in world space.
 #[derive(Clone, Debug)]
-pub struct Caster {
-    /// Where it is.
-    pub ball: Ball,
-    /// Numbers of the shapes: several where balls of the same material lie in the same place, any
-    /// of which a ray may hit.
-    objects: Vec<u32>,
-    polish: Polish,
+pub struct CausticCaster {
+    /// Center and radius, in world space.
+    pub sphere: SpecularSphere,
+    /// Indices of the shapes: several if spheres of the same material coincide exactly, any of
+    /// which a ray may hit.
+    shapes: Vec<u32>,
+    material: SpecularMaterial,
 }
 
-/// What a polished ball is made of.
+/// Specular material of a sphere.
 #[derive(Clone, Debug)]
-struct Polish {
-    /// How it scatters, from outside, z outwards.
+struct SpecularMaterial {
+    /// BSDF on the outside, in a frame whose z axis is the outward normal.
     bsdf: Bsdf,
-    /// What it mirrors, roughly, and what it lets through: 0 for a way that it does not offer.
+    /// Approximate reflectance and transmittance; 0 for a path that the material does not support.
     strengths: [f32; 2],
     ior: f32,
     medium: Medium,
 }
 
-impl Polish {
-    /// Of a material that is the same everywhere, if it mirrors or is clear.
-    fn of(id: MaterialId, materials: &MaterialTable) -> Option<Self> {
+impl SpecularMaterial {
+    /// Extracts the specular properties of a material that does not vary over the surface; `None`
+    /// if it neither reflects specularly nor transmits clearly.
+    fn from_material(id: MaterialId, materials: &MaterialTable) -> Option<Self> {
         if materials.is_textured(id) || !materials.is_simple(id) {
             return None;
         }
         let surface = Surface::new(Vec3::ZERO, 0.0, Vec3::Z, Vec2::ZERO);
-        let bsdf = materials.shade(id, &View::of(&surface)).bsdf;
-        let interior = materials.interior(id).and_then(|id| materials.interiors().get(id.place()));
-        // Well off the axis: about what it mirrors on average.
+        let bsdf = materials.shade(id, &ShadingView::along_normal(&surface)).bsdf;
+        let interior = materials.interior(id).and_then(|id| materials.interiors().get(id.index()));
+        // Oblique incidence, whose reflectance approximates the average.
         let deltas = bsdf.deltas(Vec3::new(0.8, 0.0, 0.6));
-        let of = |is_up: bool| {
+        let total_weight = |is_up: bool| {
             let weights = deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
             weights.fold(0.0, |sum: f32, weight| sum + weight.max_channel())
         };
         let clear = interior.filter(|interior| bsdf.is_specular() && interior.ior > 1.0 && !interior.medium.scatters());
-        let through = if clear.is_some() { (1.0 - of(true)).max(0.0) } else { 0.0 };
+        let transmittance = if clear.is_some() { (1.0 - total_weight(true)).max(0.0) } else { 0.0 };
         let (ior, medium) = interior.map_or((1.0, Medium::default()), |interior| (interior.ior, interior.medium));
-        let strengths = [of(true), through];
+        let strengths = [total_weight(true), transmittance];
         (strengths != [0.0; 2]).then_some(Self { bsdf, strengths, ior, medium })
     }
 
-    /// Whether two materials do the same to light.
+    /// Whether two materials scatter alike.
     fn equals(&self, other: &Self) -> bool {
-        let weights = |polish: &Self| {
+        let weights = |material: &Self| {
             [Vec3::new(0.8, 0.0, 0.6), Vec3::new(0.2, 0.0, 0.98), Vec3::new(0.8, 0.0, -0.6)]
-                .map(|wo| polish.bsdf.deltas(wo).iter().fold(Rgb::BLACK, |sum, delta| sum + delta.weight))
+                .map(|wo| material.bsdf.deltas(wo).iter().fold(Rgb::BLACK, |sum, delta| sum + delta.weight))
         };
         (self.strengths, self.ior, self.medium) == (other.strengths, other.ior, other.medium)
             && weights(self) == weights(other)
     }
 }
 
-/// A ball and a way by it.
+/// A sphere and the kind of specular path: reflection or refraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CasterId {
-    place: u16,
+    index: u16,
     is_refracted: bool,
 }
 
-impl Caster {
-    /// The polished balls among the shapes of a world.
-    pub(super) fn all(top: &Level, materials: &MaterialTable) -> Vec<Self> {
-        // Each material once: balls may be many.
-        let polishes = RefCell::new(BTreeMap::new());
-        let has_polish = |id| polishes.borrow_mut().entry(id).or_insert_with(|| Polish::of(id, materials)).is_some();
-        let is_polished = |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && has_polish(id);
-        let balls = standing(top, MOST_FOUND, &is_polished);
-        let polishes = polishes.into_inner();
-        let polish = |ball: &Standing| polishes.get(&ball.material)?.as_ref();
-        let mut casters: Vec<Self> = balls.iter().filter_map(|ball| Self::new(ball, polish(ball)?)).collect();
-        casters.sort_by(|a, b| b.ball.radius.total_cmp(&a.ball.radius));
+impl CausticCaster {
+    /// Collects the specular spheres of a world, largest first.
+    pub(super) fn collect(top: &Geometry, materials: &MaterialTable) -> Vec<Self> {
+        // Compile each material once, since there may be many spheres.
+        let specular_materials = RefCell::new(BTreeMap::new());
+        let is_specular = |id| {
+            specular_materials
+                .borrow_mut()
+                .entry(id)
+                .or_insert_with(|| SpecularMaterial::from_material(id, materials))
+                .is_some()
+        };
+        let is_specular_sphere = |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && is_specular(id);
+        let spheres = collect_shapes(top, MAX_CANDIDATES, &is_specular_sphere);
+        let specular_materials = specular_materials.into_inner();
+        let material = |sphere: &WorldShape| specular_materials.get(&sphere.material)?.as_ref();
+        let mut casters: Vec<Self> = spheres.iter().filter_map(|sphere| Self::new(sphere, material(sphere)?)).collect();
+        casters.sort_by(|a, b| b.sphere.radius.total_cmp(&a.sphere.radius));
         let mut casters = Self::without_coincident(casters);
-        casters.truncate(MOST);
+        casters.truncate(MAX_CASTERS);
         casters
     }
 
-    /// Joins balls of one material in exactly the same place. Leaves out balls that nearly
-    /// coincide, or whose materials differ: which of them a ray hits is up to rounding, so that
-    /// their light must be found by the path alone.
+    /// Joins spheres of one material that coincide exactly. Removes spheres that nearly coincide,
+    /// or whose materials differ: rounding decides which of them a ray hits, so only the path
+    /// itself may find light through them.
     fn without_coincident(casters: Vec<Self>) -> Vec<Self> {
         let mut joined: Vec<(Self, bool)> = Vec::with_capacity(casters.len());
         for caster in casters {
-            // Sorted by radius: balls about as large stand at the end.
+            // Casters are sorted by radius, so those of similar radius are at the end.
             let nearby =
-                joined.iter_mut().rev().take_while(|(other, _)| other.ball.radius <= caster.ball.radius * 1.01);
+                joined.iter_mut().rev().take_while(|(other, _)| other.sphere.radius <= caster.sphere.radius * 1.01);
             let mut coincident = nearby.filter(|(other, _)| other.coincides(&caster)).peekable();
             let is_free = coincident.peek().is_none();
             for (other, is_usable) in coincident {
-                if *is_usable && other.ball == caster.ball && other.polish.equals(&caster.polish) {
-                    other.objects.extend(&caster.objects);
+                if *is_usable && other.sphere == caster.sphere && other.material.equals(&caster.material) {
+                    other.shapes.extend(&caster.shapes);
                 } else {
                     *is_usable = false;
                 }
@@ -134,175 +145,185 @@ impl Caster {
         joined.into_iter().filter_map(|(caster, is_usable)| is_usable.then_some(caster)).collect()
     }
 
-    /// Whether the surfaces of two balls are so near each other everywhere that rounding may swap
-    /// them.
+    /// Whether the surfaces of both spheres are so close everywhere that rounding may swap them.
     fn coincides(&self, other: &Self) -> bool {
-        let (a, b) = (self.ball, other.ball);
+        let (a, b) = (self.sphere, other.sphere);
         (a.center - b.center).length() + (a.radius - b.radius).abs() <= COINCIDENT * a.radius
     }
 
-    /// Whether a shape is this ball, or coincides with it.
-    pub fn is(&self, object: u32) -> bool {
-        self.objects.contains(&object)
+    /// Whether a shape is this sphere or coincides with it exactly.
+    pub fn has_shape(&self, shape: u32) -> bool {
+        self.shapes.contains(&shape)
     }
 
-    fn new(standing: &Standing, polish: &Polish) -> Option<Self> {
-        let (AnyShape::Sphere(sphere), Motion::Still(transform)) = (&*standing.shape, &standing.motion) else {
+    fn new(world_shape: &WorldShape, material: &SpecularMaterial) -> Option<Self> {
+        let (AnyShape::Sphere(sphere), Motion::Still(transform)) = (&*world_shape.shape, &world_shape.motion) else {
             return None;
         };
         let radius = sphere.radius * transform.uniform_scale()?;
-        let ball = Ball { center: transform.origin(), radius };
-        Some(Self { ball, objects: vec![standing.number], polish: polish.clone() })
+        let sphere = SpecularSphere { center: transform.origin(), radius };
+        Some(Self { sphere, shapes: vec![world_shape.shape_index], material: material.clone() })
     }
 
-    /// How light goes by it.
+    /// Kind of specular path.
     #[inline]
-    fn way(&self, is_refracted: bool) -> Way {
-        if is_refracted { Way::Refracted { ior: self.polish.ior } } else { Way::Mirrored }
+    fn path_kind(&self, is_refracted: bool) -> SpecularPath {
+        if is_refracted { SpecularPath::Refracted { ior: self.material.ior } } else { SpecularPath::Reflected }
     }
 
-    /// What it leaves of light on a way of incidence `sine`.
-    pub fn throughput(&self, way: Way, sine: f32) -> Rgb {
+    /// Throughput of a specular path whose angle of incidence has this `sine`: reflectance, or
+    /// transmittance of both interfaces and of the medium between them.
+    pub fn throughput(&self, kind: SpecularPath, sine: f32) -> Rgb {
         let scattered = |wo: Vec3, is_up: bool| {
-            let deltas = self.polish.bsdf.deltas(wo);
+            let deltas = self.material.bsdf.deltas(wo);
             deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).fold(Rgb::BLACK, |sum, delta| sum + delta.weight)
         };
-        let Way::Refracted { ior } = way else { return scattered(Vec3::new(sine, 0.0, cosine(sine)), true) };
-        let inside = sine / ior;
-        let cos_inside = cosine(inside);
-        let in_and_out =
-            scattered(Vec3::new(sine, 0.0, cosine(sine)), false) * scattered(Vec3::new(inside, 0.0, -cos_inside), true);
-        in_and_out * self.polish.medium.transmittance(2.0 * self.ball.radius * cos_inside)
+        let SpecularPath::Refracted { ior } = kind else {
+            return scattered(Vec3::new(sine, 0.0, cos_from_sin(sine)), true);
+        };
+        let sin_inside = sine / ior;
+        let cos_inside = cos_from_sin(sin_inside);
+        let in_and_out = scattered(Vec3::new(sine, 0.0, cos_from_sin(sine)), false)
+            * scattered(Vec3::new(sin_inside, 0.0, -cos_inside), true);
+        in_and_out * self.material.medium.transmittance(2.0 * self.sphere.radius * cos_inside)
     }
 
-    /// As it is seen from a place; worth nothing from within, or where it lies below the plane.
+    /// Evaluates the sphere as seen from `to`; weights are 0 from inside it, and where it lies
+    /// below the receiver's horizon.
     #[inline]
-    fn sight(&self, to: &Receiver) -> Sight {
-        let Ball { center, radius } = self.ball;
-        let below = to.normal != Vec3::ZERO && to.normal.dot(center - to.point) <= -radius;
-        let Some(end) = self.ball.end(to.point).filter(|_| !below) else { return Sight::NONE };
-        let seen = Ball::seen(end.nearness);
-        Sight { worths: self.polish.strengths.map(|strength| strength * seen), toward: end.toward, seen }
+    fn view_from(&self, to: &LightSampleContext) -> CasterView {
+        let SpecularSphere { center, radius } = self.sphere;
+        let is_below = to.normal != Vec3::ZERO && to.normal.dot(center - to.point) <= -radius;
+        let Some(end) = self.sphere.end_point(to.point).filter(|_| !is_below) else { return CasterView::NONE };
+        let one_minus_cos = SpecularSphere::one_minus_cos(end.inverse_distance);
+        CasterView {
+            weights: self.material.strengths.map(|strength| strength * one_minus_cos),
+            toward: end.toward,
+            one_minus_cos,
+        }
     }
 }
 
-/// A ball as a place sees it.
+/// A caster as seen from a point.
 #[derive(Clone, Copy, Debug)]
-struct Sight {
-    /// What its ways are worth.
-    worths: [f32; 2],
-    /// Unit, from its centre towards the place.
+struct CasterView {
+    /// Selection weights of reflection and refraction: strength times solid angle over 2π.
+    weights: [f32; 2],
+    /// Unit vector from the sphere's center towards the point.
     toward: Vec3,
-    /// One less the cosine of the half angle under which it is seen.
-    seen: f32,
+    /// 1 - cos θ, with θ half the angle that the sphere subtends.
+    one_minus_cos: f32,
 }
 
-impl Sight {
-    const NONE: Self = Self { worths: [0.0; 2], toward: Vec3::ZERO, seen: 0.0 };
+impl CasterView {
+    const NONE: Self = Self { weights: [0.0; 2], toward: Vec3::ZERO, one_minus_cos: 0.0 };
 
-    fn worth(&self) -> f32 {
-        self.worths[0] + self.worths[1]
+    fn weight(&self) -> f32 {
+        self.weights[0] + self.weights[1]
     }
 }
 
-/// The polished balls as a place sees them.
-pub struct Prospect {
-    sights: ArrayVec<Sight, MOST>,
-    /// What all are worth.
-    total: f32,
+/// All casters as seen from a point, with their selection weights.
+pub struct VisibleCasters {
+    views: ArrayVec<CasterView, MAX_CASTERS>,
+    /// Sum of the weights.
+    total_weight: f32,
 }
 
-impl Prospect {
-    /// Without spheres.
+impl VisibleCasters {
+    /// Creates an empty set.
     #[inline(always)]
     pub fn empty() -> Self {
-        Self { sights: ArrayVec::new(), total: 0.0 }
+        Self { views: ArrayVec::new(), total_weight: 0.0 }
     }
 
-    /// A way by which light may come, and its chance; none as often as there is little to see.
+    /// Selects a caster and a kind of path, with its probability. Returns `None` more often the
+    /// smaller the total weight is.
     pub fn pick(&self, u: f32) -> Option<(CasterId, f32)> {
-        let all = self.total.max(ALWAYS);
+        let all = self.total_weight.max(FULL_WEIGHT);
         let mut target = u * all;
-        for (place, sight) in (0..).zip(&self.sights) {
-            for (is_refracted, worth) in [false, true].into_iter().zip(sight.worths) {
-                if target < worth {
-                    return Some((CasterId { place, is_refracted }, worth / all));
+        for (index, view) in (0..).zip(&self.views) {
+            for (is_refracted, weight) in [false, true].into_iter().zip(view.weights) {
+                if target < weight {
+                    return Some((CasterId { index, is_refracted }, weight / all));
                 }
-                target -= worth;
+                target -= weight;
             }
         }
         None
     }
 
-    /// The chance with which [`Prospect::pick`] picks that one.
-    pub fn chance(&self, id: CasterId) -> f32 {
-        let sight = self.sights.get(usize::from(id.place));
-        sight.map_or(0.0, |sight| sight.worths[usize::from(id.is_refracted)]) / self.total.max(ALWAYS)
+    /// Probability with which [`VisibleCasters::pick`] selects `id`.
+    pub fn probability(&self, id: CasterId) -> f32 {
+        let view = self.views.get(usize::from(id.index));
+        view.map_or(0.0, |view| view.weights[usize::from(id.is_refracted)]) / self.total_weight.max(FULL_WEIGHT)
     }
 
-    /// The share of directions that are to be those of balls.
-    pub fn share(&self) -> f32 {
-        (GUIDED_BY_WORTH * self.total).min(GUIDED)
+    /// Fraction of BSDF samples to replace by [`VisibleCasters::sample`].
+    pub fn guided_fraction(&self) -> f32 {
+        (GUIDED_PER_WEIGHT * self.total_weight).min(MAX_GUIDED)
     }
 
-    /// A direction in which a ball is seen.
+    /// Samples a direction towards a caster, uniform within its cone.
     pub fn sample(&self, u: Vec2) -> Option<Vec3> {
-        let mut target = u.x * self.total;
-        for sight in &self.sights {
-            let worth = sight.worth();
-            if target < worth {
-                let u = Vec2::new((target / worth).min(1f32.next_down()), u.y);
-                return Some(Frame::around(-sight.toward).to_world(warp::uniform_cone(u, sight.seen)));
+        let mut target = u.x * self.total_weight;
+        for view in &self.views {
+            let weight = view.weight();
+            if target < weight {
+                let u = Vec2::new((target / weight).min(1f32.next_down()), u.y);
+                return Some(Frame::around(-view.toward).to_world(warp::uniform_cone(u, view.one_minus_cos)));
             }
-            target -= worth;
+            target -= weight;
         }
         None
     }
 
-    /// Density per steradian of [`Prospect::sample`].
+    /// Density per steradian of [`VisibleCasters::sample`].
     pub fn pdf(&self, direction: Vec3) -> f32 {
-        let of = |sight: &Sight| {
-            // The same way round as in sampling, whose rounding must not lead out of the cone.
-            let is_seen = 1.0 + direction.dot(sight.toward) <= sight.seen + 1e-6;
-            (sight.worth() > 0.0 && is_seen).then(|| sight.worth() / (self.total * TAU * sight.seen))
+        let pdf_of = |view: &CasterView| {
+            // The same arithmetic as in sampling, so that rounding cannot put a sampled direction
+            // outside its cone.
+            let is_in_cone = 1.0 + direction.dot(view.toward) <= view.one_minus_cos + 1e-6;
+            (view.weight() > 0.0 && is_in_cone).then(|| view.weight() / (self.total_weight * TAU * view.one_minus_cos))
         };
-        self.sights.iter().filter_map(of).sum()
+        self.views.iter().filter_map(pdf_of).sum()
     }
 }
 
 impl World {
-    /// The ball of a way.
+    /// Caster and kind of path of an id.
     #[inline]
-    pub fn caster(&self, id: CasterId) -> Option<(&Caster, Way)> {
-        self.casters.get(usize::from(id.place)).map(|caster| (caster, caster.way(id.is_refracted)))
+    pub fn caster(&self, id: CasterId) -> Option<(&CausticCaster, SpecularPath)> {
+        self.casters.get(usize::from(id.index)).map(|caster| (caster, caster.path_kind(id.is_refracted)))
     }
 
-    /// Whether there are polished balls.
+    /// Whether the world has casters.
     #[inline]
     pub fn has_casters(&self) -> bool {
         !self.casters.is_empty()
     }
 
-    /// The way by a shape, by its number, if it is a polished ball.
-    pub fn caster_of(&self, object: u32, is_refracted: bool) -> Option<CasterId> {
-        let place = self.casters.iter().position(|caster| caster.is(object))?;
-        Some(CasterId { place: place as u16, is_refracted })
+    /// Id of the caster that has the shape `shape`, if there is one.
+    pub fn caster_of_shape(&self, shape: u32, is_refracted: bool) -> Option<CasterId> {
+        let index = self.casters.iter().position(|caster| caster.has_shape(shape))?;
+        Some(CasterId { index: index as u16, is_refracted })
     }
 
-    /// The polished balls as a place sees them.
+    /// Evaluates all casters as seen from `from`.
     #[inline(always)]
-    pub fn prospect(&self, from: &Receiver) -> Prospect {
-        let mut prospect = Prospect::empty();
-        self.fill_prospect(from, &mut prospect);
-        prospect
+    pub fn visible_casters(&self, from: &LightSampleContext) -> VisibleCasters {
+        let mut visible_casters = VisibleCasters::empty();
+        self.fill_visible_casters(from, &mut visible_casters);
+        visible_casters
     }
 
-    /// [`World::prospect`] into an empty `prospect`, which is too large to be handed on by value.
-    pub fn fill_prospect(&self, from: &Receiver, prospect: &mut Prospect) {
-        for caster in self.casters.iter().take(MOST) {
-            let sight = caster.sight(from);
-            prospect.total = prospect.total + sight.worths[0] + sight.worths[1];
-            prospect.sights.push(sight);
+    /// Writes the result of [`World::visible_casters`] to `visible_casters`, which must be empty.
+    /// The structure is too large to return by value cheaply.
+    pub fn fill_visible_casters(&self, from: &LightSampleContext, visible_casters: &mut VisibleCasters) {
+        for caster in self.casters.iter().take(MAX_CASTERS) {
+            let view = caster.view_from(from);
+            visible_casters.total_weight = visible_casters.total_weight + view.weights[0] + view.weights[1];
+            visible_casters.views.push(view);
         }
     }
 }

@@ -1,102 +1,103 @@
-//! What a scene is at the frames beside the one that is rendered: how far what is seen goes on the film from one to the other.
+//! Motion vectors: displacement on the film between the rendered frame and its neighbors.
 //!
-//! What is seen at some time while the shutter is open is compared with where it is at the same time of the other frame's shutter,
-//! both as through the middle of the lens.
+//! Positions are compared at the same time within each frame's shutter interval, as seen through
+//! the center of the lens.
 
 use crate::{Vertex, World};
-use juggler_camera::layer::Beside;
-use juggler_camera::{Finder, Shot};
+use juggler_camera::aov::AdjacentFrame;
+use juggler_camera::{ShutterCamera, WorldToFilm};
 use juggler_math::{DVec2, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// The scene at another frame.
+/// World and camera of another frame.
 #[derive(Clone)]
-pub struct Frame {
-    /// What can be seen.
+pub struct NeighborFrame {
+    /// Geometry at that frame.
     pub world: Arc<World>,
-    /// From where.
-    pub camera: Shot,
+    /// Camera at that frame.
+    pub camera: ShutterCamera,
 }
 
-/// The camera at the frame that is rendered, and the scene at those beside it.
+/// Camera of the rendered frame, and the scene at the previous and the next frame.
 #[derive(Clone)]
-pub struct Frames {
-    here: Found,
-    previous: Option<(Arc<World>, Found)>,
-    next: Option<(Arc<World>, Found)>,
+pub struct NeighborFrames {
+    current: ProjectedCamera,
+    previous: Option<(Arc<World>, ProjectedCamera)>,
+    next: Option<(Arc<World>, ProjectedCamera)>,
 }
 
-impl fmt::Debug for Frames {
+impl fmt::Debug for NeighborFrames {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Worlds are large.
-        f.debug_struct("Frames").finish_non_exhaustive()
+        // Worlds are too large to print.
+        f.debug_struct("NeighborFrames").finish_non_exhaustive()
     }
 }
 
-/// Where points are seen.
+/// A camera with its projection onto the film.
 #[derive(Clone)]
-struct Found {
-    camera: Shot,
-    /// What is the same at all times.
-    still: Option<Finder>,
+struct ProjectedCamera {
+    camera: ShutterCamera,
+    /// Projection, if the camera does not move while the shutter is open.
+    static_projection: Option<WorldToFilm>,
 }
 
-impl From<Shot> for Found {
-    fn from(camera: Shot) -> Self {
-        let still = if camera.moves() { None } else { camera.finder(0.0) };
-        Self { camera, still }
+impl From<ShutterCamera> for ProjectedCamera {
+    fn from(camera: ShutterCamera) -> Self {
+        let static_projection = if camera.moves() { None } else { camera.world_to_film(0.0) };
+        Self { camera, static_projection }
     }
 }
 
-impl Found {
+impl ProjectedCamera {
     #[inline]
-    fn at(&self, time: f32) -> Option<Finder> {
-        self.still.or_else(|| self.camera.finder(time))
+    fn at(&self, time: f32) -> Option<WorldToFilm> {
+        self.static_projection.or_else(|| self.camera.world_to_film(time))
     }
 }
 
-impl Frames {
-    /// Seen by `camera`; a frame that is nothing is as the one that is rendered.
-    pub fn new(camera: Shot, previous: Option<Frame>, next: Option<Frame>) -> Self {
-        let found = |Frame { world, camera }: Frame| (world, Found::from(camera));
-        Self { here: camera.into(), previous: previous.map(found), next: next.map(found) }
+impl NeighborFrames {
+    /// Creates the motion-vector context of `camera`. A missing frame means that nothing moves.
+    pub fn new(camera: ShutterCamera, previous: Option<NeighborFrame>, next: Option<NeighborFrame>) -> Self {
+        let projected = |NeighborFrame { world, camera }: NeighborFrame| (world, ProjectedCamera::from(camera));
+        Self { current: camera.into(), previous: previous.map(projected), next: next.map(projected) }
     }
 
-    /// The same seen by a camera that is the same at all frames.
+    /// Returns the same worlds with `camera` at every frame.
     #[must_use]
-    pub fn seen_from(&self, camera: &Shot) -> Self {
-        let seen = |beside: &Option<(Arc<World>, Found)>| {
-            beside.as_ref().map(|(world, _)| (Arc::clone(world), camera.clone().into()))
+    pub fn with_camera(&self, camera: &ShutterCamera) -> Self {
+        let with_camera = |neighbor: &Option<(Arc<World>, ProjectedCamera)>| {
+            neighbor.as_ref().map(|(world, _)| (Arc::clone(world), camera.clone().into()))
         };
-        Self { here: camera.clone().into(), previous: seen(&self.previous), next: seen(&self.next) }
+        Self { current: camera.clone().into(), previous: with_camera(&self.previous), next: with_camera(&self.next) }
     }
 
-    /// How many worlds it holds that are not `world`.
-    pub fn worlds_beside(&self, world: &Arc<World>) -> usize {
+    /// Number of neighboring worlds other than `world`.
+    pub fn count_other_worlds(&self, world: &Arc<World>) -> usize {
         [&self.previous, &self.next].into_iter().flatten().filter(|(other, _)| !Arc::ptr_eq(other, world)).count()
     }
 
-    fn beside(&self, which: Beside) -> Option<&(Arc<World>, Found)> {
+    fn neighbor(&self, which: AdjacentFrame) -> Option<&(Arc<World>, ProjectedCamera)> {
         match which {
-            Beside::Previous => self.previous.as_ref(),
-            Beside::Next => self.next.as_ref(),
+            AdjacentFrame::Previous => self.previous.as_ref(),
+            AdjacentFrame::Next => self.next.as_ref(),
         }
     }
 
-    /// How far the point of a vertex goes on the film, in pixels, x to the right and y down; nothing where it is not before both
-    /// cameras.
-    pub fn way(&self, which: Beside, world: &World, vertex: &Vertex, time: f32) -> Option<DVec2> {
-        let from = self.here.at(time)?.point(vertex.surface.point)?;
-        let Some((there, found)) = self.beside(which) else { return Some(DVec2::ZERO) };
-        let to = found.at(time)?.point(world.carried(vertex, time, there))?;
-        Some(to - from).filter(|way| way.is_finite())
+    /// Motion vector of a vertex, in pixels, x to the right and y down; `None` if the point is not
+    /// in front of both cameras.
+    pub fn motion_vector(&self, which: AdjacentFrame, world: &World, vertex: &Vertex, time: f32) -> Option<DVec2> {
+        let from = self.current.at(time)?.point(vertex.surface.point)?;
+        let Some((there, projected)) = self.neighbor(which) else { return Some(DVec2::ZERO) };
+        let to = projected.at(time)?.point(world.reproject(vertex, time, there))?;
+        Some(to - from).filter(|motion_vector| motion_vector.is_finite())
     }
 
-    /// The same of what lies without end in a direction: it goes only where the camera turns. Nothing where all rays are parallel.
-    pub fn way_of_direction(&self, which: Beside, direction: Vec3, time: f32) -> Option<DVec2> {
-        let from = self.here.at(time)?.direction(direction)?;
-        let Some((_, found)) = self.beside(which) else { return Some(DVec2::ZERO) };
-        Some(found.at(time)?.direction(direction)? - from).filter(|way| way.is_finite())
+    /// Motion vector of the background in a direction, which only camera rotation causes. `None` if
+    /// all rays of a camera are parallel.
+    pub fn background_motion_vector(&self, which: AdjacentFrame, direction: Vec3, time: f32) -> Option<DVec2> {
+        let from = self.current.at(time)?.direction(direction)?;
+        let Some((_, projected)) = self.neighbor(which) else { return Some(DVec2::ZERO) };
+        Some(projected.at(time)?.direction(direction)? - from).filter(|motion_vector| motion_vector.is_finite())
     }
 }

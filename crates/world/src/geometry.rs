@@ -1,107 +1,264 @@
-//! Counts for reports: what is placed, and what is stored for it.
+//! Geometry under one bounding volume hierarchy: the top level of the world, or a group of objects
+//! that is stored once and instantiated many times.
 
-use super::merged::Merged;
-use super::{Content, Level};
-use juggler_shape::AnyShape;
+use super::instance::{Instance, LeafItem};
+use super::large_mesh::{self, LargeMesh, RayCoherence};
+use super::merged_meshes::{self, MergedMeshes};
+use super::{Content, Object, Vertex, WorldHit};
+use juggler_bvh::{Bvh, Quality, SimdLevel};
+use juggler_material::{MaterialId, MaterialTable};
+use juggler_math::{Aabb, Ray, Transform, Vec3};
+use juggler_shape::{AnyShape, Hit, SurfaceDerivatives};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Counts for reports.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Maximum number of shapes in a world, counting the contents of every instance: each has an index
+/// of its own.
+pub const MAX_OBJECTS: u64 = u32::MAX as u64;
+
+/// Maximum nesting of instances, since each level is one recursion of traversal.
+pub const MAX_DEPTH: u32 = 16;
+
+/// Objects under one hierarchy, in a space of their own. A geometry may hold instances of other
+/// geometries.
+///
+/// Shapes are numbered as if every instance were replaced by copies of its contents: an instance
+/// takes as many indices as its geometry has shapes. So ties and hits are the same as without
+/// sharing.
+#[derive(Clone, Debug)]
 pub struct Geometry {
-    /// Shapes, those of shared levels counted as often as they are placed.
+    pub(super) objects: Vec<Instance>,
+    /// Index of each object's first shape; empty if all objects are shapes, whose index is their
+    /// position.
+    first_shapes: Vec<u32>,
+    /// Bounded objects in the order of the hierarchy's leaves.
+    pub(super) items: Vec<LeafItem>,
+    pub(super) bvh: Bvh,
+    /// Large meshes beside the hierarchy, in the top level only: in others at most a packet of rays
+    /// traverses them together.
+    pub(super) large_meshes: Vec<LargeMesh>,
+    /// Small meshes merged into a hierarchy of their own, in the top level only.
+    pub(super) merged_meshes: Option<MergedMeshes>,
+    /// Indices of the unbounded objects.
+    pub(super) unbounded: Vec<u32>,
+    bounds: Aabb,
+    moves: bool,
+    totals: GeometryTotals,
+}
+
+/// Totals of a geometry, counting the contents of every instance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GeometryTotals {
+    /// Number of shapes.
     pub shapes: u64,
-    /// Triangles of all meshes, polygons and triangles, counted as often as they are placed.
+    /// Number of triangles, of meshes, polygons and triangle shapes.
     pub triangles: u64,
-    /// Triangles that are stored.
-    pub unique_triangles: u64,
-    /// Instances of shared levels, those within others counted as often as they are placed.
+    /// Number of instances.
     pub instances: u64,
-    /// Lights.
-    pub lights: usize,
-    /// Shapes that emit light and are sampled as lights, those of shared levels counted as often as they are placed.
-    pub emitting_shapes: usize,
-    /// Bytes of shapes.
-    pub geometry_bytes: usize,
-    /// Bytes of the hierarchies, over the objects and within meshes.
-    pub bvh_bytes: usize,
-    /// Bytes of what is sampled as light: surfaces that emit, and the tree over all emitters.
-    pub emitter_bytes: usize,
-    /// Bytes of the pictures that textures show.
-    pub texture_bytes: usize,
-    /// Bytes of the background's picture and tables.
-    pub background_bytes: usize,
+    /// Maximum nesting depth, including this level.
+    pub depth: u32,
+}
+
+impl GeometryTotals {
+    fn from_objects(objects: &[Object]) -> Self {
+        objects.iter().fold(Self { depth: 1, ..Self::default() }, |sum, object| {
+            let more = match &object.content {
+                Content::Shape(shape) => Self { shapes: 1, triangles: shape.triangles() as u64, ..Self::default() },
+                Content::Geometry(geometry) => {
+                    let Self { instances, depth, .. } = geometry.totals;
+                    Self { instances: instances.saturating_add(1), depth: depth + 1, ..geometry.totals }
+                }
+            };
+            Self {
+                shapes: sum.shapes.saturating_add(more.shapes),
+                triangles: sum.triangles.saturating_add(more.triangles),
+                instances: sum.instances.saturating_add(more.instances),
+                depth: sum.depth.max(more.depth),
+            }
+        })
+    }
 }
 
 impl Geometry {
-    /// Of everything below `top`.
-    pub fn of(top: &Level, lights: usize) -> Self {
-        let totals = top.totals();
-        let mut geometry = Self {
-            shapes: totals.shapes,
-            triangles: totals.triangles,
-            instances: totals.instances,
-            lights,
-            ..Self::default()
-        };
-        let mut stored = Stored::default();
-        for level in levels(top) {
-            geometry.bvh_bytes += level.bvh.bytes() + level.merged.as_ref().map_or(0, Merged::bytes);
-            geometry.geometry_bytes += size_of_val(level.objects.as_slice()) + size_of_val(level.items.as_slice());
-            let shapes = level.objects.iter().filter_map(|placed| placed.content.as_shape());
-            shapes.for_each(|shape| stored.add(shape));
+    /// Builds the hierarchy over all bounded objects. The caller must ensure at most
+    /// [`MAX_OBJECTS`] shapes and a nesting depth of at most [`MAX_DEPTH`].
+    pub fn new(objects: Vec<Object>) -> Self {
+        Self::with_separate_meshes(objects, &[], &[])
+    }
+
+    /// Builds the top level of a world.
+    pub(super) fn top_level(objects: Vec<Object>) -> Self {
+        let large_meshes = large_mesh::indices(&objects);
+        let small_meshes = merged_meshes::indices(&objects, &large_meshes);
+        Self::with_separate_meshes(objects, &large_meshes, &small_meshes)
+    }
+
+    /// Builds a geometry whose objects `large_meshes` stay beside the hierarchy, and whose meshes
+    /// `small_meshes` are merged.
+    fn with_separate_meshes(objects: Vec<Object>, large_meshes: &[u32], small_meshes: &[u32]) -> Self {
+        let totals = GeometryTotals::from_objects(&objects);
+        debug_assert!(totals.shapes <= MAX_OBJECTS && totals.depth <= MAX_DEPTH);
+        let first_shapes = if totals.instances == 0 { Vec::new() } else { first_shapes(&objects) };
+        let shape_index = |object_index: u32| first_shapes.get(object_index as usize).copied().unwrap_or(object_index);
+        let merged_meshes = MergedMeshes::new(&objects, small_meshes, shape_index);
+        let separate: BTreeSet<u32> = large_meshes.iter().chain(small_meshes).copied().collect();
+        let indices = (0..objects.len() as u32).filter(|object_index| !separate.contains(object_index));
+        let (bounded, unbounded): (Vec<u32>, Vec<u32>) = indices.partition(|i| objects[*i as usize].is_bounded());
+        let boxes: Vec<Aabb> = bounded.iter().map(|object_index| objects[*object_index as usize].bounds()).collect();
+        let bvh = Bvh::build(&boxes, Quality::Balanced);
+        let leaf_order = bvh.order().iter().map(|position| bounded[*position as usize]);
+        let items = leaf_order
+            .map(|object_index| LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index)))
+            .collect();
+        let large_meshes = large_meshes
+            .iter()
+            .map(|object_index| {
+                LargeMesh::new(&objects[*object_index as usize], *object_index, shape_index(*object_index))
+            })
+            .collect();
+        let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let moves = objects.iter().any(Object::moves);
+        let objects = objects.into_iter().map(Instance::new).collect();
+        Self { objects, first_shapes, items, bvh, large_meshes, merged_meshes, unbounded, bounds, moves, totals }
+    }
+
+    /// Sets the SIMD instruction set of this geometry and all geometries below it.
+    pub(super) fn at_simd_level(&self, simd: SimdLevel) -> Self {
+        let mut geometry = self.clone();
+        geometry.bvh = geometry.bvh.with_simd_level(simd);
+        geometry.merged_meshes = geometry.merged_meshes.map(|merged_meshes| merged_meshes.with_simd_level(simd));
+        for instance in &mut geometry.objects {
+            match &mut instance.content {
+                Content::Geometry(below) => *below = Arc::new(below.at_simd_level(simd)),
+                Content::Shape(shape) => {
+                    if let AnyShape::Mesh(mesh) = &**shape {
+                        *shape = Arc::new(mesh.with_simd_level(simd).into());
+                    }
+                }
+            }
         }
-        geometry.unique_triangles = stored.triangles;
-        geometry.geometry_bytes += stored.bytes;
-        geometry.bvh_bytes += stored.bvh_bytes;
         geometry
     }
-}
 
-/// Shapes, each counted once however many objects share it.
-#[derive(Default)]
-struct Stored {
-    shapes: BTreeSet<usize>,
-    /// The arrays of meshes, which clones of a mesh share.
-    arrays: BTreeSet<usize>,
-    triangles: u64,
-    bytes: usize,
-    bvh_bytes: usize,
-}
-
-impl Stored {
-    fn add(&mut self, shape: &Arc<AnyShape>) {
-        if Arc::strong_count(shape) > 1 && !self.shapes.insert(Arc::as_ptr(shape).addr()) {
-            return;
-        }
-        self.bytes += size_of::<AnyShape>();
-        if let AnyShape::Mesh(mesh) = &**shape
-            && let Some(data) = mesh.data()
-            && !self.arrays.insert(std::ptr::from_ref(data).addr())
-        {
-            return;
-        }
-        self.triangles += shape.triangles() as u64;
-        self.bytes += shape.heap_bytes();
-        self.bvh_bytes += shape.bvh_bytes();
+    /// Bounding box of all bounded contents over the shutter interval; empty if there are none.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
     }
-}
 
-/// The level and all levels below it, each once.
-pub fn levels(top: &Level) -> Vec<&Level> {
-    let (mut found, mut seen, mut next) = (vec![top], BTreeSet::new(), 0);
-    while let Some(level) = found.get(next).copied() {
-        next += 1;
-        if level.totals().instances == 0 {
-            continue;
+    /// Whether any content moves while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// Whether all contents are bounded.
+    pub fn is_bounded(&self) -> bool {
+        self.unbounded.is_empty()
+    }
+
+    /// Totals of the contents.
+    pub fn totals(&self) -> &GeometryTotals {
+        &self.totals
+    }
+
+    /// Index of the first shape of the object of index `object_index`.
+    #[inline]
+    pub(super) fn first_shape(&self, object_index: u32) -> u32 {
+        self.first_shapes.get(object_index as usize).copied().unwrap_or(object_index)
+    }
+
+    /// Object that contains the shape `shape_index`, and the index of the shape within the object.
+    #[inline(always)]
+    pub(super) fn find(&self, shape_index: u32) -> (&Instance, u32) {
+        if self.first_shapes.is_empty() {
+            return (&self.objects[shape_index as usize], 0);
         }
-        for placed in &level.objects {
-            if let Content::Level(below) = &placed.content
-                && seen.insert(Arc::as_ptr(below).addr())
-            {
-                found.push(below);
+        let object_index = self.first_shapes.partition_point(|first| *first <= shape_index) - 1;
+        (&self.objects[object_index], shape_index - self.first_shapes[object_index])
+    }
+
+    /// Surface at a hit of the shape `shape_index`, in this geometry's space. `inherited` is the
+    /// material of objects that have none.
+    #[inline(always)]
+    pub(super) fn vertex(
+        &self,
+        ray: &Ray,
+        hit: &WorldHit,
+        shape_index: u32,
+        inherited: Option<MaterialId>,
+        materials: &MaterialTable,
+    ) -> Vertex {
+        let (instance, shape_index) = self.find(shape_index);
+        let material = instance.material.or(inherited);
+        match &instance.content {
+            Content::Shape(shape) => {
+                let material = material.unwrap_or(MaterialId::NONE);
+                let surface = instance.surface(shape, ray, &hit.hit, !materials.is_textured(material));
+                Vertex { surface, material, shape: hit.shape, primitive: hit.hit.primitive, tangents: None }
+            }
+            Content::Geometry(geometry) => {
+                geometry.instance_vertex(&instance.motion.at(ray.time), ray, hit, shape_index, material, materials)
             }
         }
     }
-    found
+
+    /// [`Geometry::vertex`] through the transform of an instance.
+    #[inline(never)]
+    fn instance_vertex(
+        &self,
+        transform: &Transform,
+        ray: &Ray,
+        hit: &WorldHit,
+        shape_index: u32,
+        inherited: Option<MaterialId>,
+        materials: &MaterialTable,
+    ) -> Vertex {
+        let vertex = self.vertex(&transform.ray_to_local(ray), hit, shape_index, inherited, materials);
+        Vertex { surface: vertex.surface.to_world(transform), ..vertex }
+    }
+
+    /// Derivatives ∂p/∂u and ∂p/∂v at a hit, in this geometry's space and in object space. `local`
+    /// is the object-space point of the vertex.
+    pub(super) fn derivatives(
+        &self,
+        local: Vec3,
+        hit: &Hit,
+        shape_index: u32,
+        time: f32,
+    ) -> Option<[SurfaceDerivatives; 2]> {
+        let (instance, shape_index) = self.find(shape_index);
+        let [derivatives, object_derivatives] = match &instance.content {
+            Content::Shape(shape) => [shape.derivatives(local, hit, time)?; 2],
+            Content::Geometry(geometry) => geometry.derivatives(local, hit, shape_index, time)?,
+        };
+        Some([derivatives.transformed(&instance.motion.at(time)), object_derivatives])
+    }
+
+    /// Bounding box of the shape `shape_index`, in this geometry's space; empty if it is unbounded.
+    pub(super) fn shape_bounds(&self, shape_index: u32) -> Aabb {
+        let (instance, shape_index) = self.find(shape_index);
+        let bounds = match &instance.content {
+            Content::Shape(shape) => shape.bounds(),
+            Content::Geometry(geometry) => geometry.shape_bounds(shape_index),
+        };
+        let bounds = instance.motion.aabb(&bounds);
+        if bounds.is_finite() { bounds } else { Aabb::EMPTY }
+    }
+
+    /// Intersects one ray with an instance of this geometry and replaces `best` by a nearer hit.
+    /// `first` is the index of the geometry's first shape.
+    #[inline(never)]
+    pub(super) fn closest(&self, ray: &mut Ray, first: u32, best: &mut WorldHit) {
+        self.intersect_rays(std::slice::from_mut(ray), RayCoherence::Incoherent, first, std::slice::from_mut(best));
+    }
+}
+
+/// Index of each object's first shape.
+fn first_shapes(objects: &[Object]) -> Vec<u32> {
+    let mut next = 0_u32;
+    let first = |object: &Object| {
+        let first = next;
+        next = next.wrapping_add(object.shapes() as u32);
+        first
+    };
+    objects.iter().map(first).collect()
 }

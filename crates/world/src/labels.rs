@@ -1,70 +1,70 @@
-//! What belongs together: which entry of the scene a shape comes from, and which group of lights what shines is of.
+//! Scene entries of shapes, and light groups of emitters.
 
-use super::{Origin, World};
-use juggler_camera::layer::LightGroup;
+use super::{EmitterId, World};
+use juggler_camera::aov::LightGroup;
 
-/// What belongs together.
+/// Scene entries of shapes, and light groups of emitters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Labels {
-    /// The first shape of each entry of the scene, rising; an entry may have none.
+    /// Index of the first shape of each scene entry, ascending; an entry may be empty.
     pub entries: Vec<u32>,
-    /// The group that each entry's light is of; nothing where none has one.
+    /// Light group of each scene entry; empty if no entry has one.
     pub groups: Vec<LightGroup>,
-    /// The group that the background's light is of.
+    /// Light group of the background.
     pub background: LightGroup,
 }
 
-/// Something that gives off light.
+/// A source of light in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LightSource {
-    /// One of those that are not told apart: there are too many, or it is light from everywhere.
-    Rest,
-    /// A light of the scene, by its number among [`World::lamps`].
-    Lamp(u32),
-    /// An entry of the scene that shines, by number.
+    /// Ambient light, or a source beyond the number of available groups.
+    Other,
+    /// A light of the scene, by index in [`World::lights`].
+    Light(u32),
+    /// An emissive scene entry, by index.
     Entry(u32),
-    /// What lies behind everything.
+    /// The background.
     Background,
 }
 
-/// What stands behind the groups of lights of a world in which each light is a group of its own.
+/// Light sources of a world in which each source is a light group of its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LightsApart {
-    /// By number: the light, and the group that it was of.
+pub struct SeparateLights {
+    /// Source and original group of each light group, by number.
     sources: Vec<(LightSource, LightGroup)>,
 }
 
-impl LightsApart {
-    /// The light behind a group, and the group that it was of.
+impl SeparateLights {
+    /// Source of a light group, and the source's original group.
     pub fn source(&self, group: LightGroup) -> (LightSource, LightGroup) {
-        self.sources.get(usize::from(group.0)).copied().unwrap_or((LightSource::Rest, LightGroup::REST))
+        self.sources.get(usize::from(group.0)).copied().unwrap_or((LightSource::Other, LightGroup::REST))
     }
 
-    /// All that are told apart.
-    pub fn all(&self) -> impl Iterator<Item = LightSource> {
+    /// All sources that have a group of their own.
+    pub fn sources(&self) -> impl Iterator<Item = LightSource> {
         self.sources.iter().skip(1).map(|(source, _)| *source)
     }
 
-    /// A group for that light, while there are numbers.
-    fn add(&mut self, source: LightSource, was: LightGroup) -> LightGroup {
+    /// Assigns a group to a source; [`LightGroup::REST`] if all numbers are taken.
+    fn assign_group(&mut self, source: LightSource, original: LightGroup) -> LightGroup {
         let Ok(number) = u16::try_from(self.sources.len()) else { return LightGroup::REST };
-        self.sources.push((source, was));
+        self.sources.push((source, original));
         LightGroup(number)
     }
 }
 
 impl World {
-    /// The same world, each of its lights a group of its own: its pictures are the same, and of all light it is known where
-    /// it comes from.
+    /// Makes each light source a light group of its own, which identifies the origin of all light.
+    /// Pictures stay the same.
     #[must_use]
-    pub fn with_lights_apart(mut self) -> (Self, LightsApart) {
-        let mut apart = LightsApart { sources: vec![(LightSource::Rest, LightGroup::REST)] };
-        let background = apart.add(LightSource::Background, self.background_group());
-        for (number, lamp) in (0..).zip(&mut self.lamps) {
-            lamp.group = apart.add(LightSource::Lamp(number), lamp.group);
+    pub fn with_separate_lights(mut self) -> (Self, SeparateLights) {
+        let mut separate = SeparateLights { sources: vec![(LightSource::Other, LightGroup::REST)] };
+        let background = separate.assign_group(LightSource::Background, self.background_group());
+        for (index, light) in (0..).zip(&mut self.lights) {
+            light.group = separate.assign_group(LightSource::Light(index), light.group);
         }
         let mut entries: Vec<(u32, LightGroup)> = Vec::new();
-        for shape in self.emitters.glowing() {
+        for shape in self.emitters.emissive_shapes() {
             let entry = self.entry_of(shape);
             if entries.last().is_none_or(|(last, _)| *last != entry) {
                 entries.push((entry, self.shape_group(shape)));
@@ -72,31 +72,31 @@ impl World {
         }
         let last = entries.last().map_or(0, |(last, _)| *last as usize + 1);
         let mut groups = vec![LightGroup::REST; last];
-        for (entry, was) in entries {
+        for (entry, original) in entries {
             if let Some(group) = groups.get_mut(entry as usize) {
-                *group = apart.add(LightSource::Entry(entry), was);
+                *group = separate.assign_group(LightSource::Entry(entry), original);
             }
         }
         let labels = Labels { groups, background, ..self.labels.clone() };
-        (self.with_labels(labels), apart)
+        (self.with_labels(labels), separate)
     }
 
-    /// With what belongs together.
+    /// Sets the labels.
     #[must_use]
     pub fn with_labels(mut self, labels: Labels) -> Self {
         self.has_groups = !labels.groups.is_empty()
             || labels.background != LightGroup::REST
-            || self.lamps.iter().any(|lamp| lamp.group != LightGroup::REST);
+            || self.lights.iter().any(|light| light.group != LightGroup::REST);
         self.labels = labels;
         self
     }
 
-    /// The entry of the scene that a shape comes from, by number.
+    /// Index of the scene entry that a shape belongs to.
     pub fn entry_of(&self, shape: u32) -> u32 {
         (self.labels.entries.partition_point(|first| *first <= shape) as u32).saturating_sub(1)
     }
 
-    /// The group of lights that a shape's light is of.
+    /// Light group of a shape's emission.
     #[inline]
     pub fn shape_group(&self, shape: u32) -> LightGroup {
         if self.labels.groups.is_empty() {
@@ -105,21 +105,21 @@ impl World {
         self.labels.groups.get(self.entry_of(shape) as usize).copied().unwrap_or_default()
     }
 
-    /// The group of lights that the background's light is of.
+    /// Light group of the background.
     pub fn background_group(&self) -> LightGroup {
         self.labels.background
     }
 
-    /// The group of lights that light is of.
+    /// Light group of a light sample.
     #[inline]
-    pub fn light_group(&self, origin: Origin) -> LightGroup {
+    pub fn light_group(&self, emitter: EmitterId) -> LightGroup {
         if !self.has_groups {
             return LightGroup::REST;
         }
-        match origin {
-            Origin::Lamp(number) => self.lamps.get(number as usize).map_or(LightGroup::REST, |lamp| lamp.group),
-            Origin::Shape(number) => self.shape_group(number),
-            Origin::Background => self.background_group(),
+        match emitter {
+            EmitterId::Light(index) => self.lights.get(index as usize).map_or(LightGroup::REST, |light| light.group),
+            EmitterId::Shape(shape) => self.shape_group(shape),
+            EmitterId::Background => self.background_group(),
         }
     }
 }

@@ -1,120 +1,120 @@
-//! Everything that can be seen, immutable while rendering.
+//! Scene geometry, materials and lights as the renderer queries them; immutable while rendering.
 
+use emissive_shape::EmissiveShape;
 use emitters::Emitters;
-use glowing::Glowing;
-use juggler_bsdf::Phong;
+use juggler_bsdf::PhongParameters;
 use juggler_light::background::AnyBackground;
 use juggler_material::medium::{Interior, InteriorId};
-use juggler_material::{MaterialId, MaterialTable, Shade, View};
+use juggler_material::{MaterialId, MaterialTable, Shading, ShadingView};
 use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use juggler_shape::Hit;
 use juggler_shape::surface::{Surface, Tangents};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-mod areas;
-mod carried;
 mod casters;
 mod differential;
+mod emissive_shape;
+mod emissive_surfaces;
 mod emitters;
-mod far;
 pub mod frames;
 mod geometry;
-mod glowing;
-mod inside;
-mod items;
+mod geometry_stats;
+mod infinite_lights;
+mod instance;
+mod interiors;
 mod labels;
-mod lamp;
-mod large;
-mod level;
+mod large_mesh;
 pub mod manifold;
-mod merged;
+mod merged_meshes;
 mod object;
-mod standing;
+mod reproject;
+mod scene_light;
 mod trace;
+mod world_shapes;
 
 #[cfg(test)]
 mod precision;
 #[cfg(test)]
 mod tests;
 
-pub use casters::{Caster, CasterId, Prospect};
-pub use differential::Differential;
-pub use emitters::{Lighting, Origin, Receiver};
-pub use geometry::Geometry;
+pub use casters::{CasterId, CausticCaster, VisibleCasters};
+pub use differential::SurfaceDifferential;
+pub use emitters::{EmitterId, EmitterSample, LightSampleContext};
+pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
+pub use geometry_stats::GeometryStats;
 pub use juggler_bvh::{SimdLevel, simd_levels};
-pub use labels::{Labels, LightSource, LightsApart};
-pub use lamp::{Lamp, Source};
-pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
+pub use labels::{Labels, LightSource, SeparateLights};
 pub use object::{Content, Object};
-pub use trace::{MAX_PASSED, Shadows};
+pub use scene_light::{LightState, SceneLight};
+pub use trace::{MAX_PASS_THROUGHS, ShadowMode};
 
-/// What a ray met, before anything is worked out about it.
+/// Result of intersecting a ray with the world, before the surface is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldHit {
-    /// As the shape gave it.
+    /// Distance, parametric coordinates and primitive, as the shape reports them.
     pub hit: Hit,
-    /// Number of the shape, instances of levels counted as what they hold.
-    object: u32,
+    /// Index of the shape, counting the contents of every instance.
+    shape: u32,
 }
 
 impl WorldHit {
-    /// Nothing was met.
-    pub const NONE: Self = Self { hit: Hit { t: f32::INFINITY, uv: Vec2::ZERO, part: 0 }, object: u32::MAX };
+    /// No hit.
+    pub const NONE: Self = Self { hit: Hit { t: f32::INFINITY, uv: Vec2::ZERO, primitive: 0 }, shape: u32::MAX };
 
-    /// Whether anything was met.
+    /// Whether the ray hit a surface.
     #[inline]
     pub fn is_some(&self) -> bool {
-        self.object != u32::MAX
+        self.shape != u32::MAX
     }
 
-    /// The nearer one stays; of two at the same distance the one with the lower number, so that the order of
-    /// traversal cannot show. The ray ends at it.
+    /// Keeps the nearer of the two hits and shortens the ray to it. At equal distance the hit with
+    /// the lower shape index wins, so that the order of traversal does not affect the result.
     #[inline(always)]
-    fn keep(&mut self, hit: Hit, object: u32, ray: &mut Ray) {
-        if hit.t < self.hit.t || (hit.t == self.hit.t && object < self.object) {
+    fn keep_nearer(&mut self, hit: Hit, shape: u32, ray: &mut Ray) {
+        if hit.t < self.hit.t || (hit.t == self.hit.t && shape < self.shape) {
             ray.t_max = hit.t;
-            *self = Self { hit, object };
+            *self = Self { hit, shape };
         }
     }
 }
 
-/// Of a ball around everything that has an end; 1 where nothing has.
+/// Radius of a sphere around all bounded objects; 1 if there are none.
 fn radius(bounds: &Aabb) -> f32 {
     let radius = 0.5 * bounds.extent().length();
     if radius > 0.0 && radius < f32::INFINITY { radius } else { 1.0 }
 }
 
-/// A point where a path touches the world.
+/// A point where a path hits a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// The surface there, world space.
+    /// Surface at the point, in world space.
     pub surface: Surface,
-    /// What it is made of.
+    /// Material of the surface.
     pub material: MaterialId,
-    /// Number of the shape, instances of levels counted as what they hold.
-    pub object: u32,
-    /// Triangle or face of the shape.
-    pub part: u32,
-    /// How the surface runs along its coordinates, where the material asks for it and the surface has an answer.
+    /// Index of the shape, counting the contents of every instance.
+    pub shape: u32,
+    /// Index of the triangle or face within the shape.
+    pub primitive: u32,
+    /// Tangents ∂p/∂u and ∂p/∂v, if the material needs them and the surface has them at this point.
     pub tangents: Option<Tangents>,
 }
 
-/// Everything that can be seen.
+/// The scene as the renderer queries it: geometry, materials, lights and background.
 #[derive(Clone)]
 pub struct World {
-    /// Shared by worlds in which the same things stand in the same places.
-    top: Arc<Level>,
+    /// Top-level geometry, shared by worlds with the same objects and transforms.
+    top: Arc<Geometry>,
     materials: MaterialTable,
-    lamps: Vec<Lamp>,
+    lights: Vec<SceneLight>,
     ambient: Rgb,
     background: AnyBackground,
     emitters: Emitters,
-    casters: Vec<Caster>,
+    casters: Vec<CausticCaster>,
     has_transparency: bool,
-    has_holes: bool,
+    has_opacity: bool,
     has_media: bool,
-    has_pictures: bool,
+    has_image_textures: bool,
     moves: bool,
     labels: Labels,
     has_groups: bool,
@@ -125,175 +125,183 @@ impl World {
     pub fn new(
         objects: Vec<Object>,
         materials: MaterialTable,
-        lights: impl IntoIterator<Item = impl Into<Lamp>>,
+        lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
     ) -> Self {
-        Self::over(Arc::new(Level::top(objects)), materials, lights, background)
+        Self::from_top_level(Arc::new(Geometry::top_level(objects)), materials, lights, background)
     }
 
-    /// The same objects with other materials, lights and background: nothing is built anew but what depends on those. Every
-    /// `Object::material` must be in `materials`. The result is bit for bit that of [`World::new`].
+    /// Creates a world with the same geometry and other materials, lights and background. Reuses
+    /// the bounding volume hierarchy. Every `Object::material` must be in `materials`. The result
+    /// is bit for bit that of [`World::new`].
     pub fn with_shading(
         &self,
         materials: MaterialTable,
-        lights: impl IntoIterator<Item = impl Into<Lamp>>,
+        lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
     ) -> Self {
-        Self::over(Arc::clone(&self.top), materials, lights, background)
+        Self::from_top_level(Arc::clone(&self.top), materials, lights, background)
     }
 
-    fn over(
-        top: Arc<Level>,
+    fn from_top_level(
+        top: Arc<Geometry>,
         materials: MaterialTable,
-        lights: impl IntoIterator<Item = impl Into<Lamp>>,
+        lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
     ) -> Self {
-        let levels = geometry::levels(&top);
-        let used = || levels.iter().flat_map(|level| &level.objects).filter_map(|placed| placed.material);
+        let geometries = geometry_stats::geometries(&top);
+        let used = || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material);
         let has_transparency = used().any(|id| materials.is_transparent(id));
-        let has_holes = used().any(|id| materials.has_holes(id));
+        let has_opacity = used().any(|id| materials.has_opacity(id));
         let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
-        let mut lamps: Vec<Lamp> = lights.into_iter().map(Into::into).collect();
-        let ambient = lamps.iter().fold(Rgb::BLACK, |sum, lamp| sum + lamp.ambient);
-        lamps.retain(|lamp| lamp.ambient.is_black());
-        let has_pictures = materials.textures().image_bytes() > 0;
-        let moves = top.moves() || lamps.iter().any(Lamp::moves);
-        let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials), &background, radius(&top.bounds()));
-        let casters = Caster::all(&top, &materials);
+        let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
+        let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
+        lights.retain(|light| light.ambient.is_black());
+        let has_image_textures = materials.textures().image_bytes() > 0;
+        let moves = top.moves() || lights.iter().any(SceneLight::moves);
+        let emitters =
+            Emitters::new(&lights, EmissiveShape::collect(&top, &materials), &background, radius(&top.bounds()));
+        let casters = CausticCaster::collect(&top, &materials);
         Self {
             top,
             materials,
-            lamps,
+            lights,
             ambient,
             background,
             emitters,
             casters,
             has_transparency,
-            has_holes,
+            has_opacity,
             has_media,
-            has_pictures,
+            has_image_textures,
             moves,
             labels: Labels::default(),
             has_groups: false,
         }
     }
 
-    /// The same world for another vector unit than the best of this machine: for tests and measurements.
+    /// Sets the SIMD instruction set of all ray queries, for tests and measurements. The default is
+    /// the best one that the machine supports.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.top = Arc::new(Arc::unwrap_or_clone(self.top).at_simd_level(level));
         self.emitters = self.emitters.with_simd_level(level);
         self
     }
 
-    /// What its shapes are made of.
+    /// Materials of all shapes.
     #[inline]
     pub fn materials(&self) -> &MaterialTable {
         &self.materials
     }
 
-    /// What belongs together.
+    /// Scene entries and light groups of shapes.
     #[inline]
     pub fn labels(&self) -> &Labels {
         &self.labels
     }
 
-    /// The lights that shine from somewhere.
+    /// Lights of the scene, without ambient ones.
     #[inline]
-    pub fn lamps(&self) -> &[Lamp] {
-        &self.lamps
+    pub fn lights(&self) -> &[SceneLight] {
+        &self.lights
     }
 
-    /// Light that is everywhere.
+    /// Radiance of all ambient lights together, which reaches every point unoccluded.
     #[inline]
     pub fn ambient(&self) -> Rgb {
         self.ambient
     }
 
-    /// Light that a ray sees which leaves the world.
+    /// Background radiance along a ray that leaves the world.
     #[inline]
-    pub fn background(&self, ray: &Ray) -> Rgb {
+    pub fn background_radiance(&self, ray: &Ray) -> Rgb {
         self.background.radiance(ray)
     }
 
-    /// Whether anything moves while the shutter is open, so that the time of a ray makes a difference.
+    /// Whether anything moves while the shutter is open, so that the time of a ray matters.
     #[inline]
     pub fn moves(&self) -> bool {
         self.moves
     }
 
-    /// A box around all bounded objects, wherever they come; empty when there are none.
+    /// Bounding box of all bounded objects over the shutter interval, in world space; empty if
+    /// there are none.
     pub fn bounds(&self) -> Aabb {
         self.top.bounds()
     }
 
-    /// Whether both hold the very same objects in memory.
+    /// Whether both worlds share their geometry in memory.
     pub fn shares_geometry_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.top, &other.top)
     }
 
-    /// A box around a shape by its number, which must be that of a [`Vertex`]; empty when it has no end.
-    pub fn shape_bounds(&self, number: u32) -> Aabb {
-        self.top.shape_bounds(number)
+    /// Bounding box of a shape, in world space; empty if the shape is unbounded. `shape` is
+    /// [`Vertex::shape`] of some vertex.
+    pub fn shape_bounds(&self, shape: u32) -> Aabb {
+        self.top.shape_bounds(shape)
     }
 
-    /// The numbers of the classic material at a vertex; `None` where it is of another kind.
+    /// Parameters of the classic Phong material at a vertex; `None` if the material is of another
+    /// kind.
     #[inline]
-    pub fn phong(&self, vertex: &Vertex) -> Option<Cow<'_, Phong>> {
+    pub fn phong(&self, vertex: &Vertex) -> Option<Cow<'_, PhongParameters>> {
         self.materials.phong(vertex.material, &vertex.surface)
     }
 
-    /// The material at a vertex, seen from `wo`, with an index of refraction of `around_ior` around it; `pick` is a number in [0, 1) for what is one thing or another by
-    /// chance.
+    /// Evaluates the material at a vertex, viewed from `wo`. `outside_ior` is the index of
+    /// refraction of the surrounding medium. `u_choice`, in [0, 1), selects among mixed materials.
     #[inline(always)]
-    pub fn shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32) -> Shade {
-        let mut shade = Shade::black();
-        self.fill_shade(vertex, wo, around_ior, pick, &mut shade);
-        shade
+    pub fn shade(&self, vertex: &Vertex, wo: Vec3, outside_ior: f32, u_choice: f32) -> Shading {
+        let mut shading = Shading::black();
+        self.shade_into(vertex, wo, outside_ior, u_choice, &mut shading);
+        shading
     }
 
-    /// [`World::shade`] into a black `shade`, which is too large to be handed on by value.
+    /// Writes the result of [`World::shade`] to `shading`, which must be black. The structure is
+    /// too large to return by value cheaply.
     #[inline]
-    pub fn fill_shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32, shade: &mut Shade) {
+    pub fn shade_into(&self, vertex: &Vertex, wo: Vec3, outside_ior: f32, u_choice: f32, shading: &mut Shading) {
         let tangents = vertex.tangents.as_ref();
-        let view = View { wo, around_ior, pick, tangents, ..View::of(&vertex.surface) };
-        self.materials.fill(vertex.material, &view, shade);
+        let view = ShadingView { wo, outside_ior, u_choice, tangents, ..ShadingView::along_normal(&vertex.surface) };
+        self.materials.shade_into(vertex.material, &view, shading);
     }
 
-    /// Whether nothing about the material at a vertex is left to chance.
+    /// Whether shading the vertex needs no random choice among materials.
     #[inline]
     pub fn is_simple(&self, vertex: &Vertex) -> bool {
         self.materials.is_simple(vertex.material)
     }
 
-    /// What is behind the surface of a vertex, if light comes there.
+    /// Interior of the solid that the surface bounds; `None` if the material transmits no light
+    /// into it.
     #[inline]
     pub fn interior(&self, vertex: &Vertex) -> Option<InteriorId> {
         self.materials.interior(vertex.material)
     }
 
-    /// All that is behind surfaces.
+    /// Interiors of all solids.
     #[inline]
     pub fn interiors(&self) -> &[Interior] {
         self.materials.interiors()
     }
 
-    /// The surface where `ray` made `hit`.
+    /// Surface at a hit of `ray`.
     #[inline(always)]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
-        let mut vertex = self.top.vertex(ray, hit, hit.object, None, &self.materials);
+        let mut vertex = self.top.vertex(ray, hit, hit.shape, None, &self.materials);
         if self.materials.needs_tangents(vertex.material) {
             vertex.tangents = self.tangents(ray, hit, &vertex);
         }
         vertex
     }
 
-    /// Counts for reports.
-    pub fn geometry(&self) -> Geometry {
+    /// Counts and memory use of the geometry, for reports.
+    pub fn geometry_stats(&self) -> GeometryStats {
         let texture_bytes = self.materials.textures().image_bytes();
         let background_bytes = self.background.heap_bytes();
         let emitter_bytes = self.emitters.heap_bytes();
-        let emitting_shapes = self.emitters.glowing().count();
-        let all = Geometry::of(&self.top, self.lamps.len());
-        Geometry { emitting_shapes, texture_bytes, background_bytes, emitter_bytes, ..all }
+        let emitting_shapes = self.emitters.emissive_shapes().count();
+        let all = GeometryStats::from_geometry(&self.top, self.lights.len());
+        GeometryStats { emitting_shapes, texture_bytes, background_bytes, emitter_bytes, ..all }
     }
 }

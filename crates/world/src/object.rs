@@ -1,79 +1,82 @@
-//! What a level is made of: shapes and instances of other levels, each in its place.
+//! Contents of a [`Geometry`]: shapes and instances of other geometries, each with its transform.
 
-use super::Level;
+use super::Geometry;
 use juggler_material::MaterialId;
 use juggler_math::{Aabb, Motion};
 use juggler_shape::AnyShape;
 use std::sync::Arc;
 
-/// A shape or a shared level in its place.
+/// A shape or an instance of a geometry.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// What it is.
+    /// The shape, or the geometry that is instantiated.
     pub content: Content,
-    /// Its own space → that of the level that holds it.
+    /// Transform from object space to the space of the containing geometry.
     pub motion: Motion,
-    /// What it is made of; `None`: whatever the instance is made of that holds it, black where nothing says.
+    /// Material; `None` inherits that of the enclosing instance, which is black if no instance has
+    /// one.
     pub material: Option<MaterialId>,
 }
 
-/// What an object is.
+/// Content of an object.
 #[derive(Clone, Debug)]
 pub enum Content {
-    /// A prepared shape.
+    /// A shape, prepared for intersection.
     Shape(Arc<AnyShape>),
-    /// Objects that are stored once, however often they are placed.
-    Level(Arc<Level>),
+    /// A geometry, stored once for all of its instances.
+    Geometry(Arc<Geometry>),
 }
 
 impl Content {
-    /// The shape, if it is one.
+    /// Returns the shape; `None` for an instance.
     pub fn as_shape(&self) -> Option<&Arc<AnyShape>> {
         match self {
             Self::Shape(shape) => Some(shape),
-            Self::Level(_) => None,
+            Self::Geometry(_) => None,
         }
     }
 }
 
 impl Object {
-    /// A prepared shape.
+    /// Creates an object from a prepared shape.
     pub fn new(shape: AnyShape, motion: impl Into<Motion>, material: MaterialId) -> Self {
         Self { content: Content::Shape(Arc::new(shape)), motion: motion.into(), material: Some(material) }
     }
 
-    /// Whether it has an end.
+    /// Whether the object has a finite extent.
     pub fn is_bounded(&self) -> bool {
         match &self.content {
             Content::Shape(_) => !self.bounds().is_empty(),
-            Content::Level(level) => level.is_bounded() && self.bounds().is_empty() == level.bounds().is_empty(),
+            Content::Geometry(geometry) => {
+                geometry.is_bounded() && self.bounds().is_empty() == geometry.bounds().is_empty()
+            }
         }
     }
 
-    /// A box around all of it that has an end, wherever it comes, in the space of the level that holds it; empty when
-    /// nothing has.
+    /// Bounding box of the bounded parts over the shutter interval, in the space of the containing
+    /// geometry; empty if nothing is bounded.
     pub fn bounds(&self) -> Aabb {
         let bounds = match &self.content {
             Content::Shape(shape) => self.motion.aabb(&shape.bounds()),
-            Content::Level(level) => self.motion.aabb(&level.bounds()),
+            Content::Geometry(geometry) => self.motion.aabb(&geometry.bounds()),
         };
         if bounds.is_finite() { bounds } else { Aabb::EMPTY }
     }
 
-    /// Whether it, or anything in it, moves while the shutter is open.
+    /// Whether the object, or anything in it, moves while the shutter is open.
     pub fn moves(&self) -> bool {
         self.motion.moves()
             || match &self.content {
                 Content::Shape(_) => false,
-                Content::Level(level) => level.moves(),
+                Content::Geometry(geometry) => geometry.moves(),
             }
     }
 
-    /// How many shapes it stands for.
+    /// Number of shapes, counting the contents of every instance.
     pub fn shapes(&self) -> u64 {
         match &self.content {
             Content::Shape(_) => 1,
-            Content::Level(level) => level.totals().shapes,
+            Content::Geometry(geometry) => geometry.totals().shapes,
         }
     }
 }

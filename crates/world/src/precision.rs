@@ -1,14 +1,14 @@
-//! Follow-up and shadow rays of every shape at hostile sizes and places, under hostile transforms, from hostile
-//! cameras, through the same code that renders.
+//! Self-intersection of rays that leave surfaces, and shadow rays: every shape at extreme sizes and
+//! positions, under extreme transforms and from extreme distances, through the code that renders.
 
 use super::tests::world_with;
 use super::*;
 use juggler_math::testing::Random;
-use juggler_math::{DVec3, Frame, Transform, Vec3, fun, robust};
-use juggler_shape::testing::{ball, distance, is_convex, is_flat, is_solid};
+use juggler_math::{DVec3, Frame, Transform, Vec3, portable, robust};
+use juggler_shape::testing::{bounding_sphere, distance, is_convex, is_flat, is_solid};
 use juggler_shape::{AnyShape, Cuboid, Mesh, MeshData, Plane, Sphere};
 
-/// One object at its place.
+/// One object with its transform.
 struct Subject {
     world: World,
     shape: AnyShape,
@@ -18,7 +18,7 @@ struct Subject {
 
 const SIZES: [f32; 5] = [1e-4, 1e-2, 1.0, 1e3, 1e6];
 
-/// Linear maps: the first two keep angles.
+/// Number of linear maps; the first two preserve angles.
 const MAPS: usize = 5;
 
 fn linear(map: usize, scale: f32, random: &mut Random) -> Transform {
@@ -27,7 +27,7 @@ fn linear(map: usize, scale: f32, random: &mut Random) -> Transform {
         0 => by(1.0, 1.0, 1.0),
         1 => by(-1.0, 1.0, 1.0).then(&random.rotation()),
         2 => random.rotation().then(&by(1.0, 5.0, 1.0)).then(&random.rotation()),
-        // A stretch between two turns is a shear.
+        // Nonuniform scaling between two rotations shears.
         3 => random.rotation().then(&by(3.0, 1.0 / 3.0, 1.0)).then(&random.rotation()),
         _ => (0..5).fold(by(1.0, 1.0, 1.0), |all, _| {
             all.then(&random.rotation()).then(&Transform::scale(Vec3::new(1.3, 0.8, 1.0)).unwrap())
@@ -36,9 +36,10 @@ fn linear(map: usize, scale: f32, random: &mut Random) -> Transform {
 }
 
 impl Subject {
-    /// `size`: in the world; `far`: how many sizes from the origin of coordinates, 0 for where the shape has it.
+    /// Places the shape. `size` is its size in world space, and `far` its distance from the origin
+    /// in sizes; 0 leaves it where the shape defines it.
     fn new(shape: &AnyShape, map: usize, size: f32, far: f32, random: &mut Random) -> Self {
-        let (center, radius) = ball(shape);
+        let (center, radius) = bounding_sphere(shape);
         let linear = linear(map, size / radius, random);
         let place = random.unit_vector() * (far * size) - linear.point(center);
         let place = if far > 0.0 { place } else { Vec3::ZERO };
@@ -47,14 +48,14 @@ impl Subject {
         Self { world, shape: shape.clone(), transform, size }
     }
 
-    /// A point of the surface and its normal there, object space.
+    /// Samples a point on the surface, with its normal; object space.
     fn place_on(&self, random: &mut Random) -> (Vec3, Vec3) {
-        let (sin, cos) = fun::sin_cos_turns(random.f32());
+        let (sin, cos) = portable::sin_cos_turns(random.f32());
         match &self.shape {
             AnyShape::Plane(_) => (random.point(1.0) * Vec3::new(1.0, 0.0, 1.0), Vec3::Y),
             AnyShape::Tube(t) => (Vec3::new(cos, random.range(-1.0, 1.0), sin) * t.radius, Vec3::new(cos, 0.0, sin)),
             shape => loop {
-                let (center, radius) = ball(shape);
+                let (center, radius) = bounding_sphere(shape);
                 let from = center + random.unit_vector() * (3.0 * radius);
                 if let Some(sample) = shape.sample(from, random.vec2()) {
                     return (sample.point, sample.normal);
@@ -63,20 +64,20 @@ impl Subject {
         }
     }
 
-    /// A hit from very near to very far.
+    /// Hits the surface from a distance between very small and very large.
     fn arrive(&self, random: &mut Random) -> Option<Surface> {
         let target = self.transform.point(self.place_on(random).0);
         let away = [1e-3, 0.5, 3.0, 100.0, 1e4, 1e6][random.below(6)] * self.size;
-        self.meet(&towards(target + random.unit_vector() * away, target))
+        self.intersect(&towards(target + random.unit_vector() * away, target))
     }
 
-    fn meet(&self, ray: &Ray) -> Option<Surface> {
+    fn intersect(&self, ray: &Ray) -> Option<Surface> {
         let mut ray = *ray;
         let hit = self.world.closest(&mut ray);
         hit.is_some().then(|| self.world.vertex(&ray, &hit).surface)
     }
 
-    /// How far a world point is from the surface that rays meet, in `f64`.
+    /// Distance of a surface point from the exact surface, in world space and `f64`.
     fn off(&self, surface: &Surface) -> f64 {
         let from_place = surface.point.as_dvec3() - self.transform.origin().as_dvec3();
         if let (AnyShape::Sphere(sphere), Some(scale)) = (&self.shape, self.transform.uniform_scale()) {
@@ -85,14 +86,15 @@ impl Subject {
         let (back, there) = (self.transform.inverse_matrix(), self.transform.matrix());
         let local: DVec3 = (0..3).map(|i| back.col(i).as_dvec3() * from_place[i]).sum();
         let from_shape = match &self.shape {
-            // Rounding may carry a point over the edge of a slender triangle: only the way off its plane counts.
+            // Rounding may move a point across the edge of a narrow triangle: measure only its
+            // distance from the plane.
             AnyShape::Triangle(triangle) => {
                 let [a, b, c] = triangle.vertices.map(|corner| corner.as_dvec3());
                 (b - a).cross(c - a).normalize().dot(local - a).abs()
             }
             shape => distance(shape, local),
         };
-        // Planes along the surface that are one apart in object space are so far apart in the world.
+        // Convert the object-space distance to world space.
         let across = DVec3::from_array(std::array::from_fn(|i| there.col(i).dot(surface.normal).into()));
         from_shape * across.length()
     }
@@ -102,29 +104,30 @@ fn towards(from: Vec3, to: Vec3) -> Ray {
     Ray::new(from, (to.as_dvec3() - from.as_dvec3()).normalize_or(DVec3::X).as_vec3())
 }
 
-/// A direction to one side of a surface and its angle with it, flat ones as likely as steep ones.
+/// Samples a direction on one side of a surface, uniform in the logarithm of its angle to the
+/// surface; returns both.
 fn leave(random: &mut Random, normal: Vec3, side: f32, flattest: f32) -> (Vec3, f32) {
-    let angle = fun::exp(random.range(fun::ln(flattest), fun::ln(std::f32::consts::FRAC_PI_2)));
-    let ((sin, cos), (up, along)) = (fun::sin_cos_turns(random.f32()), fun::sin_cos(angle));
+    let angle = portable::exp(random.range(portable::ln(flattest), portable::ln(std::f32::consts::FRAC_PI_2)));
+    let ((sin, cos), (up, along)) = (portable::sin_cos_turns(random.f32()), portable::sin_cos(angle));
     let frame = Frame::around(normal);
     let flat = (frame.tangent.as_dvec3() * f64::from(cos) + frame.bitangent.as_dvec3() * f64::from(sin)).normalize();
     let direction = flat * f64::from(along) + normal.as_dvec3() * f64::from(up * side);
     (direction.normalize().as_vec3(), angle)
 }
 
-/// What became of the rays that left one object.
+/// Results for the rays that left one object.
 #[derive(Debug, Default)]
 struct Tally {
     hits: usize,
-    /// Left outwards, or to either side of a flat shape, and met it again.
+    /// Rays that left outwards, or on either side of a flat shape, and hit the shape again.
     acne: usize,
-    /// Left inwards and met nothing, or the outside.
+    /// Rays that left inwards and hit nothing, or the outside.
     leaks: usize,
-    /// Points that are off by more than their error.
+    /// Points whose actual error exceeds the stated bound.
     wrong: usize,
-    /// How many times as large as what a point is off its error is.
+    /// Ratios of the stated error bound to the actual error.
     width: Vec<f64>,
-    /// The longest way from point to start, in ulps of the largest coordinate.
+    /// Largest distance from surface point to ray origin, in ulps of the largest coordinate.
     moved: f32,
 }
 
@@ -139,9 +142,9 @@ impl Tally {
             tally.measure(subject, &surface, ulp);
             for side in [1.0, -1.0] {
                 let (direction, _) = leave(random, surface.normal, side, 1e-4);
-                let ray = surface.spawn(direction, 0.0);
+                let ray = surface.spawn_ray(direction, 0.0);
                 tally.moved = tally.moved.max(ray.origin.distance(surface.point) / ulp);
-                let next = subject.meet(&ray);
+                let next = subject.intersect(&ray);
                 let into = side < 0.0 && is_solid(&subject.shape);
                 tally.acne += usize::from(next.is_some() && !into);
                 tally.leaks += usize::from(into && !next.is_some_and(|s| s.normal.dot(direction) > 0.0));
@@ -151,9 +154,9 @@ impl Tally {
     }
 
     fn measure(&mut self, subject: &Subject, surface: &Surface, ulp: f32) {
-        let (off, error) = (subject.off(surface), f64::from(surface.error));
-        // The corners of a polygon need not be exactly in its plane, and where coordinates are coarse, rounding may
-        // carry a point along its face over the edge.
+        let (off, error) = (subject.off(surface), f64::from(surface.position_error));
+        // The corners of a polygon need not be exactly coplanar, and where coordinates are coarse,
+        // rounding may move a point on a face across its edge.
         let coarse = ulp > 16.0 * f32::EPSILON * subject.size;
         let slack = if coarse || matches!(subject.shape, AnyShape::Polygon(_)) { f64::from(ulp) } else { 0.0 };
         self.wrong += usize::from(off > error + slack);
@@ -163,21 +166,21 @@ impl Tally {
     }
 }
 
-/// The least extent of a shape against its size.
+/// Smallest extent of a shape divided by its size.
 fn thinness(shape: &AnyShape) -> f32 {
-    let (extent, size) = (shape.bounds().extent().min_element(), ball(shape).1);
+    let (extent, size) = (shape.bounds().extent().min_element(), bounding_sphere(shape).1);
     if extent > 0.0 { (extent / size).min(1.0) } else { 1.0 }
 }
 
-/// `JUGGLER_HITS=2000` for 100,000 hits and more of each shape.
+/// `JUGGLER_HITS=2000` tests 100,000 hits and more of each shape.
 #[test]
 fn rays_leave_every_shape_and_stay_in_every_solid() {
     let count = std::env::var("JUGGLER_HITS").ok().and_then(|text| text.parse().ok()).unwrap_or(100);
     let mut shapes = AnyShape::examples();
     shapes.iter_mut().for_each(|shape| shape.prepare().unwrap());
-    // The mesh that is no solid folds back on itself: its rays may well meet it again.
+    // The open mesh folds back on itself, so that its rays may hit it again.
     let meshes = |shape: &AnyShape| matches!(shape, AnyShape::Mesh(_));
-    // Points of axis planes are exact, or all off by the same.
+    // Points on axis-aligned planes are exact, or all have the same error.
     let round = |shape: &AnyShape| matches!(shape, AnyShape::Sphere(_) | AnyShape::Tube(_) | AnyShape::Mesh(_));
     let closed = |shape: &AnyShape| is_flat(shape) || is_convex(shape) || meshes(shape) && is_solid(shape);
     for shape in shapes.iter().filter(|shape| closed(shape)) {
@@ -190,19 +193,20 @@ fn rays_leave_every_shape_and_stay_in_every_solid() {
                 let width = tally.width.get(tally.width.len() / 2).copied().unwrap_or(0.0);
                 let name = format!("{shape:?} map {map} size {size} far {far}");
                 assert!((tally.hits > 0 || far > 1e4) && tally.acne == 0 && tally.wrong == 0, "{name}: {tally:?}");
-                // Beside an edge sharper than a cube's a step inwards can lead out of the other face, the more so the
-                // coarser coordinates are against the shape; what is thinner than their steps has no inside at all.
+                // Beside an edge sharper than a cube's, an offset inwards may leave through the
+                // other face. The probability grows with the coarseness of coordinates relative to
+                // the shape; a shape thinner than the offset has no inside at all.
                 let sharp = meshes(shape) || map > 1 || far > 1.0;
                 let share = if sharp { 0.01 + 16.0 * f32::EPSILON * far / thinness(shape) } else { 0.0 };
                 assert!(tally.leaks as f32 <= (share * tally.hits as f32).ceil(), "{name}: {tally:?}");
-                // What moves is a few dozen units in the last place of the largest coordinate.
+                // Offsets are a few dozen ulps of the largest coordinate.
                 assert!(tally.moved < 40.0 && (width < 70.0 || !round(shape)), "{name}: {tally:?}");
             }
         }
     }
 }
 
-/// A sphere as ground passes through the origin of coordinates, where they are finer than against its radius.
+/// A huge sphere as ground through the origin, where coordinates are much finer than its radius.
 #[test]
 fn rays_leave_huge_spheres_where_coordinates_are_small() {
     let mut random = Random::new(32);
@@ -217,11 +221,14 @@ fn rays_leave_huge_spheres_where_coordinates_are_small() {
                     let target = random.unit_vector() * (spread * radius * random.f32());
                     let out = random.unit_vector();
                     let from = target + out * (away * radius).copysign(out.dot(up));
-                    let Some(surface) = subject.meet(&towards(from, target)) else { continue };
-                    assert!(subject.off(&surface) <= surface.error.into(), "{radius} {spread} {away}: {surface:?}");
+                    let Some(surface) = subject.intersect(&towards(from, target)) else { continue };
+                    assert!(
+                        subject.off(&surface) <= surface.position_error.into(),
+                        "{radius} {spread} {away}: {surface:?}"
+                    );
                     for side in [1.0, -1.0] {
                         let (direction, _) = leave(&mut random, surface.normal, side, 1e-4);
-                        let next = subject.meet(&surface.spawn(direction, 0.0));
+                        let next = subject.intersect(&surface.spawn_ray(direction, 0.0));
                         let fine = if side > 0.0 { next.is_none() } else { next.is_some() };
                         assert!(fine, "{radius} {spread} {away}: {surface:?} {direction} {next:?}");
                     }
@@ -231,7 +238,8 @@ fn rays_leave_huge_spheres_where_coordinates_are_small() {
     }
 }
 
-/// A light that sits on something is not hidden by it, and is hidden by what is just before it.
+/// A light on a surface is not occluded by that surface, and is occluded by anything just in front
+/// of it.
 #[test]
 fn shadow_rays_end_before_what_the_light_sits_on() {
     let mut random = Random::new(33);
@@ -248,19 +256,20 @@ fn shadow_rays_end_before_what_the_light_sits_on() {
                 let (normal, to) = (random.unit_vector(), light - point);
                 let error = robust::gamma(4) * point.abs().dot(normal.abs());
                 let here = Surface::new(point, error, normal, Vec2::ZERO);
-                let ray = here.spawn_to(to.normalize(), to.length(), 0.0);
-                assert!(subject.meet(&ray).is_none(), "{shape:?} {map} {size} {far}: {ray:?} {angle}");
+                let ray = here.spawn_ray_to(to.normalize(), to.length(), 0.0);
+                assert!(subject.intersect(&ray).is_none(), "{shape:?} {map} {size} {far}: {ray:?} {angle}");
                 let behind = light - out * (2e-3 * size);
-                let (to, way) = (behind - point, (behind - point).length());
+                let (to, distance_behind) = (behind - point, (behind - point).length());
                 let deep = angle > 0.5 && distance < 2.0 * size;
-                let met = subject.meet(&here.spawn_to(to / way, way, 0.0)).is_some();
-                assert!(met || !deep, "{shape:?} {map} {size} {far}: {point} {behind} {angle}");
+                let is_hit =
+                    subject.intersect(&here.spawn_ray_to(to / distance_behind, distance_behind, 0.0)).is_some();
+                assert!(is_hit || !deep, "{shape:?} {map} {size} {far}: {point} {behind} {angle}");
             }
         }
     }
 }
 
-/// From inside, rays at what is left and right of an edge, and what they send on, find a wall.
+/// Rays from inside at points beside an edge hit a wall, and so do rays that leave there.
 #[test]
 fn closed_boxes_are_closed_along_their_edges() {
     let corner = |i: u8| Vec3::from_array([0, 1, 2].map(|axis| f32::from(i >> axis & 1) - 0.5));
@@ -282,9 +291,10 @@ fn closed_boxes_are_closed_along_their_edges() {
                     let other = (axis + 1 + random.below(2)) % 3;
                     target[other] = (0.5 - near * random.f32()).copysign(target[other]);
                     let ray = towards(subject.transform.point(random.point(0.4)), subject.transform.point(target));
-                    let surface = subject.meet(&ray).unwrap_or_else(|| panic!("{map} {size} {far} {near}: {ray:?}"));
+                    let surface =
+                        subject.intersect(&ray).unwrap_or_else(|| panic!("{map} {size} {far} {near}: {ray:?}"));
                     let (direction, _) = leave(&mut random, surface.normal, -1.0, 1e-4);
-                    let next = subject.meet(&surface.spawn(direction, 0.0));
+                    let next = subject.intersect(&surface.spawn_ray(direction, 0.0));
                     assert!(next.is_some(), "{map} {size} {far} {near}: {surface:?} {direction}");
                 }
             }
@@ -292,7 +302,7 @@ fn closed_boxes_are_closed_along_their_edges() {
     }
 }
 
-/// A wall as thin as a few dozen units in the last place of its coordinates still has two sides.
+/// A wall a few dozen ulps thick still has two sides.
 #[test]
 fn thin_walls_are_not_jumped_over() {
     let mut random = Random::new(35);
@@ -306,9 +316,9 @@ fn thin_walls_are_not_jumped_over() {
                 let from =
                     target + Vec3::new(random.f32(), random.f32(), if random.below(2) == 0 { 1.0 } else { -1.0 });
                 let ray = towards(subject.transform.point(from), subject.transform.point(target));
-                let surface = subject.meet(&ray).unwrap_or_else(|| panic!("{map} {size} {far}: {ray:?}"));
+                let surface = subject.intersect(&ray).unwrap_or_else(|| panic!("{map} {size} {far}: {ray:?}"));
                 let (inwards, _) = leave(&mut random, surface.normal, -1.0, 0.1);
-                let next = subject.meet(&surface.spawn(inwards, 0.0));
+                let next = subject.intersect(&surface.spawn_ray(inwards, 0.0));
                 let fine = next.is_some_and(|next| next.normal.dot(inwards) > 0.0);
                 assert!(fine, "{map} {size} {far}: {surface:?} {inwards} {next:?}");
             }

@@ -1,9 +1,9 @@
-//! The world's answers against asking every object in turn.
+//! Compares ray queries with brute force over all objects.
 
-use super::items::Placed;
+use super::instance::Instance;
 use super::*;
 use juggler_light::background::Solid;
-use juggler_material::{Checkerboard, MaterialCompiler, MaterialRef, Resolver};
+use juggler_material::{Checkerboard, MaterialCompiler, MaterialRef, MaterialResolver};
 use juggler_math::testing::Random;
 use juggler_math::{Transform, Vec3};
 use juggler_shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
@@ -12,9 +12,9 @@ use std::sync::Arc;
 
 mod moving;
 
-const NO_LIGHTS: [Lamp; 0] = [];
+const NO_LIGHTS: [SceneLight; 0] = [];
 
-/// Every kind of shape, each `times`, turned, sheared and moved.
+/// `times` copies of every kind of shape, rotated, sheared and translated.
 fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec<Object> {
     let mut objects = Vec::new();
     for _ in 0..times {
@@ -32,7 +32,7 @@ fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec
     objects
 }
 
-/// A world of objects whose materials are 0, 1 and 2.
+/// A world whose objects have the materials 0, 1 and 2.
 fn world_of(objects: Vec<Object>) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let materials = [0, 1, 2].map(|_| compiler.material("material", &MaterialRef::default()).unwrap());
@@ -40,15 +40,16 @@ fn world_of(objects: Vec<Object>) -> World {
     World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
 }
 
-/// Three levels: a crowd with a ground below it, several of them mirrored, sheared and turned, several of those.
+/// Three levels: a crowd with a ground plane, reflected, sheared and rotated instances of it, and
+/// instances of those.
 fn nested(random: &mut Random) -> World {
     let mirror = Transform::scale(Vec3::new(-0.5, 0.7, 0.4)).unwrap();
-    let mut instances = |level: &Arc<Level>, count: usize, material: Option<MaterialId>| -> Vec<Object> {
+    let mut instances = |geometry: &Arc<Geometry>, count: usize, material: Option<MaterialId>| -> Vec<Object> {
         let one = |i: usize| {
             let place = random.transform().then(&Transform::translation(random.point(15.0)));
             let transform = if i.is_multiple_of(2) { mirror.then(&place) } else { place };
             Object {
-                content: Content::Level(Arc::clone(level)),
+                content: Content::Geometry(Arc::clone(geometry)),
                 motion: transform.into(),
                 material: material.filter(|_| i.is_multiple_of(3)),
             }
@@ -56,29 +57,28 @@ fn nested(random: &mut Random) -> World {
         (0..count).map(one).collect()
     };
     let mut random = Random::new(18);
-    let inner = Arc::new(Level::new(crowd(&mut random, 1, None)));
+    let inner = Arc::new(Geometry::new(crowd(&mut random, 1, None)));
     let mut objects = instances(&inner, 3, Some(MaterialId(1)));
     objects.extend(crowd(&mut random, 1, Some(MaterialId(2))));
     objects.extend(instances(&inner, 2, None));
-    let middle = Arc::new(Level::new(objects));
+    let middle = Arc::new(Geometry::new(objects));
     let mut objects = instances(&middle, 3, None);
     objects.extend(crowd(&mut random, 1, Some(MaterialId(0))));
     objects.extend(instances(&inner, 4, Some(MaterialId(0))));
     let plane = Object::new(Plane::default().into(), Transform::translation(Vec3::Y * -30.0), MaterialId(0));
-    let ground = Arc::new(Level::new(vec![plane.clone(), instances(&inner, 1, None).remove(0)]));
+    let ground = Arc::new(Geometry::new(vec![plane.clone(), instances(&inner, 1, None).remove(0)]));
     objects.extend(instances(&ground, 1, Some(MaterialId(1))));
     objects.push(plane);
     world_of(objects)
 }
 
-/// Instances of instances that have an end, so that they stand in the hierarchy, among other objects; without the shapes
-/// of a crowd that have none.
+/// Nested instances that are all bounded, so that they are in the hierarchy, among other objects.
 fn grove(random: &mut Random) -> World {
     let bounded = |mut objects: Vec<Object>| {
         objects.retain(Object::is_bounded);
         objects
     };
-    let mut content = Arc::new(Level::new(bounded(crowd(random, 1, None))));
+    let mut content = Arc::new(Geometry::new(bounded(crowd(random, 1, None))));
     for material in [1, 2] {
         let mut objects = bounded(crowd(random, 1, Some(MaterialId(0))));
         for _ in 0..6 {
@@ -86,41 +86,41 @@ fn grove(random: &mut Random) -> World {
             let material = Some(MaterialId(material));
             objects.insert(
                 objects.len() / 2,
-                Object { content: Content::Level(Arc::clone(&content)), motion: transform.into(), material },
+                Object { content: Content::Geometry(Arc::clone(&content)), motion: transform.into(), material },
             );
         }
-        content = Arc::new(Level::new(objects));
+        content = Arc::new(Geometry::new(objects));
     }
-    world_of(vec![Object { content: Content::Level(content), motion: random.transform().into(), material: None }])
+    world_of(vec![Object { content: Content::Geometry(content), motion: random.transform().into(), material: None }])
 }
 
-/// The same shapes without any level, as they stand at a time: transforms joined, materials inherited.
-fn expanded_at(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
-    let expand = |placed: &Placed| {
-        let Placed { content, motion, material, .. } = placed;
+/// The same shapes without instances, at a time: transforms are composed and materials inherited.
+fn expanded_at(objects: &[Instance], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
+    let expand = |instance: &Instance| {
+        let Instance { content, motion, material, .. } = instance;
         let (place, material) = (motion.at(time).then(parent), material.or(inherited));
         match content {
             Content::Shape(_) => vec![Object { content: content.clone(), motion: place.into(), material }],
-            Content::Level(level) => expanded_at(&level.objects, &place, material, time),
+            Content::Geometry(geometry) => expanded_at(&geometry.objects, &place, material, time),
         }
     };
     objects.iter().flat_map(expand).collect()
 }
 
-/// Every shape asked in turn, its number counted one by one.
-fn brute_force(objects: &[Placed], ray: &Ray, next: &mut u32, best: &mut WorldHit) {
-    for placed in objects {
-        match &placed.content {
+/// Intersects every shape in turn, counting shape indices.
+fn brute_force(objects: &[Instance], ray: &Ray, next: &mut u32, best: &mut WorldHit) {
+    for instance in objects {
+        match &instance.content {
             Content::Shape(_) => {
                 let mut alone = WorldHit::NONE;
-                placed.closest(&mut ray.up_to(best.hit.t.min(ray.t_max)), *next, &mut alone);
-                if alone.hit.t < best.hit.t || (alone.hit.t == best.hit.t && alone.object < best.object) {
+                instance.closest(&mut ray.with_t_max(best.hit.t.min(ray.t_max)), *next, &mut alone);
+                if alone.hit.t < best.hit.t || (alone.hit.t == best.hit.t && alone.shape < best.shape) {
                     *best = alone;
                 }
                 *next += 1;
             }
-            Content::Level(level) => {
-                brute_force(&level.objects, &placed.local(ray), next, best);
+            Content::Geometry(geometry) => {
+                brute_force(&geometry.objects, &instance.ray_to_object(ray), next, best);
             }
         }
     }
@@ -129,11 +129,11 @@ fn brute_force(objects: &[Placed], ray: &Ray, next: &mut u32, best: &mut WorldHi
 fn nearest(world: &World, ray: &Ray) -> WorldHit {
     let (mut next, mut best) = (0, WorldHit::NONE);
     brute_force(&world.top.objects, ray, &mut next, &mut best);
-    assert_eq!(u64::from(next), world.geometry().shapes);
+    assert_eq!(u64::from(next), world.geometry_stats().shapes);
     best
 }
 
-/// So many rays from one place, close together or in all directions, some with an end.
+/// Rays from one origin, coherent or in all directions, some of limited length.
 fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
     let origin = random.point(40.0);
     let axis = random.unit_vector();
@@ -141,18 +141,18 @@ fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
     (0..count)
         .map(|_| Ray::new(origin, (axis + random.unit_vector() * spread).normalize_or(axis)))
         .map(|ray| Ray { time: (ray.direction.x * 1e3).abs().fract(), ..ray })
-        .map(|ray| if round.is_multiple_of(3) { ray.up_to(30.0) } else { ray })
+        .map(|ray| if round.is_multiple_of(3) { ray.with_t_max(30.0) } else { ray })
         .collect()
 }
 
 fn equals_brute_force(world: &World, rounds: usize) {
     let mut random = Random::new(17);
-    let mut met = 0;
+    let mut hit_count = 0;
     for round in 0..rounds {
-        // Now and then more than a group of packets, and not whole ones.
+        // Sometimes use more rays than a group of packets, in an incomplete packet.
         let rays = rays(&mut random, round, if round % 6 == 4 { 43 } else { 8 });
         let expected: Vec<WorldHit> = rays.iter().map(|ray| nearest(world, ray)).collect();
-        met += expected.iter().filter(|hit| hit.is_some()).count();
+        hit_count += expected.iter().filter(|hit| hit.is_some()).count();
         let mut hits = vec![WorldHit::NONE; rays.len()];
         world.closest_packet(&mut rays.clone(), &mut hits);
         assert_eq!(hits, expected, "packet, round {round}");
@@ -162,12 +162,12 @@ fn equals_brute_force(world: &World, rounds: usize) {
         assert_eq!(alone, expected, "single, round {round}");
         let open: Vec<Rgb> = expected.iter().map(|h| if h.is_some() { Rgb::BLACK } else { Rgb::WHITE }).collect();
         let mut through = vec![Rgb::BLACK; rays.len()];
-        world.transmittance_packet(&rays, Shadows::Filtered, &mut through);
+        world.transmittance_packet(&rays, ShadowMode::Filtered, &mut through);
         assert_eq!(through, open, "shadow packet, round {round}");
-        world.transmittance_batch(&rays, Shadows::Filtered, &mut through);
+        world.transmittance_batch(&rays, ShadowMode::Filtered, &mut through);
         assert_eq!(through, open, "shadow batch, round {round}");
     }
-    assert!(met > rounds * 3 / 2, "only {met} rays met anything");
+    assert!(hit_count > rounds * 3 / 2, "only {hit_count} rays met anything");
 }
 
 #[test]
@@ -189,14 +189,14 @@ fn every_vector_unit_equals_brute_force() {
     }
 }
 
-/// Everything stands in its place three times, within instances and without: all hits are ties.
+/// Three coincident copies of everything, in instances and without: all hits are ties.
 #[test]
 fn of_coincident_instances_the_lower_number_is_hit() {
     let mut random = Random::new(25);
     let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
     objects.retain(Object::is_bounded);
-    let level = Arc::new(Level::new(objects));
-    let instance = Object { content: Content::Level(level), motion: random.rotation().into(), material: None };
+    let geometry = Arc::new(Geometry::new(objects));
+    let instance = Object { content: Content::Geometry(geometry), motion: random.rotation().into(), material: None };
     let mut objects = crowd(&mut random, 1, Some(MaterialId(1)));
     objects.extend(objects.clone());
     for place in [0, objects.len() / 2, objects.len()] {
@@ -204,11 +204,11 @@ fn of_coincident_instances_the_lower_number_is_hit() {
     }
     let world = world_of(objects);
     equals_brute_force(&world, 200);
-    let shapes = world.geometry().shapes;
+    let shapes = world.geometry_stats().shapes;
     let mut random = Random::new(26);
     let hits: Vec<WorldHit> =
         (0..200).flat_map(|i| rays(&mut random, i, 8)).map(|mut ray| world.closest(&mut ray)).collect();
-    let last = hits.iter().filter(|hit| hit.is_some() && u64::from(hit.object) >= shapes * 2 / 3).count();
+    let last = hits.iter().filter(|hit| hit.is_some() && u64::from(hit.shape) >= shapes * 2 / 3).count();
     assert_eq!(last, 0, "of {}", hits.len());
 }
 
@@ -228,7 +228,7 @@ fn large_mesh() -> AnyShape {
     mesh
 }
 
-/// Few large meshes stand beside the hierarchy, many in it; two in the same place tie everywhere.
+/// Few large meshes are beside the hierarchy, many in it; two coincident ones tie everywhere.
 #[test]
 fn large_meshes_equal_brute_force() {
     let mut random = Random::new(23);
@@ -240,42 +240,42 @@ fn large_meshes_equal_brute_force() {
         }
         objects.push(objects[objects.len() / 2].clone());
         let world = world_of(objects);
-        assert_eq!(world.top.large.len(), beside);
+        assert_eq!(world.top.large_meshes.len(), beside);
         equals_brute_force(&world, 200);
     }
 }
 
-/// Numbers and materials are the same to the bit, distances and surfaces up to the rounding of transforms.
+/// Indices and materials are equal, distances and surfaces up to the rounding of transforms.
 #[test]
 fn instances_are_what_expanding_them_gives() {
     let mut random = Random::new(20);
     let world = nested(&mut random);
     let flat = world_of(expanded_at(&world.top.objects, &Transform::IDENTITY, None, 0.0));
     assert_eq!(
-        (flat.geometry().shapes, flat.geometry().triangles),
-        (world.geometry().shapes, world.geometry().triangles)
+        (flat.geometry_stats().shapes, flat.geometry_stats().triangles),
+        (world.geometry_stats().shapes, world.geometry_stats().triangles)
     );
-    assert_eq!((flat.geometry().instances, world.geometry().instances), (0, 3 * 6 + 4 + 2));
-    let (mut same, mut met) = (0, 0);
+    assert_eq!((flat.geometry_stats().instances, world.geometry_stats().instances), (0, 3 * 6 + 4 + 2));
+    let (mut same, mut hit_count) = (0, 0);
     for round in 0..400 {
         for ray in rays(&mut random, round, 8) {
             let (hit, other) = (world.closest(&mut ray.clone()), flat.closest(&mut ray.clone()));
-            met += usize::from(hit.is_some());
-            if !hit.is_some() || hit.object != other.object || hit.hit.part != other.hit.part {
+            hit_count += usize::from(hit.is_some());
+            if !hit.is_some() || hit.shape != other.shape || hit.hit.primitive != other.hit.primitive {
                 continue;
             }
             let (vertex, other) = (world.vertex(&ray, &hit), flat.vertex(&ray, &other));
-            assert_eq!((vertex.material, vertex.object), (other.material, other.object));
+            assert_eq!((vertex.material, vertex.shape), (other.material, other.shape));
             let distance = (vertex.surface.point - other.surface.point).length();
             assert!(distance <= 0.02, "{distance}, round {round}");
             assert!(vertex.surface.normal.dot(other.surface.normal) > 0.999, "round {round}");
             same += 1;
         }
     }
-    assert!(met > 1000 && same * 1000 >= met * 999, "{same} of {met} the same");
+    assert!(hit_count > 1000 && same * 1000 >= hit_count * 999, "{same} of {hit_count} the same");
 }
 
-/// A ray that leaves a surface inside two instances does not meet that surface again.
+/// A ray that leaves a surface inside two instances does not hit that surface again.
 #[test]
 fn rays_leave_nested_surfaces() {
     let mut random = Random::new(21);
@@ -288,10 +288,13 @@ fn rays_leave_nested_surfaces() {
                 continue;
             }
             let surface = world.vertex(&ray, &hit).surface;
-            // Straight off, so that no other part of the same shape is in the way by right.
+            // Leave along the normal, so that no other part of the same shape blocks the ray.
             let side = if surface.normal.dot(ray.direction) < 0.0 { surface.normal } else { -surface.normal };
-            let again = world.closest(&mut surface.spawn(side, 0.0).up_to(1e-3));
-            assert!(again.object != hit.object || again.hit.part != hit.hit.part, "round {round}: {hit:?} {again:?}");
+            let again = world.closest(&mut surface.spawn_ray(side, 0.0).with_t_max(1e-3));
+            assert!(
+                again.shape != hit.shape || again.hit.primitive != hit.hit.primitive,
+                "round {round}: {hit:?} {again:?}"
+            );
             left += 1;
         }
     }
@@ -311,13 +314,13 @@ fn what_is_shared_is_stored_once() {
     for _ in 0..3 {
         let place = |i: u16| Transform::translation(Vec3::new(f32::from(i % 32), 0.0, f32::from(i / 32)) * step);
         let object = |i| Object { content: content.clone(), motion: place(i).into(), material: None };
-        content = Content::Level(Arc::new(Level::new((0..1024).map(object).collect())));
+        content = Content::Geometry(Arc::new(Geometry::new((0..1024).map(object).collect())));
         step *= 32.0;
     }
     let world = world_of(vec![Object { content, motion: Transform::IDENTITY.into(), material: Some(MaterialId(0)) }]);
-    let geometry = world.geometry();
-    assert_eq!((geometry.shapes, geometry.instances), (1 << 30, 1 + 1024 + (1 << 20)));
-    assert!(geometry.geometry_bytes + geometry.bvh_bytes < 1 << 21, "{geometry:?}");
+    let stats = world.geometry_stats();
+    assert_eq!((stats.shapes, stats.instances), (1 << 30, 1 + 1024 + (1 << 20)));
+    assert!(stats.geometry_bytes + stats.bvh_bytes < 1 << 21, "{stats:?}");
     let mut random = Random::new(22);
     for _ in 0..200 {
         let (x, z) = (random.below(1 << 15), random.below(1 << 15));
@@ -326,7 +329,7 @@ fn what_is_shared_is_stored_once() {
         // Columns and rows of the three levels, five bits each.
         let number =
             (0..3).map(|level| ((z >> (5 * level) & 31) << 5 | x >> (5 * level) & 31) << (10 * level)).sum::<usize>();
-        assert_eq!((vertex.object, vertex.material), (number as u32, MaterialId(0)));
+        assert_eq!((vertex.shape, vertex.material), (number as u32, MaterialId(0)));
         assert!((vertex.surface.normal.x - 0.625).abs() < 1e-3 * x.max(1) as f32 / 32.0, "{vertex:?}");
     }
 }
@@ -337,7 +340,7 @@ fn an_empty_world_is_empty() {
         World::new(Vec::new(), MaterialTable::default(), NO_LIGHTS, AnyBackground::Solid(Solid { color: Rgb::WHITE }));
     let mut ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert!(!world.closest(&mut ray).is_some());
-    assert_eq!(world.background(&ray), Rgb::WHITE);
+    assert_eq!(world.background_radiance(&ray), Rgb::WHITE);
     assert!(world.bounds().is_empty());
 }
 

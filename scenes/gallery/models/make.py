@@ -181,7 +181,7 @@ def furniture(random):
 
 
 def books(random):
-    """A shelf's row of books, 1 long: groups by colour."""
+    """A shelf's row of books, 1 long: groups by color."""
     covers = ["book red", "book blue", "book green", "book sand", "book black", "book white"]
     out, x = [], 0.0
     while x < 0.94:

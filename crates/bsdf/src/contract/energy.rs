@@ -1,11 +1,11 @@
-//! No light comes from nothing; white stays white; the way back is as wide as the way there.
+//! Conservation of energy, white furnaces and reciprocity.
 
 use super::*;
 
 #[test]
 fn no_more_light_comes_out_than_went_in() {
     for Example { name, bsdf, both_sides, white_within, .. } in examples() {
-        // Under varnish light is made even over directions on average only.
+        // Layers conserve energy on average over directions only.
         let more = if name.contains("varnish") { 0.045 } else { MORE };
         for wo in views(both_sides) {
             let energy = furnace(&bsdf, wo, 64);
@@ -46,9 +46,11 @@ fn light_goes_both_ways_alike() {
         for _ in 0..if bsdf.is_specular() { 0 } else { 300 } {
             let (o, i) = (random.unit_vector(), random.unit_vector());
             let (there, back) = (bsdf.eval(o, i) / i.z.abs(), bsdf.eval(i, o) / o.z.abs());
-            // Radiance over the square of the index: the index is found out from a sample that crosses over.
+            // Radiance over the square of the index is reciprocal; a transmitted sample tells the
+            // index.
             let scale = if o.z * i.z > 0.0 { 1.0 } else { crossing(&bsdf, o) };
-            // Beside an index of 1 microfacets between two directions stand edge on, and rounding decides their side.
+            // Near an index of 1, microfacets between two directions are edge-on, and rounding
+            // decides their side.
             let least = if name.contains(" 1.01 ") { 5e-4 } else { 1e-5 };
             for (t, b) in (there * (scale * scale)).to_array().into_iter().zip(back.to_array()) {
                 assert!(
@@ -62,12 +64,12 @@ fn light_goes_both_ways_alike() {
     }
 }
 
-/// The index on the other side of `wo` over that on its own.
+/// Index of refraction on the opposite side of `wo` over that on its own.
 fn crossing(bsdf: &Bsdf, wo: Vec3) -> f32 {
     let mut random = Random::new(92);
     let mut find =
         |w: Vec3| (0..2000).find_map(|_| bsdf.sample(w, random.vec2(), random.f32()).filter(|s| s.is_transmitted(w)));
-    // Everything may be mirrored seen from the denser side.
+    // From the denser side, all light may be totally reflected.
     let ior = find(wo).map(|sample| sample.ior);
     let back = |sample: BsdfSample| 1.0 / sample.ior;
     ior.or_else(|| find(Vec3::new(0.0, 0.0, wo.z.signum())).map(|sample| sample.ior))

@@ -1,32 +1,32 @@
-//! The list of examples.
+//! Examples of all lobes.
 
 use crate::metals::Metal;
 use crate::{
-    Bsdf, Conductor, Cone, Dielectric, DiffuseTransmission, Film, Fresnel, Lambert, OrenNayar, Phong, Plastic, Sheen,
-    ThinDielectric,
+    Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, OrenNayar, PhongParameters, Plastic, RayCone,
+    Sheen, ThinDielectric, ThinFilm,
 };
 use juggler_math::{Rgb, Vec2};
 
-/// How broad lobes are beside the steps by which the chi-squared test integrates.
+/// Width of lobes relative to the integration steps of the chi-squared test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Breadth {
-    /// Finer.
+    /// Narrower than the steps.
     Needle,
-    /// Broad enough seen from above.
+    /// Broad enough except at grazing angles.
     Narrow,
-    /// Always.
+    /// Broad enough at any angle.
     Broad,
 }
 
-/// One of the list.
+/// A BSDF with its expected properties.
 pub(super) struct Example {
     pub name: String,
     pub bsdf: Bsdf,
-    /// Whether it is seen from below too.
+    /// Whether it is also tested from below.
     pub both_sides: bool,
-    /// Whether no light at all is lost: a number is by how much it may miss, 0 for those that may lose light.
+    /// Allowed deviation of the albedo from 1 where no light is lost; 0 where light may be lost.
     pub white_within: f32,
-    /// How broad its lobes are.
+    /// Width of its lobes.
     pub breadth: Breadth,
 }
 
@@ -43,12 +43,12 @@ impl Example {
         Self { white_within: within, ..self }
     }
 
-    pub fn of(self, breadth: Breadth) -> Self {
+    pub fn with_breadth(self, breadth: Breadth) -> Self {
         Self { breadth: self.breadth.min(breadth), ..self }
     }
 }
 
-/// Roughnesses, alpha along x and y: smooth, hardly not, polished, rough, extremely, brushed.
+/// Alpha along x and y: smooth, barely rough, polished, rough, roughest, brushed.
 const ALPHAS: [(f32, f32); 7] =
     [(0.0, 0.0), (0.001, 0.001), (0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)];
 
@@ -65,12 +65,12 @@ pub(super) fn examples() -> Vec<Example> {
             least if least < 0.2 => Breadth::Narrow,
             _ => Breadth::Broad,
         };
-        let rough = |example: Example| example.of(breadth);
+        let rough = |example: Example| example.with_breadth(breadth);
         all.extend(conductors(Vec2::new(x, y)).into_iter().map(rough));
         all.extend(dielectrics(Vec2::new(x, y)).into_iter().map(rough));
     }
     all.extend(sums());
-    all.extend(matt());
+    all.extend(diffuse());
     all.extend(plastics());
     all.extend(films());
     all.extend(classics());
@@ -81,7 +81,7 @@ pub(super) fn examples() -> Vec<Example> {
     all
 }
 
-/// How far a compensated mirror may miss white.
+/// Allowed deviation of a compensated mirror from white.
 fn within(alpha: Vec2) -> f32 {
     if alpha.x == alpha.y { 0.015 } else { 0.03 }
 }
@@ -103,10 +103,10 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
     let tinted = Dielectric::new(1.5, alpha).tinted(pink, cyan);
     let mut all = vec![Example::new(format!("tinted glass {alpha}"), tinted)];
     let all_iors = [0.5, 1.0 / 1.33, 1.0, 1.01, 1.5, 2.4, 4.0];
-    // All of them at three, from both sides anyway.
+    // All indices at three roughnesses, two at the others.
     let iors = if alpha.x == alpha.y && (alpha.x == 0.0 || alpha.x > 0.2) { &all_iors[..] } else { &all_iors[3..5] };
     for ior in iors.iter().copied() {
-        let narrow = |example: Example| if ior == 1.01 { example.of(Breadth::Needle) } else { example };
+        let narrow = |example: Example| if ior == 1.01 { example.with_breadth(Breadth::Needle) } else { example };
         let compensated = Dielectric::compensated(ior, alpha);
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
         let compensated = Example::new(format!("compensated dielectric {ior} {alpha}"), compensated);
@@ -130,7 +130,7 @@ fn sums() -> Vec<Example> {
     vec![Example::new("patchy", patchy).both_sides(), Example::new("waxed", waxed).both_sides()]
 }
 
-fn matt() -> Vec<Example> {
+fn diffuse() -> Vec<Example> {
     let mut all = vec![];
     for roughness in [0.0, 0.3, 1.0] {
         let orange = OrenNayar::new(Rgb::new(0.9, 0.5, 0.1), roughness);
@@ -157,16 +157,19 @@ fn plastics() -> Vec<Example> {
         all.push(Example::new(format!("plastic {alpha}"), Plastic { alpha, ..red }));
         all.push(Example::new(format!("nonlinear plastic {alpha}"), Plastic { alpha, nonlinear: true, ..red }));
         all.push(Example::new(format!("white plastic {alpha}"), Plastic { alpha, ..white }).white(0.01));
-        let rough = Plastic { alpha, nonlinear: true, body_roughness: 0.7, ior: 2.0, ..white };
+        let rough = Plastic { alpha, nonlinear: true, base_roughness: 0.7, ior: 2.0, ..white };
         all.push(Example::new(format!("white rough plastic {alpha}"), rough).white(0.02));
     }
     all
 }
 
 fn films() -> Vec<Example> {
-    let film = Film { f0: Rgb::splat(0.04), ior: 1.3, thickness_nm: 400.0 };
-    let soap = Fresnel::Film { film, amount: 1.0 };
-    let steel = Fresnel::Film { film: Film { f0: Rgb::new(0.56, 0.57, 0.58), ior: 2.0, ..film }, amount: 0.7 };
+    let thin_film = ThinFilm { f0: Rgb::splat(0.04), ior: 1.3, thickness_nm: 400.0 };
+    let soap = Fresnel::ThinFilm { thin_film, amount: 1.0 };
+    let steel = Fresnel::ThinFilm {
+        thin_film: ThinFilm { f0: Rgb::new(0.56, 0.57, 0.58), ior: 2.0, ..thin_film },
+        amount: 0.7,
+    };
     let smooth = Example::new("soap", Conductor::new(soap, Vec2::ZERO));
     let rough = [0.2, 0.7]
         .map(|alpha| Example::new(format!("steel {alpha}"), Conductor::compensated(steel, Vec2::splat(alpha))));
@@ -174,25 +177,33 @@ fn films() -> Vec<Example> {
 }
 
 fn classics() -> Vec<Example> {
-    let shiny = Phong { diffuse: Rgb::new(0.7, 0.1, 0.1), specular: Rgb::splat(0.3), shininess: 20.0, ..Phong::BLACK };
-    let overbright = Phong { mirror: Rgb::splat(0.5), specular: Rgb::WHITE, shininess: 3.0, ..shiny };
-    let glass = Phong {
+    let black = PhongParameters::BLACK;
+    let shiny =
+        PhongParameters { diffuse: Rgb::new(0.7, 0.1, 0.1), specular: Rgb::splat(0.3), shininess: 20.0, ..black };
+    let overbright = PhongParameters { mirror: Rgb::splat(0.5), specular: Rgb::WHITE, shininess: 3.0, ..shiny };
+    let glass = PhongParameters {
         mirror: Rgb::WHITE,
         transparency: Rgb::new(0.9, 1.0, 0.9),
         ior: 1.5,
         fresnel: true,
         specular: Rgb::splat(0.5),
         shininess: 100.0,
-        ..Phong::BLACK
+        ..black
     };
-    let window =
-        Phong { fresnel: false, mirror: Rgb::splat(0.2), transparency: Rgb::splat(0.8), specular: Rgb::BLACK, ..glass };
-    let glossy = Phong { mirror: Rgb::splat(0.9), glossy: Cone { half_angle_radians: 0.9, rays: 1 }, ..Phong::BLACK };
+    let window = PhongParameters {
+        fresnel: false,
+        mirror: Rgb::splat(0.2),
+        transparency: Rgb::splat(0.8),
+        specular: Rgb::BLACK,
+        ..glass
+    };
+    let glossy =
+        PhongParameters { mirror: Rgb::splat(0.9), glossy: RayCone { half_angle_radians: 0.9, rays: 1 }, ..black };
     vec![
         Example::new("shiny", Bsdf::with_lobes(|bsdf| shiny.add_lobes(true, bsdf))),
         Example::new(
             "matt highlight",
-            Bsdf::with_lobes(|bsdf| Phong { shininess: 0.0, ..shiny }.add_lobes(true, bsdf)),
+            Bsdf::with_lobes(|bsdf| PhongParameters { shininess: 0.0, ..shiny }.add_lobes(true, bsdf)),
         ),
         Example::new("overbright", Bsdf::with_lobes(|bsdf| overbright.add_lobes(true, bsdf))),
         Example::new("classic glass", Bsdf::with_lobes(|bsdf| glass.add_lobes(true, bsdf))),
@@ -201,7 +212,7 @@ fn classics() -> Vec<Example> {
         Example::new("glossy", Bsdf::with_lobes(|bsdf| glossy.add_lobes(true, bsdf))),
         Example::new(
             "glossy glass",
-            Bsdf::with_lobes(|bsdf| Phong { glossy: glossy.glossy, ..glass }.add_lobes(false, bsdf)),
+            Bsdf::with_lobes(|bsdf| PhongParameters { glossy: glossy.glossy, ..glass }.add_lobes(false, bsdf)),
         ),
     ]
 }

@@ -7,25 +7,25 @@ const ALPHAS: [f32; 6] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 const IORS: [f32; 6] = [1.1, 1.33, 1.5, 2.0, 2.4, 4.0];
 const COSINES: [f32; 6] = [0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 
-/// A direction of this cosine, above or below, turned a little.
+/// Direction of this cosine, above or below, between the x and y axes.
 fn towards(cos: f32) -> Vec3 {
     let along = (1.0 - cos * cos).max(0.0).sqrt();
     Vec3::new(0.8 * along, 0.6 * along, cos)
 }
 
-/// Both sides of each of the angles.
-fn ways() -> impl Iterator<Item = Vec3> {
+/// Directions of all cosines on both sides.
+fn directions() -> impl Iterator<Item = Vec3> {
     COSINES.into_iter().flat_map(|cos| [towards(cos), towards(-cos)])
 }
 
 #[test]
-fn clear_borders_and_panes_keep_all_light_and_add_none() {
+fn clear_interfaces_and_panes_keep_all_light_and_add_none() {
     for alpha in ALPHAS.map(Vec2::splat) {
         for ior in IORS {
-            let border = (Bsdf::from(Dielectric::new(ior, alpha)), Dielectric::compensated(ior, alpha).into());
+            let interface = (Bsdf::from(Dielectric::new(ior, alpha)), Dielectric::compensated(ior, alpha).into());
             let pane = (Bsdf::from(ThinDielectric::new(ior, alpha)), ThinDielectric::compensated(ior, alpha).into());
-            for ((once, all), near) in [(border, 0.002), (pane, 0.035)] {
-                for wo in ways() {
+            for ((once, all), near) in [(interface, 0.002), (pane, 0.035)] {
+                for wo in directions() {
                     let (once, all) = (furnace(&once, wo, 48).g, furnace(&all, wo, 48).g);
                     assert!(once <= 1.001, "{alpha} {ior} {wo}: {once}");
                     assert!((all - 1.0).abs() <= near, "{alpha} {ior} {wo}: {all}");
@@ -52,14 +52,14 @@ fn metals_keep_all_light_and_add_none() {
     }
 }
 
-/// The integral of the values over all directions, by the midpoints of cells that are even in cosine-weighted directions: what
-/// light sampling sees, whatever directions the lobe itself samples.
+/// Integral of the values over all directions, by the midpoints of cells uniform in cosine-weighted
+/// directions: the energy that light sampling finds, whatever directions the lobe samples.
 fn integral(bsdf: &Bsdf, wo: Vec3, ior: f32) -> f64 {
     let (rings, sectors) = (300, 64);
     let mut sum = 0.0;
     for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
         let (z, size) = (((i as f32 + 0.5) / rings as f32).sqrt(), 1.0 / rings as f32);
-        let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / sectors as f32);
+        let (sin, cos) = portable::sin_cos_turns((j as f32 + 0.5) / sectors as f32);
         let along = (1.0 - z * z).sqrt();
         for z in [z, -z] {
             let scale = if z * wo.z > 0.0 {
@@ -77,10 +77,10 @@ fn integral(bsdf: &Bsdf, wo: Vec3, ior: f32) -> f64 {
 }
 
 #[test]
-fn values_of_clear_borders_keep_all_light_and_add_none() {
+fn values_of_clear_interfaces_keep_all_light_and_add_none() {
     for alpha in [(0.5, 0.5), (0.8, 0.8), (1.0, 1.0), (0.9, 0.4), (0.5, 0.7)].map(Vec2::from) {
         for ior in [1.5, 1.9, 2.4] {
-            for wo in ways().filter(|wo| wo.z.abs() > 0.1) {
+            for wo in directions().filter(|wo| wo.z.abs() > 0.1) {
                 let energy = integral(&Dielectric::compensated(ior, alpha).into(), wo, ior);
                 let near = if alpha.x == alpha.y { 0.01 } else { 0.03 };
                 assert!((energy - 1.0).abs() < near, "{alpha} {ior} {wo}: {energy}");
@@ -89,7 +89,7 @@ fn values_of_clear_borders_keep_all_light_and_add_none() {
     }
 }
 
-/// What layers return into rough glass by their values, which samples need not follow to the letter.
+/// Energy of the values of rough glass under layers, which its samples need not follow exactly.
 #[test]
 fn values_of_glass_under_layers_keep_light_on_average() {
     let white = Principled { transmission: 1.0, sheen_roughness: 0.5, ..Principled::default() };
@@ -104,13 +104,13 @@ fn values_of_glass_under_layers_keep_light_on_average() {
     }
 }
 
-/// Rougher along x than along y.
+/// Surfaces that are rougher along x than along y.
 #[test]
 fn brushed_surfaces_keep_light_and_add_none() {
     for alpha in [(0.2, 0.02), (0.3, 0.1), (0.5, 0.05), (0.6, 0.3), (1.0, 0.1), (1.0, 0.5)].map(Vec2::from) {
         for turn in [0.0, 0.125, 0.25f32] {
-            let (sin, cos) = fun::sin_cos_turns(turn);
-            for w in ways() {
+            let (sin, cos) = portable::sin_cos_turns(turn);
+            for w in directions() {
                 let along = w.x.hypot(w.y);
                 let wo = Vec3::new(along * cos, along * sin, w.z);
                 for ior in IORS {
@@ -127,8 +127,8 @@ fn brushed_surfaces_keep_light_and_add_none() {
     }
 }
 
-/// Where light goes it comes from alike: by directions that are scattered, so that nothing is compared with nothing. Radiance
-/// is that over the square of the index.
+/// Reciprocity between sampled directions, where values are not all 0. Radiance over the square of
+/// the index is reciprocal.
 #[test]
 fn what_is_scattered_may_come_back() {
     let mut random = Random::new(98);
@@ -143,7 +143,7 @@ fn what_is_scattered_may_come_back() {
             ];
             for (number, bsdf) in lobes.iter().enumerate() {
                 let (mut crossed, mut stayed) = (0, 0);
-                for wo in ways().flat_map(|wo| [wo; 20]) {
+                for wo in directions().flat_map(|wo| [wo; 20]) {
                     let Some(sample) = bsdf.sample(wo, random.vec2(), random.f32()) else { continue };
                     let wi = sample.wi;
                     let there = bsdf.eval(wo, wi).g / wi.z.abs() * sample.ior * sample.ior;

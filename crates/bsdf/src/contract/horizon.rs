@@ -7,7 +7,7 @@ use juggler_math::testing::close;
 /// Angles between z and the geometric normal, in radians.
 const LEANS: [f32; 5] = [0.02, 0.2, 0.5, 1.0, 1.5];
 
-/// Surfaces that absorb nothing, and whether light comes through; their names.
+/// Names of surfaces that absorb nothing, their lobes, and whether they transmit light.
 fn white() -> Vec<(&'static str, Bsdf, bool)> {
     let rough = Vec2::splat(0.3);
     let (half, glass) = (Rgb::splat(0.5), Principled { transmission: 0.5, roughness: 0.6, ..Principled::default() });
@@ -29,12 +29,12 @@ fn white() -> Vec<(&'static str, Bsdf, bool)> {
 /// The geometric normal from which z leans by an angle in radians, towards the azimuth `turn`, in
 /// turns.
 fn normal(angle: f32, turn: f32) -> Vec3 {
-    let ((sin, cos), (y, x)) = (fun::sin_cos(angle), fun::sin_cos_turns(turn));
+    let ((sin, cos), (y, x)) = (portable::sin_cos(angle), portable::sin_cos_turns(turn));
     Vec3::new(-x * sin, -y * sin, cos)
 }
 
-/// Names, lobes without and with a geometric normal, that normal, and views that z and it have on
-/// the same side.
+/// Names, lobes without and with a geometric normal, that normal, and views on the same side of z
+/// and of that normal.
 fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
     let mut all = Vec::new();
     for (number, (name, upright, is_open)) in white().into_iter().enumerate() {
@@ -55,8 +55,8 @@ fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
 fn what_leans_gives_back_as_much_as_what_does_not() {
     for (name, upright, bsdf, _, wo) in leaning() {
         let (expected, energy) = (furnace(&upright, wo, 32), furnace(&bsdf, wo, 32));
-        // Samples of a single white lobe weigh 1, wherever they go; those of sums and panes do so
-        // on average.
+        // Samples of a single white lobe have a weight of 1 in any direction; those of sums and
+        // panes have it on average.
         let near = if ["plastic", "pane", "half glass"].iter().any(|kind| name.contains(kind)) { 0.015 } else { 1e-3 };
         assert!(close(energy.g, expected.g, near), "{name}: {energy:?}, upright {expected:?}");
         assert_eq!(bsdf.albedo(wo), upright.albedo(wo), "{name}");
@@ -73,7 +73,7 @@ fn values_of_what_leans_sum_up_to_as_much() {
         let (mut sums, mut density) = ([0.0f64; 2], 0.0f64);
         for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
             let z = (i as f32 + 0.5) / rings as f32 * 2.0 - 1.0;
-            let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / sectors as f32);
+            let (sin, cos) = portable::sin_cos_turns((j as f32 + 0.5) / sectors as f32);
             let along = (1.0 - z * z).sqrt();
             let (value, pdf) = bsdf.eval_pdf(Vec3::Z, Vec3::new(along * cos, along * sin, z));
             let size = 4.0 * std::f64::consts::PI / f64::from(rings * sectors);
@@ -94,9 +94,9 @@ fn light_of_a_lune_is_spread_over_directions_beside_it() {
         bsdf.set_geometric_normal(normal(angle, 0.0));
         for psi in [-0.2f32, -0.01, 0.01, 0.1, 0.5, 1.0, 1.5, 2.0] {
             // z leans towards x.
-            let (sin, cos) = fun::sin_cos(psi + angle);
+            let (sin, cos) = portable::sin_cos(psi + angle);
             let value = bsdf.eval(Vec3::Z, Vec3::new(cos, 0.0, sin));
-            let plain = |psi: f32| fun::sin(psi + angle).max(0.0) * std::f32::consts::FRAC_1_PI;
+            let plain = |psi: f32| portable::sin(psi + angle).max(0.0) * std::f32::consts::FRAC_1_PI;
             let expected = if psi < 0.0 { 0.0 } else { plain(psi) + plain(-psi / stretch) / stretch };
             assert!(close(value.g, expected, 1e-5), "{angle} {psi}: {value:?}, expected {expected}");
         }

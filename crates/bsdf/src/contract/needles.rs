@@ -1,5 +1,5 @@
-//! Samples follow their densities where lobes are finer than an even grid: hardly rough, between nearly equal media, seen
-//! from the side.
+//! Samples follow their densities where lobes are narrower than the cells of a uniform grid: barely
+//! rough, between nearly equal media, at grazing views.
 
 use super::chart::{CELLS, Chart};
 use super::examples::Breadth;
@@ -11,8 +11,9 @@ use juggler_math::testing::chi_squared;
 const SIGNIFICANCE: f64 = 1e-3;
 const COUNT: u32 = 1_000_000;
 
-/// How many events a cell should get, where `met` were: in ever finer steps, until a step changes next to nothing. What lies
-/// between the steps shows by its events, so that steps go on while these and the density disagree.
+/// Expected number of samples in a cell that received `met`: integrated in ever finer steps until a
+/// step changes little. Features between the steps show in `met`, so refinement continues while it
+/// disagrees with the density.
 fn expected_in(chart: &Chart, pdf: &impl Fn(Vec3) -> f32, cell: usize, met: f64) -> f64 {
     let count = f64::from(COUNT);
     let (mut steps, mut last) = (7, chart.integral(pdf, cell, 4) * count);
@@ -21,14 +22,14 @@ fn expected_in(chart: &Chart, pdf: &impl Fn(Vec3) -> f32, cell: usize, met: f64)
         let is_steady = (next - last) * (next - last) <= 0.02 * next.max(5.0);
         let agrees = (met - next) * (met - next) <= 9.0 * next.max(1.0);
         if steps >= 350 || is_steady && agrees {
-            // The border of the surface may cut a corner off a cell that no midpoint lies in.
+            // The horizon may cut off a corner of a cell that no midpoint lies in.
             return next.max(1e-3);
         }
         (steps, last) = (steps * 5 / 3, next);
     }
 }
 
-/// Directions to fit a map to: few, and more where hardly any lie on one side.
+/// Directions to fit a map to: few, and more of a side that is rarely sampled.
 fn pilot(mut sample: impl FnMut() -> Option<Vec3>) -> Vec<Vec3> {
     let mut pilot: Vec<Vec3> = (0..4000).filter_map(|_| sample()).collect();
     for side in [1.0, -1.0] {
@@ -39,7 +40,8 @@ fn pilot(mut sample: impl FnMut() -> Option<Vec3>) -> Vec<Vec3> {
     pilot
 }
 
-/// Chi-squared test of directions seen from `wo`, without deltas, against a density, on maps fitted to the lobes.
+/// Chi-squared test of directions sampled for `wo`, without deltas, against a density, on maps
+/// fitted to the lobes.
 fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) -> Result<(), String> {
     let mut random = Random::new(87);
     let mut sample = || {
@@ -48,7 +50,7 @@ fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) 
     };
     let pilot = pilot(&mut sample);
     let charts = [1.0, -1.0].map(|side| Chart::fitted(side, &pilot));
-    // The last is for what is not scattered at all.
+    // The last cell counts samples without a direction.
     let mut observed = vec![0.0; 2 * CELLS + 1];
     for _ in 0..COUNT {
         let cell = sample().and_then(|wi| {
@@ -57,7 +59,7 @@ fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) 
         });
         observed[cell.unwrap_or(2 * CELLS)] += 1.0;
     }
-    // Strips thinner than the steps of the integral are not impossible either.
+    // Features narrower than the integration steps must not have zero probability.
     let pdf = |wi: Vec3| pdf(wi) + 1e-7;
     let cells = observed[..2 * CELLS].iter().enumerate();
     let mut expected: Vec<f64> =
@@ -66,7 +68,7 @@ fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) 
     if total > count * 1.003 {
         return Err(format!("the density integrates to {}", total / count));
     }
-    // Of the rest nothing is known where all is scattered but what rounding loses.
+    // Leave out the last cell if everything is scattered up to rounding.
     let (lost, rest) = (observed[2 * CELLS], count - total);
     if lost < count * 1e-4 && rest.abs() < count * 3e-3 {
         observed.pop();
@@ -76,8 +78,8 @@ fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) 
     chi_squared(&observed, &expected, significance)
 }
 
-/// The lobes that the even grid of [`follows_its_density`] is too coarse for, each with a view: those that always are with any,
-/// those that are so from the side with one from there.
+/// Lobes too narrow for the uniform grid of [`follows_its_density`], each with a view: any view for
+/// needles, a grazing one for lobes that are narrow at grazing angles.
 fn needles() -> Vec<(Example, Vec3)> {
     let of = |(number, example): (usize, Example)| {
         let mut views = views(example.both_sides);
@@ -89,14 +91,14 @@ fn needles() -> Vec<(Example, Vec3)> {
     examples().into_iter().filter(is_fine).enumerate().map(of).collect()
 }
 
-/// Every `parts`th of them from `part` on. In parts, which run side by side.
+/// Tests every `parts`th lobe from `part` on; the parts run in parallel.
 fn follow_their_density(part: usize, parts: usize) {
     let all = needles();
     assert!(all.iter().filter(|(example, _)| example.name.contains("0.001")).count() > 10);
     assert!(all.iter().filter(|(example, _)| example.name.contains(" 1.01 ")).count() > 10);
     assert!(all.iter().filter(|(example, wo)| example.breadth == Breadth::Narrow && wo.z.abs() < 0.2).count() > 10);
-    // As unlikely in all together as it should be (Šidák 1967).
-    let significance = 1.0 - fun::pow_f64(1.0 - SIGNIFICANCE, 1.0 / all.len() as f64);
+    // Significance of each test for that of the whole suite (Šidák 1967).
+    let significance = 1.0 - portable::pow_f64(1.0 - SIGNIFICANCE, 1.0 / all.len() as f64);
     for (Example { name, bsdf, .. }, wo) in all.iter().skip(part).step_by(parts) {
         let checked = follows(bsdf, *wo, |wi| bsdf.pdf(*wo, wi), significance);
         assert!(checked.is_ok(), "{name}, {wo}: {checked:?}");
@@ -113,7 +115,7 @@ fn the_other_fine_lobes_follow_their_density_too() {
     follow_their_density(1, 2);
 }
 
-/// Two hundredths rougher, or an index a fiftieth of its distance from 1 off, is told apart.
+/// A change of alpha, or of the index's distance from 1, by 2 % is detected.
 #[test]
 fn wrong_densities_of_fine_lobes_are_refused() {
     let wo = Vec3::new(0.5, -0.6, 0.4).normalize();

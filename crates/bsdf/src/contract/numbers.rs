@@ -1,4 +1,4 @@
-//! Whatever is asked, the answer is a number.
+//! All results are finite numbers.
 
 use super::*;
 
@@ -52,7 +52,7 @@ fn opaque_lobes_are_black_from_below() {
 }
 
 #[test]
-fn what_has_no_border_lets_light_straight_on() {
+fn matched_indices_let_light_straight_on() {
     use crate::{Dielectric, ThinDielectric};
     let mut random = Random::new(97);
     for _ in 0..1000 {

@@ -1,4 +1,4 @@
-//! Examples of the surface that glTF describes, and its white furnaces.
+//! Examples of the glTF material model, and its white furnaces.
 
 use super::examples::Example;
 use super::{MORE, furnace, views};
@@ -56,7 +56,7 @@ fn whites() -> Vec<Example> {
         ("metal", Principled { metallic: 1.0, roughness: 0.8, ..white }, 0.01),
         ("half metal", Principled { metallic: 0.4, ..white }, 0.01),
         ("velvet", Principled { sheen_color: Rgb::WHITE, sheen_roughness: 0.7, specular: 0.0, ..white }, 0.02),
-        // What is spread under varnish loses some.
+        // Scattering under a clearcoat loses some light.
         ("varnish", Principled { clearcoat: 1.0, ..white }, 0.03),
         ("varnished metal", Principled { clearcoat: 1.0, metallic: 1.0, ..white }, 0.12),
     ];
@@ -66,12 +66,12 @@ fn whites() -> Vec<Example> {
     whites.map(named).into()
 }
 
-/// What a direction may gain under layers: what they take from and add to single directions is made even on average only, see
-/// `sum.rs` and `white.rs`.
+/// Energy that a direction may gain under layers, which conserve energy on average over directions
+/// only; see `sum.rs` and `white.rs`.
 const LAYERED: f32 = 0.045;
 
-/// White ones, and the least that a furnace shows of them at any roughness: what lies under a layer that spreads light
-/// loses some, the more of a mirror (see `sum.rs`), and so does what is brushed.
+/// White surfaces, and the least albedo of each at any roughness: glossy lobes under a layer lose
+/// some light, mirrors under a diffuse layer more (see `sum.rs`), and so do anisotropic ones.
 fn white_ones() -> Vec<(&'static str, Principled, f32)> {
     let white = Principled::default();
     let metal = Principled { metallic: 1.0, ..white };

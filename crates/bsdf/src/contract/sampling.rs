@@ -1,4 +1,4 @@
-//! Samples follow their densities and carry what they should.
+//! Samples follow their densities and have the right weights.
 
 use super::examples::Breadth;
 use super::*;
@@ -9,8 +9,8 @@ use juggler_math::testing::close;
 const SIGNIFICANCE: f64 = 1e-3;
 const COUNT: u32 = 1_000_000;
 
-/// Every `parts`th example from `part` on against its density, each seen from one direction, others from others. In parts,
-/// which run side by side.
+/// Tests every `parts`th example from `part` on against its density, each from one of the views in
+/// turn; the parts run in parallel.
 fn follow_their_density(part: usize, parts: usize) {
     let all: Vec<Example> =
         examples().into_iter().filter(|e| e.breadth > Breadth::Needle && !e.bsdf.is_specular()).collect();
@@ -33,8 +33,8 @@ fn directions_of_the_others_follow_their_density_too() {
     follow_their_density(1, 2);
 }
 
-/// Light of rough glass is at most what there was: reflection and refraction are chosen by the very microfacet, and light that
-/// others stop goes on by the density of where it leaves.
+/// Samples of rough glass never gain energy: the sampled microfacet selects reflection or
+/// refraction, and light that other microfacets block continues as multiple scattering.
 #[test]
 fn rough_glass_never_scatters_more_than_there_was() {
     let mut random = Random::new(85);
@@ -51,8 +51,8 @@ fn rough_glass_never_scatters_more_than_there_was() {
                 }
                 energies.sort_by(f32::total_cmp);
                 let (most, nearly) = (energies[energies.len() - 1], energies[energies.len() * 999 / 1000]);
-                // 8.6 and more in a thousandth of samples, were the choice made by the mean share around the viewer.
-                // What a pane scatters more than once is picked by the cosine.
+                // With selection by the mean reflectance around the viewer, a thousandth would have
+                // 8.6 and more.
                 let limit = if number == 2 { 1.002 } else { 1.001 };
                 assert!(if number == 3 { nearly < 5.5 } else { most < limit }, "{ior} {alpha}: {most} {nearly}");
             }
@@ -60,8 +60,8 @@ fn rough_glass_never_scatters_more_than_there_was() {
     }
 }
 
-/// Light that runs to and fro in a slab of rough glass, until it comes out on either side: all of it, with a variance that
-/// stays small because no single sample gains much.
+/// All light in a slab of rough glass leaves it on either side, with a small variance, because no
+/// sample gains much energy.
 #[test]
 fn light_leaves_a_slab_of_rough_glass() {
     let mut random = Random::new(86);
@@ -75,7 +75,7 @@ fn light_leaves_a_slab_of_rough_glass() {
                 if sample.wi.z > 0.0 {
                     return energy;
                 }
-                // At the other border, which stands the other way round.
+                // Continue at the opposite interface, which is flipped.
                 wo = Vec3::new(-sample.wi.x, -sample.wi.y, sample.wi.z);
             }
         };
@@ -86,7 +86,7 @@ fn light_leaves_a_slab_of_rough_glass() {
     }
 }
 
-/// A perfect mirror keeps the energy of each path, whatever the tables of its loss miss.
+/// A perfect mirror keeps the energy of each path, whatever the error of its tabulated loss.
 #[test]
 fn samples_of_white_metal_weigh_one() {
     let mut random = Random::new(105);
@@ -99,7 +99,8 @@ fn samples_of_white_metal_weigh_one() {
     }
 }
 
-/// A clear pane keeps the energy of each path from either side, whatever the tables of its loss miss.
+/// A clear pane keeps the energy of each path from either side, whatever the error of its tabulated
+/// loss.
 #[test]
 fn samples_of_a_clear_pane_weigh_one() {
     let mut random = Random::new(106);
@@ -130,7 +131,7 @@ fn samples_carry_value_over_density() {
                 }
                 assert!(!bsdf.is_specular());
                 let (value, density) = bsdf.eval_pdf(wo, wi);
-                // Rounded directions miss the peak of hardly rough lobes by as much as they are wide.
+                // Rounding errors of directions are as large as the width of barely rough lobes.
                 if name.contains("0.001") {
                     continue;
                 }

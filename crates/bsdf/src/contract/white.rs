@@ -1,6 +1,7 @@
-//! White furnaces of the surface that glTF describes, over a grid of its weights: the energy of light that meets a ball, from
-//! outside or from within, and leaves it, whatever happens inside, on average over all directions. With
-//! `JUGGLER_FURNACES=all` over more of the grid and with less noise: `check.sh deep furnaces`.
+//! White furnaces of the glTF material model over a grid of its parameters: mean energy of light
+//! that hits a sphere from outside or from inside and leaves it, over all directions and any number
+//! of internal reflections. `JUGGLER_FURNACES=all` (`check.sh deep furnaces`) takes more of the
+//! grid and less noise.
 
 use super::{energy_of, warp};
 use crate::{Bsdf, Principled};
@@ -11,7 +12,8 @@ use juggler_math::{Rgb, Vec3};
 const LEAST: f64 = 0.99;
 const MOST: f64 = 1.002;
 
-/// The energy of one particle that meets a ball's surface, from above if `side` is 1 and from within if it is -1, when it leaves.
+/// Energy of one particle that hits a sphere, from outside if `side` is 1 and from inside if it is
+/// -1, when it leaves.
 fn particle(bsdf: &Bsdf, side: f32, random: &mut Random) -> f64 {
     let (mut wo, mut energy) = (warp::cosine_hemisphere(random.vec2()), 1.0);
     wo.z *= side;
@@ -21,13 +23,14 @@ fn particle(bsdf: &Bsdf, side: f32, random: &mut Random) -> f64 {
         if sample.wi.z > 0.0 {
             return energy;
         }
-        // A chord of a ball meets both ends at the same angle.
+        // A chord of a sphere has the same angle of incidence at both ends.
         wo = Vec3::new(-sample.wi.x, -sample.wi.y, sample.wi.z);
     }
     0.0
 }
 
-/// Mean and standard error, of as many particles as bring the latter down to `noise`, if a million do.
+/// Mean and standard error over as many particles as bring the latter down to `noise`, a million at
+/// most.
 fn ball(bsdf: &Bsdf, side: f32, noise: f64) -> (f64, f64) {
     let (mut random, mut count) = (Random::new(88), 0.0);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -38,14 +41,14 @@ fn ball(bsdf: &Bsdf, side: f32, noise: f64) -> (f64, f64) {
         }
         let mean = sum / count;
         let sigma = ((squares / count - mean * mean).max(0.0) / count).sqrt();
-        // A few particles know little of their own variance.
+        // Few particles underestimate their variance.
         if (sigma <= noise && count >= 3000.0) || count >= 1e6 {
             return (mean, sigma);
         }
     }
 }
 
-/// All combinations of values of a number.
+/// All combinations with the values of one parameter.
 fn each(all: &[Principled], values: &[f32], set: impl Fn(&mut Principled, f32)) -> Vec<Principled> {
     let with = |base: &Principled, value: f32| {
         let mut numbers = *base;
@@ -55,7 +58,7 @@ fn each(all: &[Principled], values: &[f32], set: impl Fn(&mut Principled, f32)) 
     all.iter().flat_map(|base| values.iter().map(|value| with(base, *value)).collect::<Vec<_>>()).collect()
 }
 
-/// Weights that take no energy away, in all combinations.
+/// Parameters that absorb no energy, in all combinations.
 fn grid() -> Vec<Principled> {
     let mut all = vec![Principled { sheen_roughness: 0.5, ..Principled::default() }];
     all = each(&all, &[0.0, 0.5, 1.0], |base, metallic| base.metallic = metallic);
@@ -73,7 +76,7 @@ fn grid() -> Vec<Principled> {
     all
 }
 
-/// Whether each number has an effect.
+/// Whether each parameter has an effect.
 fn has_effect(numbers: &Principled) -> bool {
     let has_no_glass = numbers.transmission * (1.0 - numbers.metallic) == 0.0;
     !((numbers.metallic == 1.0 && (numbers.transmission > 0.0 || numbers.diffuse_transmission > 0.0))
@@ -85,10 +88,10 @@ fn has_effect(numbers: &Principled) -> bool {
         || (numbers.metallic == 1.0 && numbers.ior != 1.5))
 }
 
-/// Surfaces and the sides from which light comes: above, and below where light comes in. Polished glass keeps some of the
-/// light in a ball for good.
+/// Surfaces and the sides from which light comes: above, and below where light can enter. Polished
+/// glass traps some of the light in a sphere forever.
 fn cases() -> Vec<(Principled, f32)> {
-    // Steps that share no factor with the numbers of values.
+    // Steps coprime to the numbers of values.
     let step = if std::env::var_os("JUGGLER_FURNACES").is_some() { 23 } else { 251 };
     let from_both = |numbers: Principled| {
         let glass = numbers.transmission * (1.0 - numbers.metallic);
@@ -99,7 +102,8 @@ fn cases() -> Vec<(Principled, f32)> {
     grid().into_iter().step_by(step).flat_map(from_both).flatten().collect()
 }
 
-/// What is wrong with some of the cases, each with a standard error of `noise`; as many deviations are allowed.
+/// Failures among the cases, each with a standard error of `noise`; as many `deviations` are
+/// allowed.
 fn failures(cases: &[(Principled, f32)], noise: f64, deviations: f64) -> Vec<String> {
     let failure = |(numbers, side): &(Principled, f32)| {
         let bsdf = Bsdf::with_lobes(|bsdf| numbers.add_lobes(numbers.ior, bsdf));

@@ -1,8 +1,8 @@
-//! What Schlick's curve adds on a rough mirror. Made by `tests.rs`, which says how: do not edit.
+//! Weight of the grazing color on rough mirrors. Made by `tests.rs`, which says how: do not edit.
 
 use super::{ALPHA, Plane};
 
-/// What Schlick's curve adds on a rough mirror.
+/// Weight of the grazing color on rough mirrors.
 #[rustfmt::skip]
 pub(super) const MIRROR_GRAZING: Plane<ALPHA> = [[-458, -1206, -370, -86, -31, -14, -8, -6, -4, -3, -2, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
     [-295, 9, 109, 142, 140, 142, 136, 127, 117, 106, 95, 84, 73, 63, 53, 44, 35, 28, 21, 16, 11, 8, 5, 3, 2, 1, 0, 0, 0, 0, 0, 0],

@@ -1,25 +1,27 @@
-//! How much light single scattering at GGX microfacets gives back, and how much it loses to further bounces: tables
-//! by the cosine of the angle and alpha, and the relative index of refraction for borders of clear media.
+//! Directional albedo of single scattering at GGX microfacets, and its loss to further bounces:
+//! tables over the cosine of the angle and alpha, and for dielectric interfaces the relative index
+//! of refraction.
 //!
-//! What borders of clear media lose is a matter of its own: [`InterfaceLoss`].
+//! The loss of dielectric interfaces has tables of its own: [`InterfaceLoss`].
 //!
-//! The tables hold 1/10000ths and are made by integrating our own lobes; `tests.rs` says how. Between entries values are
-//! linear in √alpha, in √((η - 1) / (η + 1)) and in √cos; for mirrors in √(cos (1 + alpha) / (cos + alpha)) instead, since
-//! what a polished mirror loses depends on cos / alpha alone. Of what borders mirror they hold what to add to a value that is right
-//! for polished ones, which is little. Means over the hemisphere are those of these very
-//! functions, so that what compensation puts back is what was lost.
+//! The tables hold units of 1/10000 and are integrals of the lobes themselves; `tests.rs` says how.
+//! Interpolation is linear in √alpha, in √((η - 1) / (η + 1)) and in √cos; for mirrors, whose loss
+//! depends on cos / alpha alone when polished, in `√(cos (1 + alpha) / (cos + alpha))` instead.
+//! Tables of the reflection of interfaces hold small corrections to a value that is exact for
+//! polished ones. Means over the hemisphere are those of the interpolated functions, so that
+//! compensation adds exactly the energy that was lost.
 
-mod border_mirrored;
+mod anisotropic;
 mod cells;
 mod interface;
-mod interface_round;
-mod interface_stretched;
+mod interface_anisotropic;
+mod interface_isotropic;
+mod interface_reflection;
+mod mirror_anisotropic;
 mod mirror_grazing;
-mod mirror_lost;
-mod mirror_stretched;
-mod scramble;
+mod mirror_loss;
+mod sample_rng;
 mod sheen_albedo;
-mod stretched;
 mod zone;
 
 #[cfg(test)]
@@ -28,112 +30,113 @@ mod interface_tests;
 mod tests;
 
 use super::fresnel;
-use border_mirrored::{MIRRORED, MIRRORED_MEAN};
+pub use anisotropic::{mean_mirror_loss, mirror_loss, sample_mirror_loss};
 pub use interface::InterfaceLoss;
+use interface_reflection::{REFLECTION, REFLECTION_MEAN};
 use mirror_grazing::MIRROR_GRAZING;
-use mirror_lost::{MIRROR_LOST, MIRROR_LOST_MEAN};
-pub use scramble::Scramble;
+use mirror_loss::{MIRROR_LOSS, MIRROR_LOSS_MEAN};
+pub use sample_rng::SampleRng;
 use sheen_albedo::SHEEN;
-pub use stretched::{mirror_lost, mirror_lost_average, sample_mirror_lost};
 pub use zone::Side;
 
-/// Entries along the cosine's coordinate, from 0 to 1.
+/// Number of entries along the cosine's coordinate, from 0 to 1.
 const COS: usize = 32;
-/// Entries along √alpha, from 0 to 1.
+/// Number of entries along √alpha, from 0 to 1.
 const ALPHA: usize = 32;
-/// The same for the tables of dielectrics.
+/// Number of entries along √alpha in the tables of dielectrics.
 const ALPHA_CLEAR: usize = 12;
-/// Entries along √((η - 1) / (η + 1)), from 0 to [`STEEPEST`].
+/// Number of entries along √((η - 1) / (η + 1)), from 0 to [`STEEPEST`].
 const IOR: usize = 10;
-/// √0.6: η = 4. Beyond, 4 stands for all.
+/// √0.6, the coordinate of η = 4; larger η are clamped to it.
 const STEEPEST: f32 = 0.774_596_7;
 
-/// By alpha, then √cos.
+/// Table by alpha, then √cos.
 type Plane<const N: usize> = [[i16; COS]; N];
-/// By index of refraction, then alpha, then √cos; for each side: light from the thinner medium, from the denser one.
+/// Table by side (light from the thinner medium, from the denser one), index of refraction, alpha
+/// and √cos.
 type Sides = [[Plane<ALPHA_CLEAR>; IOR]; 2];
 
-/// The same without √cos.
+/// Table by side, index of refraction and alpha.
 type Means = [[[i16; ALPHA_CLEAR]; IOR]; 2];
 
 const UNIT: f32 = 1e-4;
 
-/// The entry below `x` in 0..=1, as one of `count`, and how far on to the next.
+/// Index of the entry at or below `x`, 0 to 1, among `count`, and the fraction towards the next.
 #[inline]
-fn place(x: f32, count: usize) -> (usize, f32) {
+fn table_position(x: f32, count: usize) -> (usize, f32) {
     let at = x.clamp(0.0, 1.0) * (count - 1) as f32;
     let below = (at as usize).min(count - 2);
     (below, at - below as f32)
 }
 
 #[inline]
-fn along<const N: usize>(row: &[i16; N], (i, t): (usize, f32)) -> f32 {
+fn lerp_row<const N: usize>(row: &[i16; N], (i, t): (usize, f32)) -> f32 {
     let (a, b) = (f32::from(row[i]), f32::from(row[i + 1]));
     (a + (b - a) * t) * UNIT
 }
 
 #[inline]
-fn across<const N: usize>(plane: &Plane<N>, (i, t): (usize, f32), cos: (usize, f32)) -> f32 {
-    let (a, b) = (along(&plane[i], cos), along(&plane[i + 1], cos));
+fn lerp_table<const N: usize>(plane: &Plane<N>, (i, t): (usize, f32), cos: (usize, f32)) -> f32 {
+    let (a, b) = (lerp_row(&plane[i], cos), lerp_row(&plane[i + 1], cos));
     a + (b - a) * t
 }
 
-/// The coordinate of a mirror's cosine, see above; 0 / 0 counts as 0.
+/// Coordinate of a mirror's cosine, see above; 0 / 0 counts as 0.
 #[inline]
 fn coordinate(cos: f32, alpha: f32) -> f32 {
     (cos * (1.0 + alpha) / (cos + alpha).max(f32::MIN_POSITIVE)).sqrt()
 }
 
-/// 1 - E: what a rough perfect mirror loses of light at an angle of cosine `cos`.
+/// 1 - E: fraction of light at an angle of cosine `cos` that a rough perfect mirror loses.
 #[inline]
-pub fn mirror_loss(cos: f32, alpha: f32) -> f32 {
-    across(&MIRROR_LOST, place(alpha.sqrt(), ALPHA), place(coordinate(cos, alpha), COS))
+pub fn isotropic_mirror_loss(cos: f32, alpha: f32) -> f32 {
+    lerp_table(&MIRROR_LOSS, table_position(alpha.sqrt(), ALPHA), table_position(coordinate(cos, alpha), COS))
 }
 
-/// What a rough mirror gives back of light at an angle of cosine `cos` were its microfacets' share (1 - cos θ)⁵: what
-/// Schlick's curve adds at grazing angles, in single scattering.
+/// Directional albedo, at an angle of cosine `cos`, of single scattering at microfacets of
+/// reflectance (1 - cos θ)⁵: the weight of the grazing color in Schlick's curve.
 #[inline]
-pub fn mirror_grazing(cos: f32, alpha: f32) -> f32 {
-    let more = across(&MIRROR_GRAZING, place(alpha.sqrt(), ALPHA), place(cos.sqrt(), COS));
+pub fn grazing_albedo(cos: f32, alpha: f32) -> f32 {
+    let more = lerp_table(&MIRROR_GRAZING, table_position(alpha.sqrt(), ALPHA), table_position(cos.sqrt(), COS));
     (plain_grazing(cos, alpha) + more).clamp(0.0, 1.0)
 }
 
-/// The part of polished mirrors.
+/// Value for polished mirrors, to which the table adds corrections.
 #[inline]
 fn plain_grazing(cos: f32, alpha: f32) -> f32 {
     let m = 1.0 - cos;
-    polish(alpha) * m * m * m * m * m * (1.0 - mirror_loss(cos, alpha))
+    polish(alpha) * m * m * m * m * m * (1.0 - isotropic_mirror_loss(cos, alpha))
 }
 
-/// What [`Sheen`](super::Sheen) of white fibres gives back of light at an angle of cosine `cos`.
+/// Directional albedo of white [`Sheen`](super::Sheen) at an angle of cosine `cos`.
 #[inline]
-pub fn sheen(cos: f32, alpha: f32) -> f32 {
-    across(&SHEEN, place(alpha.sqrt(), ALPHA), place(cos.sqrt(), COS))
+pub fn sheen_albedo(cos: f32, alpha: f32) -> f32 {
+    lerp_table(&SHEEN, table_position(alpha.sqrt(), ALPHA), table_position(cos.sqrt(), COS))
 }
 
-/// The mean of [`mirror_loss`] over all directions, each weighted by its cosine.
+/// Cosine-weighted mean of [`isotropic_mirror_loss`] over all directions.
 #[inline]
-pub fn mirror_loss_average(alpha: f32) -> f32 {
-    along(&MIRROR_LOST_MEAN, place(alpha.sqrt(), ALPHA))
+pub fn mean_isotropic_mirror_loss(alpha: f32) -> f32 {
+    lerp_row(&MIRROR_LOSS_MEAN, table_position(alpha.sqrt(), ALPHA))
 }
 
-/// Which side's table, and the place along its indices of refraction.
+/// Side of the tables, and the position along their indices of refraction.
 #[inline]
-fn medium(ior: f32) -> (usize, (usize, f32)) {
+fn interface_position(ior: f32) -> (usize, (usize, f32)) {
     let (side, dense) = if ior < 1.0 { (1, 1.0 / ior) } else { (0, ior) };
-    (side, place(((dense - 1.0) / (dense + 1.0)).sqrt() / STEEPEST, IOR))
+    (side, table_position(((dense - 1.0) / (dense + 1.0)).sqrt() / STEEPEST, IOR))
 }
 
 #[inline]
-fn through(sides: &Sides, cos: f32, alpha: f32, ior: f32) -> f32 {
-    let (side, (i, t)) = medium(ior);
-    let (alpha, cos) = (place(alpha.sqrt(), ALPHA_CLEAR), place(cos.sqrt(), COS));
-    let (a, b) = (across(&sides[side][i], alpha, cos), across(&sides[side][i + 1], alpha, cos));
+fn lerp_interface_table(sides: &Sides, cos: f32, alpha: f32, ior: f32) -> f32 {
+    let (side, (i, t)) = interface_position(ior);
+    let (alpha, cos) = (table_position(alpha.sqrt(), ALPHA_CLEAR), table_position(cos.sqrt(), COS));
+    let (a, b) = (lerp_table(&sides[side][i], alpha, cos), lerp_table(&sides[side][i + 1], alpha, cos));
     a + (b - a) * t
 }
 
-/// How far the surface's own angle tells what its microfacets do: not at all once they blur the critical angle by more
-/// than the table's entries are apart.
+/// Weight of the surface's own angle: 1 if smooth, 0 once microfacets blur the critical angle by
+/// more than the spacing of the table's entries.
 #[inline]
 fn polish(alpha: f32) -> f32 {
     let rest = (1.0 - 4.0 * alpha).max(0.0);
@@ -141,40 +144,40 @@ fn polish(alpha: f32) -> f32 {
     squared * squared
 }
 
-/// What is mirrored if Fresnel's share were that of the surface itself: right for polished borders.
+/// Reflection with Fresnel reflectance at the surface's own angle: exact for polished interfaces.
 #[inline]
-fn plain_mirrored(cos: f32, alpha: f32, ior: f32) -> f32 {
-    polish(alpha) * fresnel::dielectric(cos, ior) * (1.0 - mirror_loss(cos, alpha))
+fn plain_reflection(cos: f32, alpha: f32, ior: f32) -> f32 {
+    polish(alpha) * fresnel::dielectric_reflectance(cos, ior) * (1.0 - isotropic_mirror_loss(cos, alpha))
 }
 
-/// What a rough border mirrors in single scattering of light at an angle of cosine `cos`.
+/// Directional albedo, at an angle of cosine `cos`, of single reflection at a rough interface.
 #[inline]
-pub fn dielectric_mirrored(cos: f32, alpha: f32, ior: f32) -> f32 {
-    (plain_mirrored(cos, alpha, ior) + through(&MIRRORED, cos, alpha, ior)).clamp(0.0, 1.0)
+pub fn dielectric_reflection_albedo(cos: f32, alpha: f32, ior: f32) -> f32 {
+    (plain_reflection(cos, alpha, ior) + lerp_interface_table(&REFLECTION, cos, alpha, ior)).clamp(0.0, 1.0)
 }
 
-/// The mean of [`dielectric_mirrored`] over all directions, each weighted by its cosine.
+/// Cosine-weighted mean of [`dielectric_reflection_albedo`] over all directions.
 #[inline]
-pub fn dielectric_mirrored_average(alpha: f32, ior: f32) -> f32 {
-    let (side, (i, t)) = medium(ior);
-    let alpha = place(alpha.sqrt(), ALPHA_CLEAR);
-    let (a, b) = (along(&MIRRORED_MEAN[side][i], alpha), along(&MIRRORED_MEAN[side][i + 1], alpha));
+pub fn mean_dielectric_reflection_albedo(alpha: f32, ior: f32) -> f32 {
+    let (side, (i, t)) = interface_position(ior);
+    let alpha = table_position(alpha.sqrt(), ALPHA_CLEAR);
+    let (a, b) = (lerp_row(&REFLECTION_MEAN[side][i], alpha), lerp_row(&REFLECTION_MEAN[side][i + 1], alpha));
     a + (b - a) * t
 }
 
-/// How often to pick the mirrored half of microfacets' light seen at an angle of cosine `cos`: the mean of the share
-/// `mirrored` at the angle itself and at two by which microfacets are tilted, never quite 0 or 1 where it is rough,
-/// since single microfacets may be tilted further.
+/// Mean reflectance of microfacets seen at an angle of cosine `cos`: the mean of `reflectance` at
+/// the angle itself and at two angles of tilted microfacets. Kept away from 0 and 1 on rough
+/// surfaces, since single microfacets may tilt further.
 #[inline]
-pub(crate) fn mirrored_share(cos: f32, alpha: f32, mirrored: impl Fn(f32) -> f32) -> f32 {
+pub(crate) fn mean_microfacet_reflectance(cos: f32, alpha: f32, reflectance: impl Fn(f32) -> f32) -> f32 {
     if alpha == 0.0 {
-        return mirrored(cos);
+        return reflectance(cos);
     }
-    // A slope of 0.7 alpha, without angles.
+    // Tilt microfacets by a slope of 0.7 alpha.
     let (slope, sin) = (0.7 * alpha, (1.0 - cos * cos).max(0.0).sqrt());
     let scale = 1.0 / (1.0 + slope * slope).sqrt();
     let (towards, away) = (((cos + sin * slope) * scale).min(1.0), ((cos - sin * slope) * scale).abs());
-    let mean = (mirrored(cos) + mirrored(towards) + mirrored(away)) * (1.0 / 3.0);
+    let mean = (reflectance(cos) + reflectance(towards) + reflectance(away)) * (1.0 / 3.0);
     let margin = 0.1 * (4.0 * alpha).min(1.0);
     mean.clamp(margin, 1.0 - margin)
 }

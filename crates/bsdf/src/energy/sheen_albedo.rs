@@ -1,8 +1,8 @@
-//! What fibres give back. Made by `tests.rs`, which says how: do not edit.
+//! Directional albedo of sheen. Made by `tests.rs`, which says how: do not edit.
 
 use super::{ALPHA, Plane};
 
-/// What fibres give back.
+/// Directional albedo of sheen.
 #[rustfmt::skip]
 pub(super) const SHEEN: Plane<ALPHA> = [[9408, 10579, 11029, 10746, 10136, 9377, 8558, 7729, 6917, 6139, 5402, 4713, 4075, 3489, 2955, 2474, 2045, 1665, 1334, 1050, 809, 608, 445, 315, 215, 140, 86, 49, 24, 10, 3, 0],
     [9408, 10579, 11029, 10746, 10136, 9377, 8558, 7729, 6917, 6139, 5402, 4713, 4075, 3489, 2955, 2474, 2045, 1665, 1334, 1050, 809, 608, 445, 315, 215, 140, 86, 49, 24, 10, 3, 0],

@@ -1,19 +1,19 @@
-//! Zones of directions at an interface of two clear media, each with a measure A from 0 to 1 that is even over its
-//! cosine-weighted directions: see [`interface`](super::interface).
+//! Zones of directions at an interface of two media, each with a measure A from 0 to 1 in which its
+//! cosine-weighted directions are uniform: see [`interface`](super::interface).
 
 /// A medium on one side of an interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The medium of the smaller index of refraction.
     Thin,
-    /// The medium of the larger index, where light may be reflected totally.
+    /// The medium of the larger index of refraction, where total internal reflection may occur.
     Dense,
 }
 
 impl Side {
-    /// The side that sees the relative index of refraction `ior`: behind the interface over in front of it.
+    /// Side with the relative index of refraction `ior`, behind the interface over in front of it.
     #[inline]
-    pub fn of(ior: f32) -> Self {
+    pub fn from_ior(ior: f32) -> Self {
         if ior < 1.0 { Self::Dense } else { Self::Thin }
     }
 
@@ -42,7 +42,7 @@ impl Zone {
     #[cfg(test)]
     pub(super) const ALL: [Self; 3] = [Self::Thin, Self::Total, Self::Partial];
 
-    /// A at `x`, the place along the entries from 0 to 1.
+    /// A at position `x`, 0 to 1, along the entries.
     #[inline]
     pub(super) fn area(self, x: f32) -> f32 {
         match self {
@@ -55,7 +55,8 @@ impl Zone {
         }
     }
 
-    /// The place of A along the entries, 0 to 1: denser towards grazing and critical angles.
+    /// Position of A along the entries, 0 to 1; entries are denser towards grazing and critical
+    /// angles.
     #[inline]
     pub(super) fn coordinate(self, area: f32) -> f32 {
         let area = area.clamp(0.0, 1.0);
@@ -68,7 +69,7 @@ impl Zone {
         }
     }
 
-    /// cos² θ of A, for the square of the critical angle's cosine.
+    /// cos² θ at A; `critical` is the squared cosine of the critical angle.
     #[inline]
     pub(super) fn squared_cos(self, area: f32, critical: f32) -> f32 {
         match self {
@@ -78,9 +79,9 @@ impl Zone {
         }
     }
 
-    /// The share of the cosine-weighted hemisphere.
+    /// Fraction of the cosine-weighted hemisphere in the zone.
     #[inline]
-    pub(super) fn share(self, critical: f32) -> f32 {
+    pub(super) fn fraction(self, critical: f32) -> f32 {
         match self {
             Self::Thin => 1.0,
             Self::Total => critical,

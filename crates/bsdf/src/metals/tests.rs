@@ -1,8 +1,8 @@
-//! Named metals beside the spectral integrals that `tests/metals/derive.py` prints.
+//! Named metals against the spectral integrals that `tests/metals/derive.py` prints.
 
 use super::{METALS, Metal};
 use juggler_math::testing::close;
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 
 /// Angles of incidence of [`SPECTRAL`].
 const DEGREES: [f32; 6] = [0.0, 40.0, 60.0, 70.0, 75.0, 80.0];
@@ -156,12 +156,12 @@ const SPECTRAL: [(&str, [[f32; 3]; 6]); 13] = [
 ];
 
 /// Reflectance at normal incidence by independent measurements: Olmon et al. 2012 (a single crystal
-/// of gold) and Hagemann, Gudat and Kunz 1975. Tables of other samples (Babar and Weaver 2015, McPeak
-/// et al. 2015) differ from Johnson and Christy by up to 0.06 for gold and 0.07 for copper.
+/// of gold) and Hagemann, Gudat and Kunz 1975. Tables of other samples (Babar and Weaver 2015,
+/// McPeak et al. 2015) differ from Johnson and Christy by up to 0.06 for gold and 0.07 for copper.
 const SECOND_TABLES: [(&str, [f32; 3]); 2] = [("gold", [1.0, 0.7586, 0.3277]), ("copper", [0.9531, 0.6392, 0.5365])];
 
 fn reflectance(name: &str, degrees: f32) -> Rgb {
-    Metal::named(name).unwrap().fresnel().at(fun::cos(degrees.to_radians()))
+    Metal::named(name).unwrap().fresnel().reflectance(portable::cos(degrees.to_radians()))
 }
 
 /// Largest difference of any channel.
@@ -180,7 +180,8 @@ fn reflectance_follows_the_spectral_integral_up_to_80_degrees() {
     assert!(SPECTRAL.iter().zip(METALS).all(|(spectral, metal)| spectral.0 == metal.name));
 }
 
-/// Only gold's red is clamped; every other channel meets its integral to the four digits of η and k.
+/// Only gold's red is clamped; every other channel meets its integral to the four digits of η and
+/// k.
 #[test]
 fn reflectance_at_normal_incidence_is_the_spectral_integral() {
     for (name, [normal, ..]) in SPECTRAL {
@@ -202,8 +203,8 @@ fn gold_and_copper_agree_with_a_second_table() {
     }
 }
 
-/// Reflectance at normal incidence in the middle of the visible range: CRC Handbook of Chemistry and
-/// Physics, "Optical properties of selected elements".
+/// Reflectance at normal incidence in the middle of the visible range: CRC Handbook of Chemistry
+/// and Physics, "Optical properties of selected elements".
 #[test]
 fn metals_reflect_what_handbooks_say() {
     for (name, expected, tolerance) in [

@@ -1,303 +1,328 @@
-//! Lobes that light meets from below a surface only.
+//! Lobes for light from below a surface.
 //!
-//! A patchwork of glass and of what is opaque must scatter light inside the solid too: the opaque part is a lobe turned over.
+//! A mix of glass and opaque lobes must scatter light inside the solid too: the opaque lobe is
+//! added again, flipped.
 //!
-//! Layers over glass, of transmittance T(w), let only T of what the glass transmits upwards leave. The rest goes back below:
+//! Layers over glass, of transmittance T(w), let only T of the light leave that the glass transmits
+//! upwards. The rest goes back below:
 //!
-//! - A pane that transmits f(wo, wi') returns f (1 - (T(wo') + T(wi')) / 2) along the mirror image of wi', with wo' that of wo. As
-//!   f is the same both ways, energy is kept on average over directions, whatever T is.
-//! - A polished solid (α up to 0.04) returns light as a mirror of its own roughness, whose microfacets reflect
-//!   (1 - F) (1 - (T(o) + T(i)) / 2), with o and i refracted from wo and wi by the microfacet. Beyond the critical angle it returns
-//!   nothing.
-//! - A rough solid (α from 0.2) returns m̄ h(wo) h(wi) / π, as such mirrors would return more than microfacets let out. h is what
-//!   polished glass transmits from below over its mean, mixed with 1 by exp(-2α), which fits rough glass of η from 1.2 to 2. By
-//!   reciprocity the mean m̄ is that of (1 - T) t from above over η², with t the transmittance of the rough glass.
+//! - A pane that transmits f(wo, wi') returns f (1 - (T(wo') + T(wi')) / 2) along the mirror image
+//!   of wi', with wo' that of wo. As f is reciprocal, energy is conserved on average over
+//!   directions, whatever T is.
+//! - A polished solid (α up to 0.04) returns light as a mirror of its own roughness, whose
+//!   microfacets reflect (1 - F) (1 - (T(o) + T(i)) / 2), with o and i the directions into which
+//!   the microfacet refracts wo and wi. Beyond the critical angle it returns nothing.
+//! - A rough solid (α from 0.2) returns m̄ h(wo) h(wi) / π, as such mirrors would return more than
+//!   microfacets transmit. h is the transmittance of polished glass from below over its mean, mixed
+//!   with 1 by exp(-2α), which fits rough glass of η from 1.2 to 2. By reciprocity, the mean m̄ is
+//!   that of (1 - T) t from above over η², with t the transmittance of the rough glass.
 //!
-//! Between these roughnesses a solid has a share of both.
+//! Between these roughnesses, a solid combines both.
 //!
-//! BSDF values keep energy on average over directions, but not for each direction. A solid sphere holds
-//! totally reflected light for many bounces, and each bounce would multiply the error. Samples therefore
-//! follow the light: a sample of the glass that goes up leaves with probability T, and otherwise becomes
-//! a sample of the returning lobe. Samples of white glass thus carry a weight of 1, so a path keeps its
-//! energy exactly from every direction. The density of a returned sample is the density that the BSDF
-//! values of the returning lobe imply.
+//! BSDF values conserve energy on average over directions, but not for each direction. A solid
+//! sphere holds totally reflected light for many bounces, and each bounce would multiply the error.
+//! Samples therefore follow the light: a sample of the glass that goes up leaves with probability
+//! T, and otherwise becomes a sample of the returning lobe. Samples of white glass thus have a
+//! weight of 1, so a path keeps its energy exactly from every direction. The density of a returned
+//! sample is the density that the BSDF values of the returning lobe imply.
 
-use super::{Bsdf, Weighted, mean};
+use super::{Bsdf, WeightedLobe, mean};
 use crate::ScatteringLobe;
-use crate::energy::Scramble;
+use crate::energy::SampleRng;
 use crate::fresnel::reflect;
 use crate::lobe::Deltas;
 use crate::{BsdfSample, Conductor, Dielectric, Fresnel, Lambert, Lobe, Scatter};
-use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
+use juggler_math::{Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::FRAC_1_PI;
 
-/// What a lobe is for.
+/// Role of a lobe in a [`Bsdf`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// A lobe as it is.
+    /// Unmodified lobe.
     Upright,
-    /// An opaque lobe turned over: for light from below.
+    /// Opaque lobe, flipped for light from below.
     Below,
-    /// A pane that only transmits: it returns what layers keep of the light that the pane at this place among the lobes transmits.
-    ReturnedByPane { glass: usize },
-    /// A mirror turned over that returns what layers keep of the light that the solid glass at this place transmits.
-    Returned {
+    /// Pane that only transmits: it returns the light that layers keep from leaving the pane at
+    /// index `glass`.
+    PaneReturn { glass: usize },
+    /// Flipped mirror that returns the light that layers keep from leaving the solid glass at index
+    /// `glass`.
+    SolidReturn {
         glass: usize,
-        /// Share of the mirror; the rest is diffuse.
+        /// Weight of the mirror; the rest is diffuse.
         polished: f32,
-        /// What polished glass transmits from below on average over directions.
+        /// Cosine-weighted mean transmittance of polished glass from below.
         transmittance: f32,
     },
 }
 
 impl Role {
-    /// The place of the glass whose light a lobe returns.
+    /// Index of the glass whose light the lobe returns.
     #[inline]
     pub(super) fn glass(&self) -> Option<usize> {
         match self {
-            Self::ReturnedByPane { glass } | Self::Returned { glass, .. } => Some(*glass),
+            Self::PaneReturn { glass } | Self::SolidReturn { glass, .. } => Some(*glass),
             Self::Upright | Self::Below => None,
         }
     }
 }
 
-/// Turned over.
+/// Flips a direction to the other side of the surface.
 #[inline]
-fn turned(w: Vec3) -> Vec3 {
+fn flip(w: Vec3) -> Vec3 {
     Vec3::new(w.x, w.y, -w.z)
 }
 
 impl Bsdf {
-    /// Adds `weight` of an opaque lobe that light from below meets; layers do not dim it.
+    /// Adds an opaque lobe with `weight` for light from below; layers do not attenuate it.
     pub fn push_below(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { role: Role::Below, ..Weighted::new(lobe, weight) });
+        self.push_any(WeightedLobe { role: Role::Below, ..WeightedLobe::new(lobe, weight) });
     }
 
-    /// Adds `weight` of what goes back below because layers over a matt lobe that transmits this much keep it from leaving.
-    pub fn push_matt_return(&mut self, transmittance: Rgb, weight: f32) {
-        let kept = 1.0 - self.mean_left();
-        if kept > 0.0 {
-            self.push_below(Lambert { albedo: transmittance * kept }, weight);
+    /// Adds with `weight` the light that layers over a diffuse lobe of this transmittance return
+    /// below.
+    pub fn push_diffuse_return(&mut self, transmittance: Rgb, weight: f32) {
+        let blocked = 1.0 - self.mean_transmittance();
+        if blocked > 0.0 {
+            self.push_below(Lambert { albedo: transmittance * blocked }, weight);
         }
     }
 
-    /// Adds `weight` of a lobe that returns below the light that layers keep from leaving the glass. The
-    /// glass is the lobe that was pushed last, and transmits light in this color.
+    /// Adds a lobe with `weight` that returns below the light that layers keep from leaving the
+    /// glass. The glass is the lobe that was pushed last, and transmits light of this color.
     pub fn push_return(&mut self, color: Rgb, weight: f32) {
         let Some((glass, layers)) = self.lobes.split_last().filter(|(_, layers)| has_cover(layers)) else { return };
-        let place = layers.len();
+        let index = layers.len();
         let returned = match &glass.lobe {
-            Lobe::ThinDielectric(pane) => Weighted {
-                role: Role::ReturnedByPane { glass: place },
-                ..Weighted::new(pane.tinted(Rgb::BLACK, color), weight)
+            Lobe::ThinDielectric(pane) => WeightedLobe {
+                role: Role::PaneReturn { glass: index },
+                ..WeightedLobe::new(pane.tinted(Rgb::BLACK, color), weight)
             },
             Lobe::Dielectric(interface) => {
                 let alpha = interface.mean_alpha();
                 let polished = ((0.2 - alpha) / (0.2 - 0.04)).clamp(0.0, 1.0);
-                let (polished, transmittance) = (polished * polished, interface.polished_transmittance_below());
-                let kept = |w: Vec3| (1.0 - left_by(layers, w)) * interface.parts(w)[1];
+                let (polished, transmittance) = (polished * polished, interface.mean_smooth_transmittance_below());
+                let blocked =
+                    |w: Vec3| (1.0 - layer_transmittance(layers, w)) * interface.reflectance_and_transmittance(w)[1];
                 let is_smooth = interface.is_smooth();
-                let scale = if is_smooth { 0.0 } else { mean(!interface.is_round(), kept) * interface.shrunk_below() };
-                let role = Role::Returned { glass: place, polished, transmittance };
+                let scale = if is_smooth {
+                    0.0
+                } else {
+                    mean(!interface.is_isotropic(), blocked) * interface.inverse_squared_ior()
+                };
+                let role = Role::SolidReturn { glass: index, polished, transmittance };
                 let mirror = Conductor::new(Fresnel::Schlick { f0: color, f90: color }, interface.alpha());
-                Weighted { role, scale, spread: 1.0 - fun::exp(-2.0 * alpha), ..Weighted::new(mirror, weight) }
+                WeightedLobe {
+                    role,
+                    scale,
+                    diffuse_fraction: 1.0 - portable::exp(-2.0 * alpha),
+                    ..WeightedLobe::new(mirror, weight)
+                }
             }
             _ => return,
         };
         self.push_any(returned);
     }
 
-    /// The lobe that returns what layers keep of the light that the glass at this place transmits.
+    /// The lobe that returns the light that layers keep from leaving the glass at this index.
     #[inline]
-    pub(super) fn returning(&self, glass: usize) -> Option<&Weighted> {
+    pub(super) fn returning(&self, glass: usize) -> Option<&WeightedLobe> {
         self.lobes.get(glass + 1).filter(|one| one.role.glass().is_some())
     }
 
-    /// The interface at a place among the lobes.
+    /// The dielectric at an index among the lobes, if it is one.
     fn interface(&self, glass: usize) -> Option<&Dielectric> {
         let lobe = self.lobes.get(glass).map(|one| &one.lobe);
         if let Some(Lobe::Dielectric(interface)) = lobe { Some(interface) } else { None }
     }
 
-    /// h(μ): what glass transmits of light from below at an angle of this cosine, over its mean.
-    fn transmitted(&self, one: &Weighted, cos: f32) -> f32 {
-        let Role::Returned { glass, transmittance, .. } = one.role else { return 0.0 };
-        let polished = self.interface(glass).map_or(0.0, |interface| interface.polished_share_below(cos));
-        one.spread + (1.0 - one.spread) * polished / transmittance
+    /// h(μ): transmittance of the glass from below at an angle of this cosine, over its mean.
+    fn relative_transmittance(&self, one: &WeightedLobe, cos: f32) -> f32 {
+        let Role::SolidReturn { glass, transmittance, .. } = one.role else { return 0.0 };
+        let polished = self.interface(glass).map_or(0.0, |interface| interface.smooth_transmittance_below(cos));
+        one.diffuse_fraction + (1.0 - one.diffuse_fraction) * polished / transmittance
     }
 
-    /// The mean of what the layers over glass keep of light that leaves it along `a` and `b`.
-    fn kept(&self, glass: usize, a: Vec3, b: Vec3) -> f32 {
+    /// Mean fraction of light along `a` and `b` that the layers over the glass block.
+    fn blocked_fraction(&self, glass: usize, a: Vec3, b: Vec3) -> f32 {
         let layers = self.lobes.get(..glass).unwrap_or_default();
-        1.0 - 0.5 * (left_by(layers, a) + left_by(layers, b))
+        1.0 - 0.5 * (layer_transmittance(layers, a) + layer_transmittance(layers, b))
     }
 
-    /// The share of the light that a microfacet mirrors from `wo` into `wi`, both turned over, which a returning mirror reflects.
-    fn returned_once(&self, glass: usize, wo: Vec3, wi: Vec3) -> f32 {
-        let leaving = |interface: &Dielectric| interface.leaving([wo, wi], (wo + wi).normalize_or_zero());
-        let Some((share, [a, b])) = self.interface(glass).and_then(leaving) else { return 0.0 };
-        share * self.kept(glass, turned(a), turned(b))
+    /// Reflectance of a returning mirror's microfacet from `wo` into `wi`, both flipped.
+    fn return_reflectance(&self, glass: usize, wo: Vec3, wi: Vec3) -> f32 {
+        let refracted = |interface: &Dielectric| interface.refract_pair([wo, wi], (wo + wi).normalize_or_zero());
+        let Some((transmittance, [a, b])) = self.interface(glass).and_then(refracted) else { return 0.0 };
+        transmittance * self.blocked_fraction(glass, flip(a), flip(b))
     }
 
-    /// f |cos θi| of what layers over a solid return below, and the density of samples of the glass that become it.
-    fn eval_pdf_of_returned(&self, one: &Weighted, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let (Role::Returned { glass, polished, .. }, Lobe::Conductor(mirror)) = (one.role, &one.lobe) else {
+    /// f |cos θi| of light that layers over a solid return below, and the density of glass samples
+    /// that become such light.
+    fn eval_pdf_of_returned(&self, one: &WeightedLobe, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        let (Role::SolidReturn { glass, polished, .. }, Lobe::Conductor(mirror)) = (one.role, &one.lobe) else {
             return (Rgb::BLACK, 0.0);
         };
         if wo.z >= 0.0 || wi.z >= 0.0 || mirror.is_smooth() {
             return (Rgb::BLACK, 0.0);
         }
-        let (o, i) = (turned(wo), turned(wi));
+        let (o, i) = (flip(wo), flip(wi));
         let mut density = 0.0;
         if polished > 0.0 {
-            density += polished * mirror.shape(o, i) * self.returned_once(glass, o, i);
+            density += polished * mirror.single_scattering_shape(o, i) * self.return_reflectance(glass, o, i);
         }
         if polished < 1.0 {
-            let h = self.transmitted(one, o.z) * self.transmitted(one, i.z);
+            let h = self.relative_transmittance(one, o.z) * self.relative_transmittance(one, i.z);
             density += (1.0 - polished) * one.scale * h * i.z * FRAC_1_PI;
         }
-        (mirror.color() * density, density)
+        (mirror.f0() * density, density)
     }
 
-    /// A sample of the glass at a place among the lobes, for light from below, which may return below because of layers; its
-    /// weight and density, if it is no delta, are to be found by evaluation.
+    /// Samples the glass at an index for light from below; layers may return the sample below.
+    /// Weight and density of a sample that is no delta are left to the caller to evaluate.
     pub(super) fn sample_under_layers(
         &self,
         glass: usize,
-        returning: &Weighted,
+        returning: &WeightedLobe,
         wo: Vec3,
         u: Vec2,
-        choice: f32,
+        u_choice: f32,
     ) -> Option<BsdfSample> {
-        let sample = self.lobes.get(glass)?.lobe.sample(wo, u, choice)?;
+        let sample = self.lobes.get(glass)?.lobe.sample(wo, u, u_choice)?;
         if sample.wi.z <= 0.0 {
             return Some(sample);
         }
-        let left = left_by(self.lobes.get(..glass)?, sample.wi);
+        let transmittance = layer_transmittance(self.lobes.get(..glass)?, sample.wi);
         if sample.scatter == Scatter::Specular {
-            if u.y < left {
-                return Some(BsdfSample { weight: sample.weight / left, pdf: sample.pdf * left, ..sample });
+            if u.y < transmittance {
+                return Some(BsdfSample {
+                    weight: sample.weight / transmittance,
+                    pdf: sample.pdf * transmittance,
+                    ..sample
+                });
             }
             let weight = sample.weight * (sample.ior * sample.ior);
             let wi = Vec3::new(-wo.x, -wo.y, wo.z);
             return Some(BsdfSample {
                 wi,
                 weight,
-                pdf: sample.pdf * (1.0 - left),
+                pdf: sample.pdf * (1.0 - transmittance),
                 scatter: Scatter::Specular,
                 ior: 1.0,
             });
         }
-        let mut random = Scramble::new(Vec2::new(u.y, u.x), choice);
-        if random.unit() < left {
+        let mut random = SampleRng::new(Vec2::new(u.y, u.x), u_choice);
+        if random.unit() < transmittance {
             return Some(sample);
         }
         let (wi, scatter) = self.return_direction(returning, wo, &sample, &mut random);
         Some(BsdfSample { wi, scatter, ior: 1.0, ..sample })
     }
 
-    /// Where a sample that layers keep from leaving goes.
+    /// Direction and kind of scattering of a sample that layers return.
     fn return_direction(
         &self,
-        returning: &Weighted,
+        returning: &WeightedLobe,
         wo: Vec3,
         sample: &BsdfSample,
-        random: &mut Scramble,
+        random: &mut SampleRng,
     ) -> (Vec3, Scatter) {
-        let Role::Returned { polished, .. } = returning.role else { return (turned(sample.wi), sample.scatter) };
+        let Role::SolidReturn { polished, .. } = returning.role else { return (flip(sample.wi), sample.scatter) };
         if sample.scatter == Scatter::Glossy && random.unit() < polished {
-            // By the microfacet that refracted it.
+            // Reflect at the microfacet that refracted the sample.
             let m = (wo + sample.wi * sample.ior).normalize_or_zero();
             let wi = reflect(wo, m);
             if wi.z < 0.0 && m != Vec3::ZERO {
                 return (wi, Scatter::Glossy);
             }
         }
-        // In proportion to h(μ) μ.
-        let most = self.transmitted(returning, 1.0);
+        // Sample in proportion to h(μ) μ by rejection.
+        let max = self.relative_transmittance(returning, 1.0);
         let mut wi = Vec3::NEG_Z;
         for _ in 0..64 {
-            wi = turned(warp::cosine_hemisphere(Vec2::new(random.unit(), random.unit())));
-            if random.unit() * most < self.transmitted(returning, -wi.z) {
+            wi = flip(warp::cosine_hemisphere(Vec2::new(random.unit(), random.unit())));
+            if random.unit() * max < self.relative_transmittance(returning, -wi.z) {
                 break;
             }
         }
         (wi, Scatter::Diffuse)
     }
 
-    /// What a pane returns along the mirror images of directions below.
-    fn kept_by_pane(&self, glass: usize, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z < 0.0 && wi.z < 0.0 { self.kept(glass, turned(wo), turned(wi)) } else { 0.0 }
+    /// Fraction that layers over a pane return along directions below; 0 for other directions.
+    fn pane_blocked_fraction(&self, glass: usize, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z < 0.0 && wi.z < 0.0 { self.blocked_fraction(glass, flip(wo), flip(wi)) } else { 0.0 }
     }
 
-    /// [`Lobe::eval_pdf`] in its role.
+    /// [`Lobe::eval_pdf`] of a lobe in its role.
     #[inline]
-    pub(super) fn eval_pdf_of_one(&self, one: &Weighted, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    pub(super) fn eval_pdf_of_one(&self, one: &WeightedLobe, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         match one.role {
             Role::Upright => one.lobe.eval_pdf(wo, wi),
-            Role::Below => one.lobe.eval_pdf(turned(wo), turned(wi)),
-            Role::ReturnedByPane { glass } => {
-                let share = self.kept_by_pane(glass, wo, wi);
-                let through =
-                    self.lobes.get(glass).filter(|_| share > 0.0).map(|pane| pane.lobe.eval_pdf(wo, turned(wi)));
-                through.map_or((Rgb::BLACK, 0.0), |(value, pdf)| (value * share, pdf * share))
+            Role::Below => one.lobe.eval_pdf(flip(wo), flip(wi)),
+            Role::PaneReturn { glass } => {
+                let blocked = self.pane_blocked_fraction(glass, wo, wi);
+                let scattered =
+                    self.lobes.get(glass).filter(|_| blocked > 0.0).map(|pane| pane.lobe.eval_pdf(wo, flip(wi)));
+                scattered.map_or((Rgb::BLACK, 0.0), |(value, pdf)| (value * blocked, pdf * blocked))
             }
-            Role::Returned { .. } => self.eval_pdf_of_returned(one, wo, wi),
+            Role::SolidReturn { .. } => self.eval_pdf_of_returned(one, wo, wi),
         }
     }
 
-    /// [`Lobe::sample`] in its role.
+    /// [`Lobe::sample`] of a lobe in its role.
     #[inline]
-    pub(super) fn sample_of_one(&self, one: &Weighted, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+    pub(super) fn sample_of_one(&self, one: &WeightedLobe, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
         match one.role {
-            Role::Upright => one.lobe.sample(wo, u, choice),
-            Role::Below => one.lobe.sample(turned(wo), u, choice).map(turned_back),
+            Role::Upright => one.lobe.sample(wo, u, u_choice),
+            Role::Below => one.lobe.sample(flip(wo), u, u_choice).map(flip_sample),
             // `sample_under_layers` turns samples of the glass into samples of this lobe.
-            Role::ReturnedByPane { .. } | Role::Returned { .. } => None,
+            Role::PaneReturn { .. } | Role::SolidReturn { .. } => None,
         }
     }
 
-    /// [`Lobe::deltas`] in its role.
-    pub(super) fn deltas_of_one(&self, one: &Weighted, wo: Vec3) -> Deltas {
+    /// [`Lobe::deltas`] of a lobe in its role.
+    pub(super) fn deltas_of_one(&self, one: &WeightedLobe, wo: Vec3) -> Deltas {
         match one.role {
             Role::Upright => one.lobe.deltas(wo),
-            Role::Below => one.lobe.deltas(turned(wo)).into_iter().map(turned_back).collect(),
+            Role::Below => one.lobe.deltas(flip(wo)).into_iter().map(flip_sample).collect(),
             _ if wo.z >= 0.0 => Deltas::new(),
-            Role::ReturnedByPane { glass } => {
-                let kept = |delta: BsdfSample| self.kept_by_pane(glass, wo, delta.wi);
-                let deltas = one.lobe.deltas(turned(wo)).into_iter();
-                deltas.map(|delta| BsdfSample { weight: delta.weight * kept(delta), ..delta }).collect()
+            Role::PaneReturn { glass } => {
+                let blocked = |delta: BsdfSample| self.pane_blocked_fraction(glass, wo, delta.wi);
+                let deltas = one.lobe.deltas(flip(wo)).into_iter();
+                deltas.map(|delta| BsdfSample { weight: delta.weight * blocked(delta), ..delta }).collect()
             }
-            Role::Returned { glass, .. } => {
-                let share = |delta: &BsdfSample| self.returned_once(glass, turned(wo), delta.wi);
-                let deltas = one.lobe.deltas(turned(wo)).into_iter();
-                deltas.map(|delta| turned_back(BsdfSample { weight: delta.weight * share(&delta), ..delta })).collect()
+            Role::SolidReturn { glass, .. } => {
+                let reflectance = |delta: &BsdfSample| self.return_reflectance(glass, flip(wo), delta.wi);
+                let deltas = one.lobe.deltas(flip(wo)).into_iter();
+                deltas
+                    .map(|delta| flip_sample(BsdfSample { weight: delta.weight * reflectance(&delta), ..delta }))
+                    .collect()
             }
         }
     }
 
-    /// [`Lobe::albedo`] in its role; that of glass from below counts what is returned.
-    pub(super) fn albedo_of_one(&self, one: &Weighted, wo: Vec3) -> Rgb {
+    /// [`Lobe::albedo`] of a lobe in its role; the albedo of glass from below includes returned
+    /// light.
+    pub(super) fn albedo_of_one(&self, one: &WeightedLobe, wo: Vec3) -> Rgb {
         match one.role {
             Role::Upright => one.lobe.albedo(wo),
             _ if wo.z >= 0.0 => Rgb::BLACK,
-            Role::Below => one.lobe.albedo(turned(wo)),
-            Role::ReturnedByPane { .. } | Role::Returned { .. } => Rgb::BLACK,
+            Role::Below => one.lobe.albedo(flip(wo)),
+            Role::PaneReturn { .. } | Role::SolidReturn { .. } => Rgb::BLACK,
         }
     }
 }
 
-/// A sample of a lobe that is turned over.
-fn turned_back(sample: BsdfSample) -> BsdfSample {
-    BsdfSample { wi: turned(sample.wi), ..sample }
+/// Flips the sample of a flipped lobe back.
+fn flip_sample(sample: BsdfSample) -> BsdfSample {
+    BsdfSample { wi: flip(sample.wi), ..sample }
 }
 
-fn has_cover(layers: &[Weighted]) -> bool {
+fn has_cover(layers: &[WeightedLobe]) -> bool {
     layers.iter().any(|one| one.cover > 0.0)
 }
 
-/// What layers leave of light along `w`.
+/// Transmittance of layers for light along `w`.
 #[inline]
-fn left_by(layers: &[Weighted], w: Vec3) -> f32 {
-    layers.iter().fold(1.0, |left, one| left * one.leaves(w))
+fn layer_transmittance(layers: &[WeightedLobe], w: Vec3) -> f32 {
+    layers.iter().fold(1.0, |transmittance, one| transmittance * one.transmittance(w))
 }

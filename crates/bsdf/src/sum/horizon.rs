@@ -1,4 +1,4 @@
-//! Energy of lobes whose frame stands on a shading normal that a map has turned.
+//! Energy of lobes around a shading normal that a map has perturbed.
 //!
 //! Normal maps and bump maps turn the shading normal, which is z, away from the geometric normal g.
 //! The planes of z and g bound two lunes of directions that lie above one plane and below the
@@ -19,11 +19,11 @@
 //! light (s = 1 reflects a lune at the plane of g, and doubles grazing light); a large s blurs
 //! highlights that the plane of g cuts.
 //!
-//! The result is not reciprocal, as that of no shading normal is (Veach 1997, section 5.3).
+//! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3).
 
 use super::Bsdf;
 use crate::{BsdfSample, Scatter};
-use juggler_math::{Rgb, Vec2, Vec3, fun};
+use juggler_math::{Rgb, Vec2, Vec3, portable};
 use std::f32::consts::PI;
 
 /// The geometric surface in the frame of a shading normal z that differs from its normal g.
@@ -51,7 +51,7 @@ impl Horizon {
         if !(sine > LEAST_SINE && cosine > 0.0) {
             return None;
         }
-        let angle = fun::atan2(sine, cosine);
+        let angle = portable::atan2(sine, cosine);
         let lean = (Vec3::Z - normal * cosine) / sine;
         Some(Self { normal, lean, stretch: WIDEST.min((PI - angle) / angle) })
     }
@@ -65,22 +65,22 @@ impl Horizon {
     /// Maps a direction in a lune to the direction in which its light goes on.
     fn spread(&self, w: Vec3) -> Vec3 {
         let side = if w.z < 0.0 { -1.0 } else { 1.0 };
-        self.turned(w * side, -self.stretch) * side
+        self.rotated(w * side, -self.stretch) * side
     }
 
     /// Inverse of [`Horizon::spread`] for a direction `w` outside of both lunes; `None` where no
-    /// light of a lune is spread to.
+    /// direction of a lune maps to `w`.
     fn source(&self, w: Vec3) -> Option<Vec3> {
         let side = if w.z < 0.0 { -1.0 } else { 1.0 };
-        let source = self.turned(w * side, -1.0 / self.stretch);
+        let source = self.rotated(w * side, -1.0 / self.stretch);
         (source.z > 0.0).then_some(source * side)
     }
 
     /// Direction with ψ `factor` times that of `w` and the same angle from the line in which both
     /// planes meet.
-    fn turned(&self, w: Vec3, factor: f32) -> Vec3 {
+    fn rotated(&self, w: Vec3, factor: f32) -> Vec3 {
         let (along, up) = (w.dot(self.lean), w.dot(self.normal));
-        let (sin, cos) = fun::sin_cos(fun::atan2(up, along) * factor);
+        let (sin, cos) = portable::sin_cos(portable::atan2(up, along) * factor);
         let radius = (along * along + up * up).sqrt();
         w + self.lean * (radius * cos - along) + self.normal * (radius * sin - up)
     }
@@ -106,8 +106,8 @@ impl Bsdf {
     }
 
     /// [`Bsdf::sample`] with a horizon.
-    pub(super) fn sample_above(&self, horizon: &Horizon, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
-        let sample = self.sample_of_lobes(wo, u, choice)?;
+    pub(super) fn sample_above(&self, horizon: &Horizon, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
+        let sample = self.sample_of_lobes(wo, u, u_choice)?;
         let share = 1.0 / horizon.stretch;
         let (wi, own, other) = if horizon.divides(sample.wi) {
             let wi = horizon.spread(sample.wi);

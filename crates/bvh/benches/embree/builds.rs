@@ -1,23 +1,23 @@
-//! How long builds take, in turns.
+//! Build times of Juggler and Embree, measured alternately.
 
-use crate::ffi::Loaded;
+use crate::ffi::EmbreeMesh;
 use crate::targets::Targets;
 use juggler_bvh::Quality;
 use juggler_raybench::Mesh;
-use juggler_raybench::clock::{Elapsed, Of, Stopwatch};
+use juggler_raybench::clock::{CpuClock, Elapsed, Stopwatch};
 use juggler_raybench::kernel;
 use juggler_raybench::measure::median;
 
-/// Times of one build, repeat by repeat, and the bytes of the tree.
+/// Times of one build per repeat, and the size of the tree in bytes.
 #[derive(Default)]
 struct Times {
     elapsed: Vec<Elapsed>,
     bytes: usize,
 }
 
-/// Prints a table for this number of threads, which is Embree's.
+/// Measures and prints a table for `threads` threads, which must be those of Embree's device.
 pub fn measure(
-    loaded: &Loaded,
+    embree_mesh: &EmbreeMesh,
     mesh: &Mesh,
     threads: usize,
     repeats: usize,
@@ -25,11 +25,11 @@ pub fn measure(
 ) -> Result<(), String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     println!("\n  build, {threads} threads {:>21}{:>10}{:>10}{:>10}", "wall s", "CPU s", "bytes/tri", "speed");
-    Quality::ALL.into_iter().try_for_each(|quality| compare(loaded, mesh, quality, repeats, &pool, targets))
+    Quality::ALL.into_iter().try_for_each(|quality| compare(embree_mesh, mesh, quality, repeats, &pool, targets))
 }
 
 fn compare(
-    loaded: &Loaded,
+    embree_mesh: &EmbreeMesh,
     mesh: &Mesh,
     quality: Quality,
     repeats: usize,
@@ -39,10 +39,10 @@ fn compare(
     let threads = pool.current_num_threads();
     let (mut theirs, mut ours) = (Times::default(), Times::default());
     for _ in 0..repeats {
-        let (scene, elapsed) = loaded.build(quality, false)?;
+        let (scene, elapsed) = embree_mesh.build(quality, false)?;
         (theirs.bytes, _) = (scene.bytes, theirs.elapsed.push(elapsed));
         let (bvh, elapsed) = pool.install(|| {
-            let watch = Stopwatch::start(Of::Process);
+            let watch = Stopwatch::start(CpuClock::Process);
             (kernel::build(mesh, quality), watch.elapsed())
         });
         ours.bytes = bvh.map_err(|error| error.to_string())?.bytes();
@@ -51,7 +51,7 @@ fn compare(
     let per_triangle = |bytes: usize| bytes as f64 / mesh.triangles.len() as f64;
     print(&format!("Embree {quality:?}"), &theirs, per_triangle(theirs.bytes), None);
     let pairs = theirs.elapsed.iter().zip(&ours.elapsed);
-    // With one thread the processor's time is the steadier one; with more the wall's is what counts.
+    // CPU time is steadier with one thread; with more threads wall-clock time is what matters.
     let speed = median(pairs.map(|(a, b)| if threads == 1 { a.cpu / b.cpu } else { a.wall / b.wall }));
     print(&format!("Juggler {quality:?}"), &ours, per_triangle(ours.bytes), Some(speed));
     targets.add(&format!("build speed, {quality:?}, {threads} threads"), speed);

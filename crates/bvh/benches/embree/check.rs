@@ -1,30 +1,31 @@
-//! Whether both see the same, ray by ray.
+//! Ray-by-ray comparison of the hits of Juggler and Embree.
 
 use crate::ffi::{Hit, Scene};
 use juggler_bvh::TriangleBvh;
 use juggler_math::Ray;
 use juggler_raybench::RaySet;
-use juggler_raybench::rays::Query;
+use juggler_raybench::rays::QueryKind;
 use std::fmt;
 
-/// Relative difference of distances that rounding explains.
+/// Relative difference of distances that counts as rounding.
 const ROUNDING: f32 = 1e-4;
 
-/// Distance, as a share of the origin's largest coordinate, that is no farther than rays are moved off what they leave: a
-/// hit there is on the surface that the ray leaves, by a distance wrongly rounded, or on one that touches it.
+/// Distance, relative to the origin's largest coordinate, within which rays are offset from the
+/// surface that they leave. A hit this close is on that surface, by a rounding error, or on one
+/// that touches it.
 const START: f32 = 1e-5;
 
-/// Rays on which the two differ.
+/// Numbers of rays on which the two differ.
 #[derive(Default)]
 pub struct Differences {
     rays: usize,
-    /// One hits, the other does not.
+    /// Hit or miss differs.
     hit: usize,
-    /// Another triangle at the same distance: an edge that two share, or coplanar ones.
+    /// Different triangles at the same distance: a shared edge or coplanar triangles.
     triangle: usize,
-    /// Another triangle, elsewhere.
+    /// Different triangles at different distances.
     place: usize,
-    /// One of them hits where the ray starts.
+    /// One of the two hits at the ray's origin.
     start: usize,
 }
 
@@ -34,9 +35,9 @@ impl Differences {
         for ray in &set.rays {
             let closest = || (embree.closest(ray), juggler.closest(ray).map(|hit| (hit.t, hit.index)));
             match set.kind.query() {
-                Query::Closest => own.compare(ray, closest()),
-                Query::Any if embree.any(ray) == juggler.any(ray) => {}
-                Query::Any => {
+                QueryKind::Closest => own.compare(ray, closest()),
+                QueryKind::Any if embree.any(ray) == juggler.any(ray) => {}
+                QueryKind::Any => {
                     let (one, other) = closest();
                     let at_start = [one, other].into_iter().flatten().any(|hit| starts_at(ray, hit));
                     *if at_start { &mut own.start } else { &mut own.hit } += 1;

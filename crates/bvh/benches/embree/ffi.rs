@@ -1,11 +1,11 @@
-//! Embree 4, opened at run time: nothing is linked. All calls to C are in this file.
+//! Embree 4, loaded at run time without linking. All calls to C are in this file.
 #![expect(unsafe_code, reason = "Embree is a C library")]
 
 use crate::layout::{Arguments, INVALID, Ray1, Ray8, RayHit1, RayHit8, Valid8};
 use juggler_bvh::Quality;
 use juggler_math::Ray;
 use juggler_raybench::Mesh;
-use juggler_raybench::clock::{Elapsed, Of, Stopwatch};
+use juggler_raybench::clock::{CpuClock, Elapsed, Stopwatch};
 use libloading::Library;
 use std::ffi::{CString, OsStr, c_char, c_int, c_void};
 use std::ptr::null_mut;
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicI64, Ordering};
 type Handle = *mut c_void;
 type Monitor = unsafe extern "C" fn(*mut c_void, isize, bool) -> bool;
 
-/// The functions that are needed.
+/// Embree's functions that the benchmark calls.
 pub struct Api {
     new_device: unsafe extern "C" fn(*const c_char) -> Handle,
     device_property: unsafe extern "C" fn(Handle, c_int) -> isize,
@@ -36,17 +36,18 @@ pub struct Api {
     occluded1: unsafe extern "C" fn(Handle, *mut Ray1, *const Arguments),
     intersect8: unsafe extern "C" fn(*const Valid8, Handle, *mut RayHit8, *const Arguments),
     occluded8: unsafe extern "C" fn(*const Valid8, Handle, *mut Ray8, *const Arguments),
-    /// Held so that the functions stay where they are.
+    /// Keeps the functions loaded.
     _library: Library,
 }
 
 impl Api {
-    /// Opens the library at this path.
+    /// Loads the library at `path`.
     pub fn open(path: &OsStr) -> Result<Self, String> {
-        // SAFETY: the user names a library and means it to be run; Embree's initialisers ask for nothing.
+        // SAFETY: the user names a library to be run; Embree's initializers have no preconditions.
         let library = unsafe { Library::new(path) }.map_err(|error| error.to_string())?;
-        // SAFETY: each field has the type that `rtcore_device.h`, `rtcore_geometry.h` and `rtcore_scene.h` of Embree 4
-        // declare for the name beside it. Enums are C ints, `size_t` is `usize`, `ssize_t` is `isize`.
+        // SAFETY: each field has the type that `rtcore_device.h`, `rtcore_geometry.h` and
+        // `rtcore_scene.h` of Embree 4 declare for the name beside it. Enums are C ints, `size_t`
+        // is `usize`, `ssize_t` is `isize`.
         unsafe {
             Ok(Self {
                 new_device: function(&library, "rtcNewDevice")?,
@@ -74,31 +75,33 @@ impl Api {
     }
 }
 
-/// The function of this name.
+/// Looks up a function by name.
 ///
 /// # Safety
-/// `F` is the type of that function.
+/// `F` must be the type of that function.
 unsafe fn function<F: Copy>(library: &Library, name: &str) -> Result<F, String> {
-    // SAFETY: the caller's promise; the pointer is copied out, and `Api` holds the library as long as its functions.
+    // SAFETY: guaranteed by the caller; the pointer is copied, and `Api` keeps the library as long
+    // as its functions.
     unsafe { library.get::<F>(name.as_bytes()) }.map(|symbol| *symbol).map_err(|error| error.to_string())
 }
 
-/// Embree with so many threads to build with. One a process: after a second one, Embree 4.4 keeps a thread busy with
-/// nothing, or builds with other threads than it is asked to.
+/// An Embree device with a number of build threads. Only one per process: after a second one,
+/// Embree 4.4 keeps a thread busy or builds with another number of threads than requested.
 pub struct Device<'a> {
     api: &'a Api,
     device: Handle,
-    /// Bytes that Embree holds now. Boxed, because Embree knows its address.
+    /// Memory that Embree holds, in bytes. Boxed, since Embree keeps its address.
     bytes: Box<AtomicI64>,
 }
 
-/// A mesh in Embree's memory.
-pub struct Loaded<'d> {
+/// A mesh in Embree's buffers.
+pub struct EmbreeMesh<'d> {
     device: &'d Device<'d>,
     geometry: Handle,
 }
 
-/// Called by Embree whenever it takes (positive) or gives back memory.
+/// Memory monitor callback: Embree reports allocations as positive, deallocations as negative
+/// numbers.
 unsafe extern "C" fn count_bytes(counter: *mut c_void, bytes: isize, _after: bool) -> bool {
     // SAFETY: `counter` is the boxed counter of a `Device`, which outlives Embree's device.
     unsafe { &*counter.cast::<AtomicI64>() }.fetch_add(bytes as i64, Ordering::Relaxed);
@@ -106,11 +109,12 @@ unsafe extern "C" fn count_bytes(counter: *mut c_void, bytes: isize, _after: boo
 }
 
 impl<'a> Device<'a> {
-    /// Without meshes.
+    /// Creates a device without meshes.
     pub fn new(api: &'a Api, threads: usize) -> Result<Self, String> {
         let settings = CString::new(format!("threads={threads}")).map_err(|error| error.to_string())?;
         let bytes = Box::new(AtomicI64::new(0));
-        // SAFETY: the string ends with a zero and lives through the call; the counter lives as long as the device.
+        // SAFETY: the string ends with a zero and lives through the call; the counter lives as long
+        // as the device.
         let device = unsafe {
             let device = (api.new_device)(settings.as_ptr());
             if device.is_null() {
@@ -122,11 +126,11 @@ impl<'a> Device<'a> {
         Ok(Self { api, device, bytes })
     }
 
-    /// Copies the mesh.
-    pub fn load(&self, mesh: &Mesh) -> Result<Loaded<'_>, String> {
+    /// Copies a mesh into Embree's buffers.
+    pub fn load(&self, mesh: &Mesh) -> Result<EmbreeMesh<'_>, String> {
         // SAFETY: the device lives.
         let geometry = unsafe { (self.api.new_geometry)(self.device, TRIANGLES) };
-        let own = Loaded { device: self, geometry };
+        let own = EmbreeMesh { device: self, geometry };
         own.buffer(VERTICES, FLOAT3, mesh.positions.iter().map(|position| position.to_array()))?;
         own.buffer(INDICES, UINT3, mesh.triangles.iter().copied())?;
         // SAFETY: the geometry is this device's, and its buffers are filled.
@@ -134,7 +138,7 @@ impl<'a> Device<'a> {
         self.checked(own)
     }
 
-    /// `4.4.0`.
+    /// Version of the library, such as `4.4.0`.
     pub fn version(&self) -> String {
         // SAFETY: the device lives; 1 to 3 are the parts of the version.
         let part = |part| unsafe { (self.api.device_property)(self.device, part) };
@@ -150,8 +154,8 @@ impl<'a> Device<'a> {
     }
 }
 
-impl Loaded<'_> {
-    /// A new buffer with triples of 32 bits in it.
+impl EmbreeMesh<'_> {
+    /// Creates a buffer and fills it with triples of 32-bit numbers.
     fn buffer<T: Copy>(
         &self,
         kind: c_int,
@@ -171,11 +175,12 @@ impl Loaded<'_> {
         Ok(())
     }
 
-    /// Builds a tree; how long that took.
+    /// Builds a scene and returns it with the build time.
     pub fn build(&self, quality: Quality, robust: bool) -> Result<(Scene<'_>, Elapsed), String> {
         let Device { api, device, bytes } = self.device;
         let before = bytes.load(Ordering::Relaxed);
-        // SAFETY: device and geometry live; the numbers are members of `RTCSceneFlags` and `RTCBuildQuality`.
+        // SAFETY: device and geometry live; the numbers are members of `RTCSceneFlags` and
+        // `RTCBuildQuality`.
         let scene = unsafe {
             let scene = (api.new_scene)(*device);
             (api.set_flags)(scene, if robust { 1 << 2 } else { 0 });
@@ -183,16 +188,16 @@ impl Loaded<'_> {
             (api.attach)(scene, self.geometry);
             scene
         };
-        let watch = Stopwatch::start(Of::Process);
+        let watch = Stopwatch::start(CpuClock::Process);
         // SAFETY: as above.
         unsafe { (api.commit_scene)(scene) };
         let elapsed = watch.elapsed();
-        let taken = usize::try_from(bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
-        self.device.checked((Scene { device: self.device, scene, bytes: taken }, elapsed))
+        let scene_bytes = usize::try_from(bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
+        self.device.checked((Scene { device: self.device, scene, bytes: scene_bytes }, elapsed))
     }
 }
 
-/// `RTC_BUILD_QUALITY_LOW`, `_MEDIUM`, `_HIGH`.
+/// `RTC_BUILD_QUALITY_LOW`, `_MEDIUM` or `_HIGH`.
 fn quality_of(quality: Quality) -> c_int {
     match quality {
         Quality::Fast => 0,
@@ -212,30 +217,32 @@ const FLOAT3: c_int = 0x9003;
 
 impl Drop for Device<'_> {
     fn drop(&mut self) {
-        // SAFETY: made in `new`, let go once; meshes and scenes borrow the device, so none is left.
+        // SAFETY: created in `new`, released once; meshes and scenes borrow the device, so none is
+        // left.
         unsafe { (self.api.release_device)(self.device) };
     }
 }
 
-impl Drop for Loaded<'_> {
+impl Drop for EmbreeMesh<'_> {
     fn drop(&mut self) {
-        // SAFETY: made in `load`, let go once; scenes keep what they need of it.
+        // SAFETY: created in `load`, released once; scenes retain the geometry.
         unsafe { (self.device.api.release_geometry)(self.geometry) };
     }
 }
 
-/// A tree of Embree's.
+/// A committed Embree scene.
 pub struct Scene<'d> {
     device: &'d Device<'d>,
     scene: Handle,
-    /// Bytes of the tree, without the mesh.
+    /// Size of the tree in bytes, without the mesh.
     pub bytes: usize,
 }
 
-// SAFETY: Embree allows any number of threads to trace a committed scene; nothing else is done through `&Scene`.
+// SAFETY: Embree allows any number of threads to trace a committed scene; nothing else is done
+// through `&Scene`.
 unsafe impl Sync for Scene<'_> {}
 
-/// Where a ray ended: distance and number of the triangle.
+/// Hit of a ray: distance and index of the triangle.
 pub type Hit = (f32, u32);
 
 impl Scene<'_> {
@@ -257,7 +264,7 @@ impl Scene<'_> {
         ray.far < 0.0
     }
 
-    /// `rtcIntersect8`, up to eight rays.
+    /// `rtcIntersect8` for up to eight rays.
     #[inline(always)]
     pub fn closest8(&self, rays: &[Ray], coherent: bool) -> [Option<Hit>; 8] {
         let (packet, valid) = Ray8::of(rays);
@@ -269,7 +276,7 @@ impl Scene<'_> {
         std::array::from_fn(|lane| (packet.hit.geometry[lane] != INVALID).then_some(hit(lane)))
     }
 
-    /// `rtcOccluded8`, up to eight rays.
+    /// `rtcOccluded8` for up to eight rays.
     #[inline(always)]
     pub fn any8(&self, rays: &[Ray], coherent: bool) -> [bool; 8] {
         let (mut packet, valid) = Ray8::of(rays);
@@ -285,7 +292,7 @@ const TOGETHER: Arguments = Arguments::new(true);
 
 impl Drop for Scene<'_> {
     fn drop(&mut self) {
-        // SAFETY: made in `build`, let go once.
+        // SAFETY: created in `build`, released once.
         unsafe { (self.device.api.release_scene)(self.scene) };
     }
 }

@@ -1,9 +1,10 @@
-//! Structures of Embree 4's C interface (`rtcore_ray.h`, `rtcore_common.h`), for builds with one level of instances.
+//! Structures of Embree 4's C interface (`rtcore_ray.h`, `rtcore_common.h`), for builds with one
+//! instancing level.
 
 use juggler_math::Ray;
 use std::ffi::c_void;
 
-/// What Embree calls no geometry and no primitive.
+/// `RTC_INVALID_GEOMETRY_ID`: no geometry, primitive or instance.
 pub const INVALID: u32 = u32::MAX;
 
 /// `RTCRay`.
@@ -68,11 +69,11 @@ pub struct RayHit8 {
     pub hit: Hit8,
 }
 
-/// Which rays of a packet are meant: -1 or 0.
+/// Valid mask of a packet: -1 for active rays, 0 for inactive ones.
 #[repr(C, align(32))]
 pub struct Valid8(pub [i32; 8]);
 
-/// `RTCIntersectArguments` and `RTCOccludedArguments`, which agree.
+/// `RTCIntersectArguments` and `RTCOccludedArguments`, which have the same layout.
 #[repr(C)]
 pub struct Arguments {
     flags: u32,
@@ -80,12 +81,12 @@ pub struct Arguments {
     context: *mut c_void,
     filter: *mut c_void,
     callback: *mut c_void,
-    /// Some builds have one more number.
+    /// Some builds have one more field.
     spare: [u64; 2],
 }
 
 impl Arguments {
-    /// Everything as Embree sets it up by itself, and the hint that rays of a packet go the same way.
+    /// Embree's defaults, with or without the coherent flag for packets.
     pub const fn new(coherent: bool) -> Self {
         let nothing = std::ptr::null_mut();
         let flags = if coherent { 1 << 16 } else { 0 };
@@ -125,7 +126,7 @@ impl From<&Ray> for RayHit1 {
 }
 
 impl Ray8 {
-    /// Up to eight rays, and which lanes hold one.
+    /// Converts up to eight rays; also returns the mask of used lanes.
     #[inline(always)]
     pub fn of(rays: &[Ray]) -> (Self, Valid8) {
         let mut packet = Self {
@@ -167,6 +168,6 @@ impl From<Ray8> for RayHit8 {
     }
 }
 
-// The sizes that the C compiler gives them.
+// Sizes in C.
 const _: () = assert!(size_of::<Ray1>() == 48 && size_of::<Hit1>() == 48 && size_of::<RayHit1>() == 96);
 const _: () = assert!(size_of::<Ray8>() == 12 * 32 && size_of::<Hit8>() == 9 * 32 && size_of::<RayHit8>() == 21 * 32);

@@ -1,17 +1,18 @@
-//! Juggler's rays against Embree 4's, in turns, on the same meshes and the same rays, in one process
-//! (for each number of threads that builds are timed with, one).
+//! Benchmark of Juggler against Embree 4: same meshes, same rays, measured alternately in one
+//! process (one process for each number of build threads).
 //!
-//! Embree is not needed to build this; the library is opened when `EMBREE_LIB` says where it is. The wheel `embreex` from
-//! the Python package index holds one:
+//! Embree is not needed to build this; the library is loaded if `EMBREE_LIB` gives its path. The
+//! wheel `embreex` from the Python package index contains one:
 //!
 //! ```sh
 //! pip download --no-deps embreex==4.4.0.post1 && unzip embreex-*.whl 'embreex.libs/*'
-//! EMBREE_LIB=$(ls $PWD/embreex.libs/libembree4-*) cargo bench -p juggler-bvh --bench embree -- blob hall repeats=9
+//! EMBREE_LIB=$(ls $PWD/embreex.libs/libembree4-*) \
+//!     cargo bench -p juggler-bvh --bench embree -- blob hall repeats=9
 //! ```
 //!
-//! Without further words: the small scenes, all kinds of rays, all calls. `rates.rs` says what is compared with what.
-//! Rates of one thread are by its own time on the processor, which other programs disturb least; ratios are medians of
-//! the ratios of each repeat.
+//! Without further words, the small scenes, all kinds of rays and all calls are measured.
+//! `rates.rs` defines the comparisons. Rates of one thread use its CPU time, which other programs
+//! disturb least. Ratios are medians of the ratios of each repeat.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod builds;
@@ -24,10 +25,10 @@ mod targets;
 mod tracers;
 
 use check::Differences;
-use ffi::{Api, Device, Loaded, Scene};
+use ffi::{Api, Device, EmbreeMesh, Scene};
 use juggler_bvh::TriangleBvh;
 use juggler_raybench::kernel;
-use juggler_raybench::meshes::Recipe;
+use juggler_raybench::meshes::MeshSpec;
 use juggler_raybench::{Mesh, RaySet, rays};
 use options::{Call, Options};
 use std::ffi::OsStr;
@@ -52,20 +53,25 @@ fn main() -> ExitCode {
 fn run(path: &OsStr) -> Result<(), String> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let options = Options::read(words.iter().cloned())?;
-    // Those threads of Embree that trace are ours.
+    // Embree's tracing threads are ours; its own threads only build.
     let threads = if options.rays > 0 { 1 } else { options.build_threads.first().copied().unwrap_or(1) };
     let api = Api::open(path)?;
     let device = Device::new(&api, threads)?;
     let mut targets = Targets::default();
-    for (name, recipe) in &options.scenes {
-        scene(&device, threads, (name, recipe), &options, &mut targets)?;
+    for (name, spec) in &options.scenes {
+        scene(&device, threads, (name, spec), &options, &mut targets)?;
     }
     targets.print();
-    options.build_threads.iter().filter(|other| **other != threads).try_for_each(|other| elsewhere(&words, *other))
+    options
+        .build_threads
+        .iter()
+        .filter(|other| **other != threads)
+        .try_for_each(|other| measure_in_child(&words, *other))
 }
 
-/// Times the builds with another number of threads, in a process with an Embree of its own.
-fn elsewhere(words: &[String], threads: usize) -> Result<(), String> {
+/// Measures the builds with another number of threads, in a process with an Embree device of its
+/// own.
+fn measure_in_child(words: &[String], threads: usize) -> Result<(), String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let mut command = Command::new(program);
     let status = command.args(words).arg(format!("build={threads}")).arg("rays=0").status();
@@ -76,26 +82,26 @@ fn elsewhere(words: &[String], threads: usize) -> Result<(), String> {
 fn scene(
     device: &Device,
     threads: usize,
-    (name, recipe): (&str, &Recipe),
+    (name, spec): (&str, &MeshSpec),
     options: &Options,
     targets: &mut Targets,
 ) -> Result<(), String> {
-    let mesh = recipe.make();
+    let mesh = spec.make();
     println!("\n{name}: {} triangles, {:?} trees", mesh.triangles.len(), options.quality);
-    let loaded = device.load(&mesh)?;
+    let embree_mesh = device.load(&mesh)?;
     if options.build_threads.contains(&threads) {
-        builds::measure(&loaded, &mesh, threads, options.repeats, targets)?;
+        builds::measure(&embree_mesh, &mesh, threads, options.repeats, targets)?;
     }
     if options.rays == 0 {
         return Ok(());
     }
     println!("\n  answers of Juggler and of Embree {}", device.version());
-    trace(&loaded, &mesh, options, targets)
+    trace(&embree_mesh, &mesh, options, targets)
 }
 
-fn trace(loaded: &Loaded, mesh: &Mesh, options: &Options, targets: &mut Targets) -> Result<(), String> {
-    let (fast, _) = loaded.build(options.quality, false)?;
-    let (robust, _) = loaded.build(options.quality, true)?;
+fn trace(embree_mesh: &EmbreeMesh, mesh: &Mesh, options: &Options, targets: &mut Targets) -> Result<(), String> {
+    let (fast, _) = embree_mesh.build(options.quality, false)?;
+    let (robust, _) = embree_mesh.build(options.quality, true)?;
     let bvh = kernel::build(mesh, options.quality).map_err(|error| error.to_string())?;
     let mut sets = rays::make(mesh, &bvh, options.rays).to_vec();
     let bvhs = kernel::with_tests(bvh);
@@ -105,7 +111,7 @@ fn trace(loaded: &Loaded, mesh: &Mesh, options: &Options, targets: &mut Targets)
     }
     let mut tracers = Vec::new();
     for (test, watertight, scene) in [("fast", false, &fast), ("robust", true, &robust)] {
-        let compared = |call: &Call| options.calls.iter().any(|ours| ours.rivals(*call));
+        let compared = |call: &Call| options.calls.iter().any(|ours| ours.is_comparable_to(*call));
         let calls = Call::EMBREES.into_iter().filter(compared);
         tracers.extend(calls.map(|call| Tracer { test, watertight, call, tree: Tree::Embree(scene) }));
     }

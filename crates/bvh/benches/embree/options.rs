@@ -1,22 +1,22 @@
-//! The words of the command line: scenes, kinds of rays, kernels, and numbers as `name=value`.
+//! Command line: scenes, kinds of rays, kernels, and numbers as `name=value`.
 
 use juggler_bvh::Quality;
 use juggler_raybench::Kind;
-use juggler_raybench::meshes::{BUILT_IN, Recipe};
+use juggler_raybench::meshes::{BUILT_IN, MeshSpec};
 
-/// Scenes that are small enough to be measured without being asked for.
+/// Default scenes, small enough for every run.
 const SCENES: [&str; 4] = ["blob", "classroom", "hall", "stadium"];
 
-/// How rays are given to a tracer.
+/// Call that traces the rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Call {
-    /// One a call.
+    /// One ray per call.
     Single,
-    /// Many unrelated ones; only Juggler has this.
+    /// Many incoherent rays per call; only Juggler.
     Batch,
-    /// Eight a call; of Juggler a tile of eights.
+    /// Eight rays per call; in Juggler a tile of packets of eight.
     Packet,
-    /// Eight a call with the hint that they go the same way; only Embree has this.
+    /// Eight rays per call with the coherent flag; only Embree.
     Coherent,
 }
 
@@ -24,9 +24,9 @@ impl Call {
     pub const OURS: [Self; 3] = [Self::Single, Self::Batch, Self::Packet];
     pub const EMBREES: [Self; 3] = [Self::Single, Self::Packet, Self::Coherent];
 
-    /// Whether this call of ours may be compared with that of Embree's: single ones with single ones, packets with
-    /// packets that have the hint, batches with all.
-    pub fn rivals(self, embrees: Self) -> bool {
+    /// Whether this call of Juggler is compared with the given call of Embree: single with single,
+    /// packets with coherent packets, batches with all.
+    pub fn is_comparable_to(self, embrees: Self) -> bool {
         match self {
             Self::Single => embrees == Self::Single,
             Self::Batch => true,
@@ -44,19 +44,19 @@ impl Call {
     }
 }
 
-/// What is measured.
+/// Options of the benchmark.
 pub struct Options {
-    pub scenes: Vec<(String, Recipe)>,
+    pub scenes: Vec<(String, MeshSpec)>,
     pub kinds: Vec<Kind>,
-    /// Of Juggler; of Embree those that they are compared with.
+    /// Calls of Juggler; those of Embree follow from the comparisons.
     pub calls: Vec<Call>,
     pub quality: Quality,
-    /// Camera rays; 0: only builds are timed.
+    /// Number of camera rays; 0 measures builds only.
     pub rays: usize,
     pub repeats: usize,
-    /// Numbers of threads to trace with.
+    /// Numbers of threads that trace.
     pub threads: Vec<usize>,
-    /// Numbers of threads to build with; none: builds are not timed.
+    /// Numbers of threads that build; empty for no builds.
     pub build_threads: Vec<usize>,
 }
 
@@ -65,7 +65,7 @@ kinds (primary, shadow, ao, diffuse, diffuse2, random), our kernels (single, bat
 rays=100000 (rays=0: none) repeats=5 threads=1,2 build=1,2 (build=0: none) quality=fast|balanced|best";
 
 impl Options {
-    /// Reads all words; those that begin with a dash are cargo's.
+    /// Parses all words; those that begin with a dash are cargo's.
     pub fn read(words: impl Iterator<Item = String>) -> Result<Self, String> {
         let mut own = Self {
             scenes: Vec::new(),
@@ -109,8 +109,8 @@ impl Options {
         } else if word == "all" {
             BUILT_IN.iter().try_for_each(|kind| self.add(kind.name))?;
         } else {
-            let recipe = Recipe::named(word).map_err(|error| format!("`{word}`: {error}\n{HELP}"))?;
-            self.scenes.push((word.to_owned(), recipe));
+            let spec = MeshSpec::parse(word).map_err(|error| format!("`{word}`: {error}\n{HELP}"))?;
+            self.scenes.push((word.to_owned(), spec));
         }
         Ok(())
     }

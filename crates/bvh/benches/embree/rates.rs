@@ -1,19 +1,19 @@
-//! Rates of all tracers on one scene: the table, and what of it counts for the targets.
+//! Rates of all tracers on one scene: prints the table and adds ratios to the targets.
 
 use crate::options::{Call, Options};
 use crate::targets::Targets;
 use crate::tracers::Tracer;
 use juggler_raybench::kernel::Scratch;
-use juggler_raybench::measure::{Timing, Trace, in_turns};
+use juggler_raybench::measure::{Timing, Trace, measure_alternately};
 use juggler_raybench::{Kind, RaySet};
 
-/// Timings of one kind of rays, tracer by tracer.
+/// Timings of one kind of rays, one per tracer.
 struct Column {
     kind: Kind,
     timings: Vec<Timing>,
 }
 
-/// Measures, prints a table for each number of threads, and adds to the targets.
+/// Measures, prints a table for each number of threads, and adds ratios to the targets.
 pub fn measure(tracers: &[Tracer], sets: &[RaySet], options: &Options, targets: &mut Targets) {
     let mut before: Option<(usize, Vec<Column>)> = None;
     for &threads in &options.threads {
@@ -37,24 +37,25 @@ fn column(tracers: &[Tracer], set: &RaySet, threads: usize, repeats: usize) -> C
         .map(|tracer| move |rays: &[_], scratch: &mut Scratch| tracer.trace(query, rays, scratch))
         .collect();
     let traces: Vec<Trace> = closures.iter().map(|closure| closure as Trace).collect();
-    let timings = in_turns(&set.rays, &traces, threads, repeats);
+    let timings = measure_alternately(&set.rays, &traces, threads, repeats);
     for (row, tracer) in tracers.iter().enumerate() {
         let alike =
             |other: &usize| tracers[*other].is_ours() && tracer.is_ours() && tracers[*other].test == tracer.test;
-        if let Some(other) = (0..row).find(alike).filter(|other| !timings[*other].sums.agrees(&timings[row].sums)) {
-            let [one, two] = [other, row].map(|row| format!("{}: {}", tracers[row].label(), timings[row].sums));
+        if let Some(other) = (0..row).find(alike).filter(|other| !timings[*other].summary.agrees(&timings[row].summary))
+        {
+            let [one, two] = [other, row].map(|row| format!("{}: {}", tracers[row].label(), timings[row].summary));
             println!("  WRONG, {}: {one}; {two}", set.kind.name());
         }
     }
     Column { kind: set.kind, timings }
 }
 
-/// Embree's tracer and timing that ours is compared with: the same triangle test, and single calls with single calls,
-/// packets with coherent packets, batches with whatever is fastest.
+/// Embree's timing that one of Juggler's tracers is compared with: the same kind of triangle test,
+/// and single calls with single calls, packets with coherent packets, batches with the fastest.
 fn counterpart<'c>(tracers: &[Tracer], column: &'c Column, ours: &Tracer) -> Option<&'c Timing> {
     let theirs = tracers.iter().zip(&column.timings);
     let like = theirs.filter(|(tracer, _)| !tracer.is_ours() && tracer.watertight == ours.watertight);
-    let fits = like.filter(|(tracer, _)| ours.call.rivals(tracer.call));
+    let fits = like.filter(|(tracer, _)| ours.call.is_comparable_to(tracer.call));
     fits.map(|(_, timing)| timing).max_by(|a, b| a.cpu_rate().total_cmp(&b.cpu_rate()))
 }
 
@@ -67,7 +68,7 @@ fn print(tracers: &[Tracer], columns: &[Column], threads: usize) {
             let timing = &column.timings[row];
             let rate = if threads == 1 { timing.cpu_rate() } else { timing.wall_rate() };
             let ratio = counterpart(tracers, column, tracer).filter(|_| tracer.is_ours());
-            let ratio = ratio.map_or_else(String::new, |other| format!("{:.2}x", timing.speed_against(other)));
+            let ratio = ratio.map_or_else(String::new, |other| format!("{:.2}x", timing.speedup_over(other)));
             format!("{rate:>9.2}{ratio:>7}")
         };
         println!("  {:<30}{}", tracer.label(), columns.iter().map(cell).collect::<String>());
@@ -84,7 +85,7 @@ fn add(tracers: &[Tracer], columns: &[Column], targets: &mut Targets) {
                 (Call::Batch, Kind::Diffuse2 | Kind::Random) => "batch, diffuse2 and random".to_owned(),
                 _ => continue,
             };
-            targets.add(&format!("{} {what}", tracer.test), column.timings[row].speed_against(other));
+            targets.add(&format!("{} {what}", tracer.test), column.timings[row].speedup_over(other));
         }
     }
 }

@@ -1,13 +1,13 @@
-//! Geometric means of ratios over all scenes, target by target.
+//! Geometric means of speed ratios over all scenes, one per target.
 
-/// Ratios of what was measured so far, in the order in which targets first came up.
+/// Ratios per target, in the order in which the targets first occurred.
 #[derive(Default)]
 pub struct Targets {
     ratios: Vec<(String, Vec<f64>)>,
 }
 
 impl Targets {
-    /// One more ratio; what could not be measured is left out.
+    /// Adds a ratio; ignores values that are not positive and finite.
     pub fn add(&mut self, target: &str, ratio: f64) {
         if !ratio.is_finite() || ratio <= 0.0 {
             return;
@@ -18,7 +18,7 @@ impl Targets {
         }
     }
 
-    /// Prints mean, least and number of ratios.
+    /// Prints mean, minimum and number of ratios.
     pub fn print(&self) {
         println!("\n{:<68}{:>8}{:>8}{:>6}", "geometric means", "mean", "least", "of");
         for (name, ratios) in &self.ratios {

@@ -1,26 +1,26 @@
-//! Everything that is measured, behind one face.
+//! One interface for all trees and calls under measurement.
 
 use crate::ffi::Scene;
 use crate::options::Call;
 use juggler_bvh::TriangleBvh;
 use juggler_math::Ray;
 use juggler_raybench::kernel::{Kernel, Scratch};
-use juggler_raybench::measure::Sums;
-use juggler_raybench::rays::Query;
+use juggler_raybench::measure::HitSummary;
+use juggler_raybench::rays::QueryKind;
 
-/// A tree of one of the two.
+/// A tree of Embree or Juggler.
 #[derive(Clone, Copy)]
 pub enum Tree<'t> {
     Embree(&'t Scene<'t>),
     Juggler(&'t TriangleBvh),
 }
 
-/// A tree and a way to ask it.
+/// A tree and a call that traces it.
 #[derive(Clone, Copy)]
 pub struct Tracer<'t> {
-    /// What its triangle test is called.
+    /// Name of the triangle test.
     pub test: &'static str,
-    /// Whether that test is watertight; only like is compared with like.
+    /// Whether the triangle test is watertight; only tests of the same kind are compared.
     pub watertight: bool,
     pub call: Call,
     pub tree: Tree<'t>,
@@ -36,8 +36,8 @@ impl Tracer<'_> {
         format!("{who} {} {}", self.test, self.call.name())
     }
 
-    /// Traces and adds up.
-    pub fn trace(&self, query: Query, rays: &[Ray], scratch: &mut Scratch) -> Sums {
+    /// Traces the rays and sums up the results.
+    pub fn trace(&self, query: QueryKind, rays: &[Ray], scratch: &mut Scratch) -> HitSummary {
         match self.tree {
             Tree::Juggler(bvh) => match self.call {
                 Call::Single => Kernel::Single.trace(bvh, query, rays, scratch),
@@ -53,20 +53,22 @@ impl Tracer<'_> {
     }
 }
 
-fn single(scene: &Scene, query: Query, rays: &[Ray]) -> Sums {
+fn single(scene: &Scene, query: QueryKind, rays: &[Ray]) -> HitSummary {
     match query {
-        Query::Closest => Sums::of_distances(rays.iter().map(|ray| scene.closest(ray).map(|(distance, _)| distance))),
-        Query::Any => Sums::of_occluded(rays.iter().map(|ray| scene.any(ray))),
+        QueryKind::Closest => {
+            HitSummary::from_distances(rays.iter().map(|ray| scene.closest(ray).map(|(distance, _)| distance)))
+        }
+        QueryKind::Any => HitSummary::from_occluded(rays.iter().map(|ray| scene.any(ray))),
     }
 }
 
-fn packets(scene: &Scene, query: Query, rays: &[Ray], coherent: bool) -> Sums {
+fn packets(scene: &Scene, query: QueryKind, rays: &[Ray], coherent: bool) -> HitSummary {
     let packet = |rays: &[Ray]| match query {
-        Query::Closest => {
+        QueryKind::Closest => {
             let hits = scene.closest8(rays, coherent);
-            Sums::of_distances(hits.into_iter().map(|hit| hit.map(|(distance, _)| distance)))
+            HitSummary::from_distances(hits.into_iter().map(|hit| hit.map(|(distance, _)| distance)))
         }
-        Query::Any => Sums::of_occluded(scene.any8(rays, coherent).into_iter()),
+        QueryKind::Any => HitSummary::from_occluded(scene.any8(rays, coherent).into_iter()),
     };
     rays.chunks(8).map(packet).sum()
 }

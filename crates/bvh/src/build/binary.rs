@@ -1,12 +1,13 @@
-//! The binary tree between construction and collapse.
+//! Binary hierarchy, the intermediate result between construction and collapse.
 
-use super::item::Extent;
+use super::item::SimdBox;
 use crate::pages::Pages;
 use bytemuck::{Pod, Zeroable};
 use juggler_math::Aabb;
 use rayon::prelude::*;
 
-/// A leaf of `count` items from position `first`, or (`count` zero) the parent of the two nodes at `first`.
+/// A leaf of `count` items from position `first`, or, if `count` is zero, an inner node whose
+/// children are at `first` and `first + 1`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct BinaryNode {
@@ -17,7 +18,7 @@ pub(super) struct BinaryNode {
 }
 
 impl BinaryNode {
-    pub fn new(bounds: Extent, first: usize, count: usize) -> Self {
+    pub fn new(bounds: SimdBox, first: usize, count: usize) -> Self {
         let ([a, b, c, _], [d, e, f, _]) = (bounds.low.to_array(), bounds.high.to_array());
         Self { low: [a, b, c], first: first as u32, high: [d, e, f], count: count as u32 }
     }
@@ -26,38 +27,41 @@ impl BinaryNode {
         self.count > 0
     }
 
-    /// Half the surface area. In double precision, so that boxes of any finite size can be compared.
+    /// Half the surface area; in double precision, so that boxes of any finite size can be
+    /// compared.
     pub fn half_area(&self) -> f64 {
         let side = |axis: usize| f64::from(self.high[axis]) - f64::from(self.low[axis]);
         let (x, y, z) = (side(0), side(1), side(2));
         x * y + y * z + z * x
     }
 
-    pub fn extent(&self) -> Extent {
+    pub fn bounds(&self) -> SimdBox {
         let ([a, b, c], [d, e, f]) = (self.low, self.high);
-        Extent { low: [a, b, c, 0.0].into(), high: [d, e, f, 0.0].into() }
+        SimdBox { low: [a, b, c, 0.0].into(), high: [d, e, f, 0.0].into() }
     }
 
     pub fn aabb(&self) -> Aabb {
         Aabb { min: self.low.into(), max: self.high.into() }
     }
 
-    /// The node moved along the list by so much, with what hangs below.
+    /// The node with its child index shifted by `by`; leaves do not change.
     fn moved(self, by: isize) -> Self {
         let first = if self.is_leaf() { self.first } else { (self.first as isize + by) as u32 };
         Self { first, ..self }
     }
 }
 
-/// A tree under construction. Inside the pieces a node names its children relative to its own position, so
-/// that pieces can be put behind one another; the root relative to the begin of the first piece.
+/// A tree under construction in pieces that are concatenated later. Inside the pieces, child
+/// indices are relative to the node's own position; the root's are relative to the begin of the
+/// first piece.
 pub(super) struct Subtree {
     root: BinaryNode,
     pieces: Vec<Vec<BinaryNode>>,
 }
 
 impl Subtree {
-    /// A root above nodes that are named by their position in the list.
+    /// Constructs a subtree from a root and nodes whose child indices are absolute positions in the
+    /// list.
     pub fn new(root: BinaryNode, mut nodes: Vec<BinaryNode>) -> Self {
         for (position, node) in nodes.iter_mut().enumerate() {
             *node = node.moved(-(position as isize));
@@ -65,7 +69,7 @@ impl Subtree {
         Self { root, pieces: vec![nodes] }
     }
 
-    pub fn join(bounds: Extent, left: Self, right: Self) -> Self {
+    pub fn join(bounds: SimdBox, left: Self, right: Self) -> Self {
         let right_start = 2 + left.len() as isize;
         let mut pieces = vec![vec![left.root.moved(2), right.root.moved(right_start - 1)]];
         pieces.extend(left.pieces);
@@ -77,7 +81,7 @@ impl Subtree {
         self.pieces.iter().map(Vec::len).sum()
     }
 
-    /// The nodes in one list, root first, children named by position.
+    /// Concatenates the pieces, root first, with absolute child indices.
     pub fn into_nodes(self) -> Pages<BinaryNode> {
         let mut nodes = Pages::zeroed(self.len() + 1);
         nodes[0] = self.root.moved(1);

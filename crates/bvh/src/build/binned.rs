@@ -1,99 +1,103 @@
-//! Top-down construction by the surface-area heuristic with bins. Large sets are binned and parted by
-//! several threads, small ones are tasks of their own; which is which depends on the counts alone, so the
-//! tree is the same on any number of threads.
+//! Top-down construction by the binned surface-area heuristic. Large sets are binned and
+//! partitioned by several threads, small sets are independent tasks. The choice depends on counts
+//! only, so the tree is the same for any number of threads.
 
 use super::binary::{BinaryNode, Subtree};
-use super::bins::{Bins, Blocks, Cut, Mapping, Rule};
-use super::item::{Around, Item, Items};
+use super::bins::{Bins, BlockShift, Mapping, ObjectSplit, SideTest};
+use super::item::{Item, Items, SetBounds};
 use super::partition;
 use crate::pages::Pages;
 use rayon::prelude::*;
 
-/// Deeper than this, sets are halved, so that 72 levels are never exceeded whatever the boxes are.
+/// Depth from which sets are split at the median, so that no tree exceeds 72 levels.
 pub(super) const SAH_DEPTH: usize = 44;
-/// Sets up to this size are built by one thread.
+/// Maximum size of a set that one thread builds.
 pub(super) const TASK: usize = 1 << 14;
-/// Larger sets are cut into pieces of this size for several threads.
+/// Chunk size for parallel loops over larger sets.
 pub(super) const CHUNK: usize = 1 << 13;
 
-/// What decides the shape of the tree.
+/// Parameters of the surface-area heuristic.
 #[derive(Clone, Copy)]
 pub(super) struct Settings {
     pub leaf_size: usize,
-    pub block: Blocks,
-    /// A node's test in units of one leaf block's test.
+    pub block: BlockShift,
+    /// Cost of a node test in units of the cost of one leaf block test.
     pub node_cost: f32,
-    /// Sets up to this size are halved as they lie: they will mostly be one wide node.
-    pub careless: usize,
+    /// Sets up to this size are halved in their present order: the collapse mostly merges them into
+    /// one wide node.
+    pub split_in_order_size: usize,
 }
 
 impl Settings {
-    /// Whether a cut is cheaper than a leaf. Boxes without area have a cost of NaN and become leaves too.
+    /// Whether a split is cheaper than a leaf. Boxes without area have a cost of NaN and become
+    /// leaves.
     pub fn pays(&self, count: usize, cost: f32) -> bool {
-        let blocks = self.block.of(wide::i32x4::splat(count as i32)).to_array()[0];
+        let blocks = self.block.block_count(wide::i32x4::splat(count as i32)).to_array()[0];
         self.node_cost + cost < blocks
     }
 }
 
-/// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
+/// Builds the binary tree, empty without items, and the item indices in leaf order.
 pub(super) fn build(mut items: Items, settings: &Settings) -> (Pages<BinaryNode>, Vec<u32>) {
-    let around = items.around;
+    let extents = items.extents;
     let items = items.list();
     if items.is_empty() {
         return (Pages::zeroed(0), Vec::new());
     }
-    let mut room = Pages::zeroed(if items.len() > TASK { items.len() } else { 0 });
+    let mut buffer = Pages::zeroed(if items.len() > TASK { items.len() } else { 0 });
     let mut order = vec![0; items.len()];
-    let set = Set { items, room: &mut room, order: &mut order, first: 0, around, depth: 0 };
+    let set = Set { items, buffer: &mut buffer, order: &mut order, first: 0, extents, depth: 0 };
     (subtree(set, settings).into_nodes(), order)
 }
 
-/// A set of items on its way into a subtree: the items, as much room for them to be moved to, where their
-/// numbers go in leaf order, the position of the first in the order of all, and how deep the set lies.
+/// A set of items to build a subtree over: the items, a buffer of equal length to partition into,
+/// the output for item indices in leaf order, the position of the first item in leaf order, bounds,
+/// and depth.
 pub(super) struct Set<'a> {
     pub items: &'a mut [Item],
-    pub room: &'a mut [Item],
+    pub buffer: &'a mut [Item],
     pub order: &'a mut [u32],
     pub first: usize,
-    pub around: Around,
+    pub extents: SetBounds,
     pub depth: usize,
 }
 
 impl<'a> Set<'a> {
-    /// The items have been moved into the room.
-    fn halves(self, left: usize, around: [Around; 2]) -> [Self; 2] {
-        let (items, room) = (self.room.split_at_mut(left), self.items.split_at_mut(left));
+    /// Splits the set after the items were partitioned into `buffer`.
+    fn halves(self, left: usize, extents: [SetBounds; 2]) -> [Self; 2] {
+        let (items, buffer) = (self.buffer.split_at_mut(left), self.items.split_at_mut(left));
         let order = self.order.split_at_mut(left);
-        let (depth, [a, b]) = (self.depth + 1, around);
+        let (depth, [a, b]) = (self.depth + 1, extents);
         [
-            Set { items: items.0, room: room.0, order: order.0, first: self.first, around: a, depth },
-            Set { items: items.1, room: room.1, order: order.1, first: self.first + left, around: b, depth },
+            Set { items: items.0, buffer: buffer.0, order: order.0, first: self.first, extents: a, depth },
+            Set { items: items.1, buffer: buffer.1, order: order.1, first: self.first + left, extents: b, depth },
         ]
     }
 }
 
-/// The subtree over a set of at least one item.
+/// Builds the subtree over a set of at least one item.
 pub(super) fn subtree(set: Set<'_>, settings: &Settings) -> Subtree {
     if set.items.len() <= TASK {
-        return build_alone(set, settings);
+        return build_sequentially(set, settings);
     }
-    let bounds = set.around.bounds;
-    let (left, around) = split_large(&mut *set.items, &mut *set.room, &set.around, set.depth, settings);
-    let [left, right] = set.halves(left, around);
+    let bounds = set.extents.bounds;
+    let (left, extents) = split_large(&mut *set.items, &mut *set.buffer, &set.extents, set.depth, settings);
+    let [left, right] = set.halves(left, extents);
     let (left, right) = rayon::join(|| subtree(left, settings), || subtree(right, settings));
     Subtree::join(bounds, left, right)
 }
 
-/// Moves the items into the room, left before right; returns how many are left and what is around both.
+/// Partitions the items into `buffer`, left side first. Returns the size of the left side and the
+/// bounds of both sides.
 fn split_large(
     items: &mut [Item],
-    room: &mut [Item],
-    around: &Around,
+    buffer: &mut [Item],
+    extents: &SetBounds,
     depth: usize,
     settings: &Settings,
-) -> (usize, [Around; 2]) {
-    let mapping = Mapping::new(around.centers, items.len()).filter(|_| depth < SAH_DEPTH);
-    let cut = mapping.and_then(|mapping| {
+) -> (usize, [SetBounds; 2]) {
+    let mapping = Mapping::new(extents.centers, items.len()).filter(|_| depth < SAH_DEPTH);
+    let split = mapping.and_then(|mapping| {
         let bins = |items| {
             let mut bins = Bins::EMPTY;
             bins.fill(&mapping, items);
@@ -102,57 +106,57 @@ fn split_large(
         let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(bins).collect();
         let mut all = Bins::EMPTY;
         chunks.iter().for_each(|bins| all.merge(bins, &mapping));
-        let cut = all.best(&mapping, around.bounds, settings.block)?;
-        let lefts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(&cut)).collect();
-        let (left, [a, b]) = all.sides(&mapping, &cut);
-        let [c, d] = partition::into(items, room, CHUNK, &lefts, &Rule::new(&mapping, &cut));
-        Some((left, [Around { bounds: a, centers: c }, Around { bounds: b, centers: d }]))
+        let split = all.best(&mapping, extents.bounds, settings.block)?;
+        let lefts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(&split)).collect();
+        let (left, [a, b]) = all.sides(&mapping, &split);
+        let [c, d] = partition::into(items, buffer, CHUNK, &lefts, &SideTest::new(&mapping, &split));
+        Some((left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }]))
     });
-    cut.unwrap_or_else(|| {
-        let halves = halve(items, around);
-        room.copy_from_slice(items);
+    split.unwrap_or_else(|| {
+        let halves = split_at_median(items, extents);
+        buffer.copy_from_slice(items);
         halves
     })
 }
 
-/// Splits into two halves by the centers along the longest axis, equal centers by number.
-fn halve(items: &mut [Item], around: &Around) -> (usize, [Around; 2]) {
-    let axis = around.centers.longest_axis();
+/// Splits at the median center along the longest axis; equal centers are ordered by item index.
+fn split_at_median(items: &mut [Item], extents: &SetBounds) -> (usize, [SetBounds; 2]) {
+    let axis = extents.centers.longest_axis();
     let middle = items.len() / 2;
-    if around.centers.low.as_array()[axis] < around.centers.high.as_array()[axis] {
+    if extents.centers.low.as_array()[axis] < extents.centers.high.as_array()[axis] {
         let center = |item: &Item| item.center().to_array()[axis];
         let order = |a: &Item, b: &Item| center(a).total_cmp(&center(b)).then(a.number().cmp(&b.number()));
         items.select_nth_unstable_by(middle, order);
     }
-    parts(items)
+    split_in_order(items)
 }
 
-/// The two halves as they lie.
-fn parts(items: &[Item]) -> (usize, [Around; 2]) {
+/// Splits into two halves in the present order.
+fn split_in_order(items: &[Item]) -> (usize, [SetBounds; 2]) {
     let (left, right) = items.split_at(items.len() / 2);
-    (left.len(), [Around::of(left), Around::of(right)])
+    (left.len(), [SetBounds::from_items(left), SetBounds::from_items(right)])
 }
 
-fn build_alone(set: Set<'_>, settings: &Settings) -> Subtree {
-    let Set { items, order, first, around, depth, .. } = set;
+fn build_sequentially(set: Set<'_>, settings: &Settings) -> Subtree {
+    let Set { items, order, first, extents, depth, .. } = set;
     let mut task = Task::new(settings);
     task.nodes.reserve(items.len() / 2);
-    let root = task.grow(items, first, &around, depth);
-    number(order, items);
+    let root = task.grow(items, first, &extents, depth);
+    write_order(order, items);
     Subtree::new(root, task.nodes)
 }
 
-/// The numbers of the items, in leaf order.
-pub(super) fn number(order: &mut [u32], items: &[Item]) {
+/// Writes the item indices in leaf order.
+pub(super) fn write_order(order: &mut [u32], items: &[Item]) {
     for (place, item) in order.iter_mut().zip(items) {
         *place = item.number();
     }
 }
 
-/// What one thread builds.
+/// State of a sequential build.
 pub(super) struct Task<'a> {
     settings: &'a Settings,
-    /// Of the last cut.
+    /// Bins of the last call of [`Task::find_object_split`].
     pub bins: Bins,
     pub nodes: Vec<BinaryNode>,
 }
@@ -162,52 +166,63 @@ impl<'a> Task<'a> {
         Self { settings, bins: Bins::EMPTY, nodes: Vec::new() }
     }
 
-    /// Returns the root, appends what is below it.
-    pub fn grow(&mut self, items: &mut [Item], first: usize, around: &Around, depth: usize) -> BinaryNode {
-        let Some((left, around_both)) = self.split(items, around, depth) else {
-            return BinaryNode::new(around.bounds, first, items.len());
+    /// Builds a subtree. Returns its root and appends the nodes below it.
+    pub fn grow(&mut self, items: &mut [Item], first: usize, extents: &SetBounds, depth: usize) -> BinaryNode {
+        let Some((left, child_extents)) = self.split(items, extents, depth) else {
+            return BinaryNode::new(extents.bounds, first, items.len());
         };
         let place = self.nodes.len();
-        let root = BinaryNode::new(around.bounds, place, 0);
+        let root = BinaryNode::new(extents.bounds, place, 0);
         self.nodes.extend([root; 2]);
         let (left_items, right_items) = items.split_at_mut(left);
-        self.nodes[place] = self.grow(left_items, first, &around_both[0], depth + 1);
-        self.nodes[place + 1] = self.grow(right_items, first + left, &around_both[1], depth + 1);
+        self.nodes[place] = self.grow(left_items, first, &child_extents[0], depth + 1);
+        self.nodes[place + 1] = self.grow(right_items, first + left, &child_extents[1], depth + 1);
         root
     }
 
-    /// Brings the items of the left side to the front; `None` for a leaf.
-    fn split(&mut self, items: &mut [Item], around: &Around, depth: usize) -> Option<(usize, [Around; 2])> {
+    /// Partitions the items, left side first; `None` for a leaf.
+    fn split(&mut self, items: &mut [Item], extents: &SetBounds, depth: usize) -> Option<(usize, [SetBounds; 2])> {
         let count = items.len();
         if count <= 1 {
             return None;
         }
-        if count <= self.settings.careless {
-            return Some(parts(items));
+        if count <= self.settings.split_in_order_size {
+            return Some(split_in_order(items));
         }
-        let found = self.cut(items, around, depth);
+        let found = self.find_object_split(items, extents, depth);
         if count <= self.settings.leaf_size {
-            let (_, cut) = found?;
-            if !self.settings.pays(count, cut.cost) {
+            let (_, split) = found?;
+            if !self.settings.pays(count, split.cost) {
                 return None;
             }
         }
-        Some(self.part(items, around, found))
+        Some(self.partition(items, extents, found))
     }
 
-    /// Brings the items of the left side of the cut that was found last to the front; halves them where there is none.
-    pub fn part(&self, items: &mut [Item], around: &Around, found: Option<(Mapping, Cut)>) -> (usize, [Around; 2]) {
-        let Some((mapping, cut)) = found else { return halve(items, around) };
-        let (left, [a, b]) = self.bins.sides(&mapping, &cut);
-        let [c, d] = partition::in_place(items, &Rule::new(&mapping, &cut));
-        (left, [Around { bounds: a, centers: c }, Around { bounds: b, centers: d }])
+    /// Partitions the items at the split that [`Task::find_object_split`] found, left side first;
+    /// at the median without a split.
+    pub fn partition(
+        &self,
+        items: &mut [Item],
+        extents: &SetBounds,
+        found: Option<(Mapping, ObjectSplit)>,
+    ) -> (usize, [SetBounds; 2]) {
+        let Some((mapping, split)) = found else { return split_at_median(items, extents) };
+        let (left, [a, b]) = self.bins.sides(&mapping, &split);
+        let [c, d] = partition::in_place(items, &SideTest::new(&mapping, &split));
+        (left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }])
     }
 
-    /// The cheapest cut.
-    pub fn cut(&mut self, items: &[Item], around: &Around, depth: usize) -> Option<(Mapping, Cut)> {
-        let mapping = Mapping::new(around.centers, items.len()).filter(|_| depth < SAH_DEPTH)?;
+    /// Finds the split of the lowest cost.
+    pub fn find_object_split(
+        &mut self,
+        items: &[Item],
+        extents: &SetBounds,
+        depth: usize,
+    ) -> Option<(Mapping, ObjectSplit)> {
+        let mapping = Mapping::new(extents.centers, items.len()).filter(|_| depth < SAH_DEPTH)?;
         self.bins.fill(&mapping, items);
-        let cut = self.bins.best(&mapping, around.bounds, self.settings.block)?;
-        Some((mapping, cut))
+        let split = self.bins.best(&mapping, extents.bounds, self.settings.block)?;
+        Some((mapping, split))
     }
 }

@@ -1,18 +1,18 @@
-//! Binning (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"): the items are
-//! counted in up to 32 bins along each axis by their centers, and the cuts between bins are priced by the
-//! surface-area heuristic (MacDonald and Booth 1990): a ray that meets a box meets a box inside it with a
-//! probability of the ratio of their areas.
+//! Binning (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"): up to 32
+//! bins along each axis collect the items by their centers. Splits between bins are evaluated by
+//! the surface-area heuristic (MacDonald and Booth 1990): a ray that intersects a box intersects a
+//! box inside it with a probability equal to the ratio of their areas.
 
-use super::item::{Extent, Item};
+use super::item::{Item, SimdBox};
 use bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 pub(super) const MAX_BINS: usize = 32;
 
-/// Fewer items are counted in one set of bins, not in two.
+/// Number of items from which two sets of bins are filled alternately.
 const ONE_SET: usize = 512;
 
-/// The map from centers to bins, three axes side by side.
+/// Mapping from centers to bin indices, for three axes in SIMD lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Mapping {
     low: f32x4,
@@ -22,8 +22,9 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// Few items need few bins. `None` when all centers coincide.
-    pub fn new(centers: Extent, items: usize) -> Option<Self> {
+    /// Constructs the mapping; the number of bins grows with that of the items. `None` if all
+    /// centers coincide.
+    pub fn new(centers: SimdBox, items: usize) -> Option<Self> {
         let count = (4 + items / 16).min(MAX_BINS);
         let sides = (centers.high - centers.low).to_array();
         let scale = |axis: usize| Some(count as f32 / sides[axis]).filter(|s| s.is_finite()).unwrap_or(0.0);
@@ -43,61 +44,64 @@ impl Mapping {
     }
 }
 
-/// Where to cut: items in bins below `at` along `axis` go left.
+/// A split between bins: items in bins below `at` along `axis` go to the left side.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+pub(super) struct ObjectSplit {
     axis: usize,
     at: usize,
-    /// Area times blocks of both sides, as a share of the area of the whole.
+    /// SAH cost of both sides, relative to the area of the parent: area times leaf blocks.
     pub cost: f32,
 }
 
-/// Tells on which side of a cut an item lies.
+/// Decides on which side of a split an item lies.
 #[derive(Clone, Copy)]
-pub(super) struct Rule {
+pub(super) struct SideTest {
     mapping: Mapping,
     at: f32x4,
     lane: u32,
 }
 
-impl Rule {
-    pub fn new(mapping: &Mapping, cut: &Cut) -> Self {
-        Self { mapping: *mapping, at: f32x4::splat(cut.at as f32), lane: 1 << cut.axis }
+impl SideTest {
+    pub fn new(mapping: &Mapping, split: &ObjectSplit) -> Self {
+        Self { mapping: *mapping, at: f32x4::splat(split.at as f32), lane: 1 << split.axis }
     }
 
-    /// A position before rounding down is below a whole number when it is so afterwards.
+    /// Whether an item lies to the left. Compares without truncation, which gives the same result
+    /// for an integer `at`.
     #[inline(always)]
     pub fn is_left(&self, item: &Item) -> bool {
         self.mapping.position(item).simd_lt(self.at).to_bitmask() & self.lane != 0
     }
 }
 
-/// What stands for no item in lane 3 of a bin: with any count added, the bits of a float that is below those of items
-/// and that no arithmetic turns into a subnormal number, which would be slow.
+/// Base of the item count in lane 3 of a bin. As a float, the base plus any count is smaller than
+/// lane 3 of every item and never subnormal, which would be slow.
 const NONE: u32 = 0x2000_0000;
 
-/// The box around the items of a bin, with their number above [`NONE`] as an integer in lane 3 of the low corner.
+/// Bounds of a bin's items, with [`NONE`] plus their number as an integer in lane 3 of the low
+/// corner.
 #[derive(Clone, Copy)]
-struct Bin(Extent);
+struct Bin(SimdBox);
 
 impl Bin {
     const EMPTY: Self = {
         let (inf, low) = (f32::INFINITY, f32::NEG_INFINITY);
-        Self(Extent { low: f32x4::new([inf, inf, inf, f32::from_bits(NONE)]), high: f32x4::new([low; 4]) })
+        Self(SimdBox { low: f32x4::new([inf, inf, inf, f32::from_bits(NONE)]), high: f32x4::new([low; 4]) })
     };
 
-    /// An item's lane 3, as a float, is above any count, so that the count survives the union.
+    /// Adds an item. Lane 3 of an item, as a float, exceeds any count, so the count survives the
+    /// minimum.
     #[inline(always)]
     fn add(&mut self, item: &Item) {
-        let Extent { low, high } = self.0.union(item.extent());
-        self.0 = Extent { low: cast(cast::<_, i32x4>(low) + i32x4::new([0, 0, 0, 1])), high };
+        let SimdBox { low, high } = self.0.union(item.bounds());
+        self.0 = SimdBox { low: cast(cast::<_, i32x4>(low) + i32x4::new([0, 0, 0, 1])), high };
     }
 
     fn merge(&mut self, other: &Self) {
         let count = self.count() + other.count();
-        let extent = self.0.union(other.0);
-        let [x, y, z, _] = extent.low.to_array();
-        self.0 = Extent { low: f32x4::new([x, y, z, f32::from_bits(NONE + count)]), high: extent.high };
+        let union = self.0.union(other.0);
+        let [x, y, z, _] = union.low.to_array();
+        self.0 = SimdBox { low: f32x4::new([x, y, z, f32::from_bits(NONE + count)]), high: union.high };
     }
 
     #[inline(always)]
@@ -106,7 +110,7 @@ impl Bin {
     }
 }
 
-/// The bins along three axes.
+/// Bins along three axes.
 #[derive(Clone)]
 pub(super) struct Bins([[Bin; MAX_BINS]; 3]);
 
@@ -119,7 +123,7 @@ impl Bins {
             items.iter().for_each(|item| self.add(mapping, item));
             return;
         }
-        // Neighbours often share a bin and would wait for each other.
+        // Neighbors often share a bin: two sets of bins break the dependency chain.
         let mut other = Self::EMPTY;
         let (first, second) = items.split_at(items.len() / 2);
         for (a, b) in first.iter().zip(second) {
@@ -138,34 +142,34 @@ impl Bins {
         }
     }
 
-    /// Adds the items of bins with the same mapping.
+    /// Adds the contents of bins with the same mapping.
     pub fn merge(&mut self, other: &Self, mapping: &Mapping) {
         for (bins, others) in self.0.iter_mut().zip(&other.0) {
             bins[..mapping.count].iter_mut().zip(others).for_each(|(bin, other)| bin.merge(other));
         }
     }
 
-    /// The bins at one position along the three axes.
+    /// Bins at one index along the three axes.
     #[inline(always)]
     fn at(&self, position: usize) -> [&Bin; 3] {
         let [x, y, z] = &self.0;
         [&x[position], &y[position], &z[position]]
     }
 
-    /// How many items are left of the cut, and the box around them; and the box of the others.
-    pub fn sides(&self, mapping: &Mapping, cut: &Cut) -> (usize, [Extent; 2]) {
-        let boxes = |bins: &[Bin]| bins.iter().fold(Extent::EMPTY, |all, bin| all.union(bin.0));
-        let (left, right) = self.0[cut.axis][..mapping.count].split_at(cut.at);
-        (self.left_count(cut), [boxes(left), boxes(right)])
+    /// Number of items to the left of the split, and the bounds of both sides.
+    pub fn sides(&self, mapping: &Mapping, split: &ObjectSplit) -> (usize, [SimdBox; 2]) {
+        let boxes = |bins: &[Bin]| bins.iter().fold(SimdBox::EMPTY, |all, bin| all.union(bin.0));
+        let (left, right) = self.0[split.axis][..mapping.count].split_at(split.at);
+        (self.left_count(split), [boxes(left), boxes(right)])
     }
 
-    pub fn left_count(&self, cut: &Cut) -> usize {
-        self.0[cut.axis][..cut.at].iter().map(|bin| bin.count() as usize).sum()
+    pub fn left_count(&self, split: &ObjectSplit) -> usize {
+        self.0[split.axis][..split.at].iter().map(|bin| bin.count() as usize).sum()
     }
 
-    /// The cheapest cut with items on both sides. `block` items cost as much as one, and areas are shares of
-    /// that of `bounds`.
-    pub fn best(&self, mapping: &Mapping, bounds: Extent, block: Blocks) -> Option<Cut> {
+    /// Finds the split of the lowest SAH cost with items on both sides. Areas are relative to the
+    /// size of `bounds`; `block` is the number of items per leaf block.
+    pub fn best(&self, mapping: &Mapping, bounds: SimdBox, block: BlockShift) -> Option<ObjectSplit> {
         let inverse = f32x4::splat(bounds.inverse_size());
         let mut right_costs = [f32x4::ZERO; MAX_BINS];
         let mut side = Side::EMPTY;
@@ -177,7 +181,7 @@ impl Bins {
         let mut side = Side::EMPTY;
         for (at, right_cost) in right_costs.iter().enumerate().take(mapping.count).skip(1) {
             side.add(self.at(at - 1));
-            // Where a side is empty this is a NaN, which is not less.
+            // The cost is NaN where a side is empty, and the comparison false.
             let cost = side.cost(inverse, block) + *right_cost;
             let better = cost.simd_lt(least);
             least = better.bitselect(cost, least);
@@ -186,29 +190,30 @@ impl Bins {
         let (least, best) = (least.to_array(), best.to_array());
         let axis = (1..3).fold(0, |a, b| if least[b] < least[a] { b } else { a });
         let area = area([bounds; 3], inverse).to_array()[0];
-        (least[axis] < f32::INFINITY).then(|| Cut { axis, at: best[axis] as usize, cost: least[axis] / area })
+        (least[axis] < f32::INFINITY).then(|| ObjectSplit { axis, at: best[axis] as usize, cost: least[axis] / area })
     }
 }
 
-/// How many items are tested for the price of one: blocks of 1, 2, 4 or 8 as a shift.
+/// Number of items in a leaf block, which is tested at once, as a power of two: 0 to 3 for 1, 2, 4
+/// or 8.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Blocks(pub i32);
+pub(super) struct BlockShift(pub i32);
 
-impl Blocks {
+impl BlockShift {
     #[inline(always)]
-    pub fn of(self, counts: i32x4) -> f32x4 {
+    pub fn block_count(self, counts: i32x4) -> f32x4 {
         ((counts + i32x4::splat((1 << self.0) - 1)) >> self.0).round_float()
     }
 }
 
-/// The union of some bins, for the three axes side by side.
+/// Accumulated bounds and counts of bins, for three axes.
 struct Side {
-    boxes: [Extent; 3],
+    boxes: [SimdBox; 3],
     counts: i32x4,
 }
 
 impl Side {
-    const EMPTY: Self = Self { boxes: [Extent::EMPTY; 3], counts: i32x4::new([0; 4]) };
+    const EMPTY: Self = Self { boxes: [SimdBox::EMPTY; 3], counts: i32x4::new([0; 4]) };
 
     #[inline(always)]
     fn add(&mut self, bins: [&Bin; 3]) {
@@ -221,14 +226,14 @@ impl Side {
     }
 
     #[inline(always)]
-    fn cost(&self, inverse: f32x4, block: Blocks) -> f32x4 {
-        area(self.boxes, inverse) * block.of(self.counts)
+    fn cost(&self, inverse: f32x4, block: BlockShift) -> f32x4 {
+        area(self.boxes, inverse) * block.block_count(self.counts)
     }
 }
 
-/// Half the surface areas of three boxes; infinite for empty ones.
+/// Half surface areas of three boxes; infinite for empty ones.
 #[inline(always)]
-fn area(boxes: [Extent; 3], inverse: f32x4) -> f32x4 {
+fn area(boxes: [SimdBox; 3], inverse: f32x4) -> f32x4 {
     let half = f32x4::splat(0.5);
     let sides = boxes.map(|b| (b.high * half - b.low * half) * inverse);
     let [x, y, z, _] = f32x4::transpose([sides[0], sides[1], sides[2], sides[2]]);

@@ -1,5 +1,5 @@
-//! From two wide to eight wide, as planned. Nodes lie in depth-first order, below a node its largest child
-//! first.
+//! Collapse of the binary tree to eight children per node, as planned. Nodes are stored in
+//! depth-first order; below a node, the child of the largest area comes first.
 
 use super::BuildStats;
 use super::binary::BinaryNode;
@@ -9,12 +9,13 @@ use crate::node::{Child, Node, WIDTH};
 use crate::pages::Pages;
 use rayon::prelude::*;
 
-/// Wide levels whose children are tasks of their own.
+/// Number of wide levels whose children are parallel tasks.
 const TASK_LEVELS: usize = 3;
-/// Binary trees of fewer nodes are collapsed by one thread.
+/// Number of binary nodes below which one thread collapses the tree.
 const SMALL: usize = 1 << 13;
 
-/// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
+/// Collapses a binary tree. Returns the wide nodes, root first, and their statistics. There is a
+/// root even without items.
 pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) -> (Pages<Node>, BuildStats) {
     if binary.is_empty() {
         return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
@@ -28,7 +29,8 @@ pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) ->
     (nodes, stats)
 }
 
-/// Pieces one after another; nodes name their children relative to their own position until then.
+/// Concatenates the pieces and makes child indices absolute; before, they are relative to the
+/// node's own position.
 fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
     let mut nodes = Pages::zeroed(pieces.iter().map(Vec::len).sum());
     let (mut rest, mut start) = (&mut nodes[..], 0);
@@ -54,7 +56,7 @@ fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
 /// A wide subtree, root first.
 struct Subtree {
     pieces: Vec<Vec<Node>>,
-    /// Depth, stack and leaves.
+    /// Depth, stack size and leaf sizes.
     stats: BuildStats,
 }
 
@@ -64,7 +66,7 @@ struct Collapser<'a> {
 }
 
 impl Collapser<'_> {
-    /// The wide tree below a binary node; the children down to some `levels` are tasks of their own.
+    /// Collapses the subtree at a binary node; children down to `levels` are parallel tasks.
     fn subtree(&self, binary: usize, levels: usize) -> Subtree {
         if levels == 0 {
             let mut nodes = Vec::new();
@@ -86,7 +88,7 @@ impl Collapser<'_> {
         Subtree { pieces, stats }
     }
 
-    /// Appends the wide node for a binary one and all below it.
+    /// Appends the wide nodes of the subtree at a binary node.
     fn emit(&self, binary: usize, nodes: &mut Vec<Node>) -> BuildStats {
         let place = nodes.len();
         let (node, members) = self.node(binary);
@@ -99,7 +101,7 @@ impl Collapser<'_> {
         stats
     }
 
-    /// The wide node, without the numbers of the children that are nodes.
+    /// Wide node at a binary node, without the indices of inner children.
     fn node(&self, binary: usize) -> (Node, Members) {
         let members = self.members(binary);
         let mut node = Node::EMPTY;
@@ -111,20 +113,21 @@ impl Collapser<'_> {
         (node, members)
     }
 
-    /// Slots and binary nodes of the children that are not leaves, the largest first. It has the last slot.
+    /// Slots and binary nodes of the inner children by decreasing area. The largest has the last
+    /// slot.
     fn inner(&self, members: &Members) -> impl Iterator<Item = (usize, usize)> {
         let slots = (0..members.count).rev().zip(members.list());
         slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| self.plan.leaf(member).is_none())
     }
 
-    /// The binary nodes that become children of the wide node in place of `binary`, the largest first.
+    /// Binary nodes that become the children of the wide node at `binary`, by decreasing area.
     fn members(&self, binary: usize) -> Members {
         let mut members = Members { list: [(binary, 0.0); WIDTH], count: 0 };
         self.plan.children(binary, &mut |member| members.insert(member, self.binary[member].half_area()));
         members
     }
 
-    /// Of the node and its leaves.
+    /// Statistics of a node and its leaves, without inner children.
     fn alone(&self, members: &Members) -> BuildStats {
         let mut stats = BuildStats { depth: 1, stack: members.count, ..BuildStats::default() };
         for &(member, _) in members.list() {
@@ -136,7 +139,8 @@ impl Collapser<'_> {
     }
 }
 
-/// All children are pushed at once; when one is entered, the others wait.
+/// Merges the statistics of a child. Traversal pushes all `count` children at once; when it enters
+/// one, the others stay on the stack.
 fn add_child(stats: &mut BuildStats, child: &BuildStats, count: usize) {
     stats.depth = stats.depth.max(child.depth + 1);
     stats.stack = stats.stack.max(count - 1 + child.stack);
@@ -145,7 +149,7 @@ fn add_child(stats: &mut BuildStats, child: &BuildStats, count: usize) {
     }
 }
 
-/// Children to be and their areas, the largest first.
+/// Future children and their areas, by decreasing area.
 struct Members {
     list: [(usize, f64); WIDTH],
     count: usize,
@@ -156,7 +160,7 @@ impl Members {
         &self.list[..self.count]
     }
 
-    /// Behind those of equal area.
+    /// Inserts a child, after those of equal area.
     fn insert(&mut self, member: usize, area: f64) {
         let slot = self.list().iter().position(|&(_, other)| other < area).unwrap_or(self.count);
         self.list.copy_within(slot..self.count, slot + 1);

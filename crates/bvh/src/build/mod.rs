@@ -1,4 +1,5 @@
-//! From boxes to a tree: binned surface-area heuristic to a binary tree, then collapsed to eight wide.
+//! Construction: the binned surface-area heuristic builds a binary tree, which is then collapsed to
+//! eight children per node.
 
 mod binary;
 mod binned;
@@ -8,10 +9,10 @@ mod item;
 mod morton;
 mod partition;
 mod plan;
-mod planes;
 mod refit;
 mod reinsert;
 mod spatial;
+mod spatial_bins;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
@@ -21,53 +22,57 @@ use crate::node::LEAF_MAX;
 use crate::pages::Pages;
 use binary::BinaryNode;
 use binned::Settings;
-use bins::Blocks;
-pub(crate) use item::{Extent, Items};
+use bins::BlockShift;
+pub(crate) use item::{Items, SimdBox};
 use juggler_math::Aabb;
 pub use refit::RefitError;
-pub(crate) use refit::{extent, refit};
-pub(crate) use spatial::Divide;
+pub(crate) use refit::{checked_box, refit};
+pub(crate) use spatial::ItemSplitter;
 use std::convert::Infallible;
 
-/// Most items that a tree can hold.
+/// Maximum number of items in a tree.
 pub const MAX_ITEMS: usize = 1 << 28;
 
-/// The test of a node of the binary tree in units of one leaf block's test. Below 1, because it is a seventh
-/// to a half of an eight-wide one. Rays take the same time for anything from 0.2 to 1.2.
+/// Cost of a node test of the binary tree, in units of one leaf block test. Below 1, since a binary
+/// node becomes a seventh to a half of an eight-wide node. Traversal times are equal for values
+/// from 0.2 to 1.2.
 const NODE_COST: f32 = 0.5;
 
-/// Of so many nodes one is tried to be moved, each time that the tree is made better.
+/// In each round of optimization, one of this many nodes is a candidate for reinsertion.
 const SHARE_BALANCED: usize = 128;
 const SHARE_BEST: usize = 4;
 
-/// How much work goes into a tree. The same boxes and quality always give the same tree.
+/// Build quality. The same boxes and quality always give the same tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Leaves along a space-filling curve, bins above them: for trees that live for a frame.
+    /// Leaves along a Morton curve with a binned SAH tree above them: for trees that live for one
+    /// frame.
     Fast,
-    /// Up to 32 bins along each axis at every node; then the largest subtrees are moved to better places.
+    /// Binned SAH with up to 32 bins per axis, then reinsertion of the largest subtrees.
     #[default]
     Balanced,
-    // Splitting large triangles beforehand (Karras, Aila 2013) was tried: with 25 % more references the cost fell
-    // by 5 % for hair, rose by 3 to 13 % elsewhere.
-    /// As balanced, and many more subtrees are tried; of triangles also a tree with spatial splits, where a triangle may
-    /// stand in several leaves, and the cheaper of the two is kept. For trees that live for minutes.
+    // Splitting large triangles before the build (Karras, Aila 2013) was tried: with 25 % more
+    // references the SAH cost fell by 5 % for hair and rose by 3 to 13 % elsewhere.
+    /// As balanced with many more reinsertions. For triangles, a tree with spatial splits is built
+    /// too, in which several leaves may refer to a triangle, and the cheaper tree is kept. For
+    /// trees that live for minutes.
     Best,
 }
 
 impl Quality {
-    /// All of them, from quick to thorough.
+    /// All qualities, from fast to thorough.
     pub const ALL: [Self; 3] = [Self::Fast, Self::Balanced, Self::Best];
 }
 
-/// What decides the shape of a tree.
+/// Parameters of a build.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// How thoroughly to look for splits.
+    /// Build quality.
     pub quality: Quality,
-    /// Most items in a leaf, 1 to 8.
+    /// Maximum number of items in a leaf, 1 to 8.
     pub leaf_size: usize,
-    /// How many items the leaf visitor tests for the price of one, 1 to 8.
+    /// Number of items that the leaf visitor tests at the cost of one, 1 to 8, rounded up to a
+    /// power of two.
     pub block: usize,
 }
 
@@ -75,7 +80,12 @@ impl BuildOptions {
     fn settings(&self) -> Settings {
         let block = self.block.clamp(1, LEAF_MAX).next_power_of_two();
         let leaf_size = self.leaf_size.clamp(1, LEAF_MAX);
-        Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32), node_cost: NODE_COST, careless: 0 }
+        Settings {
+            leaf_size,
+            block: BlockShift(block.trailing_zeros() as i32),
+            node_cost: NODE_COST,
+            split_in_order_size: 0,
+        }
     }
 }
 
@@ -86,67 +96,69 @@ impl From<Quality> for BuildOptions {
     }
 }
 
-/// What came out of a build.
+/// Statistics of a build.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildStats {
     /// Items in the tree.
     pub items: usize,
-    /// Places in leaves: as many as items, or more where items stand in several leaves.
+    /// Item references in leaves: as many as items, or more after spatial splits.
     pub references: usize,
-    /// Items left out because no ray can meet their boxes: empty ones and those with a NaN.
+    /// Items left out because no ray can intersect their boxes, which are empty or have a NaN.
     pub left_out: usize,
-    /// Nodes of 256 bytes.
+    /// Number of nodes, 256 bytes each.
     pub nodes: usize,
-    /// Nodes on the longest way from the root to a leaf.
+    /// Number of nodes on the longest path from the root to a leaf.
     pub depth: usize,
-    /// `leaf_sizes[n]` leaves hold `n` references.
+    /// Histogram: `leaf_sizes[n]` leaves hold `n` references.
     pub leaf_sizes: [usize; 9],
-    /// Expected cost of a random ray: nodes and leaf blocks tested, each counted as one (MacDonald, Booth 1990).
+    /// SAH cost: expected number of node and leaf block tests of a random ray (MacDonald, Booth
+    /// 1990).
     pub sah_cost: f64,
-    /// Entries that a traversal's stack may need.
+    /// Maximum number of entries on a traversal's stack.
     pub(crate) stack: usize,
-    /// How many items are tested for the price of one.
+    /// Number of items per leaf block.
     pub(crate) block: usize,
 }
 
 impl Bvh {
-    /// Builds a tree over the boxes; item `i` has box `i`. Runs on the threads of the current rayon pool;
-    /// the tree does not depend on their number.
+    /// Builds a hierarchy over boxes; item `i` has box `i`. Uses the threads of the current rayon
+    /// pool; the result does not depend on their number.
     ///
-    /// Empty boxes and boxes with a NaN hold nothing that a ray could meet and are left out of
-    /// [`Bvh::order`]. Infinite bounds are cut to the largest finite float. At most [`MAX_ITEMS`] boxes are
-    /// taken; a caller with more must refuse them before.
+    /// Empty boxes and boxes with a NaN are left out of [`Bvh::order`]. Infinite bounds are clamped
+    /// to the largest finite number. Boxes beyond [`MAX_ITEMS`] are ignored; the caller must reject
+    /// larger inputs.
     pub fn build(boxes: &[Aabb], quality: Quality) -> Self {
         Self::build_with(boxes, &quality.into())
     }
 
-    /// [`Bvh::build`] with the leaf's size and cost chosen.
+    /// [`Bvh::build`] with explicit [`BuildOptions`].
     pub fn build_with(boxes: &[Aabb], options: &BuildOptions) -> Self {
         let boxes = &boxes[..boxes.len().min(MAX_ITEMS)];
-        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(Extent::raw(&boxes[i])));
-        Self::over(items, options)
+        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(SimdBox::raw(&boxes[i])));
+        Self::from_items(items, options)
     }
 
-    pub(crate) fn over(items: Items, options: &BuildOptions) -> Self {
+    pub(crate) fn from_items(items: Items, options: &BuildOptions) -> Self {
         let (settings, left_out) = (options.settings(), items.left_out);
         let built = match options.quality {
             Quality::Fast => morton::build(items, settings.leaf_size),
             Quality::Balanced => reinsert::optimize(binned::build(items, &settings), SHARE_BALANCED),
             Quality::Best => reinsert::optimize(binned::build(items, &settings), SHARE_BEST),
         };
-        Self::of_binary(built, &settings, left_out)
+        Self::from_binary(built, &settings, left_out)
     }
 
-    /// [`Bvh::over`], in best quality whatever is asked for; items may stand in several leaves.
-    pub(crate) fn divided(items: Items, options: &BuildOptions, divide: &impl Divide) -> Self {
+    /// [`Bvh::from_items`] with spatial splits and the best quality, whatever `options` says;
+    /// several leaves may refer to an item.
+    pub(crate) fn with_spatial_splits(items: Items, options: &BuildOptions, splitter: &impl ItemSplitter) -> Self {
         let (settings, left_out, count) = (options.settings(), items.left_out, items.count);
-        let built = reinsert::optimize(spatial::build(items, &settings, divide), SHARE_BEST);
-        let mut bvh = Self::of_binary(built, &settings, left_out);
+        let built = reinsert::optimize(spatial::build(items, &settings, splitter), SHARE_BEST);
+        let mut bvh = Self::from_binary(built, &settings, left_out);
         bvh.stats.items = count;
         bvh
     }
 
-    fn of_binary((binary, order): (Pages<BinaryNode>, Vec<u32>), settings: &Settings, left_out: usize) -> Self {
+    fn from_binary((binary, order): (Pages<BinaryNode>, Vec<u32>), settings: &Settings, left_out: usize) -> Self {
         let (nodes, mut stats) = collapse::collapse(&binary, settings.leaf_size, 1 << settings.block.0);
         (stats.items, stats.references) = (order.len(), order.len());
         stats.left_out = left_out;

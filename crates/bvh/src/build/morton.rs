@@ -1,22 +1,23 @@
-//! The quick build: items are sorted along a Morton curve (Lauterbach et al. 2009, "Fast BVH Construction on
-//! GPUs") and cut into clusters of at most a leaf's size where the curve jumps; the tree above the clusters
-//! is built by binning, as in HLBVH (Pantaleoni and Luebke 2010), but down to the leaves.
+//! Fast construction: items are sorted along a Morton curve (Lauterbach et al. 2009, "Fast BVH
+//! Construction on GPUs") and clustered into leaves where the highest differing bit changes. The
+//! tree above the clusters is built by binning, as in HLBVH (Pantaleoni and Luebke 2010), but down
+//! to the leaves.
 
 use super::binary::BinaryNode;
 use super::binned::{self, Settings};
-use super::bins::Blocks;
-use super::item::{Extent, Item, Items};
+use super::bins::BlockShift;
+use super::item::{Item, Items, SimdBox};
 use crate::pages::Pages;
 use rayon::prelude::*;
 use std::convert::Infallible;
 use wide::f32x4;
 
-/// Longer stretches of the curve are cut by several threads.
+/// Number of keys from which several threads build clusters.
 const TASK: usize = 1 << 13;
 
-/// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
+/// Builds the binary tree, empty without items, and the item indices in leaf order.
 pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, Vec<u32>) {
-    let curve = Curve::new(items.around.centers, items.list().len());
+    let curve = Curve::new(items.extents.centers, items.list().len());
     let items = items.list();
     let mut keys = Pages::zeroed(items.len());
     keys.par_iter_mut().zip(&*items).enumerate().for_each(|(i, (key, item))| *key = curve.key(item, i));
@@ -26,12 +27,12 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
     let bounds = |cluster: usize| {
         let (first, count) = clusters[cluster];
         let keys = &keys[first as usize..][..count as usize];
-        Ok::<_, Infallible>(keys.iter().fold(Extent::EMPTY, |all, key| all.union(item(key).extent())))
+        Ok::<_, Infallible>(keys.iter().fold(SimdBox::EMPTY, |all, key| all.union(item(key).bounds())))
     };
     let Ok(boxes) = Items::new(clusters.len(), bounds);
     let (mut nodes, order) =
-        binned::build(boxes, &Settings { leaf_size: 1, block: Blocks(0), node_cost: 0.0, careless: 4 });
-    // The items of the clusters in the order that the tree gives to the clusters.
+        binned::build(boxes, &Settings { leaf_size: 1, block: BlockShift(0), node_cost: 0.0, split_in_order_size: 4 });
+    // List the items of the clusters in the tree's leaf order.
     let mut starts = vec![0; order.len()];
     let mut numbers = Vec::with_capacity(items.len());
     for (start, &cluster) in starts.iter_mut().zip(&order) {
@@ -46,7 +47,8 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
     (nodes, numbers)
 }
 
-/// The map from centers to keys: the place along the curve in the upper bits, below it the item's position.
+/// Mapping from centers to sort keys: the Morton code in the upper bits, the item's position in the
+/// lower bits.
 struct Curve {
     low: f32x4,
     scale: f32x4,
@@ -54,8 +56,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// As fine as the bits allow that the positions leave: 12 to 21 an axis.
-    fn new(centers: Extent, items: usize) -> Self {
+    /// Constructs the mapping with as many bits as the positions leave: 11 to 21 bits per axis.
+    fn new(centers: SimdBox, items: usize) -> Self {
         let position_bits = usize::BITS - items.leading_zeros();
         let cells = 1u32 << ((64 - position_bits) / 3).min(21);
         let scale = (centers.high - centers.low).to_array().map(|side| (cells - 1) as f32 / side);
@@ -74,7 +76,7 @@ impl Curve {
     }
 }
 
-/// 21 bits, each with two zeros above it.
+/// Inserts two zero bits above each of the lower 21 bits.
 fn spread(value: i32) -> u64 {
     let value = u64::from(value as u32) & 0x1f_ffff;
     let value = (value | value << 32) & 0x001f_0000_0000_ffff;
@@ -84,8 +86,8 @@ fn spread(value: i32) -> u64 {
     (value | value << 2) & 0x1249_2492_4924_9249
 }
 
-/// Stretches of at most `size` keys, as position of the first and count. Longer ones are cut where the
-/// highest bit changes; keys are different, at the latest in their positions.
+/// Clusters of at most `size` keys, as (first position, count). Longer ranges are split where the
+/// highest differing bit changes; keys always differ, since they contain positions.
 fn clusters(keys: &[u64], first: usize, size: usize) -> Vec<(u32, u32)> {
     if keys.len() <= TASK {
         let mut list = Vec::with_capacity(keys.len() / 4);
@@ -109,7 +111,7 @@ fn add_clusters(keys: &[u64], first: usize, size: usize, list: &mut Vec<(u32, u3
     }
 }
 
-/// Where the highest bit that is not the same in all keys changes.
+/// Position at which the highest bit that is not equal in all keys changes.
 fn jump(keys: &[u64]) -> usize {
     let differing = keys[0] ^ keys[keys.len() - 1];
     let bit = 1u64 << (u64::BITS - 1 - differing.leading_zeros().min(u64::BITS - 1));

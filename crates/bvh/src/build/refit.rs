@@ -1,28 +1,28 @@
-//! New bounds for an old tree: what moves a little need not be built anew.
+//! Refitting: new bounds for a tree of unchanged topology.
 
-use super::item::{Extent, Item};
+use super::item::{Item, SimdBox};
 use crate::Bvh;
 use crate::node::{Child, Node, WIDTH};
 use juggler_math::Aabb;
 use rayon::prelude::*;
 use std::fmt;
 
-/// So many nodes are taken at once by a thread.
+/// Number of nodes per parallel task.
 const CHUNK: usize = 1 << 8;
 
-/// Why a tree cannot take new bounds and must be built anew.
+/// Reason why a tree cannot be refitted and must be rebuilt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefitError {
-    /// Not as many as the tree was built over.
+    /// The number of items differs from that of the build.
     Count {
-        /// How many the tree was built over.
+        /// Number of items in the build.
         expected: usize,
-        /// How many came.
+        /// Number of items given.
         found: usize,
     },
-    /// This one was left out of the tree because no ray could meet it; now one could.
+    /// An item that the build left out can now be hit.
     LeftOut {
-        /// Its number.
+        /// Index of the item.
         item: usize,
     },
 }
@@ -39,27 +39,28 @@ impl fmt::Display for RefitError {
 impl std::error::Error for RefitError {}
 
 impl Bvh {
-    /// Gives the items new boxes; item `i` has box `i`, as in [`Bvh::build`]. The tree keeps its shape, so
-    /// rays take longer the more the items have moved; the same boxes as before change nothing. An item
-    /// whose box has become empty is not met. Runs on the threads of the current rayon pool.
+    /// Assigns new boxes; item `i` has box `i`, as in [`Bvh::build`]. The topology does not change,
+    /// so traversal slows down the more the items have moved; unchanged boxes change nothing. Items
+    /// whose box is now empty are not hit. Uses the threads of the current rayon pool.
     pub fn refit(&mut self, boxes: &[Aabb]) -> Result<(), RefitError> {
-        let usable = |item: usize| Item::new(Extent::raw(&boxes[item]), 0).is_some();
+        let usable = |item: usize| Item::new(SimdBox::raw(&boxes[item]), 0).is_some();
         self.check_refit(boxes.len(), self.order.iter().copied(), usable)?;
         let order = &self.order;
         self.bounds = refit(&mut self.nodes, |leaf| {
             let items = &order[leaf.items().start as usize..leaf.items().end as usize];
-            items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(Extent::raw(&boxes[item as usize]))))
+            items.iter().fold(SimdBox::EMPTY, |all, &item| all.union(checked_box(SimdBox::raw(&boxes[item as usize]))))
         });
         self.update_cost();
         Ok(())
     }
 
-    /// Makes the statistics tell of the nodes as they are.
+    /// Recomputes the SAH cost from the current nodes.
     pub(crate) fn update_cost(&mut self) {
         self.stats.sah_cost = sah_cost(&self.nodes, self.stats.block);
     }
 
-    /// Whether this many items can be those of the tree, which holds `items`.
+    /// Checks that `count` items with the given usable boxes match the tree, which contains
+    /// `items`.
     pub(crate) fn check_refit(
         &self,
         count: usize,
@@ -86,13 +87,14 @@ impl Bvh {
     }
 }
 
-/// The box as the builder takes it, empty where it would leave it out.
-pub(crate) fn extent(bounds: Extent) -> Extent {
-    Item::new(bounds, 0).map_or(Extent::EMPTY, |item| item.extent())
+/// The box as the builder stores it; empty if the builder would leave it out.
+pub(crate) fn checked_box(bounds: SimdBox) -> SimdBox {
+    Item::new(bounds, 0).map_or(SimdBox::EMPTY, |item| item.bounds())
 }
 
-/// New boxes for all nodes from those of the leaves; returns the box of all.
-pub(crate) fn refit(nodes: &mut [Node], leaf: impl Fn(Child) -> Extent + Sync) -> Aabb {
+/// Recomputes the boxes of all nodes bottom-up from those of the leaves; returns the bounds of the
+/// root.
+pub(crate) fn refit(nodes: &mut [Node], leaf: impl Fn(Child) -> SimdBox + Sync) -> Aabb {
     nodes.par_iter_mut().with_min_len(CHUNK).for_each(|node| {
         for slot in 0..node.count as usize {
             let child = node.children[slot];
@@ -102,31 +104,31 @@ pub(crate) fn refit(nodes: &mut [Node], leaf: impl Fn(Child) -> Extent + Sync) -
             }
         }
     });
-    // Children lie behind their parents.
+    // Children are stored after their parents.
     for number in (0..nodes.len()).rev() {
         let (before, behind) = nodes.split_at_mut(number + 1);
         let node = &mut before[number];
         for slot in 0..node.count as usize {
             let child = node.children[slot];
             if !child.is_leaf() {
-                let (low, high) = around(&behind[child.0 as usize - number - 1]);
+                let (low, high) = union_of_boxes(&behind[child.0 as usize - number - 1]);
                 node.set_bounds(slot, low, high);
             }
         }
     }
-    let (low, high) = nodes.first().map_or(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), around);
+    let (low, high) = nodes.first().map_or(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), union_of_boxes);
     Aabb { min: low.into(), max: high.into() }
 }
 
-/// The box of all that is below a node.
-fn around(node: &Node) -> ([f32; 3], [f32; 3]) {
+/// Union of a node's boxes.
+fn union_of_boxes(node: &Node) -> ([f32; 3], [f32; 3]) {
     let low = |axis: usize| node.bounds[axis][0].iter().fold(f32::INFINITY, |a, &b| a.min(b));
     let high = |axis: usize| node.bounds[axis][1].iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
     (std::array::from_fn(low), std::array::from_fn(high))
 }
 
-/// Expected cost of a random ray that meets the box of all: nodes and leaf blocks of `block` items, each
-/// counted as one.
+/// SAH cost of a random ray that intersects the root's bounds: nodes and leaf blocks of `block`
+/// items, each at cost 1.
 pub(super) fn sah_cost(nodes: &[Node], block: usize) -> f64 {
     let cost = |node: &Node| -> f64 {
         let blocks = |child: Child| if child.is_leaf() { child.items().len().div_ceil(block) } else { 1 };
@@ -134,7 +136,7 @@ pub(super) fn sah_cost(nodes: &[Node], block: usize) -> f64 {
     };
     let chunks: Vec<f64> = nodes.par_chunks(CHUNK).map(|nodes| nodes.iter().map(cost).sum()).collect();
     let root = nodes.first().map_or(0.0, |root| {
-        let (low, high) = around(root);
+        let (low, high) = union_of_boxes(root);
         let mut node = Node::EMPTY;
         node.add(low, high, Child::ROOT);
         half_area(&node, 0)

@@ -1,24 +1,26 @@
-//! Makes a finished binary tree better: subtrees are taken out and put where they enlarge the boxes least
-//! (Bittner, Hapala, Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies"; many at
-//! once as in Meister and Bittner 2017, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization").
+//! Optimization by reinsertion: subtrees are removed and inserted where they increase the surface
+//! area least (Bittner, Hapala, Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume
+//! Hierarchies"; in parallel as in Meister and Bittner 2017, "Parallel Reinsertion for Bounding
+//! Volume Hierarchy Optimization").
 //!
-//! Deviation from the latter: of the moves found in parallel those that do not meet are made one after
-//! another, the most gainful first, instead of by atomic locks, so that every run makes the same tree.
+//! Deviation from the latter: of the moves found in parallel, those that do not conflict are
+//! applied sequentially by decreasing gain, in place of atomic locks, so that the result is
+//! deterministic.
 
 use super::binary::BinaryNode;
-use super::item::Extent;
+use super::item::SimdBox;
 use crate::pages::Pages;
 use rayon::prelude::*;
 
-/// How often moves are looked for. More rounds bring next to nothing.
+/// Number of rounds. More rounds gain next to nothing.
 const ROUNDS: usize = 4;
-/// A search ends after so many nodes; where many boxes overlap it would see them all.
+/// Maximum number of nodes that one search visits; where many boxes overlap it would visit all.
 const STEPS: usize = 2000;
-/// Trees that became deeper than this are not used: 72 wide levels are the limit of the traversal.
+/// Depth above which the optimized tree is discarded: traversal supports 72 wide levels.
 const MAX_DEPTH: usize = 72;
 
-/// The better tree, or the old one. Every leaf keeps its items. In each round one of `share` nodes is tried,
-/// the largest first.
+/// Returns the optimized tree, or the original one if the former is too deep. Leaves keep their
+/// items. Each round considers one of `share` nodes, the largest ones.
 pub(super) fn optimize((nodes, order): (Pages<BinaryNode>, Vec<u32>), share: usize) -> (Pages<BinaryNode>, Vec<u32>) {
     if nodes.len() < 8 {
         return (nodes, order);
@@ -28,33 +30,33 @@ pub(super) fn optimize((nodes, order): (Pages<BinaryNode>, Vec<u32>), share: usi
     let least = tree.least_area(share);
     for _ in 0..ROUNDS {
         let moves = tree.find_moves(least);
-        tree.make(&moves);
+        tree.apply(&moves);
     }
     let (listed, items, depth) = relist(&better, &order);
     if depth <= MAX_DEPTH { (listed, items) } else { (nodes, order) }
 }
 
-/// A node to be put beside another.
+/// A reinsertion of node `from` as a sibling of node `to`.
 #[derive(Clone, Copy)]
 struct Move {
     from: usize,
     to: usize,
-    /// By how much the sum of all areas shrinks.
+    /// Decrease of the total surface area.
     gain: f64,
 }
 
 struct Tree<'a> {
     nodes: &'a mut [BinaryNode],
-    /// The root is its own parent.
+    /// Parent indices; the root is its own parent.
     parents: Vec<u32>,
 }
 
-/// The node with the same parent. Pairs start at odd numbers.
+/// Index of the other child of the same parent. Pairs of siblings start at odd indices.
 fn sibling(number: usize) -> usize {
     if number.is_multiple_of(2) { number - 1 } else { number + 1 }
 }
 
-fn area(bounds: Extent) -> f64 {
+fn area(bounds: SimdBox) -> f64 {
     BinaryNode::new(bounds, 0, 0).half_area()
 }
 
@@ -72,18 +74,18 @@ impl<'a> Tree<'a> {
         self.parents[number] as usize
     }
 
-    fn extent(&self, number: usize) -> Extent {
-        self.nodes[number].extent()
+    fn bounds(&self, number: usize) -> SimdBox {
+        self.nodes[number].bounds()
     }
 
-    /// One of `share` nodes is larger, or fewer where areas are the same.
+    /// Area that one in `share` nodes exceeds, or fewer if areas are equal.
     fn least_area(&self, share: usize) -> f64 {
         let mut areas: Vec<f64> = self.nodes.par_iter().map(BinaryNode::half_area).collect();
         let at = areas.len() / share;
         *areas.select_nth_unstable_by(at, |a, b| b.total_cmp(a)).1
     }
 
-    /// The best moves of nodes with more than this area, the most gainful first.
+    /// Finds the best moves of nodes with an area above `least_area`, by decreasing gain.
     fn find_moves(&self, least_area: f64) -> Vec<Move> {
         let large = self.nodes.par_iter().enumerate().filter(|(_, node)| node.half_area() > least_area);
         // Children of the root have no other place.
@@ -94,16 +96,17 @@ impl<'a> Tree<'a> {
         moves
     }
 
-    /// Where a node should go. Walks up from it, and at each level down into the other side as long as the
-    /// area saved so far exceeds the least that the node needs.
+    /// Finds the best target for a node. Walks up from the node and, at each level, descends into
+    /// the sibling's subtree while the area saved so far exceeds the minimum that the insertion
+    /// adds.
     fn find_move(&self, from: usize, stack: &mut Vec<(f64, usize)>) -> Option<Move> {
-        let moved = self.extent(from);
+        let moved = self.bounds(from);
         let moved_area = area(moved);
         let parent = self.parent(from);
         let mut best = Move { from, to: 0, gain: 0.0 };
-        let mut saved = area(self.extent(parent));
+        let mut saved = area(self.bounds(parent));
         let (mut pivot, mut other) = (parent, sibling(from));
-        let mut remaining = self.extent(other);
+        let mut remaining = self.bounds(other);
         let mut steps = 0;
         while steps < STEPS {
             stack.push((saved, other));
@@ -113,7 +116,7 @@ impl<'a> Tree<'a> {
                 }
                 steps += 1;
                 let node = &self.nodes[to];
-                let gain = saved - area(node.extent().union(moved));
+                let gain = saved - area(node.bounds().union(moved));
                 if gain > best.gain && to != sibling(from) {
                     best = Move { from, to, gain };
                 }
@@ -126,8 +129,8 @@ impl<'a> Tree<'a> {
                 break;
             }
             if pivot != parent {
-                remaining = remaining.union(self.extent(other));
-                saved += area(self.extent(pivot)) - area(remaining);
+                remaining = remaining.union(self.bounds(other));
+                saved += area(self.bounds(pivot)) - area(remaining);
             }
             other = sibling(pivot);
             pivot = self.parent(pivot);
@@ -135,8 +138,8 @@ impl<'a> Tree<'a> {
         (best.to != 0 && best.to != parent).then_some(best)
     }
 
-    /// Makes the moves that do not touch what an earlier one has touched.
-    fn make(&mut self, moves: &[Move]) {
+    /// Applies the moves that do not touch nodes of an earlier move.
+    fn apply(&mut self, moves: &[Move]) {
         let mut touched = vec![false; self.nodes.len()];
         for &Move { from, to, .. } in moves {
             let places = [from, to, sibling(from), self.parent(from), self.parent(to)];
@@ -144,7 +147,7 @@ impl<'a> Tree<'a> {
                 continue;
             }
             places.iter().for_each(|&place| touched[place] = true);
-            self.put(from, to);
+            self.reinsert(from, to);
         }
     }
 
@@ -158,13 +161,14 @@ impl<'a> Tree<'a> {
         false
     }
 
-    /// The sibling takes its parent's place; the pair that is free then holds the target and the node.
-    fn put(&mut self, from: usize, to: usize) {
+    /// Moves a node: the sibling replaces its parent, and the freed pair holds the target and the
+    /// node.
+    fn reinsert(&mut self, from: usize, to: usize) {
         let (parent, free) = (self.parent(from), sibling(from));
         self.set(parent, self.nodes[free]);
         self.set(free, self.nodes[to]);
         let pair = from.min(free);
-        let bounds = self.extent(from).union(self.extent(free));
+        let bounds = self.bounds(from).union(self.bounds(free));
         self.set(to, BinaryNode::new(bounds, pair, 0));
         self.fit(parent);
         self.fit(to);
@@ -178,17 +182,17 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// New boxes from a node up to the root.
+    /// Refits the boxes from a node up to the root.
     fn fit(&mut self, mut number: usize) {
         while number != 0 {
             number = self.parent(number);
             let first = self.nodes[number].first as usize;
-            self.nodes[number] = BinaryNode::new(self.extent(first).union(self.extent(first + 1)), first, 0);
+            self.nodes[number] = BinaryNode::new(self.bounds(first).union(self.bounds(first + 1)), first, 0);
         }
     }
 }
 
-/// Nodes depth first, the items in the order of the leaves, and the depth.
+/// Lists the nodes depth first, with items in leaf order; also returns the depth.
 pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>, usize) {
     let mut pages = Pages::zeroed(nodes.len());
     let listed = &mut pages[..];

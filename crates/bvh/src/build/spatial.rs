@@ -1,133 +1,139 @@
-//! Top-down construction with spatial splits (Stich, Friedrich, Dietrich 2009, "Spatial Splits in Bounding Volume
-//! Hierarchies"): where the boxes of both sides of a cut overlap, space may be cut instead. Items across the plane are
-//! then referred to from both sides, each time with the box of the part on that side.
+//! Top-down construction with spatial splits (Stich, Friedrich, Dietrich 2009, "Spatial Splits in
+//! Bounding Volume Hierarchies"): where the boxes of both sides of an object split overlap, a plane
+//! may split space instead. Both sides then refer to the items that cross the plane, each with the
+//! box of the clipped item.
 //!
-//! Deviations: planes are looked for where the overlap is large beside the node, not beside the root, and taken only
-//! where they are much cheaper; the references that may be added are bounded, and each subtree is given its share
-//! beforehand; which items are better not divided is decided by the boxes of the bins, not one after the other. So the
-//! tree is the same on any number of threads.
+//! Deviations: spatial splits are tried where the overlap is large relative to the node, not to the
+//! root, and taken only where they are much cheaper. The number of added references is bounded, and
+//! each subtree gets its budget beforehand. Reference unsplitting uses the bounds of the bins and
+//! not those of the references so far. So the tree is the same for any number of threads.
 
 use super::MAX_ITEMS;
 use super::binary::{BinaryNode, Subtree};
 use super::binned::{self, CHUNK, Settings, TASK, Task};
-use super::bins::{Cut, Mapping};
-use super::item::{Around, Extent, Item, Items};
-use super::planes::{Plane, Planes, half_area};
+use super::bins::{Mapping, ObjectSplit};
+use super::item::{Item, Items, SetBounds, SimdBox};
 use super::reinsert::relist;
+use super::spatial_bins::{SpatialBins, SpatialSplit, half_area};
 use crate::pages::Pages;
 use rayon::prelude::*;
 
-/// At most one reference is added for so many items.
+/// At most one reference is added per this many items.
 const SHARE: usize = 4;
-/// Planes are looked for where the overlap of the boxes of both sides has more than this share of the area of both
-/// together.
+/// Spatial splits are tried where the overlap of both sides exceeds this fraction of the node's
+/// area.
 const OVERLAP: f64 = 0.5;
-/// A plane must cost less than this share of the best cut. What the heuristic gains by less is lost again: subtrees
-/// with parts of items find no better places later (`reinsert.rs`).
+/// A spatial split must cost less than this fraction of the best object split. Smaller gains are
+/// lost again, since subtrees with split references gain less from reinsertion (`reinsert.rs`).
 const GAIN: f32 = 0.8;
 
-/// Items of which parts have boxes too.
-pub(crate) trait Divide: Sync {
-    /// The boxes of the parts of an item below and above the plane across `axis` at `at`, as far as they lie in
-    /// `bounds`; empty where there is no part.
-    fn divide(&self, item: u32, bounds: Extent, axis: usize, at: f32) -> [Extent; 2];
+/// Clipping of items at planes.
+pub(crate) trait ItemSplitter: Sync {
+    /// Boxes of the parts of an item below and above the plane at coordinate `at` of `axis`,
+    /// clipped to `bounds`; empty where there is no part.
+    fn split(&self, item: u32, bounds: SimdBox, axis: usize, at: f32) -> [SimdBox; 2];
 }
 
-/// The binary tree, empty when there are no items, and the numbers of the items in leaf order, some more than once.
-pub(super) fn build(mut items: Items, settings: &Settings, divide: &impl Divide) -> (Pages<BinaryNode>, Vec<u32>) {
-    let around = items.around;
+/// Builds the binary tree, empty without items, and the item indices in leaf order, some more than
+/// once.
+pub(super) fn build(
+    mut items: Items,
+    settings: &Settings,
+    splitter: &impl ItemSplitter,
+) -> (Pages<BinaryNode>, Vec<u32>) {
+    let extents = items.extents;
     let items = items.list().to_vec();
     if items.is_empty() {
         return (Pages::zeroed(0), Vec::new());
     }
-    let spare = (items.len() / SHARE).min(MAX_ITEMS - items.len());
-    let mut order = vec![0; items.len() + spare];
-    let builder = Builder { settings, divide };
-    let set = Set { items, spare, order: &mut order, first: 0, around, depth: 0 };
+    let budget = (items.len() / SHARE).min(MAX_ITEMS - items.len());
+    let mut order = vec![0; items.len() + budget];
+    let builder = Builder { settings, splitter };
+    let set = Set { items, budget, order: &mut order, first: 0, extents, depth: 0 };
     let nodes = builder.subtree(set).into_nodes();
-    // Closes the gaps where subtrees needed fewer references than they might have had.
+    // Close the gaps where subtrees used fewer references than their budget.
     let (nodes, order, _) = relist(&nodes, &order);
     (nodes, order)
 }
 
-/// References on their way into a subtree: how many may be added, a place in leaf order for each that there may be, the
-/// position of the first place, and how deep the set lies.
+/// References to build a subtree over: `budget` is the number that may be added, `order` the output
+/// in leaf order with room for these, `first` the position of its first entry.
 struct Set<'a> {
     items: Vec<Item>,
-    spare: usize,
+    budget: usize,
     order: &'a mut [u32],
     first: usize,
-    around: Around,
+    extents: SetBounds,
     depth: usize,
 }
 
 impl<'a> Set<'a> {
     fn leaf(&self) -> BinaryNode {
-        BinaryNode::new(self.around.bounds, self.first, self.items.len())
+        BinaryNode::new(self.extents.bounds, self.first, self.items.len())
     }
 
-    /// Both sides; the references that may still be added go to them by their area.
+    /// Splits the set; the remaining budget is divided in proportion to the areas.
     fn sides(order: &'a mut [u32], first: usize, depth: usize, sides: [Side; 2]) -> [Self; 2] {
         let [left, right] = sides;
-        let spare = order.len() - left.items.len() - right.items.len();
-        let [a, b] = [&left, &right].map(|side| half_area(side.around.bounds));
-        let left_spare = ((spare as f64 * (a / (a + b))) as usize).min(spare);
-        let (places, others) = order.split_at_mut(left.items.len() + left_spare);
+        let budget = order.len() - left.items.len() - right.items.len();
+        let [a, b] = [&left, &right].map(|side| half_area(side.extents.bounds));
+        let left_budget = ((budget as f64 * (a / (a + b))) as usize).min(budget);
+        let (places, others) = order.split_at_mut(left.items.len() + left_budget);
         let second = first + places.len();
         [
-            Self { items: left.items, spare: left_spare, order: places, first, around: left.around, depth },
+            Self { items: left.items, budget: left_budget, order: places, first, extents: left.extents, depth },
             Self {
                 items: right.items,
-                spare: spare - left_spare,
+                budget: budget - left_budget,
                 order: others,
                 first: second,
-                around: right.around,
+                extents: right.extents,
                 depth,
             },
         ]
     }
 }
 
-/// The references on one side of a split, and what is around them.
+/// References on one side of a split, with their bounds.
 struct Side {
     items: Vec<Item>,
-    around: Around,
+    extents: SetBounds,
 }
 
 impl Side {
-    const EMPTY: Self = Self { items: Vec::new(), around: Around::EMPTY };
+    const EMPTY: Self = Self { items: Vec::new(), extents: SetBounds::EMPTY };
 
     fn push(&mut self, item: Item) {
-        self.around = self.around.with(&item);
+        self.extents = self.extents.with(&item);
         self.items.push(item);
     }
 
     fn append(&mut self, mut other: Self) {
         self.items.append(&mut other.items);
-        self.around = self.around.union(other.around);
+        self.extents = self.extents.union(other.extents);
     }
 }
 
 struct Builder<'a, D> {
     settings: &'a Settings,
-    divide: &'a D,
+    splitter: &'a D,
 }
 
-impl<D: Divide> Builder<'_, D> {
-    /// The subtree over a set of at least one reference.
+impl<D: ItemSplitter> Builder<'_, D> {
+    /// Builds the subtree over a set of at least one reference.
     fn subtree(&self, set: Set<'_>) -> Subtree {
         let mut task = Task::new(self.settings);
         if set.items.len() <= TASK {
             let root = self.grow(set, &mut task);
             return Subtree::new(root, task.nodes);
         }
-        if set.spare == 0 {
-            let Set { mut items, order, first, around, depth, .. } = set;
-            let mut room = Pages::zeroed(items.len());
-            let set = binned::Set { items: &mut items, room: &mut room, order, first, around, depth };
+        if set.budget == 0 {
+            let Set { mut items, order, first, extents, depth, .. } = set;
+            let mut buffer = Pages::zeroed(items.len());
+            let set = binned::Set { items: &mut items, buffer: &mut buffer, order, first, extents, depth };
             return binned::subtree(set, self.settings);
         }
-        let (bounds, leaf) = (set.around.bounds, set.leaf());
+        let (bounds, leaf) = (set.extents.bounds, set.leaf());
         match self.split(set, &mut task) {
             None => Subtree::new(leaf, Vec::new()),
             Some([left, right]) => {
@@ -137,14 +143,14 @@ impl<D: Divide> Builder<'_, D> {
         }
     }
 
-    /// Returns the root, appends what is below it to the task's nodes.
+    /// Builds a subtree. Returns its root and appends the nodes below it to the task.
     fn grow(&self, mut set: Set<'_>, task: &mut Task) -> BinaryNode {
-        if set.spare == 0 {
-            let root = task.grow(&mut set.items, set.first, &set.around, set.depth);
-            binned::number(set.order, &set.items);
+        if set.budget == 0 {
+            let root = task.grow(&mut set.items, set.first, &set.extents, set.depth);
+            binned::write_order(set.order, &set.items);
             return root;
         }
-        let (bounds, leaf) = (set.around.bounds, set.leaf());
+        let (bounds, leaf) = (set.extents.bounds, set.leaf());
         match self.split(set, task) {
             None => leaf,
             Some([left, right]) => {
@@ -158,50 +164,56 @@ impl<D: Divide> Builder<'_, D> {
         }
     }
 
-    /// `None` for a leaf.
+    /// Splits a set by an object or a spatial split; `None` for a leaf.
     fn split<'s>(&self, mut set: Set<'s>, task: &mut Task) -> Option<[Set<'s>; 2]> {
         let count = set.items.len();
-        let found = task.cut(&set.items, &set.around, set.depth);
-        let pays = || found.as_ref().is_some_and(|(_, cut)| self.settings.pays(count, cut.cost));
+        let found = task.find_object_split(&set.items, &set.extents, set.depth);
+        let pays = || found.as_ref().is_some_and(|(_, split)| self.settings.pays(count, split.cost));
         if count <= self.settings.leaf_size && (count == 1 || !pays()) {
-            binned::number(set.order, &set.items);
+            binned::write_order(set.order, &set.items);
             return None;
         }
-        let plane = self.plane(&set, found.as_ref(), task);
-        let sides = plane.and_then(|plane| self.part(&set.items, &plane, set.order.len())).unwrap_or_else(|| {
-            let (left, [a, b]) = task.part(&mut set.items, &set.around, found);
-            let right = set.items.split_off(left);
-            [Side { items: set.items, around: a }, Side { items: right, around: b }]
-        });
+        let spatial = self.find_spatial_split(&set, found.as_ref(), task);
+        let sides =
+            spatial.and_then(|plane| self.partition(&set.items, &plane, set.order.len())).unwrap_or_else(|| {
+                let (left, [a, b]) = task.partition(&mut set.items, &set.extents, found);
+                let right = set.items.split_off(left);
+                [Side { items: set.items, extents: a }, Side { items: right, extents: b }]
+            });
         Some(Set::sides(set.order, set.first, set.depth + 1, sides))
     }
 
-    /// Where to cut space, if that is much cheaper than the cut that was found.
-    fn plane(&self, set: &Set, found: Option<&(Mapping, Cut)>, task: &Task) -> Option<Plane> {
+    /// Finds a spatial split that is much cheaper than the object split `found`.
+    fn find_spatial_split(
+        &self,
+        set: &Set,
+        found: Option<&(Mapping, ObjectSplit)>,
+        task: &Task,
+    ) -> Option<SpatialSplit> {
         if set.items.len() <= self.settings.leaf_size {
             return None;
         }
-        let (mapping, cut) = found?;
-        let (_, [left, right]) = task.bins.sides(mapping, cut);
-        if half_area(left.intersection(right)) <= half_area(set.around.bounds) * OVERLAP {
+        let (mapping, split) = found?;
+        let (_, [left, right]) = task.bins.sides(mapping, split);
+        if half_area(left.intersection(right)) <= half_area(set.extents.bounds) * OVERLAP {
             return None;
         }
-        let planes = set.items.par_chunks(CHUNK).map(|items| {
-            let mut planes = Planes::new(set.around.bounds, set.items.len());
-            items.iter().for_each(|item| planes.add(item, self.divide));
-            planes
+        let bins = set.items.par_chunks(CHUNK).map(|items| {
+            let mut bins = SpatialBins::new(set.extents.bounds, set.items.len());
+            items.iter().for_each(|item| bins.add(item, self.splitter));
+            bins
         });
-        let best = planes.reduce_with(|a, b| a.merged(&b))?.best(set.order.len(), self.settings.block)?;
-        (best.cost < cut.cost * GAIN).then_some(best)
+        let best = bins.reduce_with(|a, b| a.merged(&b))?.best(set.order.len(), self.settings.block)?;
+        (best.cost < split.cost * GAIN).then_some(best)
     }
 
-    /// The references on both sides of a plane; `None` when one side has none, or when they are more than allowed:
-    /// bins and planes are rounded differently.
-    fn part(&self, items: &[Item], plane: &Plane, most: usize) -> Option<[Side; 2]> {
+    /// Partitions the references at a plane; `None` if a side is empty or the budget is exceeded,
+    /// which may happen since bins and planes are rounded differently.
+    fn partition(&self, items: &[Item], plane: &SpatialSplit, most: usize) -> Option<[Side; 2]> {
         let parts = |items: &[Item]| {
             let mut sides = [Side::EMPTY, Side::EMPTY];
             for item in items {
-                for (side, part) in sides.iter_mut().zip(plane.parts(item, self.divide)) {
+                for (side, part) in sides.iter_mut().zip(plane.references(item, self.splitter)) {
                     part.into_iter().for_each(|part| side.push(part));
                 }
             }

@@ -1,11 +1,11 @@
-//! The same tree on any number of threads, and what a tree must hold.
+//! Trees are valid, and the same for any number of threads.
 
 use super::*;
 use crate::node::{Child, Node};
 use crate::{TriangleBvh, node};
 use juggler_math::{Vec3, hash};
 
-/// Boxes of many sizes in clusters; more than one task builds.
+/// Clustered boxes of many sizes, enough for several parallel tasks.
 fn boxes(count: u32) -> Vec<Aabb> {
     let unit = |i: u32, k: u32| hash::unit_f32(hash::mix(hash::combine(i, k)));
     let point = |i: u32, k: u32| Vec3::new(unit(i, k), unit(i, k + 1), unit(i, k + 2)) * 2.0 - Vec3::ONE;
@@ -40,7 +40,7 @@ fn any_number_of_threads_builds_the_same_tree() {
     }
 }
 
-/// Debug and release must agree on these numbers.
+/// Debug and release builds must agree on these hashes.
 #[test]
 fn every_machine_builds_the_same_tree() {
     let boxes = boxes(40_000);
@@ -63,15 +63,15 @@ fn any_number_of_threads_packs_the_same_triangles() {
     }
 }
 
-/// Every item in one leaf, every box around what is below it, every node and position used once, and the
-/// stack's bound.
+/// Checks that every item has one leaf, every box contains the boxes below, every node and position
+/// is used once, and the stack bound holds.
 fn check(name: &str, bvh: &Bvh, boxes: &[Aabb]) {
-    let mut seen = vec![0; bvh.order.len()];
+    let mut visits = vec![0; bvh.order.len()];
     let mut nodes = vec![0; bvh.nodes.len()];
-    let stack = check_node(bvh, boxes, Child::ROOT, &mut seen, &mut nodes, 1);
+    let stack = check_node(bvh, boxes, Child::ROOT, &mut visits, &mut nodes, 1);
     assert!(stack <= bvh.stats.stack, "{name}");
     assert!(bvh.stats.stack <= crate::stack::SIZE && bvh.stats.depth <= 72, "{name}: {:?}", bvh.stats);
-    assert!(seen.iter().all(|&times| times == 1) && nodes.iter().all(|&times| times == 1), "{name}");
+    assert!(visits.iter().all(|&times| times == 1) && nodes.iter().all(|&times| times == 1), "{name}");
     let mut order = bvh.order.clone();
     order.sort_unstable();
     order.dedup();
@@ -86,19 +86,19 @@ fn slot_box(node: &Node, slot: usize) -> Aabb {
     Aabb { min: corner(0), max: corner(1) }
 }
 
-/// The stack that is needed.
-fn check_node(bvh: &Bvh, boxes: &[Aabb], number: Child, seen: &mut [u32], nodes: &mut [u32], depth: usize) -> usize {
+/// Checks a subtree; returns the stack size that it needs.
+fn check_node(bvh: &Bvh, boxes: &[Aabb], number: Child, visits: &mut [u32], nodes: &mut [u32], depth: usize) -> usize {
     nodes[number.0 as usize] += 1;
     assert!(depth <= bvh.stats.depth);
     let node = &bvh.nodes[number.0 as usize];
     let count = node.count as usize;
     let mut stack = count;
     for slot in 0..count {
-        let (child, around) = (node.children[slot], slot_box(node, slot));
-        let inside = |b: &Aabb| b.min.cmpge(around.min).all() && b.max.cmple(around.max).all();
+        let (child, union) = (node.children[slot], slot_box(node, slot));
+        let inside = |b: &Aabb| b.min.cmpge(union.min).all() && b.max.cmple(union.max).all();
         if child.is_leaf() {
             for position in child.items() {
-                seen[position as usize] += 1;
+                visits[position as usize] += 1;
                 let limit = Vec3::splat(f32::MAX);
                 let bounds = boxes[bvh.order[position as usize] as usize];
                 assert!(inside(&Aabb { min: bounds.min.max(-limit), max: bounds.max.min(limit) }));
@@ -106,7 +106,7 @@ fn check_node(bvh: &Bvh, boxes: &[Aabb], number: Child, seen: &mut [u32], nodes:
         } else {
             let below = &bvh.nodes[child.0 as usize];
             assert!((0..below.count as usize).all(|slot| inside(&slot_box(below, slot))));
-            stack = stack.max(count - 1 + check_node(bvh, boxes, child, seen, nodes, depth + 1));
+            stack = stack.max(count - 1 + check_node(bvh, boxes, child, visits, nodes, depth + 1));
         }
     }
     assert!((count..node::WIDTH).all(|slot| slot_box(node, slot).is_empty()));
@@ -123,7 +123,7 @@ fn trees_hold_every_item_once() {
     }
 }
 
-/// Boxes that leave a builder no choice, many of them: in time and without deep recursion.
+/// Degenerate boxes in large numbers: construction must stay fast and not recurse deeply.
 #[test]
 fn trees_over_bad_boxes_are_sound() {
     let many = if cfg!(debug_assertions) { 1 << 17 } else { 1 << 20 };

@@ -18,13 +18,13 @@ fn contains(bounds: &Bounds, slot: usize, low: [f64; 3], high: [f64; 3]) -> bool
     (0..3).all(|axis| sides[axis][0] <= low[axis] && high[axis] <= sides[axis][1])
 }
 
-/// A slot's box.
+/// Box of a slot as (minimum, maximum).
 fn slot_of(bounds: &Bounds, slot: usize) -> ([f64; 3], [f64; 3]) {
     let side = |side: usize| bounds.map(|sides| f64::from(sides[side][slot]));
     (side(0), side(1))
 }
 
-/// The boxes of a node's slots against what hangs below.
+/// Checks that the boxes of a node's slots contain the boxes below them.
 fn check(tree: &MovingBvh, boxes: &[[Aabb; 2]], number: usize, time: f32) {
     let bvh = &tree.bvh;
     let node = &bvh.nodes[number];
@@ -32,15 +32,15 @@ fn check(tree: &MovingBvh, boxes: &[[Aabb; 2]], number: usize, time: f32) {
     for slot in 0..WIDTH {
         let (low, high) = slot_of(&bounds, slot);
         if slot >= node.count as usize {
-            assert!((0..3).all(|axis| low[axis] > high[axis]), "a free slot is met");
+            assert!((0..3).all(|axis| low[axis] > high[axis]), "a free slot is hit");
             continue;
         }
         let child = node.children[slot];
         if child.is_leaf() {
             for position in child.items() {
                 let [open, close] = boxes[bvh.order[position as usize] as usize];
-                let between = |a: Vec3, b: Vec3| a.as_dvec3().lerp(b.as_dvec3(), f64::from(time)).to_array();
-                let (low, high) = (between(open.min, close.min), between(open.max, close.max));
+                let lerp = |a: Vec3, b: Vec3| a.as_dvec3().lerp(b.as_dvec3(), f64::from(time)).to_array();
+                let (low, high) = (lerp(open.min, close.min), lerp(open.max, close.max));
                 assert!(contains(&bounds, slot, low, high) && contains(&node.bounds, slot, low, high));
             }
         } else {
@@ -54,7 +54,7 @@ fn check(tree: &MovingBvh, boxes: &[[Aabb; 2]], number: usize, time: f32) {
 }
 
 #[test]
-fn boxes_between_contain_what_moves_in_them() {
+fn interpolated_boxes_contain_interpolated_items() {
     for count in [0, 1, 9, 3000] {
         let boxes = boxes(count);
         for quality in Quality::ALL {
@@ -69,11 +69,11 @@ fn boxes_between_contain_what_moves_in_them() {
 
 #[test]
 fn times_are_shares_of_the_shutter() {
-    let share = |shutter: f32, time: f32| {
+    let fraction = |shutter: f32, time: f32| {
         let tree = MovingBvh::build(&[], shutter, Quality::Fast);
-        tree.share(&Ray { time, ..Ray::new(Vec3::ZERO, Vec3::X) })
+        tree.shutter_fraction(&Ray { time, ..Ray::new(Vec3::ZERO, Vec3::X) })
     };
-    assert_eq!([share(0.5, 0.0), share(0.5, 0.125), share(0.5, 0.5)], [0.0, 0.25, 1.0]);
-    assert_eq!([share(0.5, -1.0), share(0.5, 9.0), share(0.5, f32::NAN)], [0.0, 1.0, 0.0]);
-    assert_eq!([share(0.0, 0.0), share(0.0, 1.0), share(f32::NAN, 1.0)], [0.0, 1.0, 0.0]);
+    assert_eq!([fraction(0.5, 0.0), fraction(0.5, 0.125), fraction(0.5, 0.5)], [0.0, 0.25, 1.0]);
+    assert_eq!([fraction(0.5, -1.0), fraction(0.5, 9.0), fraction(0.5, f32::NAN)], [0.0, 1.0, 0.0]);
+    assert_eq!([fraction(0.0, 0.0), fraction(0.0, 1.0), fraction(f32::NAN, 1.0)], [0.0, 1.0, 0.0]);
 }

@@ -1,7 +1,7 @@
-//! From triangles to their tree: boxes, tree, then the blocks of the leaves.
+//! Construction of triangle hierarchies: bounding boxes, tree, triangle blocks of the leaves.
 
-use super::{Block, IN_CACHE, LANES, NEAR, TriangleBvh, TriangleError};
-use crate::build::{Extent, Items, extent, refit};
+use super::{Block, IN_FLIGHT_BYTES, LANES, PREFETCH_BYTES, TriangleBvh, TriangleError};
+use crate::build::{Items, SimdBox, checked_box, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
 use crate::triangle::TriangleTest;
@@ -12,21 +12,21 @@ use juggler_math::{Aabb, Vec3};
 use rayon::prelude::*;
 use wide::{f32x4, i32x4};
 
-/// So many nodes or blocks are taken at once by a thread.
+/// Number of nodes or blocks per parallel task.
 const CHUNK: usize = 1 << 8;
 
 impl TriangleBvh {
-    /// Builds the tree. A triangle is three numbers of `positions`. Triangles without area or with a vertex
-    /// that is not finite are never hit. Runs on the threads of the current rayon pool; the tree does not
-    /// depend on their number.
+    /// Builds a hierarchy over triangles, each given by three indices into `positions`. Degenerate
+    /// triangles and those with a vertex that is not finite are never hit. Uses the threads of the
+    /// current rayon pool; the result does not depend on their number.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], quality: Quality) -> Result<Self, TriangleError> {
         if triangles.len() > MAX_ITEMS {
             return Err(TriangleError::TooMany { triangles: triangles.len() });
         }
-        let mesh = Mesh { positions, triangles };
+        let mesh = TriangleList { positions, triangles };
         let mut bvh = mesh.tree(quality)?;
         let leaves = number_leaves(&mut bvh.nodes);
-        // The tree has no more use for the order; the triangles' numbers stand in the blocks.
+        // The blocks hold the triangles' indices, so the tree no longer needs the order.
         let order = std::mem::take(&mut bvh.order);
         let mut blocks = Pages::zeroed(leaves.len());
         blocks.par_iter_mut().zip(&leaves).with_min_len(CHUNK).try_for_each(|(block, leaf)| {
@@ -34,15 +34,17 @@ impl TriangleBvh {
             Ok::<_, TriangleError>(())
         })?;
         let bytes = bvh.bytes() + blocks.bytes();
-        let (in_flight, prefetches) = (bytes > IN_CACHE, bytes > NEAR);
+        let (in_flight, prefetches) = (bytes > IN_FLIGHT_BYTES, bytes > PREFETCH_BYTES);
         Ok(Self { bvh, blocks, in_flight, prefetches, test: TriangleTest::default() })
     }
 
-    /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps
-    /// its shape, see [`Bvh::refit`]. Where [spatial splits](Quality::Best) put a triangle into several leaves, each
-    /// takes the box of the whole triangle, so that even the same vertices make rays take longer. After an error the tree is as it was.
+    /// Assigns new vertex positions, for as many triangles as in the build and in the same order.
+    /// The topology does not change, see [`Bvh::refit`]. Where [spatial splits](Quality::Best) put
+    /// a triangle into several leaves, each leaf gets the box of the whole triangle, so that
+    /// refitting slows traversal down even with unchanged vertices. After an error the tree is
+    /// unchanged.
     pub fn refit(&mut self, positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), TriangleError> {
-        let mesh = Mesh { positions, triangles };
+        let mesh = TriangleList { positions, triangles };
         let numbers = (0..triangles.len()).into_par_iter().with_min_len(CHUNK);
         if let Some(error) = numbers.find_map_first(|triangle| mesh.corners(triangle).err()) {
             return Err(error);
@@ -50,7 +52,7 @@ impl TriangleBvh {
         let usable = |triangle| mesh.corners(triangle).is_ok_and(has_area);
         let lanes = self.blocks.iter().flat_map(|block| block.index).filter(|&triangle| triangle != u32::MAX);
         self.bvh.check_refit(triangles.len(), lanes, usable)?;
-        let boxes: Vec<Extent> =
+        let boxes: Vec<SimdBox> =
             self.blocks.par_iter_mut().with_min_len(CHUNK).map(|block| mesh.refill(block)).collect();
         self.bvh.bounds = refit(&mut self.bvh.nodes, |leaf| boxes[leaf.items().start as usize]);
         self.bvh.update_cost();
@@ -69,8 +71,7 @@ impl TriangleBvh {
     }
 }
 
-/// Makes each leaf's range start at the number of the leaf instead of a position; returns the leaves as they
-/// were.
+/// Replaces the first position of each leaf by the leaf's number; returns the previous leaves.
 pub(super) fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
     let leaves = |node: &Node| node.children[..node.count as usize].iter().filter(|child| child.is_leaf()).count();
     let counts: Vec<usize> = nodes.par_chunks(CHUNK).map(|nodes| nodes.iter().map(leaves).sum()).collect();
@@ -94,25 +95,25 @@ pub(super) fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Mesh<'a> {
+pub(super) struct TriangleList<'a> {
     pub positions: &'a [Vec3],
     pub triangles: &'a [[u32; 3]],
 }
 
-impl Mesh<'_> {
+impl TriangleList<'_> {
     fn items(&self) -> Result<Items, TriangleError> {
         Items::new(self.triangles.len(), |triangle| self.corners(triangle).map(bounds_of))
     }
 
-    /// Of best quality the cheaper of two, with and without divided triangles.
+    /// Builds the tree; for the best quality the cheaper of two, with and without spatial splits.
     fn tree(&self, quality: Quality) -> Result<Bvh, TriangleError> {
         let options = BuildOptions { block: LANES, ..quality.into() };
-        let whole = Bvh::over(self.items()?, &options);
+        let whole = Bvh::from_items(self.items()?, &options);
         if quality != Quality::Best {
             return Ok(whole);
         }
-        let divided = Bvh::divided(self.items()?, &options, self);
-        Ok(if divided.stats.sah_cost < whole.stats.sah_cost { divided } else { whole })
+        let with_splits = Bvh::with_spatial_splits(self.items()?, &options, self);
+        Ok(if with_splits.stats.sah_cost < whole.stats.sah_cost { with_splits } else { whole })
     }
 
     pub fn corners(&self, triangle: usize) -> Result<[Vec3; 3], TriangleError> {
@@ -125,7 +126,7 @@ impl Mesh<'_> {
         Ok(corners)
     }
 
-    /// The block of a leaf that holds these triangles.
+    /// Block of a leaf with these triangles.
     pub fn block(&self, triangles: &[u32]) -> Result<Block, TriangleError> {
         let mut block = Block::EMPTY;
         for (lane, &triangle) in triangles.iter().enumerate() {
@@ -134,51 +135,51 @@ impl Mesh<'_> {
         Ok(block)
     }
 
-    /// Gives a block's triangles their new corners; returns the box around them.
-    fn refill(&self, block: &mut Block) -> Extent {
-        let mut around = Extent::EMPTY;
+    /// Updates the vertices of a block's triangles; returns their bounds.
+    fn refill(&self, block: &mut Block) -> SimdBox {
+        let mut bounds = SimdBox::EMPTY;
         let lanes = block.index.into_iter().enumerate().filter(|&(_, triangle)| triangle != u32::MAX);
         for (lane, triangle) in lanes {
             let corners = self.corners(triangle as usize).ok().filter(|&corners| has_area(corners));
-            // One that can no longer be hit becomes a point, which no ray hits.
+            // A triangle that became degenerate collapses to a point, which no ray hits.
             block.set(lane, triangle, corners.unwrap_or_default());
-            around = around.union(corners.map_or(Extent::EMPTY, |corners| extent(bounds_of(corners))));
+            bounds = bounds.union(corners.map_or(SimdBox::EMPTY, |corners| checked_box(bounds_of(corners))));
         }
-        around
+        bounds
     }
 }
 
-/// The box of a triangle, empty when it can never be hit.
+/// Bounds of a triangle; empty if it can never be hit.
 #[inline(always)]
-fn bounds_of(corners: [Vec3; 3]) -> Extent {
-    if has_area(corners) { around(corners) } else { Extent::EMPTY }
+fn bounds_of(corners: [Vec3; 3]) -> SimdBox {
+    if has_area(corners) { padded_bounds(corners) } else { SimdBox::EMPTY }
 }
 
-/// A box a little larger than needed around three corners, which are finite: the triangle's test rounds the vertices in
-/// the ray's frame by up to 4 half ulps of the triangle's size more than the box's test allows for, and a ray that the
-/// test gives to this triangle must not miss its box.
+/// Enlarged bounds of three finite vertices. The triangle test rounds the vertices in the ray's
+/// frame by up to 4 half ulps of the triangle's size more than the box test allows for, and a ray
+/// that hits the triangle must not miss its box.
 #[inline(always)]
-pub(super) fn around(corners: [Vec3; 3]) -> Extent {
+pub(super) fn padded_bounds(corners: [Vec3; 3]) -> SimdBox {
     let [a, b, c] = corners.map(|v| f32x4::new([v.x, v.y, v.z, 0.0]));
     let (low, high) = (a.fast_min(b).fast_min(c), a.fast_max(b).fast_max(c));
     let [x, y, z, _] = (high - low).to_array();
     let margin = f32x4::splat(x.max(y).max(z) * MARGIN);
-    Extent { low: -next_up(-(low - margin)), high: next_up(high + margin) }
+    SimdBox { low: -next_up(-(low - margin)), high: next_up(high + margin) }
 }
 
-/// The next larger number of each, or infinity. Not for negative infinity and NaN.
+/// Next larger number in each lane, or infinity; undefined for negative infinity and NaN.
 #[inline(always)]
 fn next_up(numbers: f32x4) -> f32x4 {
-    // The sum takes -0 to +0.
+    // Adding zero turns -0 into +0.
     let bits: i32x4 = cast(numbers.fast_min(f32x4::splat(f32::MAX)) + f32x4::ZERO);
     let step: i32x4 = (bits >> 31) | i32x4::ONE;
     cast(bits + step)
 }
 
-/// By how much of its longest side the box of a triangle is larger than needed.
+/// Margin of a triangle's box relative to its longest edge.
 const MARGIN: f32 = 4.0 * f32::EPSILON;
 
-/// By how much the box of a triangle is larger than needed, on each side.
+/// Absolute margin of a triangle's box, on each side.
 pub(super) fn margin_of(corners: [Vec3; 3]) -> f32 {
     Aabb::from_points(corners).extent().max_element() * MARGIN
 }

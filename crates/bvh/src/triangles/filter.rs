@@ -1,18 +1,18 @@
-//! Which hits count: all, or those that a caller's function lets pass. For cut-outs, masks of rays and of
-//! triangles, whatever a hit can be refused by.
+//! Hit filters: all hits count, or those that a caller's function accepts, for example for opacity
+//! and for masks of rays or triangles.
 
 use super::TriangleHit;
 
-/// What decides about hits. Kernels are made for each; [`All`] leaves nothing behind in them.
+/// Decides which hits count. Kernels are monomorphized for each filter; [`All`] adds no code.
 pub(super) trait Filter: Copy {
-    /// Whether every hit counts.
+    /// Whether the filter accepts every hit.
     const ALL: bool;
 
-    /// Whether the hit of a ray counts.
+    /// Whether the filter accepts a ray's hit.
     fn accepts(&self, ray: usize, hit: &TriangleHit) -> bool;
 }
 
-/// Every hit counts.
+/// Accepts every hit.
 #[derive(Clone, Copy)]
 pub(super) struct All;
 
@@ -25,11 +25,11 @@ impl Filter for All {
     }
 }
 
-/// Hits count where the function says so.
+/// Accepts the hits for which the function returns `true`.
 #[derive(Clone, Copy)]
-pub(super) struct Where<F>(pub F);
+pub(super) struct FilterFn<F>(pub F);
 
-impl<F: Fn(usize, &TriangleHit) -> bool + Copy> Filter for Where<F> {
+impl<F: Fn(usize, &TriangleHit) -> bool + Copy> Filter for FilterFn<F> {
     const ALL: bool = false;
 
     #[inline(always)]

@@ -1,43 +1,43 @@
-//! Many rays at a time through a tree that is larger than the cache: while one waits for its next node to come
-//! from memory, the others go on.
+//! Interleaved traversal of many rays through a tree larger than the cache: while one ray waits for
+//! a node from memory, the others proceed.
 //!
-//! Each step takes one ray through one node or one leaf, asks for what this ray needs next to be fetched, and
-//! turns to the next ray; finished rays are replaced. The rays need nothing in common.
+//! Each step takes one ray through one node or leaf, prefetches the memory that the ray needs next,
+//! and turns to the next ray; finished rays are replaced. The rays need not be coherent.
 
 use super::TriangleHit;
 use super::filter::Filter;
-use super::one::One;
 use super::query::Query;
+use super::ray_visitor::RayVisitor;
 use crate::Leaf;
 use crate::lanes::Lanes;
 use crate::node::Child;
-use crate::single::{Boxes, first, nearest, next_below};
+use crate::single::{TraversalMemory, last_child, nearest, pop_nearer_than};
 use crate::slabs::{Slabs, cull_distance};
 use crate::stack::Stack;
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
-/// Rays under way together. A miss takes as long as a dozen steps.
+/// Number of interleaved rays. A cache miss takes as long as about a dozen steps.
 const IN_FLIGHT: usize = 16;
 
-/// A ray under way.
-struct Flight<'a, S: Simd, F> {
-    /// Number of the ray in the slice.
+/// A ray in flight.
+struct RayInFlight<'a, S: Simd, F> {
+    /// Index of the ray in the slice.
     number: usize,
     ray: Ray,
     slabs: Slabs,
-    one: One<'a, S, F>,
+    ray_visitor: RayVisitor<'a, S, F>,
     current: Child,
     stack: Stack,
 }
 
-impl<'a, S: Lanes, F: Filter> Flight<'a, S, F> {
+impl<'a, S: Lanes, F: Filter> RayInFlight<'a, S, F> {
     #[inline(always)]
     fn new(simd: S, query: Query<'a, F>, number: usize, ray: &Ray) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
-        let one = One::new(simd, query, ray, &slabs);
-        Self { number, ray: *ray, slabs, one, current: Child::ROOT, stack: Stack::new() }
+        let ray_visitor = RayVisitor::new(simd, query, ray, &slabs);
+        Self { number, ray: *ray, slabs, ray_visitor, current: Child::ROOT, stack: Stack::new() }
     }
 
     #[inline(always)]
@@ -45,17 +45,17 @@ impl<'a, S: Lanes, F: Filter> Flight<'a, S, F> {
         self.number = number;
         self.ray = *ray;
         self.slabs = Slabs::of_ray(simd, ray);
-        self.one = One::new(simd, query, ray, &self.slabs);
+        self.ray_visitor = RayVisitor::new(simd, query, ray, &self.slabs);
         self.current = Child::ROOT;
         self.stack.clear();
     }
 }
 
 impl<'a, F: Filter> Query<'a, F> {
-    /// [`TriangleBvh::closest`] of all rays.
+    /// [`TriangleBvh::closest`](super::TriangleBvh::closest) of all rays.
     #[inline(always)]
     pub(super) fn closest_in_flight<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let mut flights = self.take_off(simd, rays);
+        let mut flights = self.start_rays(simd, rays);
         let mut waiting = flights.len();
         let mut at = 0;
         while !flights.is_empty() {
@@ -65,8 +65,8 @@ impl<'a, F: Filter> Query<'a, F> {
                 continue;
             }
             let number = flight.number;
-            hits[number] = flight.one.hit;
-            if let Some(hit) = flight.one.hit {
+            hits[number] = flight.ray_visitor.hit;
+            if let Some(hit) = flight.ray_visitor.hit {
                 rays[number].t_max = hit.t;
             }
             self.replace(simd, &mut flights, at, (waiting, rays.get(waiting)));
@@ -74,10 +74,10 @@ impl<'a, F: Filter> Query<'a, F> {
         }
     }
 
-    /// [`TriangleBvh::any`] of all rays.
+    /// [`TriangleBvh::any`](super::TriangleBvh::any) of all rays.
     #[inline(always)]
     pub(super) fn any_in_flight<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
-        let mut flights = self.take_off(simd, rays);
+        let mut flights = self.start_rays(simd, rays);
         let mut waiting = flights.len();
         let mut at = 0;
         while !flights.is_empty() {
@@ -90,22 +90,22 @@ impl<'a, F: Filter> Query<'a, F> {
         }
     }
 
-    /// The first rays.
+    /// Starts the first rays.
     #[inline(always)]
-    fn take_off<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'a, S, F>, IN_FLIGHT> {
+    fn start_rays<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<RayInFlight<'a, S, F>, IN_FLIGHT> {
         let mut flights = ArrayVec::new();
         for (number, ray) in rays.iter().enumerate().take(IN_FLIGHT) {
-            flights.push(Flight::new(simd, *self, number, ray));
+            flights.push(RayInFlight::new(simd, *self, number, ray));
         }
         flights
     }
 
-    /// The next ray takes the place of one that has landed; the place goes when no ray is left.
+    /// Replaces a finished ray by the next one, or removes its slot if none is left.
     #[inline(always)]
     fn replace<S: Lanes>(
         &self,
         simd: S,
-        flights: &mut ArrayVec<Flight<'a, S, F>, IN_FLIGHT>,
+        flights: &mut ArrayVec<RayInFlight<'a, S, F>, IN_FLIGHT>,
         at: usize,
         (number, next): (usize, Option<&Ray>),
     ) {
@@ -115,11 +115,11 @@ impl<'a, F: Filter> Query<'a, F> {
         }
     }
 
-    /// Whether the ray goes on.
+    /// Advances a ray by one node or leaf. Returns whether it continues.
     #[inline(always)]
-    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S, F>) -> bool {
+    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>) -> bool {
         let next = if flight.current.is_leaf() {
-            flight.one.closest(flight.number, &mut flight.ray, flight.current.items());
+            flight.ray_visitor.closest(flight.number, &mut flight.ray, flight.current.items());
             flight.slabs.t_max = cull_distance(flight.ray.t_max);
             None
         } else {
@@ -136,18 +136,18 @@ impl<'a, F: Filter> Query<'a, F> {
         self.fetch(flight, next)
     }
 
-    /// The answer, or `None` if the ray goes on.
+    /// Advances a ray by one node or leaf. Returns the result, or `None` if the ray continues.
     #[inline(always)]
-    fn any_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S, F>) -> Option<bool> {
+    fn any_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>) -> Option<bool> {
         let next = if flight.current.is_leaf() {
-            if flight.one.any(flight.number, &flight.ray, flight.current.items()) {
+            if flight.ray_visitor.any(flight.number, &flight.ray, flight.current.items()) {
                 return Some(true);
             }
             None
         } else {
             let node = &self.tree.bvh.nodes[flight.current.0 as usize];
             let (mask, _) = node.test(simd, &flight.slabs);
-            let largest = first(
+            let largest = last_child(
                 mask,
                 &mut flight.stack.view(),
                 #[inline(always)]
@@ -161,12 +161,13 @@ impl<'a, F: Filter> Query<'a, F> {
         if self.fetch(flight, next) { None } else { Some(false) }
     }
 
-    /// Asks for the next child, or the next on the stack, and says whether there is one.
+    /// Selects and prefetches the next child, given or from the stack. Returns whether there is
+    /// one.
     #[inline(always)]
-    fn fetch<S: Lanes>(&self, flight: &mut Flight<S, F>, next: Option<u32>) -> bool {
+    fn fetch<S: Lanes>(&self, flight: &mut RayInFlight<S, F>, next: Option<u32>) -> bool {
         let next = match next {
             Some(word) => Some(Child(word)),
-            None => next_below(&mut flight.stack.view(), flight.slabs.t_max),
+            None => pop_nearer_than(&mut flight.stack.view(), flight.slabs.t_max),
         };
         let Some(child) = next else { return false };
         flight.current = child;

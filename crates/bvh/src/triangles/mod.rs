@@ -1,58 +1,60 @@
-//! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
+//! Triangle hierarchies: the triangles of a leaf are packed in a block of up to eight and tested
+//! together.
 
 mod build;
 mod clip;
 mod common_origin;
 mod filter;
 mod in_flight;
-mod many;
-mod meet;
 mod moving;
-mod one;
+mod packet_visitor;
 mod query;
+mod ray_visitor;
+mod simd_test;
 
 use crate::lanes::{Lanes, prefetch};
 use crate::node::{Bounds, Child, Node};
 use crate::pages::Pages;
-use crate::single::Boxes;
+use crate::single::TraversalMemory;
 use crate::slabs::Slabs;
 use crate::triangle::{Shear, TriangleTest};
 use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::prelude::*;
 use fearless_simd::{dispatch, f32x8};
-use filter::{All, Where};
+use filter::{All, FilterFn};
 use juggler_math::{Aabb, Ray, Vec3};
-use meet::Corner;
 pub use moving::MovingTriangleBvh;
-use one::One;
 pub use query::Filtered;
 use query::Query;
+use ray_visitor::RayVisitor;
+use simd_test::Corner;
 use std::fmt;
 
 const LANES: usize = 8;
-/// Batches in trees of up to as many bytes are traced ray by ray: they stay near enough (measured).
-const IN_CACHE: usize = 8 << 20;
-/// Children in trees of up to as many bytes are not asked for ahead: they lie in the second-level
-/// cache of any processor of today, where asking costs more than it saves.
-const NEAR: usize = 256 << 10;
+/// Tree size in bytes up to which batches are traced ray by ray: such trees stay in the cache
+/// (measured).
+const IN_FLIGHT_BYTES: usize = 8 << 20;
+/// Tree size in bytes up to which children are not prefetched: such trees stay in the L2 cache of
+/// current processors, where a prefetch costs more than it saves.
+const PREFETCH_BYTES: usize = 256 << 10;
 const GROWTH: f32 = 8.0 * f32::EPSILON;
 
-/// Where a ray meets a triangle.
+/// A hit of a ray on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
-    /// Distance in units of the ray's direction.
+    /// Distance in units of the direction's length.
     pub t: f32,
     /// Barycentric weight of the second vertex.
     pub u: f32,
     /// Barycentric weight of the third vertex.
     pub v: f32,
-    /// Number of the triangle in the list that the tree was built from.
+    /// Index of the triangle in the list that the tree was built from.
     pub index: u32,
 }
 
 impl TriangleHit {
-    /// Nearer, or as near and on a triangle with a smaller number.
+    /// Whether this hit is closer, or equally close with a smaller index.
     #[inline(always)]
     fn is_before(&self, other: &Option<Self>) -> bool {
         match other {
@@ -62,24 +64,24 @@ impl TriangleHit {
     }
 }
 
-/// Why triangles were refused.
+/// Reason why a build or refit was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TriangleError {
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     NoSuchVertex {
-        /// Number of the triangle.
+        /// Index of the triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// Index of the vertex.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// More triangles than [`MAX_ITEMS`](crate::MAX_ITEMS).
     TooMany {
-        /// How many there are.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// They are not those that the tree was built over.
+    /// The triangles do not match those of the build.
     Refit(RefitError),
 }
 
@@ -105,32 +107,36 @@ impl fmt::Display for TriangleError {
 
 impl std::error::Error for TriangleError {}
 
-/// A tree over triangles. Rays hit both faces; no ray passes between triangles that share an edge.
+/// A bounding volume hierarchy over two-sided triangles. No ray passes between triangles that share
+/// an edge.
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
-    /// Its leaves name one block each: `items.start` is the block, `items.len()` the triangles in it.
+    /// Hierarchy whose leaves refer to one block each: `items.start` is the block, `items.len()`
+    /// its number of triangles.
     bvh: Bvh,
     blocks: Pages<Block>,
-    /// Whether rays wait for memory so long that several under way at once pay.
+    /// Whether the tree is so large that batches interleave several rays.
     in_flight: bool,
-    /// Whether rays wait for memory so long that asking for all children that they meet pays.
+    /// Whether the tree is so large that traversal prefetches all intersected children.
     prefetches: bool,
     test: TriangleTest,
 }
 
 impl TriangleBvh {
-    /// The closest hit; of hits at equal distance that on the triangle with the smallest number.
+    /// Returns the closest hit; among hits at equal distance the one with the smallest triangle
+    /// index.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         self.all().closest(ray)
     }
 
-    /// Whether any triangle is hit.
+    /// Whether the ray hits any triangle.
     pub fn any(&self, ray: &Ray) -> bool {
         self.all().any(ray)
     }
 
-    /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. The answers replace what
-    /// `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
+    /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. Overwrites `hits`
+    /// and shortens each ray to its hit. If `hits` is shorter than `rays`, the remaining rays are
+    /// not traced.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         self.all().closest_packet(rays, hits);
     }
@@ -140,35 +146,36 @@ impl TriangleBvh {
         self.all().any_packet(rays, occluded);
     }
 
-    /// [`TriangleBvh::closest`] for any number of unrelated rays, see [`Bvh::closest_batch`]. The answers
-    /// replace what `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
+    /// [`TriangleBvh::closest`] for any number of incoherent rays, see [`Bvh::closest_batch`].
+    /// Overwrites `hits` and shortens each ray to its hit. If `hits` is shorter than `rays`, the
+    /// remaining rays are not traced.
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         self.all().closest_batch(rays, hits);
     }
 
-    /// [`TriangleBvh::any`] for any number of unrelated rays, see [`Bvh::any_batch`].
+    /// [`TriangleBvh::any`] for any number of incoherent rays, see [`Bvh::any_batch`].
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.all().any_batch(rays, occluded);
     }
 
     #[inline(always)]
-    fn memory(&self) -> Memory<'_> {
-        Memory { nodes: &self.bvh.nodes, blocks: &self.blocks, prefetches: self.prefetches }
+    fn memory(&self) -> TriangleMemory<'_> {
+        TriangleMemory { nodes: &self.bvh.nodes, blocks: &self.blocks, prefetches: self.prefetches }
     }
 
     fn all(&self) -> Query<'_, All> {
         Query { tree: self, filter: All }
     }
 
-    /// The same tree, of whose hits only those count that `accepts` lets pass, given the number of the ray in
-    /// the slice (0 for one ray) and the hit: for cut-outs and masks. It may be asked about hits that turn out not
-    /// to be the closest, about the same hit more than once (a triangle may stand in several leaves), in any order, and
-    /// must always answer the same.
+    /// Queries that only count the hits that `accepts` returns `true` for, for example for opacity
+    /// and masks. `accepts` receives the ray's index in the slice (0 for a single ray) and the hit.
+    /// It may be called for hits that are not the closest, more than once for the same hit (several
+    /// leaves may refer to a triangle) and in any order, and must be a pure function.
     pub fn filtered<F: Fn(usize, &TriangleHit) -> bool + Copy>(&self, accepts: F) -> Filtered<'_, F> {
-        Filtered { query: Query { tree: self, filter: Where(accepts) } }
+        Filtered { query: Query { tree: self, filter: FilterFn(accepts) } }
     }
 
-    /// The same tree with another test of triangles than the watertight one.
+    /// Selects the triangle test in place of the watertight one.
     pub fn with_test(mut self, test: TriangleTest) -> Self {
         self.test = test;
         self
@@ -180,44 +187,44 @@ impl TriangleBvh {
         self
     }
 
-    /// The same tree, whose batches keep several rays under way at once, or do not, whatever its size: for tests and
-    /// measurements.
+    /// Makes batches interleave several rays, or not, whatever the tree's size; for tests and
+    /// benchmarks.
     pub fn with_rays_in_flight(mut self, in_flight: bool) -> Self {
         self.in_flight = in_flight;
         self
     }
 
-    /// What the search for the closest hit looks at.
+    /// Counts the nodes, leaves and triangles that a closest-hit query visits.
     pub fn visits(&self, ray: &Ray) -> crate::Visits {
         let simd = fearless_simd::Level::baseline();
-        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, self.all(), ray, &Slabs::of_ray(simd, ray))))
+        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut RayVisitor::new(simd, self.all(), ray, &Slabs::of_ray(simd, ray))))
     }
 
-    /// A box around all triangles, at most a few millionths larger than needed; empty when there are none.
+    /// Bounds of all triangles, enlarged by at most a few millionths; empty without triangles.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
 
-    /// What the build made.
+    /// Statistics of the build.
     pub fn stats(&self) -> &BuildStats {
         self.bvh.stats()
     }
 
-    /// Bytes of memory that the tree and its triangles hold.
+    /// Memory of the tree and its triangles in bytes.
     pub fn bytes(&self) -> usize {
         self.bvh.bytes() + self.blocks.bytes()
     }
 }
 
-/// The memory of a tree.
+/// Memory that a traversal reads.
 #[derive(Clone, Copy)]
-struct Memory<'a> {
+struct TriangleMemory<'a> {
     nodes: &'a [Node],
     blocks: &'a [Block],
     prefetches: bool,
 }
 
-impl Boxes for Memory<'_> {
+impl TraversalMemory for TriangleMemory<'_> {
     #[inline(always)]
     fn node(&self, number: usize) -> &Node {
         &self.nodes[number]
@@ -233,7 +240,7 @@ impl Boxes for Memory<'_> {
         if !self.prefetches {
             return;
         }
-        // Selections, for the processor cannot guess what a child is.
+        // Select instead of branching: leaf or node is unpredictable.
         let (start, size) = if child.is_leaf() {
             (self.blocks.as_ptr().cast::<u8>(), size_of::<Block>())
         } else {
@@ -243,7 +250,7 @@ impl Boxes for Memory<'_> {
     }
 }
 
-/// The triangles of a leaf, coordinate by coordinate.
+/// Triangles of a leaf in SoA layout.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 struct Block {
@@ -264,21 +271,21 @@ impl Block {
         self.index[lane] = triangle;
     }
 
-    /// Where the ray of the shear hits the triangle in a lane; watertight.
+    /// Watertight intersection of the shear's ray with the triangle in a lane.
     #[inline(always)]
     fn hit(&self, shear: &Shear, ray: &Ray, lane: usize) -> Option<TriangleHit> {
         let (t, u, v) = shear.intersect(ray, self.permuted(lane, shear.axes))?;
         Some(TriangleHit { t, u, v, index: self.index[lane & 7] })
     }
 
-    /// A corner, axes in the order of the shear.
+    /// One vertex of all lanes, axes in the order of the shear.
     #[inline(always)]
     fn corner<S: Lanes>(&self, simd: S, corner: usize, [x, y, z]: [usize; 3]) -> Corner<S> {
         let axes = &self.vertices[corner];
         [simd.load(&axes[x]), simd.load(&axes[y]), simd.load(&axes[z])]
     }
 
-    /// The boxes of the triangles, as large as those that the tree was built from, or larger.
+    /// Boxes of the triangles, at least as large as those that the tree was built from.
     #[inline(always)]
     fn boxes<S: Lanes>(&self, simd: S) -> Bounds {
         let [a, b, c] = &self.vertices;
@@ -291,14 +298,15 @@ impl Block {
         }
         let mut boxes = [[[0.0; LANES]; 2]; 3];
         for axis in 0..3 {
-            // As much as the boxes of single triangles are grown, and more: along each axis by the largest side.
-            let room = (size + low[axis].abs() + high[axis].abs()) * GROWTH;
-            boxes[axis] = [(low[axis] - room).into(), (high[axis] + room).into()];
+            // At least the margin of a single triangle's box: relative to the largest edge along
+            // each axis.
+            let margin = (size + low[axis].abs() + high[axis].abs()) * GROWTH;
+            boxes[axis] = [(low[axis] - margin).into(), (high[axis] + margin).into()];
         }
         boxes
     }
 
-    /// The corners of one lane, axes in the order of the shear.
+    /// Vertices of one lane, axes in the order of the shear.
     #[inline(always)]
     fn permuted(&self, lane: usize, axes: [usize; 3]) -> [[f32; 3]; 3] {
         let [x, y, z] = axes;
@@ -306,7 +314,7 @@ impl Block {
         [corner(&self.vertices[0]), corner(&self.vertices[1]), corner(&self.vertices[2])]
     }
 
-    /// All corners, axes in the order of the shear.
+    /// All vertices of all lanes, axes in the order of the shear.
     #[inline(always)]
     fn corners<S: Lanes>(&self, simd: S, axes: [usize; 3]) -> [Corner<S>; 3] {
         [self.corner(simd, 0, axes), self.corner(simd, 1, axes), self.corner(simd, 2, axes)]

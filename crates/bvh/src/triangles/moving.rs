@@ -1,10 +1,10 @@
-//! Triangles whose corners move while the shutter is open.
+//! Triangle hierarchies with linear motion blur.
 
-use super::build::{Mesh, around, number_leaves};
-use super::meet::Lines;
+use super::build::{TriangleList, number_leaves, padded_bounds};
+use super::simd_test::RayFrames;
 use super::{Block, LANES, TriangleError, TriangleHit};
 use crate::lanes::{Bits, Lanes};
-use crate::moving::between;
+use crate::moving::lerp;
 use crate::pages::Pages;
 use crate::slabs::Slabs;
 use crate::triangle::{Shear, has_area};
@@ -14,20 +14,22 @@ use juggler_math::{Aabb, Ray, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A tree over triangles whose corners move linearly while the shutter is open. As [`TriangleBvh`](super::TriangleBvh)
-/// watertight, at every time.
+/// A hierarchy over triangles whose vertices move linearly while the shutter is open. Like
+/// [`TriangleBvh`](super::TriangleBvh), it is watertight at every time.
 #[derive(Clone, Debug)]
 pub struct MovingTriangleBvh {
-    /// Its leaves name one pair of blocks each, as in [`TriangleBvh`](super::TriangleBvh).
+    /// Hierarchy whose leaves refer to one pair of blocks each, as in
+    /// [`TriangleBvh`](super::TriangleBvh).
     tree: MovingBvh,
-    /// When the shutter opens and when it closes.
+    /// Triangles at shutter open and at shutter close.
     blocks: Pages<[Block; 2]>,
 }
 
 impl MovingTriangleBvh {
-    /// Builds the tree. A triangle is three numbers of vertices, which lie at `open` when the shutter opens and at `close`
-    /// when it closes, `shutter` seconds later; see [`MovingBvh::build`]. A triangle with a vertex that is not finite at
-    /// one end is never hit, and none is at times when it has no area.
+    /// Builds a hierarchy over triangles, each given by three vertex indices. Vertices are at
+    /// `open` at shutter open (time 0) and at `close` at shutter close (time `shutter`, in the unit
+    /// of [`Ray::time`]); see [`MovingBvh::build`]. Triangles with a vertex that is not finite at
+    /// one end are never hit, and none is hit at a time when it is degenerate.
     pub fn build(
         open: &[Vec3],
         close: &[Vec3],
@@ -38,7 +40,7 @@ impl MovingTriangleBvh {
         if triangles.len() > MAX_ITEMS {
             return Err(TriangleError::TooMany { triangles: triangles.len() });
         }
-        let ends = [open, close].map(|positions| Mesh { positions, triangles });
+        let ends = [open, close].map(|positions| TriangleList { positions, triangles });
         let boxes = |triangle| Ok([bounds_of(ends[0].corners(triangle)?), bounds_of(ends[1].corners(triangle)?)]);
         let boxes: Vec<Result<_, TriangleError>> = (0..triangles.len()).into_par_iter().map(boxes).collect();
         let boxes = boxes.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -56,31 +58,32 @@ impl MovingTriangleBvh {
         Ok(Self { tree, blocks })
     }
 
-    /// The closest hit at the ray's time; of hits at equal distance that on the triangle with the smallest number.
+    /// Returns the closest hit at the ray's time; among hits at equal distance the one with the
+    /// smallest triangle index.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         dispatch!(self.tree.bvh.level, simd => {
-            let mut leaf = MovingOne::new(simd, self, ray);
+            let mut leaf = MovingVisitor::new(simd, self, ray);
             self.tree.closest_one(simd, &mut { *ray }, &mut leaf);
             leaf.hit
         })
     }
 
-    /// Whether any triangle is hit at the ray's time.
+    /// Whether the ray hits any triangle at its time.
     pub fn any(&self, ray: &Ray) -> bool {
-        dispatch!(self.tree.bvh.level, simd => self.tree.any_one(simd, ray, &mut MovingOne::new(simd, self, ray)))
+        dispatch!(self.tree.bvh.level, simd => self.tree.any_one(simd, ray, &mut MovingVisitor::new(simd, self, ray)))
     }
 
-    /// A box around all triangles over all the time; empty when there are none.
+    /// Bounds of all triangles over the shutter interval; empty without triangles.
     pub fn bounds(&self) -> Aabb {
         self.tree.bounds()
     }
 
-    /// What the build made.
+    /// Statistics of the build.
     pub fn stats(&self) -> &BuildStats {
         self.tree.stats()
     }
 
-    /// Bytes of memory that the tree and its triangles hold.
+    /// Memory of the tree and its triangles in bytes.
     pub fn bytes(&self) -> usize {
         self.tree.bytes() + self.blocks.bytes()
     }
@@ -92,52 +95,55 @@ impl MovingTriangleBvh {
     }
 }
 
-/// Empty only where a corner is not finite: what has no area at one end may have one between.
+/// Bounds of a triangle; empty only if a vertex is not finite, since a triangle that is degenerate
+/// at one end may have an area in between.
 fn bounds_of(corners: [Vec3; 3]) -> Aabb {
-    if corners.iter().all(|corner| corner.is_finite()) { around(corners).aabb() } else { Aabb::EMPTY }
+    if corners.iter().all(|corner| corner.is_finite()) { padded_bounds(corners).aabb() } else { Aabb::EMPTY }
 }
 
-/// Visitor for one ray.
-struct MovingOne<'a, S> {
+/// Leaf visitor for one ray.
+struct MovingVisitor<'a, S> {
     simd: S,
     blocks: &'a [[Block; 2]],
-    /// The ray's time as a share of the shutter's.
+    /// Normalized shutter time of the ray, 0 to 1.
     time: f32,
     shear: Shear,
     hit: Option<TriangleHit>,
 }
 
-impl<'a, S: Lanes> MovingOne<'a, S> {
+impl<'a, S: Lanes> MovingVisitor<'a, S> {
     #[inline(always)]
     fn new(simd: S, bvh: &'a MovingTriangleBvh, ray: &Ray) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
-        let shear = Shear::of(ray, slabs.exact_inverse, slabs.signs);
-        Self { simd, blocks: &bvh.blocks, time: bvh.tree.share(ray), shear, hit: None }
+        let shear = Shear::new(ray, slabs.exact_inverse, slabs.signs);
+        Self { simd, blocks: &bvh.blocks, time: bvh.tree.shutter_fraction(ray), shear, hit: None }
     }
 
-    /// The block at the ray's time and the lanes that the ray may hit.
+    /// Interpolates the block to the ray's time. Returns it with a bit mask of the lanes that the
+    /// ray may hit.
     #[inline(always)]
     fn candidates(&self, ray: &Ray, items: &Range<u32>) -> (Block, u32) {
-        let block = Block::between(&self.blocks[items.start as usize], self.time);
-        let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
-        let (mask, _) = lines.candidates(self.simd, &block.corners(self.simd, self.shear.axes), (1 << items.len()) - 1);
+        let block = Block::lerp(&self.blocks[items.start as usize], self.time);
+        let frames = RayFrames::broadcast(self.simd, &self.shear, ray.t_min, ray.t_max);
+        let (mask, _) =
+            frames.candidates(self.simd, &block.corners(self.simd, self.shear.axes), (1 << items.len()) - 1);
         (block, mask)
     }
 
-    /// A hit on a triangle that has an area at this time.
+    /// Intersects the triangle in a lane, unless it is degenerate at this time.
     #[inline(always)]
-    fn meet(&self, ray: &Ray, block: &Block, lane: usize) -> Option<TriangleHit> {
+    fn intersect(&self, ray: &Ray, block: &Block, lane: usize) -> Option<TriangleHit> {
         let hit = block.hit(&self.shear, ray, lane)?;
         has_area(block.permuted(lane, [0, 1, 2]).map(Vec3::from)).then_some(hit)
     }
 }
 
-impl<S: Lanes> Leaf for MovingOne<'_, S> {
+impl<S: Lanes> Leaf for MovingVisitor<'_, S> {
     #[inline(always)]
     fn closest(&mut self, _lane: usize, ray: &mut Ray, items: Range<u32>) {
         let (block, candidates) = self.candidates(ray, &items);
         for lane in Bits(candidates) {
-            if let Some(hit) = self.meet(ray, &block, lane)
+            if let Some(hit) = self.intersect(ray, &block, lane)
                 && hit.is_before(&self.hit)
             {
                 self.hit = Some(hit);
@@ -151,20 +157,20 @@ impl<S: Lanes> Leaf for MovingOne<'_, S> {
         let (block, candidates) = self.candidates(ray, &items);
         Bits(candidates).any(
             #[inline(always)]
-            |lane| self.meet(ray, &block, lane).is_some(),
+            |lane| self.intersect(ray, &block, lane).is_some(),
         )
     }
 }
 
 impl Block {
-    /// The triangles of both blocks at a time between 0 and 1.
+    /// Interpolates the triangles between two blocks at a normalized time, 0 to 1.
     #[inline(always)]
-    fn between([open, close]: &[Self; 2], time: f32) -> Self {
+    fn lerp([open, close]: &[Self; 2], time: f32) -> Self {
         let mut block = *open;
         for (corner, end) in block.vertices.iter_mut().zip(&close.vertices) {
             for (axis, end) in corner.iter_mut().zip(end) {
                 for (coordinate, end) in axis.iter_mut().zip(end) {
-                    *coordinate = between(*coordinate, *end, time);
+                    *coordinate = lerp(*coordinate, *end, time);
                 }
             }
         }

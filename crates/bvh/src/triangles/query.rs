@@ -1,8 +1,8 @@
-//! The questions that rays ask, kernel by kernel, of all triangles or of some.
+//! Dispatch of queries to kernels, for all hits or filtered ones.
 
-use super::filter::{Filter, Where};
-use super::many::Many;
-use super::one::One;
+use super::filter::{Filter, FilterFn};
+use super::packet_visitor::PacketVisitor;
+use super::ray_visitor::RayVisitor;
 use super::{TriangleBvh, TriangleHit};
 use crate::lanes::Lanes;
 use crate::node::Child;
@@ -15,7 +15,7 @@ use fearless_simd::Simd;
 use fearless_simd::dispatch;
 use juggler_math::Ray;
 
-/// A tree and which of its hits count.
+/// A tree with a hit filter.
 #[derive(Clone, Copy)]
 pub(super) struct Query<'a, F> {
     pub tree: &'a TriangleBvh,
@@ -31,7 +31,7 @@ impl<F: Filter> Query<'_, F> {
         self.any_of(0, ray)
     }
 
-    /// The ray with this number.
+    /// Closest hit of the ray with index `number`.
     fn closest_of(&self, number: usize, ray: &Ray) -> Option<TriangleHit> {
         #[cfg(target_arch = "x86_64")]
         {
@@ -52,13 +52,14 @@ impl<F: Filter> Query<'_, F> {
         self.closest_of_lesser(number, ray)
     }
 
-    /// [`Query::closest_of`] on lesser vector units. Their kernel would be inlined, and every ray pay for its frame.
+    /// [`Query::closest_of`] at lower SIMD levels. Not inlined, or every ray would pay for its
+    /// stack frame.
     #[inline(never)]
     fn closest_of_lesser(&self, number: usize, ray: &Ray) -> Option<TriangleHit> {
         dispatch!(self.tree.bvh.level, simd => self.closest_one(simd, number, ray))
     }
 
-    /// The ray with this number.
+    /// Whether the ray with index `number` hits anything.
     fn any_of(&self, number: usize, ray: &Ray) -> bool {
         #[cfg(target_arch = "x86_64")]
         {
@@ -79,7 +80,7 @@ impl<F: Filter> Query<'_, F> {
         self.any_of_lesser(number, ray)
     }
 
-    /// As [`Query::closest_of_lesser`].
+    /// [`Query::any_of`] at lower SIMD levels, not inlined either.
     #[inline(never)]
     fn any_of_lesser(&self, number: usize, ray: &Ray) -> bool {
         dispatch!(self.tree.bvh.level, simd => self.any_one(simd, number, ray))
@@ -88,7 +89,7 @@ impl<F: Filter> Query<'_, F> {
     #[inline(always)]
     fn closest_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> Option<TriangleHit> {
         let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, *self, ray, &slabs);
+        let mut ray_visitor = RayVisitor::new(simd, *self, ray, &slabs);
         closest_below(
             simd,
             self.tree.memory(),
@@ -96,16 +97,16 @@ impl<F: Filter> Query<'_, F> {
             Stack::new().view(),
             (number, &mut { *ray }),
             slabs,
-            &mut one,
+            &mut ray_visitor,
         );
-        one.hit
+        ray_visitor.hit
     }
 
     #[inline(always)]
     fn any_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, *self, ray, &slabs);
-        any_below(simd, self.tree.memory(), Child::ROOT, Stack::new().view(), (number, ray), &slabs, &mut one)
+        let mut ray_visitor = RayVisitor::new(simd, *self, ray, &slabs);
+        any_below(simd, self.tree.memory(), Child::ROOT, Stack::new().view(), (number, ray), &slabs, &mut ray_visitor)
     }
 
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
@@ -122,36 +123,50 @@ impl<F: Filter> Query<'_, F> {
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         let mut stack = Stack::new();
         let mut group = Group::new();
-        let mut many = Many::new(simd, *self);
+        let mut packet_visitor = PacketVisitor::new(simd, *self);
         for (number, (rays, hits)) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
-            if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, &group) {
-                self.tree.bvh.closest_group(simd, self.tree.memory(), &mut stack, (0, rays), &mut group, &mut many);
-                many.write_hits(rays, hits);
+            if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && packet_visitor.fill(first, &group) {
+                self.tree.bvh.closest_group(
+                    simd,
+                    self.tree.memory(),
+                    &mut stack,
+                    (0, rays),
+                    &mut group,
+                    &mut packet_visitor,
+                );
+                packet_visitor.write_hits(rays, hits);
             } else {
                 self.closest_each(simd, &mut stack, first, rays, hits);
             }
         }
     }
 
-    /// Rays that are no group of 32 are tried as packets of eight, and then alone.
+    /// Groups of 32 rays that are not coherent are tried as packets of eight, and then singly.
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
         let mut stack = Stack::new();
         let mut group = Group::new();
-        let mut many = Many::new(simd, *self);
+        let mut packet_visitor = PacketVisitor::new(simd, *self);
         for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
-            let whole = group.fill(simd, rays) && many.fill(first, &group);
+            let whole = group.fill(simd, rays) && packet_visitor.fill(first, &group);
             let size = if whole { GROUP } else { PACKET };
             for (number, (rays, occluded)) in rays.chunks(size).zip(occluded.chunks_mut(size)).enumerate() {
                 let first = first + number * size;
-                let together = whole || group.fill(simd, rays) && many.fill(first, &group);
+                let together = whole || group.fill(simd, rays) && packet_visitor.fill(first, &group);
                 if !together {
                     self.any_each(simd, &mut stack, first, rays, occluded);
                     continue;
                 }
-                let found = self.tree.bvh.any_group(simd, self.tree.memory(), &mut stack, (0, rays), &group, &mut many);
+                let found = self.tree.bvh.any_group(
+                    simd,
+                    self.tree.memory(),
+                    &mut stack,
+                    (0, rays),
+                    &group,
+                    &mut packet_visitor,
+                );
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
                     *occluded = found >> lane & 1 != 0;
                 }
@@ -179,7 +194,7 @@ impl<F: Filter> Query<'_, F> {
         }
     }
 
-    /// One ray after the other, numbered from `first` on.
+    /// Traces rays one by one; `first` is the index of the first ray.
     #[inline(always)]
     fn closest_each<S: Lanes>(
         &self,
@@ -191,10 +206,10 @@ impl<F: Filter> Query<'_, F> {
     ) {
         for (number, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
             let slabs = Slabs::of_ray(simd, ray);
-            let mut one = One::new(simd, *self, ray, &slabs);
+            let mut ray_visitor = RayVisitor::new(simd, *self, ray, &slabs);
             let ray = (first + number, ray);
-            closest_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, slabs, &mut one);
-            *hit = one.hit;
+            closest_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, slabs, &mut ray_visitor);
+            *hit = ray_visitor.hit;
         }
     }
 
@@ -203,17 +218,17 @@ impl<F: Filter> Query<'_, F> {
     fn any_each<S: Lanes>(&self, simd: S, stack: &mut Stack, first: usize, rays: &[Ray], occluded: &mut [bool]) {
         for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
             let slabs = Slabs::of_ray(simd, ray);
-            let mut one = One::new(simd, *self, ray, &slabs);
+            let mut ray_visitor = RayVisitor::new(simd, *self, ray, &slabs);
             let ray = (first + number, ray);
-            *occluded = any_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, &slabs, &mut one);
+            *occluded = any_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, &slabs, &mut ray_visitor);
         }
     }
 }
 
-/// A tree of whose hits only some count; see [`TriangleBvh::filtered`]. The calls are those of the tree.
+/// A tree with a hit filter, from [`TriangleBvh::filtered`]. Offers the queries of the tree.
 #[derive(Clone, Copy)]
 pub struct Filtered<'a, F> {
-    pub(super) query: Query<'a, Where<F>>,
+    pub(super) query: Query<'a, FilterFn<F>>,
 }
 
 impl<F: Fn(usize, &TriangleHit) -> bool + Copy> Filtered<'_, F> {

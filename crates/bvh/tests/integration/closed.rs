@@ -1,16 +1,18 @@
-//! Closed meshes that no ray leaves, whatever it is aimed at, in every kernel at every vector level.
-//! `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration closed::` for more rays a mesh.
+//! Watertightness: no ray leaves closed meshes, in every kernel at every SIMD level.
+//! `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration closed::` sets
+//! the number of rays per mesh.
 
 use crate::common::Random;
 use crate::common::mesh::{Kernels, Mesh, crossed, globe, is_divided, rays_to_try};
 use juggler_math::{Ray, Vec3, vec3};
 
-/// Rays a mesh and quality.
+/// Number of rays per mesh.
 const SMALL: usize = 25_000;
-/// Two groups of packets and an odd rest.
+/// Maximum number of rays per call: two groups of packets and a remainder.
 const CALL: usize = 70;
 
-/// At corners, edges, their middles and a hair beside them, or anywhere.
+/// A ray at a vertex, an edge, its midpoint or slightly beside it, at an inner point, or in a
+/// random direction.
 fn ray_from(random: &mut Random, mesh: &Mesh, origin: Vec3) -> Ray {
     let corners = mesh.corners(random.below(mesh.triangles.len()));
     let (from, to) = (corners[random.below(3)], corners[random.below(3)]);
@@ -25,7 +27,7 @@ fn ray_from(random: &mut Random, mesh: &Mesh, origin: Vec3) -> Ray {
     Ray::new(origin, target - origin)
 }
 
-/// Rays of one call: from one place at one triangle's neighbourhood, or from anywhere to anywhere.
+/// Rays of one call: nearly parallel, from one origin, or from random origins.
 fn call(random: &mut Random, mesh: &Mesh, inside: &impl Fn(&mut Random) -> Vec3) -> Vec<Ray> {
     let count = 1 + random.below(CALL);
     let eye = inside(random);
@@ -43,7 +45,7 @@ fn call(random: &mut Random, mesh: &Mesh, inside: &impl Fn(&mut Random) -> Vec3)
         .collect()
 }
 
-/// Each call through all kernels of one of the trees, which take turns.
+/// Traces each call with all kernels of one of the trees, in turn.
 fn try_to_leave(name: &str, mesh: &Mesh, seed: u32, inside: impl Fn(&mut Random) -> Vec3) {
     let (kernels, random) = (Kernels::all(name, mesh), &mut Random::new(seed));
     let (mut tried, mut calls) = (0, 0);
@@ -69,7 +71,7 @@ fn leave_globe(name: &str, globe: &Mesh, scale: Vec3, offset: Vec3, seed: u32) {
 fn globes_of_many_tessellations() {
     for (rows, columns, rough, seed) in [(3, 3, 0.0, 1), (6, 7, 0.3, 2), (24, 36, 0.1, 3), (90, 110, 0.02, 4)] {
         let globe = globe(&mut Random::new(seed), rows, columns, rough);
-        // Of three rows and columns a globe is a slender thing around its axis.
+        // With three rows and columns the globe is slender around its axis.
         let slender = if rows == 3 { 0.2 } else { 1.0 };
         try_to_leave(&format!("{rows} rows"), &globe, seed, |random| random.point() * 0.4 * slender);
     }
@@ -84,7 +86,7 @@ fn globes_of_all_sizes() {
     leave_globe("long globe", &globe, vec3(100.0, 0.01, 1.0), Vec3::ZERO, 16);
 }
 
-/// Far from the origin corners lie on a coarse grid: triangles become slivers, some lose their area.
+/// Far from the origin, vertices lie on a coarse grid: triangles become slivers, some degenerate.
 #[test]
 fn globes_far_away() {
     let globe = globe(&mut Random::new(20), 24, 36, 0.1);
@@ -94,7 +96,7 @@ fn globes_far_away() {
     leave_globe("small and far away", &globe, Vec3::splat(1e-2), vec3(-100.0, 20.0, 50.0), 24);
 }
 
-/// A box of two triangles a side: edges along the axes, faces without thickness, huge triangles close by.
+/// A box with two triangles per face: axis-aligned edges, flat faces, huge triangles close by.
 #[test]
 fn boxes() {
     let positions = (0..8u8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1) * 2.0 - 1.0)));
@@ -106,14 +108,14 @@ fn boxes() {
     leave_globe("tiny box", &mesh, Vec3::splat(1e-15), Vec3::ZERO, 33);
 }
 
-/// A globe of long thin triangles askew, crossed by small and long ones: none of its edges lets a ray through where
-/// triangles are divided.
+/// A globe of long thin oblique triangles, crossed by small and long ones: no ray passes through
+/// its edges where spatial splits divide triangles.
 #[test]
 fn divided() {
     let random = &mut Random::new(50);
     let mut mesh = globe(random, 3, 300, 0.0);
     let (own, added) = (mesh.positions.len() as u32, crossed(random, 4000, 400));
-    // A turn about the space diagonal by an eighth or so: no triangle lies along an axis.
+    // Rotate about an oblique axis, so that no triangle is axis-aligned.
     let turn =
         |p: Vec3| vec3(0.8 * p.x - 0.6 * p.y, 0.48 * p.x + 0.64 * p.y - 0.6 * p.z, 0.36 * p.x + 0.48 * p.y + 0.8 * p.z);
     mesh.positions.iter_mut().for_each(|p| *p = turn(*p));
@@ -131,7 +133,7 @@ fn divided() {
     }
 }
 
-/// Straight along the axes at the corners and edges of a box and of a globe.
+/// Axis-parallel rays at the vertices and edges of a globe.
 #[test]
 fn along_the_axes() {
     let globe = globe(&mut Random::new(40), 12, 16, 0.0);
@@ -145,7 +147,7 @@ fn along_the_axes() {
             rays.push(Ray::new(origin, direction));
         }
     }
-    // Those whose origin lies in the globe: well within the cross section.
+    // Keep the rays whose origin lies inside the globe, within the cross section.
     rays.retain(|ray| ray.origin.length_squared() < 0.9);
     assert!(rays.len() > 200, "{}", rays.len());
     for kernels in &kernels {

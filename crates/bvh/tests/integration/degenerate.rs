@@ -1,4 +1,5 @@
-//! Inputs at the edge: none, one, flat, coincident, empty, NaN, huge, tiny, and trees that want to be deep.
+//! Degenerate inputs: no items, one item, flat, coincident, empty, NaN, huge and tiny boxes, and
+//! deep trees.
 
 use crate::common::{Keep, Random, check};
 use juggler_bvh::{Bvh, Quality, TriangleBvh, TriangleError, simd_levels};
@@ -77,7 +78,7 @@ fn boxes_without_end_are_met() {
     }
 }
 
-/// Sizes that double: each best split takes one box off, as deep as the exponent goes, over and over.
+/// Sizes that double: each best split separates one box, as deep as the exponent goes, repeatedly.
 #[test]
 fn trees_that_want_to_be_deep_stay_shallow() {
     let mut boxes = Vec::new();
@@ -107,14 +108,15 @@ fn triangles_at_the_edge() {
         assert_eq!(bvh.stats().items, 2);
         let hit = bvh.closest(&down).unwrap();
         assert_eq!((hit.index, hit.t), (4, 1.0));
-        assert!(bvh.any(&down) && !bvh.any(&down.up_to(0.5)));
+        assert!(bvh.any(&down) && !bvh.any(&down.with_t_max(0.5)));
         let error = TriangleBvh::build(&corners, &[[0, 1, 2], [0, 6, 1]], quality).unwrap_err();
         assert_eq!(error, TriangleError::NoSuchVertex { triangle: 1, vertex: 6, vertices: 6 });
         assert_eq!(error.to_string(), "triangle 1 names vertex 6, but there are 6 vertices");
     }
 }
 
-/// Infinite and undefined rays: free slots of nodes hold boxes at infinity, which no such ray may enter for ever.
+/// Infinite and undefined rays: free slots of nodes hold boxes at infinity, which such rays must
+/// not enter.
 #[test]
 fn rays_that_are_not_finite_hit_nothing() {
     const VALUES: [f32; 4] = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 0.5];

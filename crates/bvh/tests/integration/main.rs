@@ -1,4 +1,4 @@
-//! The hierarchies against brute force: scenes, hostile soups, closed meshes, motion, refitting.
+//! Hierarchies against brute force: scenes, adversarial soups, closed meshes, motion, refitting.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,5 +1,7 @@
-//! What moves while the shutter is open: brute force = tree at random times, at every quality and vector level, and
-//! closed meshes that no ray leaves. `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration moving::` for more.
+//! Motion blur: trees agree with brute force at random times, for every quality and SIMD level, and
+//! no ray leaves closed meshes.
+//! `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration moving::` sets
+//! the number of rays.
 
 use crate::common::mesh::{Mesh, crossed, globe, rays_to_try};
 use crate::common::rays::{Aim, cut};
@@ -10,7 +12,7 @@ use juggler_math::{Aabb, Ray, Vec3, vec3};
 const SMALL: usize = 3000;
 const SHUTTER: f32 = 0.04;
 
-/// As a share of the shutter's: the ends, beyond them, or between.
+/// Normalized shutter time: at the ends, beyond them, or in between.
 fn time(random: &mut Random) -> f32 {
     [0.0, 1.0, -0.5, 2.0, 0.5, random.unit(), random.unit(), random.unit()][random.below(8)]
 }
@@ -19,7 +21,7 @@ fn at(share: f32, ray: &Ray) -> Ray {
     Ray { time: share * SHUTTER, ..*ray }
 }
 
-/// Where things are that the ray sees.
+/// Interpolated position at the ray's time.
 fn between(open: Vec3, close: Vec3, ray: &Ray) -> Vec3 {
     let share = (ray.time / SHUTTER).clamp(0.0, 1.0);
     open * (1.0 - share) + close * share
@@ -58,7 +60,7 @@ fn moving_boxes_are_found_where_they_are() {
     }
 }
 
-/// A mesh at both ends.
+/// A mesh at shutter open and at shutter close.
 struct Moving {
     open: Mesh,
     close: Mesh,
@@ -70,15 +72,15 @@ impl Moving {
         MovingTriangleBvh::build(&open.positions, &close.positions, &open.triangles, SHUTTER, quality).unwrap()
     }
 
-    /// The mesh that the ray sees.
-    fn seen(&self, ray: &Ray) -> Mesh {
+    /// Mesh at the ray's time.
+    fn at_time(&self, ray: &Ray) -> Mesh {
         let ends = self.open.positions.iter().zip(&self.close.positions);
         let positions = ends.map(|(open, close)| between(*open, *close, ray)).collect();
         Mesh { positions, triangles: self.open.triangles.clone() }
     }
 }
 
-/// A tree for each quality and vector level.
+/// Trees for each quality and SIMD level.
 fn trees(moving: &Moving) -> Vec<(String, MovingTriangleBvh)> {
     let all = Quality::ALL.map(|quality| {
         let tree = moving.build(quality);
@@ -94,12 +96,12 @@ fn check(name: &str, moving: &Moving, seed: u32) {
     let (mut tried, mut hit) = (0, 0);
     while tried < rays_to_try(SMALL) {
         let share = time(random);
-        let seen = moving.seen(&at(share, &Ray::new(Vec3::ZERO, Vec3::X)));
-        for ray in Aim::at(&seen).call(random) {
+        let at_time = moving.at_time(&at(share, &Ray::new(Vec3::ZERO, Vec3::X)));
+        for ray in Aim::at(&at_time).call(random) {
             let ray = at(share, &ray);
-            let first = seen.closest(&ray);
+            let first = at_time.closest(&ray);
             let end = cut(random, &ray, first.map(|hit| hit.t));
-            for (ray, expected) in [(ray, first), (end, seen.closest(&end))] {
+            for (ray, expected) in [(ray, first), (end, at_time.closest(&end))] {
                 for (tree_name, tree) in &trees {
                     assert_eq!(tree.closest(&ray), expected, "{name}, {tree_name}: {ray:?}");
                     assert_eq!(tree.any(&ray), expected.is_some(), "{name}, {tree_name}: {ray:?}");
@@ -116,7 +118,7 @@ fn moving_triangles_are_found_where_they_are() {
     let random = &mut Random::new(62);
     for count in [1, 9, 300] {
         let near = |random: &mut Random| {
-            Mesh::of((0..count).map(|_| {
+            Mesh::from_triangles((0..count).map(|_| {
                 let center = random.point();
                 [(); 3].map(|()| center + random.point() * 0.3)
             }))
@@ -132,16 +134,17 @@ fn moving_triangles_are_found_where_they_are() {
     }
 }
 
-/// Without area at one end or on the way, without place, and wrong.
+/// Triangles that are degenerate at one end or in between, that are not finite, and missing
+/// vertices.
 #[test]
 fn triangles_at_the_edge() {
-    let open = Mesh::of([
+    let open = Mesh::from_triangles([
         [Vec3::ZERO; 3],
         [Vec3::ZERO, Vec3::X, Vec3::Y],
         [Vec3::Z, Vec3::NAN, Vec3::Y],
         [Vec3::Z * -1.0, Vec3::X, Vec3::Y],
     ]);
-    let close = Mesh::of([
+    let close = Mesh::from_triangles([
         [Vec3::ZERO, Vec3::X, Vec3::Y],
         [Vec3::ZERO, Vec3::Y, Vec3::X],
         [Vec3::Z, Vec3::X, Vec3::Y],
@@ -160,7 +163,7 @@ fn triangles_at_the_edge() {
     assert_eq!(error, TriangleError::NoSuchVertex { triangle: 2, vertex: 7, vertices: 7 });
 }
 
-/// What moves by nothing is what stands still, to the bit.
+/// A motion of zero gives the same bits as a still tree.
 #[test]
 fn still_triangles_are_hit_as_in_a_still_tree() {
     let random = &mut Random::new(65);
@@ -178,7 +181,7 @@ fn still_triangles_are_hit_as_in_a_still_tree() {
     assert!(moving.bytes() > still.bytes());
 }
 
-/// Neighbours share their corners at every time: no ray gets out.
+/// Adjacent triangles share their vertices at every time, so no ray leaves the mesh.
 #[test]
 fn closed_meshes_stay_closed() {
     let random = &mut Random::new(66);
@@ -189,14 +192,15 @@ fn closed_meshes_stay_closed() {
     for (name, tree) in trees(&moving) {
         for _ in 0..rays_to_try(SMALL) {
             let share = random.unit() * 0.2;
-            let seen = |vertex: usize| {
+            let at_time = |vertex: usize| {
                 between(
                     moving.open.positions[vertex],
                     moving.close.positions[vertex],
                     &at(share, &Ray::new(Vec3::ZERO, Vec3::X)),
                 )
             };
-            let [a, b, _] = moving.open.triangles[random.below(moving.open.triangles.len())].map(|v| seen(v as usize));
+            let [a, b, _] =
+                moving.open.triangles[random.below(moving.open.triangles.len())].map(|v| at_time(v as usize));
             let origin = random.point() * 0.2;
             let target = [a, a * 0.5 + b * 0.5, a.lerp(b, random.unit())][random.below(3)];
             let ray = at(share, &Ray::new(origin, target - origin));

@@ -1,4 +1,5 @@
-//! Brute force = tree, bit for bit: every quality, every way to trace, coherent and incoherent rays.
+//! Trees agree with brute force bit for bit: every quality, every query, coherent and incoherent
+//! rays.
 
 use crate::common::{Random, Shape, Sphere, check};
 use juggler_math::{Aabb, Ray, Vec3};
@@ -17,13 +18,13 @@ fn boxes(random: &mut Random, count: usize) -> Vec<Aabb> {
         .collect()
 }
 
-/// Unit boxes at whole coordinates: rays at whole coordinates lie in their planes.
+/// Unit boxes at integer coordinates; rays at integer coordinates lie in their planes.
 fn bricks(random: &mut Random, count: usize) -> Vec<Aabb> {
     let whole = |random: &mut Random| Vec3::from(std::array::from_fn(|_| random.below(8) as f32 - 4.0));
     (0..count)
         .map(|_| {
             let min = whole(random);
-            // Some are flat.
+            // Some boxes are flat.
             Aabb { min, max: min + whole(random).max(Vec3::ZERO).min(Vec3::ONE) }
         })
         .collect()
@@ -38,7 +39,7 @@ fn incoherent(random: &mut Random, count: usize) -> Vec<Ray> {
         .collect()
 }
 
-/// Eight rays through each of several pixels, from a point or from near a point.
+/// Eight rays through each of several pixels, from a point or a small aperture.
 fn coherent(random: &mut Random, pixels: usize, spread: f32, aperture: f32) -> Vec<Ray> {
     let mut rays = Vec::new();
     for _ in 0..pixels {
@@ -51,7 +52,8 @@ fn coherent(random: &mut Random, pixels: usize, spread: f32, aperture: f32) -> V
     rays
 }
 
-/// Parallel to an axis or a plane of axes, with zeros of both signs, from whole and other coordinates.
+/// Rays parallel to an axis or a coordinate plane, with zeros of both signs, from integer and other
+/// coordinates.
 fn axis_parallel(random: &mut Random, count: usize) -> Vec<Ray> {
     let component = |random: &mut Random| [0.0, -0.0, 1.0, -1.0, 1e-40, -1e-42, 1e-30, 0.5][random.below(8)];
     let coordinate = |random: &mut Random| {
@@ -62,7 +64,7 @@ fn axis_parallel(random: &mut Random, count: usize) -> Vec<Ray> {
         .filter_map(|_| {
             let origin = Vec3::from(std::array::from_fn(|_| coordinate(random)));
             let direction = Vec3::from(std::array::from_fn(|_| component(random)));
-            // Shorter ones overflow the shapes' own arithmetic.
+            // Shorter directions would overflow in the shapes' own tests.
             (direction.length() > 0.1).then(|| Ray::new(origin, direction))
         })
         .collect()
@@ -92,7 +94,7 @@ fn random_boxes() {
     }
 }
 
-/// Boxes a few steps of rounding wide, far from the origin, and rays from among them.
+/// Boxes that are a few ulps wide, far from the origin, and rays between them.
 #[test]
 fn boxes_far_away() {
     let random = &mut Random::new(71);
@@ -116,7 +118,7 @@ fn boxes_far_away() {
     }
 }
 
-/// A box that is met where it truly is, in double precision.
+/// A box that is intersected in double precision.
 #[derive(Clone, Copy)]
 struct Exact(Aabb);
 
@@ -134,12 +136,12 @@ impl Shape for Exact {
     }
 }
 
-/// Rays that meet points exactly, through all the rounding of the boxes' tests; each point many times, so that a
-/// hit must not hide the others at its distance.
+/// Rays that hit points exactly, despite all rounding of the box tests. Each point occurs many
+/// times, so a hit must not hide the others at its distance.
 #[test]
 fn points_are_met_and_none_hides_the_others() {
     let random = &mut Random::new(81);
-    // Of few bits, so that several times the direction is exact.
+    // Directions with few bits, so that small multiples are exact.
     let directions: Vec<Vec3> = (0..60).map(|_| (random.point() * 4096.0).round() + 0.5).collect();
     let point = |i: usize| directions[i % 60] * [3.0, 5.0, 7.0][i % 3];
     let mut shapes: Vec<Exact> = (0..720).map(|i| Exact(Aabb { min: point(i), max: point(i) })).collect();
@@ -150,8 +152,8 @@ fn points_are_met_and_none_hides_the_others() {
         .map(|_| {
             let number = random.below(60);
             let ray = Ray::new(Vec3::ZERO, directions[number]);
-            // An end as far away as the point.
-            if random.below(2) == 0 { ray } else { ray.up_to([3.0, 5.0, 7.0][number % 3]) }
+            // End some rays at the distance of the point.
+            if random.below(2) == 0 { ray } else { ray.with_t_max([3.0, 5.0, 7.0][number % 3]) }
         })
         .collect();
     check("points", &shapes, &rays, 8);
@@ -166,7 +168,7 @@ fn bricks_whose_planes_hold_the_rays() {
     }
 }
 
-/// Axis-parallel packets share an octant only when their zeros agree; here they do.
+/// Axis-parallel rays share an octant only if their zeros have the same signs, as here.
 #[test]
 fn parallel_packets_along_the_axes() {
     let random = &mut Random::new(31);
@@ -188,7 +190,8 @@ fn parallel_packets_along_the_axes() {
     check("parallel", &shapes, &rays, 8);
 }
 
-/// Calls of 1 to 70 rays: part of a packet, part of a group, groups and a rest; of one octant and of several.
+/// Calls of 1 to 70 rays: partial packets, partial groups, groups with a remainder; in one octant
+/// and in several.
 #[test]
 fn calls_of_any_number_of_rays() {
     let random = &mut Random::new(61);
@@ -219,13 +222,13 @@ fn rays_of_a_packet_may_have_ended() {
     check("ended", &shapes, &rays, 8);
 }
 
-/// Equal shapes in many leaves: the smallest number wins, from wherever the rays come.
+/// Equal shapes in many leaves: the smallest index wins, wherever the rays come from.
 #[test]
 fn ties_go_to_the_smallest_number() {
     let shapes = vec![Sphere { center: Vec3::ZERO, radius: 0.5 }; 100];
     let random = &mut Random::new(51);
     check("ties", &shapes, &coherent(random, 20, 0.3, 0.1), 8);
-    // Bricks in a row: neighbours share a face, and rays in that face meet both at the same distance.
+    // Bricks in a row: neighbors share a face, and rays in that face hit both at the same distance.
     let row: Vec<Aabb> =
         (0..200u8).map(|i| Aabb { min: Vec3::X * f32::from(i), max: Vec3::X * f32::from(i) + Vec3::ONE }).collect();
     let down = |i: u8| Ray::new(Vec3::new(f32::from(i), 5.0, 0.5), -Vec3::Y);

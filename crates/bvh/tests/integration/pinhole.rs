@@ -1,15 +1,16 @@
-//! Rays of one origin, as a pinhole camera's: packets refuse triangles by what such rays have in common, and must find the
-//! same bits as brute force. Aimed at corners and edges, at all scales, from near and far.
+//! Common-origin packets, as from a pinhole camera, give the same bits as brute force: rays at
+//! vertices and edges, at all scales, from near and far.
 
 use crate::common::Random;
 use crate::common::mesh::{Kernels, Mesh, rays_to_try};
 use juggler_math::{Ray, Vec3};
 
 const SMALL: usize = 1500;
-/// Rays of a call: two groups of packets and an odd rest.
+/// Rays per call: two groups of packets and a remainder.
 const CALL: usize = 69;
 
-/// Long triangles about the origin, many of which share corners and edges: leaves are full and boxes tell little.
+/// Long triangles around the origin, many of which share vertices and edges, so that leaves are
+/// full and boxes overlap.
 fn long_triangles(random: &mut Random, slenderness: f32) -> Mesh {
     let hub = random.point() * 0.1;
     let strip = |random: &mut Random| {
@@ -17,10 +18,11 @@ fn long_triangles(random: &mut Random, slenderness: f32) -> Mesh {
         let c = a + (b - a) * random.unit() + random.point() * slenderness;
         [[hub, a, c], [a, b, c]]
     };
-    Mesh::of((0..60).flat_map(|_| strip(random)).collect::<Vec<_>>())
+    Mesh::from_triangles((0..60).flat_map(|_| strip(random)).collect::<Vec<_>>())
 }
 
-/// A corner, a point on an edge, or a point inside of some triangle, and rays around it.
+/// Rays from `eye` around a vertex: at vertices, edges and inner points of random triangles, or
+/// near the target.
 fn call(random: &mut Random, mesh: &Mesh, eye: Vec3, spread: f32) -> Vec<Ray> {
     let target = mesh.corners(random.below(mesh.triangles.len()))[0];
     let size = (target - eye).length() * spread;
@@ -36,7 +38,7 @@ fn call(random: &mut Random, mesh: &Mesh, eye: Vec3, spread: f32) -> Vec<Ray> {
                 3 => a + (b - a) * u * v + (c - a) * u * (1.0 - v),
                 _ => near,
             };
-            // A packet is narrow: what is far from the target is left out.
+            // Keep the packet narrow: replace aims that are far from the target.
             let aim = if (aim - target).length() <= size { aim } else { near };
             Ray::new(eye, aim - eye)
         })

@@ -1,4 +1,4 @@
-//! Trees that got new bounds find what brute force finds, and say when they cannot take them.
+//! Refitted trees agree with brute force, and reject items that they do not contain.
 
 use crate::common::mesh::{Kernels, crossed, is_divided};
 use crate::common::{Keep, Random, brute_force};
@@ -95,7 +95,7 @@ fn moved_triangles_are_found_where_they_are() {
             let found = bvh.closest(&ray).map(|hit| (hit.t, hit.index));
             assert_eq!(found, closest(&moved, &triangles, &ray), "{quality:?}: {ray:?}");
         }
-        // Back from what cannot be hit.
+        // Refit back to the original positions after degenerate ones.
         bvh.refit(&positions, &triangles).unwrap();
         for ray in rays(random, 300) {
             let found = bvh.closest(&ray).map(|hit| (hit.t, hit.index));

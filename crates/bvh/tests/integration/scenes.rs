@@ -1,23 +1,24 @@
-//! The generated meshes with their six kinds of rays and random ones: every kernel at every quality and vector level finds the same
-//! bits, and brute force agrees on some. With `JUGGLER_RAYS` (rays of each kind) in the thousands the meshes have the
-//! size that they are measured with: `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration scenes::`.
+//! Generated meshes with six kinds of rays and random rays: every kernel gives the same bits at
+//! every quality and SIMD level, and brute force agrees on samples. If `JUGGLER_RAYS` (rays of each
+//! kind) is above 10,000, the meshes have their benchmark sizes:
+//! `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration scenes::`.
 
 use crate::common::mesh::{Kernels, Mesh, rays_to_try};
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3, vec3};
-use juggler_raybench::meshes::Recipe;
+use juggler_raybench::meshes::MeshSpec;
 use juggler_raybench::rays;
 
 const SMALL: usize = 512;
-/// Brute force takes so many triangle tests for each kind of rays.
+/// Number of brute-force triangle tests for each kind of rays.
 const TESTS: usize = 500_000;
-/// Rays of a call: two groups of packets and an odd rest.
+/// Rays per call: two groups of packets and a remainder.
 const CALL: usize = 69;
 
 fn check(small: &str, large: &str) {
     let count = rays_to_try(SMALL);
     let name = if count > 10_000 { large } else { small };
-    let made = Recipe::named(name).unwrap().make();
+    let made = MeshSpec::parse(name).unwrap().make();
     let tree = TriangleBvh::build(&made.positions, &made.triangles, Quality::Balanced).unwrap();
     let sets = rays::make(&made, &tree, count);
     let mesh = Mesh { positions: made.positions, triangles: made.triangles };
@@ -38,8 +39,8 @@ fn check(small: &str, large: &str) {
     }
 }
 
-/// Random rays, each from one point of the mesh's box through another: where rays of the other kinds miss, fewer follow
-/// them, and these make up for those.
+/// Random rays, each through two points of the mesh's bounds. They make up for the follow-up rays
+/// that are missing where rays of the other kinds miss.
 fn across(mesh: &Mesh, count: usize) -> Vec<Ray> {
     let bounds = Aabb::from_points(mesh.positions.iter().copied());
     let random = &mut crate::common::Random::new(1);
@@ -77,8 +78,8 @@ fn terrain() {
     check("terrain:64", "terrain:700");
 }
 
-/// Triangles of known places and heights; with a million rays to try more than 2^24 of them, whose numbers no
-/// single-precision float can tell apart (6 GB of memory, minutes).
+/// Triangles at known positions and heights; with a million rays to try, more than 2^24 of them,
+/// whose indices single precision cannot represent (6 GB of memory, minutes).
 #[test]
 fn more_than_sixteen_million_triangles() {
     let edge: u32 = if rays_to_try(0) >= 1_000_000 { 2900 } else { 90 };
@@ -88,7 +89,7 @@ fn more_than_sixteen_million_triangles() {
     let cells = (0..edge * edge).map(|i| i / edge * (edge + 1) + i % edge);
     let triangles = cells.flat_map(|a| [[a, a + 1, a + edge + 1], [a + 1, a + edge + 2, a + edge + 1]]);
     let mesh = Mesh { positions: positions.collect(), triangles: triangles.collect() };
-    // One tree at a time: each takes more than a gigabyte.
+    // One tree at a time, since each takes more than a gigabyte.
     for quality in Quality::ALL {
         let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).unwrap();
         for level in simd_levels() {
@@ -97,11 +98,11 @@ fn more_than_sixteen_million_triangles() {
     }
 }
 
-/// Rays from above at a known point of a triangle.
+/// Checks rays from above at known points of triangles.
 fn find_what_is_known(kernels: &Kernels, mesh: &Mesh) {
     let random = &mut crate::common::Random::new(24);
     for _ in 0..rays_to_try(7000) / CALL {
-        // Neighbours: unrelated rays as one packet would open most of the tree.
+        // Adjacent triangles: incoherent rays as one packet would visit most of the tree.
         let start = random.below(mesh.triangles.len() - CALL);
         let aims: Vec<(usize, Vec3)> = (start..start + CALL)
             .map(|triangle| {

@@ -1,5 +1,7 @@
-//! Brute force = every kernel, bit for bit, at every quality and vector level: soups of triangles made to hurt, and
-//! rays made to hurt. `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration soups::` for more of them.
+//! Every kernel agrees with brute force bit for bit, at every quality and SIMD level, for
+//! adversarial triangle soups and rays.
+//! `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test integration soups::` sets the
+//! number of rays.
 
 use crate::common::Random;
 use crate::common::mesh::{Kernels, Mesh, crossed, is_divided, rays_to_try};
@@ -7,14 +9,14 @@ use crate::common::rays::{Aim, cut};
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit, TriangleTest, intersect_triangle, simd_levels};
 use juggler_math::{Ray, Vec3, vec3};
 
-/// Small enough that brute force is quick.
+/// Default number of rays, small enough for brute force.
 const SMALL: usize = 2500;
 
 fn whole(random: &mut Random, below: usize) -> Vec3 {
     Vec3::from(std::array::from_fn(|_| random.below(below) as f32))
 }
 
-/// Near a random point.
+/// A triangle near a random point.
 fn near(random: &mut Random, size: f32) -> [Vec3; 3] {
     let center = random.point();
     [(); 3].map(|()| center + random.point() * size)
@@ -22,10 +24,10 @@ fn near(random: &mut Random, size: f32) -> [Vec3; 3] {
 
 fn soup(seed: u32, count: usize, mut triangle: impl FnMut(&mut Random) -> [Vec3; 3]) -> Mesh {
     let random = &mut Random::new(seed);
-    Mesh::of((0..count).map(|_| triangle(random)))
+    Mesh::from_triangles((0..count).map(|_| triangle(random)))
 }
 
-/// Random calls, then the same rays cut off where they hit.
+/// Checks random calls, then the same rays cut off at their hits.
 fn check(name: &str, mesh: &Mesh, seed: u32) {
     let (aim, kernels, random) = (Aim::at(mesh), Kernels::all(name, mesh), &mut Random::new(seed));
     let (mut tried, mut hit) = (0, 0);
@@ -53,7 +55,7 @@ fn few_and_many_triangles() {
     }
 }
 
-/// The fast test answers a little differently, but in every kernel the same.
+/// The fast test gives slightly different results, but the same in every kernel.
 #[test]
 fn the_fast_test_is_the_same_in_every_kernel() {
     let mesh = soup(77, 300, |random| near(random, 0.3));
@@ -82,7 +84,7 @@ fn fast_is_the_same_in_every_kernel(mesh: &Mesh, quality: Quality) {
     assert!(off * 50 < tried, "{off} of {tried} rays hit something else than by the exact test");
 }
 
-/// Hits that a filter refuses do not count, in any kernel: as if each ray had its own triangles.
+/// Hits that a filter rejects do not count in any kernel, as if each ray had its own triangles.
 #[test]
 fn refused_hits_do_not_count() {
     refuse(&soup(87, 120, |random| near(random, 0.5)), Quality::Balanced);
@@ -148,7 +150,7 @@ fn large_and_crossing() {
     check("large", &soup(11, 60, |random| near(random, 3.0)), 111);
 }
 
-/// Points, lines, doubled corners among good ones.
+/// Degenerate triangles (points, lines, duplicate vertices) among regular ones.
 #[test]
 fn without_area() {
     let mesh = soup(12, 200, |random| {
@@ -164,7 +166,7 @@ fn without_area() {
     check("without area", &mesh, 112);
 }
 
-/// Needles: as long as the scene, as thin as rounding.
+/// Needles as long as the scene and as thin as rounding errors.
 #[test]
 fn slivers() {
     let mesh = soup(13, 100, |random| {
@@ -175,14 +177,14 @@ fn slivers() {
     check("slivers", &mesh, 113);
 }
 
-/// Whole coordinates: coplanar, coincident and doubled triangles, ties everywhere.
+/// Integer coordinates: coplanar, coincident and duplicate triangles, many ties.
 #[test]
 fn coincident() {
     check("coincident", &soup(14, 200, |random| [(); 3].map(|()| whole(random, 4))), 114);
     check("the same again and again", &soup(15, 100, |_| [Vec3::ZERO, Vec3::X, Vec3::Y]), 115);
 }
 
-/// In planes of axes: their boxes have no thickness.
+/// Triangles in axis-aligned planes, whose boxes are flat.
 #[test]
 fn sheets() {
     let mesh = soup(16, 150, |random| {
@@ -196,7 +198,7 @@ fn sheets() {
     check("sheets", &mesh, 116);
 }
 
-/// From a thousandth of a millionth to a million, around one place.
+/// Sizes from 1e-9 to 1e6 around one place.
 #[test]
 fn huge_beside_tiny() {
     let mesh = soup(17, 150, |random| {
@@ -217,7 +219,7 @@ fn huge_and_tiny_as_a_whole() {
     check("flat", &flat, 126);
 }
 
-/// Far from the origin a triangle is a few steps of rounding wide.
+/// Far from the origin a triangle is a few ulps wide.
 #[test]
 fn far_away() {
     for (distance, seed) in [(1e3, 0), (1e5, 1), (3e6, 2)] {
@@ -227,8 +229,8 @@ fn far_away() {
     }
 }
 
-/// Rays that start on a flat triangle and leave it by less than rounding: they meet it at a distance that is all
-/// rounding, and from just there on.
+/// Rays that start on a flat triangle and leave it at an angle below rounding: their hit distance
+/// is all rounding error. Also from that distance on.
 #[test]
 fn a_hair_off_the_plane() {
     let mesh = soup(18, 60, |random| [(); 3].map(|()| whole(random, 4).with_x(0.0)));
@@ -244,7 +246,7 @@ fn a_hair_off_the_plane() {
     }
 }
 
-/// Long triangles among small ones: in the best quality they stand in several leaves.
+/// Long triangles among small ones; with the best quality several leaves refer to them.
 #[test]
 fn divided() {
     for (scale, offset, seed) in [(1.0, 0.0, 0), (1e-6, 0.0, 1), (1e6, 0.0, 2), (1.0, 3e3, 3), (1.0, -1e4, 4)] {
@@ -254,14 +256,14 @@ fn divided() {
     }
 }
 
-/// One corner that all share.
+/// Triangles that share one vertex.
 #[test]
 fn a_fan() {
     let mesh = soup(33, 120, |random| [vec3(0.25, 0.5, -0.125), random.point(), random.point()]);
     check("fan", &mesh, 133);
 }
 
-/// Room for fewer answers than rays: the others are left alone.
+/// A result slice shorter than the rays: the remaining rays are not traced.
 #[test]
 fn rays_without_a_place_are_not_traced() {
     let mesh = soup(34, 50, |random| near(random, 1.0));

@@ -1,30 +1,32 @@
-//! The film: sums of samples, in an order that nothing but the sample indices decides. `README.md` in this folder
-//! explains why parts can be joined in any order.
+//! Film: sums of samples, in an order that depends only on the sample indices. `README.md` in this
+//! folder explains why partial renders merge in any order.
 //!
-//! A pixel's samples are summed in blocks of [`BLOCK`] consecutive indices, each block in order, and blocks are joined
-//! along a fixed binary tree over their numbers. Whoever renders which block, on which thread or machine, the
-//! additions are the same ones, so the bits are too.
+//! The samples of a pixel are summed in order within blocks of [`BLOCK_SAMPLES`] consecutive
+//! indices, and block sums are added along a fixed binary tree over the block numbers. Every thread
+//! and machine performs the same additions, so the result has the same bits.
 
+mod aov_sums;
 mod canvas;
-mod clamped;
-mod digest;
-mod extras;
+mod clamped_radiance;
+mod film_digest;
 mod filter;
-mod layout;
 mod sum;
 #[cfg(test)]
 mod tests;
 mod tile;
+mod tiling;
 
+pub use aov_sums::{AovSums, CoverageMask, HitIds, InvalidMask, MASKS};
 pub use canvas::Film;
-pub use clamped::Clamped;
-pub use digest::{Digest, Summary};
-pub use extras::{Extras, InvalidMask, MASKS, Mark, Mask};
-pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
-pub use layout::{Layout, Rect, TILE};
+pub use clamped_radiance::ClampedRadiance;
+pub use film_digest::{FilmDigest, FilmSummary};
+pub use filter::{
+    AnyFilter, Box, FilterSample, FilterSampler, FilterTable, Gaussian, Juggler, Mitchell, ReconstructionFilter, Tent,
+};
 pub use sum::is_counted;
-pub use sum::{Accumulator, Samples, Sum, runs};
-pub use tile::{Run, Statistics, Tile, TileError};
+pub use sum::{Accumulator, PixelSamples, Sum, runs};
+pub use tile::{PixelStatistics, SampleRun, Tile, TileError};
+pub use tiling::{Rect, TILE_EDGE, Tiling};
 
 /// Samples in a block.
-pub const BLOCK: u32 = 16;
+pub const BLOCK_SAMPLES: u32 = 16;

@@ -1,117 +1,124 @@
 //! Sums over blocks of samples, joined along a fixed binary tree.
 
-use super::{BLOCK, Extras, Mark};
+use super::{AovSums, BLOCK_SAMPLES, HitIds};
 use arrayvec::ArrayVec;
 use juggler_math::Rgb;
 use std::ops::Range;
 
-/// Most runs that the samples of a pixel fall into: one for each bit of a number of blocks on the way up, one on
-/// the way down, and an open block.
+/// Maximum number of runs of a pixel's samples: one for each bit of the block number on the way up
+/// the tree, one on the way down, and an open block.
 pub(super) const MAX_RUNS: usize = 64;
 
-/// What a difference counts one join further down. Joins double a level, so each level counts half of the one above.
-const DEEPER: f64 = 0.25;
+/// Weight of a deviation per level down the tree. Each level has twice as many joins as the one
+/// above, so its total weight is half.
+const LEVEL_WEIGHT: f64 = 0.25;
 
 /// Largest channel of a sample that is counted: the `f32` sum of a block of such samples is finite.
 const MAX_SAMPLE: f32 = 1e36;
 
-/// Whether a sample counts: a sample with a channel that is NaN, infinite or beyond 10^36 counts as black, so that no sum
-/// of a film is ever infinite or NaN.
+/// Whether a sample counts. A sample with a channel that is NaN, infinite or beyond 10^36 counts as
+/// black, so the sums of a film are always finite.
 #[inline]
 pub fn is_counted(sample: Rgb) -> bool {
     sample.to_array().iter().all(|channel| channel.abs() <= MAX_SAMPLE)
 }
 
-/// What is known of one pixel's samples of a run.
+/// Sum over one pixel's samples of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
-    /// The sum of the samples, linear RGB.
+    /// Sum of the samples, linear RGB.
     pub total: [f64; 3],
-    /// How much the sums of the run's blocks differ: the squared deviations between the two sides of each join, as
-    /// Chan, Golub and LeVeque (1979) add them up, but those of deeper joins count less, by a quarter a level. Well
-    /// spread samples make long runs differ less than short ones; it is the long ones that tell how good the mean is.
-    pub spread: [f32; 3],
-    /// What clamping took off the samples: the sum of the means of their channels.
+    /// Weighted sum of the squared deviations between the two sides of each join of the run's
+    /// blocks (Chan, Golub and LeVeque 1979), where each level down the tree has a quarter of the
+    /// weight. Well-distributed samples make long runs more alike than short ones, and the long
+    /// runs tell the error of the mean.
+    pub squared_deviations: [f32; 3],
+    /// Radiance that clamping removed: the sum over the samples of the mean of the channels.
     pub clamped: f32,
 }
 
 impl Sum {
-    fn of_block(block: Rgb) -> Self {
+    fn from_block(block: Rgb) -> Self {
         Self { total: block.to_array().map(f64::from), ..Self::default() }
     }
 
-    /// With the run that follows; they have `blocks` blocks each.
+    /// Joins the run that follows; `blocks` are the numbers of blocks of both runs.
     #[must_use]
     pub fn joined(&self, next: &Self, blocks: [u32; 2]) -> Self {
         let [a, b] = blocks.map(f64::from);
-        let clamped = limited(self.clamped + next.clamped);
+        let clamped = clamp_finite(self.clamped + next.clamped);
         let mut sum = Self { clamped, ..Self::default() };
         for i in 0..3 {
             sum.total[i] = self.total[i] + next.total[i];
             let apart = next.total[i] / b.max(1.0) - self.total[i] / a.max(1.0);
             let between = apart * apart * (a * b / (a + b).max(1.0));
-            sum.spread[i] = limited((self.spread[i] + next.spread[i]) * DEEPER as f32 + between as f32);
+            sum.squared_deviations[i] = clamp_finite(
+                (self.squared_deviations[i] + next.squared_deviations[i]) * LEVEL_WEIGHT as f32 + between as f32,
+            );
         }
         sum
     }
 }
 
-/// The number, or the largest finite one of its sign.
-fn limited(number: f32) -> f32 {
+/// Clamps infinite values to the largest finite number.
+fn clamp_finite(number: f32) -> f32 {
     number.clamp(f32::MIN, f32::MAX)
 }
 
-/// By what a run's spread must be divided to give the variance of a block, if all blocks were independent.
-pub(super) fn weight(level: u32) -> f64 {
-    (0..level).fold(0.0, |below, _| joined_weight(below, below))
+/// Divisor of a run's `squared_deviations` that gives the variance of a block, for independent
+/// blocks.
+pub(super) fn variance_divisor(level: u32) -> f64 {
+    (0..level).fold(0.0, |below, _| joined_divisor(below, below))
 }
 
-/// [`weight`] of two runs that are joined.
-pub(super) fn joined_weight(a: f64, b: f64) -> f64 {
-    1.0 + DEEPER * (a + b)
+/// [`variance_divisor`] of two joined runs.
+pub(super) fn joined_divisor(a: f64, b: f64) -> f64 {
+    1.0 + LEVEL_WEIGHT * (a + b)
 }
 
-/// The blocks of a run are as many as a power of two, and their number divides the number of the first: the runs
-/// are the nodes of a binary tree over all blocks.
-pub(super) fn level(samples: &Range<u32>) -> Option<u32> {
-    let blocks = (samples.end.checked_sub(samples.start)?) / BLOCK;
-    let whole = samples.start.is_multiple_of(BLOCK) && samples.end.is_multiple_of(BLOCK);
-    let aligned = blocks.is_power_of_two() && (samples.start / BLOCK).is_multiple_of(blocks);
+/// Level of a run in the binary tree over all blocks: a run has 2^level blocks, and 2^level divides
+/// the number of its first block. `None` if the samples are not a node of the tree.
+pub(super) fn tree_level(samples: &Range<u32>) -> Option<u32> {
+    let blocks = (samples.end.checked_sub(samples.start)?) / BLOCK_SAMPLES;
+    let whole = samples.start.is_multiple_of(BLOCK_SAMPLES) && samples.end.is_multiple_of(BLOCK_SAMPLES);
+    let aligned = blocks.is_power_of_two() && (samples.start / BLOCK_SAMPLES).is_multiple_of(blocks);
     (whole && aligned).then(|| blocks.trailing_zeros())
 }
 
-/// Whether the samples are the first of one block, but not all of it.
+/// Whether the samples are the first samples of a block, but not the whole block.
 pub(super) fn is_open(samples: &Range<u32>) -> bool {
-    samples.start.is_multiple_of(BLOCK) && samples.end > samples.start && samples.end - samples.start < BLOCK
+    samples.start.is_multiple_of(BLOCK_SAMPLES)
+        && samples.end > samples.start
+        && samples.end - samples.start < BLOCK_SAMPLES
 }
 
-/// Samples of one pixel that follow each other.
+/// Consecutive samples of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Samples<'s> {
-    /// What came along their rays.
+pub struct PixelSamples<'s> {
+    /// Radiance of each sample.
     pub radiance: &'s [Rgb],
-    /// What clamping took off each; nothing where no sample is clamped.
+    /// Radiance that clamping removed from each sample; empty if nothing is clamped.
     pub clamped: &'s [f32],
-    /// As many colours a sample as there are layers.
+    /// AOV values, the same number per sample.
     pub planes: &'s [Rgb],
-    /// What each shows; nothing where nobody asks.
-    pub marks: &'s [Mark],
+    /// Identifiers of each sample for masks; empty unless requested.
+    pub hit_ids: &'s [HitIds],
 }
 
-impl<'s> Samples<'s> {
-    /// How many.
+impl<'s> PixelSamples<'s> {
+    /// Number of samples.
     #[inline]
     pub fn len(&self) -> usize {
         self.radiance.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no samples.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.radiance.is_empty()
     }
 
-    /// The first `count`, and the others.
+    /// Splits into the first `count` samples and the rest.
     #[inline]
     pub fn split_at(self, count: usize) -> (Self, Self) {
         let count = count.min(self.len());
@@ -119,138 +126,141 @@ impl<'s> Samples<'s> {
         let (radiance, radiance_later) = self.radiance.split_at(count);
         let (clamped, clamped_later) = self.clamped.split_at(count.min(self.clamped.len()));
         let (colors, colors_later) = self.planes.split_at(count * planes);
-        let (marks, marks_later) = self.marks.split_at(count.min(self.marks.len()));
-        let later = Self { radiance: radiance_later, clamped: clamped_later, planes: colors_later, marks: marks_later };
-        (Self { radiance, clamped, planes: colors, marks }, later)
+        let (hit_ids, marks_later) = self.hit_ids.split_at(count.min(self.hit_ids.len()));
+        let later =
+            Self { radiance: radiance_later, clamped: clamped_later, planes: colors_later, hit_ids: marks_later };
+        (Self { radiance, clamped, planes: colors, hit_ids }, later)
     }
 
-    /// What each has beside its radiance, if anything.
-    fn extras(&self) -> impl Iterator<Item = (&'s [Rgb], Option<&'s Mark>)> {
-        let Self { radiance, planes, marks, .. } = *self;
+    /// AOVs and mask identifiers of each sample; empty if there are none.
+    fn aovs(&self) -> impl Iterator<Item = (&'s [Rgb], Option<&'s HitIds>)> {
+        let Self { radiance, planes, hit_ids, .. } = *self;
         let count = planes.len() / radiance.len().max(1);
-        let of = if count == 0 && marks.is_empty() { 0 } else { radiance.len() };
-        (0..of).map(move |i| (planes.get(i * count..(i + 1) * count).unwrap_or_default(), marks.get(i)))
+        let of = if count == 0 && hit_ids.is_empty() { 0 } else { radiance.len() };
+        (0..of).map(move |i| (planes.get(i * count..(i + 1) * count).unwrap_or_default(), hit_ids.get(i)))
     }
 }
 
-/// Takes in the samples of one pixel in order and joins their blocks as soon as two are neighbours in the tree.
+/// Accumulator of one pixel's samples in order; joins runs as soon as two are siblings in the tree.
 #[derive(Clone, Debug, Default)]
 pub struct Accumulator {
     next: u32,
     block: Rgb,
-    /// What was taken off the block's samples.
+    /// Radiance that clamping removed from the block's samples.
     clamped: f32,
-    /// What the block's samples have beside their radiance.
-    extra: Extras,
+    /// AOVs and masks of the block.
+    block_aov_sums: AovSums,
     runs: ArrayVec<(u32, Sum), MAX_RUNS>,
-    /// The same of the runs; nothing where nobody asks.
-    extras: Vec<Extras>,
+    /// AOVs and masks of the runs; empty unless requested.
+    aov_sums: Vec<AovSums>,
 }
 
 impl Accumulator {
-    /// Forgets everything. The next sample is `first`: either a block begins with it, or `open` holds the sum of the
-    /// samples of its block that are there already.
-    pub fn begin(&mut self, first: u32, open: Option<(&Sum, Extras)>) {
-        let (open, extra) = open.map_or((Sum::default(), Extras::default()), |(sum, extra)| (*sum, extra));
-        // The sum of an open block was a sum of `f32`s in that order: nothing is lost on the way back.
+    /// Restarts with sample `first`. Either a block begins with `first`, or `open` holds the sum of
+    /// the earlier samples of its block.
+    pub fn begin(&mut self, first: u32, open: Option<(&Sum, AovSums)>) {
+        let (open, block_aov_sums) =
+            open.map_or((Sum::default(), AovSums::default()), |(sum, block_aov_sums)| (*sum, block_aov_sums));
+        // The sum of an open block is a sum of `f32`s in the same order, so the conversion is
+        // exact.
         let [r, g, b] = open.total.map(|total| total as f32);
         self.block = Rgb::new(r, g, b);
         self.clamped = open.clamped;
-        self.extra = extra;
+        self.block_aov_sums = block_aov_sums;
         self.next = first;
         self.runs.clear();
-        self.extras.clear();
+        self.aov_sums.clear();
     }
 
-    /// Adds the next samples, of which nothing but their radiance is known.
+    /// Adds samples without AOVs. See [`Self::add_samples`].
     pub fn add(&mut self, radiance: &[Rgb]) -> u64 {
-        self.add_samples(Samples { radiance, ..Samples::default() })
+        self.add_samples(PixelSamples { radiance, ..PixelSamples::default() })
     }
 
-    /// Adds the next samples. A sample with a channel that is NaN, infinite or beyond 10^36 counts as
-    /// black. Returns the number of such samples.
+    /// Adds the next samples. A sample with a channel that is NaN, infinite or beyond 10^36 counts
+    /// as black; returns the number of such samples.
     #[inline]
-    pub fn add_samples(&mut self, mut samples: Samples) -> u64 {
-        let mut lost = 0;
+    pub fn add_samples(&mut self, mut samples: PixelSamples) -> u64 {
+        let mut rejected = 0;
         while !samples.is_empty() {
-            let room = (BLOCK - self.next % BLOCK) as usize;
+            let room = (BLOCK_SAMPLES - self.next % BLOCK_SAMPLES) as usize;
             let (now, rest) = samples.split_at(room);
-            lost += self.add_to_block(now.radiance);
-            let taken = now.radiance.iter().zip(now.clamped).filter(|(sample, _)| is_counted(**sample));
-            self.clamped = taken.fold(self.clamped, |sum, (_, taken)| limited(sum + taken));
-            now.extras().for_each(|(planes, mark)| self.extra.add(planes, mark));
+            rejected += self.add_to_block(now.radiance);
+            let removed = now.radiance.iter().zip(now.clamped).filter(|(sample, _)| is_counted(**sample));
+            self.clamped = removed.fold(self.clamped, |sum, (_, removed)| clamp_finite(sum + removed));
+            now.aovs().for_each(|(planes, hit_ids)| self.block_aov_sums.add(planes, hit_ids));
             self.next = self.next.wrapping_add(now.len() as u32);
             if now.len() == room {
-                self.close();
+                self.finish_block();
             }
             samples = rest;
         }
-        lost
+        rejected
     }
 
     #[inline]
     fn add_to_block(&mut self, samples: &[Rgb]) -> u64 {
-        let mut lost = 0;
+        let mut rejected = 0;
         for sample in samples {
             if is_counted(*sample) {
                 self.block += *sample;
             } else {
-                lost += 1;
+                rejected += 1;
             }
         }
-        lost
+        rejected
     }
 
     fn block_sum(&self) -> Sum {
-        Sum { clamped: self.clamped, ..Sum::of_block(self.block) }
+        Sum { clamped: self.clamped, ..Sum::from_block(self.block) }
     }
 
-    fn close(&mut self) {
+    fn finish_block(&mut self) {
         let mut sum = self.block_sum();
-        let mut extra = std::mem::take(&mut self.extra);
+        let mut block_aov_sums = std::mem::take(&mut self.block_aov_sums);
         (self.block, self.clamped) = (Rgb::BLACK, 0.0);
         let mut level = 0;
-        let mut number = self.next.wrapping_sub(1) / BLOCK;
+        let mut number = self.next.wrapping_sub(1) / BLOCK_SAMPLES;
         while number & 1 == 1
             && let Some((other, left)) = self.runs.last()
             && *other == level
         {
             sum = left.joined(&sum, [1 << level; 2]);
             self.runs.pop();
-            extra = self.extras.pop().map_or_else(Extras::default, |left| left.joined(&extra));
+            block_aov_sums = self.aov_sums.pop().map_or_else(AovSums::default, |left| left.joined(&block_aov_sums));
             level += 1;
             number >>= 1;
         }
-        // At most one a level on the way up and one on the way down: there is room.
+        // At most one run per level on the way up and one on the way down: there is room.
         let _ = self.runs.try_push((level, sum));
-        if !extra.is_empty() {
-            self.extras.push(extra);
+        if !block_aov_sums.is_empty() {
+            self.aov_sums.push(block_aov_sums);
         }
     }
 
-    /// The runs' sums in order, the open block's last.
+    /// Sums of the runs in order, the open block last.
     pub fn sums(&self) -> impl Iterator<Item = Sum> {
-        let open = (!self.next.is_multiple_of(BLOCK)).then(|| self.block_sum());
+        let open = (!self.next.is_multiple_of(BLOCK_SAMPLES)).then(|| self.block_sum());
         self.runs.iter().map(|(_, sum)| *sum).chain(open)
     }
 
-    /// What the runs have beside radiance, in the same order; nothing where nobody asks.
-    pub fn extras(&mut self) -> impl Iterator<Item = Extras> {
-        let open = std::mem::take(&mut self.extra);
-        self.extras.drain(..).chain((!open.is_empty()).then_some(open))
+    /// AOVs and masks of the runs, in the same order; empty unless requested.
+    pub fn aov_sums(&mut self) -> impl Iterator<Item = AovSums> {
+        let open = std::mem::take(&mut self.block_aov_sums);
+        self.aov_sums.drain(..).chain((!open.is_empty()).then_some(open))
     }
 }
 
-/// The runs that the samples fall into, in order.
+/// Runs that the samples divide into, in order.
 pub fn runs(samples: Range<u32>) -> Vec<Range<u32>> {
     let mut runs = Vec::new();
-    let mut start = samples.start - samples.start % BLOCK;
+    let mut start = samples.start - samples.start % BLOCK_SAMPLES;
     while start < samples.end {
-        let blocks = (samples.end - start) / BLOCK;
-        let aligned = if start == 0 { u32::MAX } else { 1 << (start / BLOCK).trailing_zeros() };
+        let blocks = (samples.end - start) / BLOCK_SAMPLES;
+        let aligned = if start == 0 { u32::MAX } else { 1 << (start / BLOCK_SAMPLES).trailing_zeros() };
         let length = match blocks {
             0 => samples.end - start,
-            _ => aligned.min(1 << blocks.ilog2()) * BLOCK,
+            _ => aligned.min(1 << blocks.ilog2()) * BLOCK_SAMPLES,
         };
         runs.push(start..start + length);
         start += length;

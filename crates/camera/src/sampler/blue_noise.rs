@@ -1,52 +1,56 @@
-//! Sobol points whose error is spread over the picture as blue noise (Ahmed and Wonka, Screen-Space Blue-Noise Diffusion
-//! of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels, 2020): one pixel errs to one side, its neighbours
-//! to the other.
+//! Sobol points whose error is distributed over the picture as blue noise (Ahmed and Wonka,
+//! Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of
+//! Pixels, 2020): the errors of neighboring pixels tend to have opposite signs.
 //!
-//! All pixels of a block share one scrambled sequence. Along a Z-shaped curve through the block, each pixel takes as many
-//! of its points as the picture has samples; so neighbours' points together are as well spread as a pixel's own. At each
-//! level of the curve the four quarters change places at random, anew in each dimension.
+//! All pixels of a block share one scrambled sequence. In the order of a Z curve through the block,
+//! each pixel takes as many of its points as the picture has samples per pixel, so the points of
+//! neighboring pixels together are as well distributed as those of a single pixel. At each level of
+//! the curve the four quadrants are randomly permuted, independently in each dimension.
 //!
-//! Other than in the paper blocks end at 256 × 256 pixels, so that 32 bits number their points, and samples are shuffled
-//! within a pixel by the same hash as in `sobol`. More samples than were planned are further points of the
-//! sequence: as good for the pixel, but no longer in step with its neighbours.
+//! Deviations from the paper: blocks have 256 × 256 pixels, so that 32 bits index their points, and
+//! samples are shuffled within a pixel by the same hash as in `sobol`. Samples beyond the planned
+//! number are further points of the sequence: well distributed in the pixel, but not with those of
+//! its neighbors.
 //!
 //! ```json
 //! {"blue_noise": {}}
 //! ```
 
-use super::{Pattern, PointSet, Spread, sobol};
+use super::{AnyPointSet, PointSet, SamplerDescription, sobol};
 use juggler_math::{UVec2, Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Sobol points whose error is spread over the picture as blue noise, which the eye forgives: for pictures of few samples.
-/// Best at powers of two.
+/// Sobol points whose error is distributed over the picture as blue noise, which is less visible.
+/// Use it for pictures of few samples, best with a power of two.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct BlueNoise {}
 
-/// Levels of the curve: a block is 2^8 pixels wide and high.
+/// Levels of the Z curve: the edge of a block is 2^8 pixels.
 const LEVELS: u32 = 8;
-/// Edge of a block in pixels.
+/// Edge length of a block in pixels.
 pub const BLOCK_EDGE: u32 = 1 << LEVELS;
-/// Bits of a pixel's place in its block.
-const PLACE_BITS: u32 = 2 * LEVELS;
-/// Most bits of a sample's number in its pixel; with those of the place, they fit in a point's.
-const MAX_BITS: u32 = 32 - PLACE_BITS;
+/// Bits of a pixel's index on the curve.
+const MORTON_BITS: u32 = 2 * LEVELS;
+/// Maximum bits of a sample's index within its pixel; with the bits of the pixel they fill the
+/// index of a point.
+const MAX_BITS: u32 = 32 - MORTON_BITS;
 
-impl Spread for BlueNoise {
-    fn pattern(&self, samples: u32) -> Pattern {
+impl SamplerDescription for BlueNoise {
+    fn point_set(&self, samples: u32) -> AnyPointSet {
         let bits = u32::BITS - samples.saturating_sub(1).leading_zeros();
         BlueNoisePoints { bits: bits.min(MAX_BITS) as u8, place: 0 }.into()
     }
 }
 
-/// Points of [`BlueNoise`]: Owen-scrambled Sobol points that neighboring pixels share.
+/// Points of [`BlueNoise`]: Owen-scrambled Sobol points shared by the pixels of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BlueNoisePoints {
-    /// 2 to the power of this many samples a pixel are planned.
+    /// Binary logarithm of the planned samples per pixel, rounded up.
     bits: u8,
-    /// Place of the pixel among those that share the points; 0 for a picture.
+    /// Index of the pixel on the curve; 0 for a whole picture. Its name is part of the `Debug`
+    /// text, which enters fingerprints of pictures.
     place: u16,
 }
 
@@ -58,8 +62,8 @@ impl PointSet for BlueNoisePoints {
     }
 
     #[inline]
-    fn at_pixel(&self, pixel: UVec2) -> Pattern {
-        Self { place: place(pixel), ..*self }.into()
+    fn at_pixel(&self, pixel: UVec2) -> AnyPointSet {
+        Self { place: morton_index(pixel), ..*self }.into()
     }
 
     #[inline]
@@ -68,32 +72,34 @@ impl PointSet for BlueNoisePoints {
     }
 }
 
-/// Where a pixel comes in its block along the curve: the bits of both coordinates by turns (Morton 1966).
-pub fn place(pixel: UVec2) -> u16 {
+/// Index of a pixel along the curve of its block: the interleaved bits of both coordinates (Morton
+/// 1966).
+pub fn morton_index(pixel: UVec2) -> u16 {
     let spread = |x: u32| (0..LEVELS).fold(0, |bits, level| bits | (x >> level & 1) << (2 * level));
     (spread(pixel.x) | spread(pixel.y) << 1) as u16
 }
 
-/// Point `index` of the pixel at `place`, of 2^`bits` that were planned, in the dimension `seed`.
+/// Point `index` of the pixel at `place` on the curve, of 2^`bits` planned points, in the dimension
+/// `seed`.
 #[inline]
 pub fn point(index: u32, place: u16, bits: u8, seed: u32) -> Vec2 {
     let bits = u32::from(bits).min(MAX_BITS);
     let (set, number) = (index >> bits, index & ((1 << bits) - 1));
-    // Sets that a point's number has no bits for are of sequences of their own.
+    // Sets beyond the 32 bits of a point's index use sequences of their own.
     let room = MAX_BITS - bits;
-    let (sequence, set) = (set >> room, u64::from(set) << (PLACE_BITS + bits));
+    let (sequence, set) = (set >> room, u64::from(set) << (MORTON_BITS + bits));
     let seed = if sequence == 0 { seed } else { hash::combine(seed, sequence) };
-    sobol::point(set as u32 | permuted(place.into(), seed) << bits | number, seed)
+    sobol::point(set as u32 | permute_quadrants(place.into(), seed) << bits | number, seed)
 }
 
-/// Changes the places of quarters, and of their quarters, down to the pixels: each digit in base 4 by a permutation that
-/// those above it decide.
+/// Permutes the quadrants of each level, down to single pixels: each digit in base 4 by a
+/// permutation that depends on the digits above it.
 #[inline]
-fn permuted(place: u32, seed: u32) -> u32 {
+fn permute_quadrants(place: u32, seed: u32) -> u32 {
     (0..LEVELS).fold(0, |result, level| {
         let shift = 2 * level;
-        // The digits above, with a one in front that tells the level.
-        let above = (place | 1 << PLACE_BITS) >> (shift + 2);
+        // Prepend a one to the digits above; its position encodes the level.
+        let above = (place | 1 << MORTON_BITS) >> (shift + 2);
         let random = hash::mix(seed ^ above.wrapping_mul(0x9e37_79b9));
         let permutation = PERMUTATIONS[((u64::from(random) * PERMUTATIONS.len() as u64) >> 32) as usize];
         let digit = u32::from(permutation) >> (2 * (place >> shift & 3)) & 3;
@@ -101,12 +107,12 @@ fn permuted(place: u32, seed: u32) -> u32 {
     })
 }
 
-/// All orders of four things, two bits each.
+/// All permutations of four elements, two bits each.
 const PERMUTATIONS: [u8; 24] = {
     let (mut all, mut count, mut order) = ([0; 24], 0, 0);
     while order < 256 {
-        let things = [order & 3, order >> 2 & 3, order >> 4 & 3, order >> 6];
-        if 1 << things[0] | 1 << things[1] | 1 << things[2] | 1 << things[3] == 0b1111 {
+        let elements = [order & 3, order >> 2 & 3, order >> 4 & 3, order >> 6];
+        if 1 << elements[0] | 1 << elements[1] | 1 << elements[2] | 1 << elements[3] == 0b1111 {
             all[count] = order as u8;
             count += 1;
         }
@@ -117,7 +123,7 @@ const PERMUTATIONS: [u8; 24] = {
 
 #[cfg(any(test, feature = "testing"))]
 impl BlueNoise {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }
@@ -143,19 +149,19 @@ mod tests {
     #[test]
     fn places_are_permuted_within_their_quarters() {
         for seed in [0, 1, 0x1234_5678] {
-            let mut seen = vec![false; 1 << PLACE_BITS];
-            for place in 0..1 << PLACE_BITS {
-                let to = permuted(place, seed);
-                assert!(!std::mem::replace(&mut seen[to as usize], true));
+            let mut is_used = vec![false; 1 << MORTON_BITS];
+            for place in 0..1 << MORTON_BITS {
+                let to = permute_quadrants(place, seed);
+                assert!(!std::mem::replace(&mut is_used[to as usize], true));
                 for shift in [2, 6, 10, 14] {
-                    // Those that lay in one quarter of any level still do.
-                    assert_eq!(to >> shift, permuted(place >> shift << shift, seed) >> shift);
+                    // Indices in the same quadrant of any level stay in the same quadrant.
+                    assert_eq!(to >> shift, permute_quadrants(place >> shift << shift, seed) >> shift);
                 }
             }
         }
-        assert_eq!(place(UVec2::new(3, 0)), 5);
-        assert_eq!(place(UVec2::new(0, 3)), 10);
-        assert_eq!(place(UVec2::new(255, 255)), u16::MAX);
+        assert_eq!(morton_index(UVec2::new(3, 0)), 5);
+        assert_eq!(morton_index(UVec2::new(0, 3)), 10);
+        assert_eq!(morton_index(UVec2::new(255, 255)), u16::MAX);
     }
 
     #[test]
@@ -163,16 +169,20 @@ mod tests {
         let mut counts = [0u32; 16];
         for seed in 0..8000 {
             let seed = hash::mix(seed);
-            (0..4).for_each(|quarter| counts[(quarter * 4 + (permuted(quarter << 14, seed) >> 14)) as usize] += 1);
+            (0..4).for_each(|quarter| {
+                counts[(quarter * 4 + (permute_quadrants(quarter << 14, seed) >> 14)) as usize] += 1;
+            });
         }
         juggler_math::testing::chi_squared(&counts.map(f64::from), &[2000.0; 16], 1e-3).unwrap();
     }
 
-    /// The points of all samples of some pixels.
+    /// Points of all samples of a square of pixels.
     fn points(x: u32, y: u32, edge: u32, samples: u32) -> Vec<Vec2> {
-        let picture = Sampler::new(BlueNoise {}.pattern(samples), 3);
+        let picture = Sampler::new(BlueNoise {}.point_set(samples), 3);
         let pixels = (0..edge * edge).map(|i| UVec2::new(x + i % edge, y + i / edge));
-        pixels.flat_map(|pixel| (0..samples).map(move |i| picture.pixel(pixel).sample(i).at(4).next_2d())).collect()
+        pixels
+            .flat_map(|pixel| (0..samples).map(move |i| picture.pixel(pixel).sample(i).skipped(4).next_2d()))
+            .collect()
     }
 
     #[test]
@@ -198,7 +208,7 @@ mod tests {
     fn more_samples_than_planned_are_further_points() {
         let mut all: Vec<[u32; 2]> = Vec::new();
         for planned in [1, 3, 16, 1 << 16, u32::MAX] {
-            let pixel = Sampler::new(BlueNoise {}.pattern(planned), 9).pixel(UVec2::new(77, 5000));
+            let pixel = Sampler::new(BlueNoise {}.point_set(planned), 9).pixel(UVec2::new(77, 5000));
             for index in (0..40).chain([65_535, 65_536, 1 << 20, 1 << 31, u32::MAX]) {
                 let point = pixel.sample(index).next_2d();
                 assert!(point.cmpge(Vec2::ZERO).all() && point.cmplt(Vec2::ONE).all());

@@ -1,21 +1,22 @@
-//! Independent random numbers: the plain Monte Carlo that the others are measured against.
+//! Independent random numbers: plain Monte Carlo, the reference for the other samplers.
 //!
 //! ```json
 //! {"independent": {}}
 //! ```
 
-use super::{Pattern, PointSet, Spread};
+use super::{AnyPointSet, PointSet, SamplerDescription};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Independent random numbers.
+/// Independent random numbers: plain Monte Carlo. The noise is higher than that of the other
+/// samplers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Independent {}
 
-impl Spread for Independent {
-    fn pattern(&self, _samples: u32) -> Pattern {
+impl SamplerDescription for Independent {
+    fn point_set(&self, _samples: u32) -> AnyPointSet {
         IndependentPoints.into()
     }
 }
@@ -40,7 +41,7 @@ pub fn point(index: u32, seed: u32) -> Vec2 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Independent {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

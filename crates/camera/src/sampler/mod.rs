@@ -1,7 +1,7 @@
-//! Samplers: where in the film, the lens, a light a sample goes.
+//! Samplers: sample points for film, lens, time and scattering.
 //!
-//! A number is a pure function of (seed, pixel, sample index, branch, dimension). Nothing is stored between
-//! samples, so any thread, tile, shard or resumed run draws the same numbers.
+//! Each number is a pure function of (seed, pixel, sample index, branch, dimension). Samplers store
+//! no state between samples, so any thread, tile, shard or resumed run draws the same numbers.
 
 use juggler_math::{UVec2, Vec2, hash};
 
@@ -10,33 +10,34 @@ mod independent;
 mod sobol;
 mod stratified;
 
-/// A way to spread samples, as the scene describes it.
-pub trait Spread: Send + Sync {
-    /// The pattern for pictures of `samples` samples a pixel.
-    fn pattern(&self, samples: u32) -> Pattern;
+/// Sampler as the scene describes it.
+pub trait SamplerDescription: Send + Sync {
+    /// Sample pattern for pictures with `samples` samples per pixel.
+    fn point_set(&self, samples: u32) -> AnyPointSet;
 }
 
 juggler_math::closed_set! {
-    /// Every sampler. In JSON: `{"sobol": {}}`, or short `"sobol"`.
-    pub enum AnySampler: Spread {
+    /// Enumeration of all samplers. In JSON: `{"sobol": {}}`, or short `"sobol"`.
+    pub enum AnySampler: SamplerDescription {
         sobol::Sobol => SobolPoints,
         stratified::Stratified => StratifiedPoints,
         independent::Independent => IndependentPoints,
         blue_noise::BlueNoise => BlueNoisePoints,
     }
-    /// Pattern of the samples of one pixel and dimension, ready to draw.
+    /// Sample pattern of one pixel and dimension, ready to draw.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Pattern: static PointSet;
+    pub enum AnyPointSet: static PointSet;
     fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32;
-    fn at_pixel(&self, pixel: UVec2) -> Pattern;
-    fn first_coordinate(&self, index: u32, is_first: bool, seed: u32) -> f32;
-    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2;
+    fn at_pixel(&self, pixel: UVec2) -> AnyPointSet;
+    fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32;
+    fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2;
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]);
 }
 
-/// Points in [0, 1)² for the samples of a pixel, a set a dimension: pure functions.
-pub trait PointSet: Copy + Into<Pattern> {
-    /// Seed of a pixel in a picture of this `seed`.
+/// Points in [0, 1)² for the samples of a pixel, one set per dimension; all methods are pure
+/// functions.
+pub trait PointSet: Copy + Into<AnyPointSet> {
+    /// Seed of a pixel in a picture with this `seed`.
     #[inline]
     fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32 {
         hash::combine(hash::combine(seed, pixel.x), pixel.y)
@@ -44,20 +45,21 @@ pub trait PointSet: Copy + Into<Pattern> {
 
     /// Pattern of a pixel.
     #[inline]
-    fn at_pixel(&self, _pixel: UVec2) -> Pattern {
+    fn at_pixel(&self, _pixel: UVec2) -> AnyPointSet {
         (*self).into()
     }
 
-    /// Point of sample `index` in the dimension `seed`; `is_first` for the place on the film.
-    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2;
+    /// Point of sample `index` in the dimension `seed`; `is_first_dimension` is true for the film
+    /// position.
+    fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2;
 
-    /// x of [`point`](Self::point).
+    /// Coordinate x of [`point`](Self::point).
     #[inline]
-    fn first_coordinate(&self, index: u32, is_first: bool, seed: u32) -> f32 {
-        self.point(index, is_first, seed).x
+    fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32 {
+        self.point(index, is_first_dimension, seed).x
     }
 
-    /// Points of the samples from `first` on, of the first dimension.
+    /// Points of consecutive samples from `first` on, in the first dimension.
     #[inline]
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) {
         for (i, point) in points.iter_mut().enumerate() {
@@ -72,48 +74,49 @@ impl Default for AnySampler {
     }
 }
 
-/// The stream of numbers of one sample of one pixel. Copy it freely: it holds an address, not a state
-/// worth saving.
+/// Stream of random numbers of one sample of one pixel. Copies are cheap and independent: a sampler
+/// holds an address, not a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler {
     seed: u32,
     index: u32,
     dimension: u32,
-    pattern: Pattern,
+    pattern: AnyPointSet,
 }
 
 impl Sampler {
-    /// Of a whole picture; its pixels have [streams of their own](Self::pixel).
-    pub fn new(pattern: Pattern, seed: u64) -> Self {
+    /// Creates the sampler of a picture; [`pixel`](Self::pixel) gives the streams of its pixels.
+    pub fn new(pattern: AnyPointSet, seed: u64) -> Self {
         Self { seed: hash::combine(seed as u32, (seed >> 32) as u32), index: 0, dimension: 0, pattern }
     }
 
-    /// The numbers of sample 0 of a pixel of this picture.
+    /// Stream of sample 0 of a pixel.
     #[inline]
     pub fn pixel(&self, pixel: UVec2) -> Self {
         let seed = self.pattern.pixel_seed(self.seed, pixel);
         Self { seed, pattern: self.pattern.at_pixel(pixel), ..*self }
     }
 
-    /// The numbers of sample `index` of the same pixel, from the first dimension on.
+    /// Stream of sample `index` of the same pixel, from the first dimension on.
     #[inline]
     pub fn sample(&self, index: u32) -> Self {
         Self { index, dimension: 0, ..*self }
     }
 
-    /// The numbers of the `child`-th ray that leaves a vertex: a stream of its own.
+    /// Independent stream of ray `child` that leaves a vertex.
     #[inline]
     pub fn branch(&self, child: u32) -> Self {
         Self { seed: hash::combine(self.seed, child.wrapping_add(1)), dimension: 0, ..*self }
     }
 
-    /// The `part`-th of `parts` streams that together sample one thing well (the rays of a soft shadow).
+    /// Stream `index` of `count` streams that together form one well-distributed set, such as the
+    /// shadow rays of one light.
     #[inline]
-    pub fn part(&self, part: u32, parts: u32) -> Self {
-        Self { index: self.index.wrapping_mul(parts).wrapping_add(part), ..*self }
+    pub fn subsequence(&self, index: u32, count: u32) -> Self {
+        Self { index: self.index.wrapping_mul(count).wrapping_add(index), ..*self }
     }
 
-    /// The next number in [0, 1): the first coordinate of [`Sampler::next_2d`].
+    /// Next number in [0, 1): the first coordinate of [`Sampler::next_2d`].
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
         let seed = self.next_seed();
@@ -128,27 +131,27 @@ impl Sampler {
         seed
     }
 
-    /// The next point in [0, 1)².
+    /// Next point in [0, 1)².
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let seed = self.next_seed();
         self.pattern.point(self.index, self.dimension == 1, seed)
     }
 
-    /// What [`Sampler::next_2d`] gives first for the samples from `first` on of this pixel: their places on
-    /// the film.
+    /// Film positions of consecutive samples of this pixel from `first` on: the first
+    /// [`Sampler::next_2d`] of each.
     pub fn first_points(&self, first: u32, points: &mut [Vec2]) {
         self.pattern.fill(first, self.seed ^ hash::mix(0), points);
     }
 
-    /// The numbers from `count` dimensions further on.
+    /// Same stream `count` dimensions further on.
     #[inline]
     #[must_use]
-    pub fn at(&self, count: u32) -> Self {
+    pub fn skipped(&self, count: u32) -> Self {
         Self { dimension: self.dimension + count, ..*self }
     }
 
-    /// Leaves out `count` dimensions.
+    /// Skips `count` dimensions.
     pub fn skip(&mut self, count: u32) {
         self.dimension += count;
     }

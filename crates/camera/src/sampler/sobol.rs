@@ -1,23 +1,24 @@
-//! Owen-scrambled Sobol points (Sobol 1967; Owen 1995), by hashing (Burley, Practical Hash-based Owen
-//! Scrambling, JCGT 2020). Each pair of dimensions uses Sobol's first two, its own scrambling and its own
-//! shuffling of the sample indices, so that any number of dimensions can be drawn without a table.
+//! Owen-scrambled Sobol points (Sobol 1967; Owen 1995) by hashing (Burley, Practical Hash-based
+//! Owen Scrambling, JCGT 2020). Each pair of dimensions uses Sobol's first two dimensions with its
+//! own scrambling and shuffling of the sample indices, so any number of dimensions needs no table.
 //!
 //! ```json
 //! {"sobol": {}}
 //! ```
 
-use super::{Pattern, PointSet, Spread};
+use super::{AnyPointSet, PointSet, SamplerDescription};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Owen-scrambled Sobol points: the least noise at any number of samples, best at powers of two.
+/// Owen-scrambled Sobol points: a low-discrepancy sequence with low noise at any number of samples,
+/// best at powers of two.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Sobol {}
 
-impl Spread for Sobol {
-    fn pattern(&self, _samples: u32) -> Pattern {
+impl SamplerDescription for Sobol {
+    fn point_set(&self, _samples: u32) -> AnyPointSet {
         SobolPoints.into()
     }
 }
@@ -41,35 +42,36 @@ impl PointSet for SobolPoints {
 /// First coordinate of [`point`].
 #[inline]
 fn first_coordinate(index: u32, seed: u32) -> f32 {
-    hash::unit_f32(scrambled_first(shuffled(index, seed), seed).reverse_bits())
+    hash::unit_f32(scrambled_first(shuffle_index(index, seed), seed).reverse_bits())
 }
 
-/// Place of sample `index` in the sequence.
+/// Index of a sample in the shuffled sequence.
 #[inline]
-fn shuffled(index: u32, seed: u32) -> u32 {
-    permute(index.reverse_bits(), seed).reverse_bits()
+fn shuffle_index(index: u32, seed: u32) -> u32 {
+    owen_scramble_reversed(index.reverse_bits(), seed).reverse_bits()
 }
 
-/// Scrambled first dimension, bits reversed. Sobol's first dimension is the bit-reversed index, and the
-/// scrambling works on reversed bits too, so both reversals cancel.
+/// Scrambled first dimension, bits reversed. Sobol's first dimension is the bit-reversed index and
+/// the scrambling works on reversed bits, so both reversals cancel.
 #[inline]
 fn scrambled_first(index: u32, seed: u32) -> u32 {
-    permute(index, seed ^ 0x9c8f_2d35)
+    owen_scramble_reversed(index, seed ^ 0x9c8f_2d35)
 }
 
 /// Point `index` of the scrambled and shuffled sequence `seed`.
 #[inline]
 pub fn point(index: u32, seed: u32) -> Vec2 {
-    let index = shuffled(index, seed);
+    let index = shuffle_index(index, seed);
     let x = scrambled_first(index, seed);
-    let y = permute(second_dimension(index), hash::mix(seed));
-    // Both are reversed in one go, which also exchanges them.
+    let y = owen_scramble_reversed(second_dimension(index), hash::mix(seed));
+    // Reverse both in one operation, which also swaps them.
     let both = (u64::from(y) << 32 | u64::from(x)).reverse_bits();
     Vec2::new(hash::unit_f32((both >> 32) as u32), hash::unit_f32(both as u32))
 }
 
-/// Sobol's second dimension, bits reversed: its matrix is Pascal's triangle modulo 2, whose entry (i, j)
-/// is 1 just when the bits of j are among those of i (Lucas 1878), so five masked shifts multiply by it.
+/// Sobol's second dimension, bits reversed: its matrix is Pascal's triangle modulo 2, whose entry
+/// (i, j) is 1 just when the bits of j are among those of i (Lucas 1878), so five masked shifts
+/// multiply by it.
 #[inline]
 fn second_dimension(mut index: u32) -> u32 {
     index ^= index >> 16;
@@ -79,10 +81,10 @@ fn second_dimension(mut index: u32) -> u32 {
     index ^ (index & 0xaaaa_aaaa) >> 1
 }
 
-/// A permutation in which a bit depends on lower bits only: on reversed bits that is an Owen scrambling
-/// (Laine and Karras 2011; constants of Nathan Vegdahl, 2021).
+/// Permutation in which each bit depends only on lower bits; on reversed bits this is an Owen
+/// scrambling (Laine and Karras 2011; constants of Nathan Vegdahl, 2021).
 #[inline]
-fn permute(mut x: u32, seed: u32) -> u32 {
+fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
@@ -92,7 +94,7 @@ fn permute(mut x: u32, seed: u32) -> u32 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Sobol {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }
@@ -119,7 +121,7 @@ mod tests {
 
     #[test]
     fn sobol_integrates_better_than_chance() {
-        // ∫∫ x y over the unit square is 1/4; 1024 independent points would be off by about 0.007.
+        // ∫∫ x y over the unit square is 1/4; 1024 independent points have an error of about 0.007.
         let mean = (0..1024).map(|i| point(i, 99)).map(|p| p.x * p.y).sum::<f32>() / 1024.0;
         assert!((mean - 0.25).abs() < 5e-4, "{mean}");
     }

@@ -1,32 +1,32 @@
-//! Stratified jitter: one point at random in each cell of a grid (Cook 1986), as the Juggler did.
+//! Stratified sampling: one random point in each cell of a grid (Cook 1986), as in the Juggler.
 //!
 //! ```json
 //! {"stratified": {"side": 8}}
 //! ```
 
-use super::{Pattern, PointSet, Spread};
+use super::{AnyPointSet, PointSet, SamplerDescription};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One point at random in each cell of an n × n grid.
+/// One random point in each cell of an n × n grid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Stratified {
-    /// Cells along an edge of the grid; n² samples fill it, more begin another. 0 takes the largest grid
-    /// that the number of samples fills.
+    /// Cells along an edge of the grid, n, 0 to 4096. n² samples fill one grid; further samples
+    /// start another. The default, 0, uses the largest grid that the number of samples fills.
     #[schemars(range(min = 0, max = 4096))]
     pub side: u32,
 }
 
-impl Spread for Stratified {
-    fn pattern(&self, samples: u32) -> Pattern {
+impl SamplerDescription for Stratified {
+    fn point_set(&self, samples: u32) -> AnyPointSet {
         let side = if self.side == 0 { samples.isqrt() } else { self.side };
         StratifiedPoints { side: side.clamp(1, 4096) }.into()
     }
 }
 
-/// Points of [`Stratified`]: one point in each cell of a grid, grid after grid.
+/// Points of [`Stratified`]: one random point in each cell, grid after grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StratifiedPoints {
     /// Cells along an edge, at least 1.
@@ -35,8 +35,8 @@ pub struct StratifiedPoints {
 
 impl PointSet for StratifiedPoints {
     #[inline]
-    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2 {
-        point(index, is_first, seed, self.side)
+    fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2 {
+        point(index, is_first_dimension, seed, self.side)
     }
 
     #[inline]
@@ -45,25 +45,25 @@ impl PointSet for StratifiedPoints {
     }
 }
 
-/// Point `index` of the stream `seed`. The first dimension of a sample takes the cells `in_order`, every
-/// other one in an order of its own, so that a place on the film does not decide a place on a light.
+/// Point `index` of the stream `seed`. The first dimension visits the cells in order; all others
+/// visit them in random order, so that film position and light sample are not correlated.
 #[inline]
 pub fn point(index: u32, in_order: bool, seed: u32, side: u32) -> Vec2 {
     let cells = side * side;
-    // Most indices lie in the first set, and divisions are slow.
+    // Most indices lie in the first set; avoid slow divisions there.
     let (set, cell) = if index < cells { (0, index) } else { (index / cells, index % cells) };
     let cell = if in_order { cell } else { permutation(cell, cells, hash::combine(seed, set)) };
     in_cell(Vec2::new((cell % side) as f32, (cell / side) as f32), index, seed, 1.0 / side as f32)
 }
 
-/// The points from `first` on in the order of their cells: [`point`] without its divisions, and in steps
-/// that go side by side.
+/// Points from `first` on in the order of their cells: [`point`] without its divisions, and
+/// vectorized.
 #[inline]
 pub fn points_in_order(first: u32, seed: u32, side: u32, points: &mut [Vec2]) {
     let cell = first % (side * side);
     let (mut column, mut row) = (cell % side, cell / side);
-    for place in &mut *points {
-        *place = Vec2::new(column as f32, row as f32);
+    for point in &mut *points {
+        *point = Vec2::new(column as f32, row as f32);
         column += 1;
         if column == side {
             column = 0;
@@ -71,8 +71,8 @@ pub fn points_in_order(first: u32, seed: u32, side: u32, points: &mut [Vec2]) {
         }
     }
     let edge = 1.0 / side as f32;
-    for (i, place) in points.iter_mut().enumerate() {
-        *place = in_cell(*place, first.wrapping_add(i as u32), seed, edge);
+    for (i, point) in points.iter_mut().enumerate() {
+        *point = in_cell(*point, first.wrapping_add(i as u32), seed, edge);
     }
 }
 
@@ -82,8 +82,8 @@ fn in_cell(cell: Vec2, index: u32, seed: u32, edge: f32) -> Vec2 {
     ((cell + jitter) * edge).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
 }
 
-/// Place `i` of a random permutation of `0..length` (Kensler, Correlated Multi-Jittered Sampling, 2013):
-/// an invertible hash on the next power of two, walked until it falls inside.
+/// Element `i` of a random permutation of `0..length` (Kensler, Correlated Multi-Jittered Sampling,
+/// 2013): an invertible hash on the next power of two, repeated until the result is in range.
 fn permutation(mut i: u32, length: u32, seed: u32) -> u32 {
     let mask = length.next_power_of_two().wrapping_sub(1);
     loop {
@@ -108,7 +108,7 @@ fn permutation(mut i: u32, length: u32, seed: u32) -> u32 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Stratified {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self { side: 0 }, Self { side: 4 }]
     }
@@ -121,9 +121,9 @@ mod tests {
     #[test]
     fn permutation_hits_every_place_once() {
         for (length, seed) in [(1, 5), (2, 9), (9, 3), (64, 77), (100, 1)] {
-            let mut places: Vec<u32> = (0..length).map(|i| permutation(i, length, hash::mix(seed))).collect();
-            places.sort_unstable();
-            assert!(places.into_iter().eq(0..length), "length {length}");
+            let mut elements: Vec<u32> = (0..length).map(|i| permutation(i, length, hash::mix(seed))).collect();
+            elements.sort_unstable();
+            assert!(elements.into_iter().eq(0..length), "length {length}");
         }
     }
 }

@@ -1,15 +1,15 @@
-//! What holds for every sampler, and how their errors look side by side.
+//! Properties of every sampler, and a comparison of their errors.
 
 use super::*;
 
-/// Every sampler's, for so many samples.
-fn patterns(samples: u32) -> Vec<Pattern> {
-    let [sobol, stratified] = [Sobol {}.pattern(samples), Stratified { side: 0 }.pattern(samples)];
-    let [independent, blue_noise] = [Independent {}.pattern(samples), BlueNoise {}.pattern(samples)];
+/// Patterns of all samplers for a number of samples.
+fn patterns(samples: u32) -> Vec<AnyPointSet> {
+    let [sobol, stratified] = [Sobol {}.point_set(samples), Stratified { side: 0 }.point_set(samples)];
+    let [independent, blue_noise] = [Independent {}.point_set(samples), BlueNoise {}.point_set(samples)];
     vec![sobol, stratified, independent, blue_noise]
 }
 
-fn points(pattern: Pattern, count: u32) -> Vec<Vec2> {
+fn points(pattern: AnyPointSet, count: u32) -> Vec<Vec2> {
     let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
     (0..count)
         .map(|i| {
@@ -33,7 +33,7 @@ fn one_dimensional_numbers_are_first_coordinates() {
     for pattern in patterns(16) {
         let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
         for (index, dimension) in (0..100).flat_map(|index| (0..4).map(move |dimension| (index, dimension))) {
-            let (mut one, mut two) = (pixel.sample(index).at(dimension), pixel.sample(index).at(dimension));
+            let (mut one, mut two) = (pixel.sample(index).skipped(dimension), pixel.sample(index).skipped(dimension));
             assert_eq!(one.next_1d().to_bits(), two.next_2d().x.to_bits(), "{pattern:?}, sample {index}");
             assert_eq!(one, two, "{pattern:?}: both leave the same dimension behind");
         }
@@ -42,7 +42,7 @@ fn one_dimensional_numbers_are_first_coordinates() {
 
 #[test]
 fn sobol_fills_every_elementary_interval_once() {
-    let points = points(Pattern::SobolPoints(SobolPoints), 256);
+    let points = points(AnyPointSet::SobolPoints(SobolPoints), 256);
     for bits in 0..=8 {
         let counts = cells(&points, 1 << bits, 1 << (8 - bits));
         assert!(counts.iter().all(|c| *c == 1), "2^{bits} columns");
@@ -52,7 +52,7 @@ fn sobol_fills_every_elementary_interval_once() {
 #[test]
 fn stratified_fills_every_cell_once_a_set() {
     for side in [1, 3, 8] {
-        let pixel = Sampler::new(Stratified { side }.pattern(1), 1).pixel(UVec2::new(9, 9));
+        let pixel = Sampler::new(Stratified { side }.point_set(1), 1).pixel(UVec2::new(9, 9));
         for dimension in 0..3 {
             let draw = |i: u32| {
                 let mut sampler = pixel.sample(i);
@@ -99,7 +99,7 @@ fn streams_are_uniform_and_unlike_each_other() {
 
 #[test]
 fn a_sample_depends_on_its_address_alone() {
-    let pixel = Sampler::new(Pattern::SobolPoints(SobolPoints), 11).pixel(UVec2::new(4, 2));
+    let pixel = Sampler::new(AnyPointSet::SobolPoints(SobolPoints), 11).pixel(UVec2::new(4, 2));
     let mut first = pixel.sample(5);
     first.next_2d();
     let second = first.next_2d();
@@ -109,12 +109,12 @@ fn a_sample_depends_on_its_address_alone() {
     assert_ne!(pixel.sample(6).next_2d(), pixel.sample(5).next_2d());
     assert_ne!(pixel.sample(5).branch(0).next_2d(), pixel.sample(5).branch(1).next_2d());
     assert_ne!(
-        Sampler::new(Pattern::SobolPoints(SobolPoints), 1 << 32).pixel(UVec2::ZERO),
-        Sampler::new(Pattern::SobolPoints(SobolPoints), 0).pixel(UVec2::ZERO)
+        Sampler::new(AnyPointSet::SobolPoints(SobolPoints), 1 << 32).pixel(UVec2::ZERO),
+        Sampler::new(AnyPointSet::SobolPoints(SobolPoints), 0).pixel(UVec2::ZERO)
     );
 }
 
-/// Numbers of two dimensions of a sample have nothing to do with each other, over all pixels.
+/// The numbers of two dimensions of a sample are independent, over all pixels.
 #[test]
 fn dimensions_are_unlike_each_other() {
     for pattern in patterns(16) {
@@ -123,7 +123,7 @@ fn dimensions_are_unlike_each_other() {
             let mut counts = [0.0; 64];
             for i in 0..64 * 64 * 16 {
                 let sample = picture.pixel(UVec2::new(i / 16 % 64, i / 1024)).sample(i % 16);
-                let (x, y) = (sample.at(a).next_1d(), sample.at(b).next_1d());
+                let (x, y) = (sample.skipped(a).next_1d(), sample.skipped(b).next_1d());
                 counts[((x * 8.0) as u32 * 8 + (y * 8.0) as u32) as usize] += 1.0;
             }
             let chi: f64 = counts.iter().map(|count: &f64| (count - 1024.0).powi(2) / 1024.0).sum();
@@ -132,20 +132,20 @@ fn dimensions_are_unlike_each_other() {
     }
 }
 
-/// The errors of a picture of edges and slopes, `EDGE` pixels wide and high.
-fn errors(pattern: Pattern, samples: u32, seed: u64) -> Vec<f64> {
+/// Errors of a picture with edges and slopes, `EDGE` pixels wide and high.
+fn errors(pattern: AnyPointSet, samples: u32, seed: u64) -> Vec<f64> {
     let value = |u: Vec2| f64::from(u8::from(u.x + 0.5 * u.y < 0.7)) + f64::from(u.x * u.y);
     let exact = 0.45 + 0.25;
     let picture = Sampler::new(pattern, seed);
     let pixels = (0..EDGE * EDGE).map(|i| picture.pixel(UVec2::new(i % EDGE, i / EDGE)));
-    let sum = |pixel: Sampler| (0..samples).map(|i| value(pixel.sample(i).at(3).next_2d())).sum::<f64>();
+    let sum = |pixel: Sampler| (0..samples).map(|i| value(pixel.sample(i).skipped(3).next_2d())).sum::<f64>();
     pixels.map(|pixel| sum(pixel) / f64::from(samples) - exact).collect()
 }
 
 const EDGE: u32 = 120;
 
-/// The mean square of the means over cells so wide and high, which begin nowhere in particular.
-fn coarse(errors: &[f64], cell: u32) -> f64 {
+/// Mean square of the means over cells of `cell` × `cell` pixels.
+fn mean_square_of_cells(errors: &[f64], cell: u32) -> f64 {
     let count = EDGE / cell;
     let mean = |from: UVec2| {
         let at = |i: u32| errors[((from.y + i / cell) * EDGE + from.x + i % cell) as usize];
@@ -155,17 +155,17 @@ fn coarse(errors: &[f64], cell: u32) -> f64 {
     cells.map(|from| mean(from).powi(2)).sum::<f64>() / f64::from(count * count)
 }
 
-/// Cells of 3 and 5 pixels, which do not fall together with the quarters that blue noise is made of. All of its pixels share
-/// one scrambling, which may suit a picture or not: several pictures.
+/// Cells of 3 and 5 pixels do not align with the quadrants of blue noise. All pixels share one
+/// scrambling, which may suit a picture or not, so the test averages several pictures.
 #[test]
 fn errors_of_blue_noise_are_of_high_frequency() {
     for samples in [1, 4, 16] {
         let [sobol, _, independent, blue] = patterns(samples).try_into().unwrap_or_else(|_| unreachable!());
         let [sobol, independent, blue] = [sobol, independent, blue].map(|pattern| {
             let pictures: Vec<Vec<f64>> = (0..12).map(|seed| errors(pattern, samples, seed)).collect();
-            [1, 3, 5].map(|cell| pictures.iter().map(|errors| coarse(errors, cell)).sum::<f64>() / 12.0)
+            [1, 3, 5].map(|cell| pictures.iter().map(|errors| mean_square_of_cells(errors, cell)).sum::<f64>() / 12.0)
         });
-        // As much error, at other frequencies.
+        // The total error is the same, at other frequencies.
         assert!((blue[0] / sobol[0] - 1.0).abs() < 0.2, "{samples} samples: {} and {}", blue[0], sobol[0]);
         for (i, share) in [(1, 0.8), (2, 0.6)] {
             let least = sobol[i].min(independent[i]);

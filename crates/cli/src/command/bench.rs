@@ -1,4 +1,4 @@
-//! `juggler bench`: what this machine does.
+//! `juggler bench`: benchmarks.
 
 use crate::failure::Failure;
 use clap::{Args, Subcommand};
@@ -10,24 +10,24 @@ mod schedulers;
 #[derive(Debug, Args)]
 pub struct Bench {
     #[command(subcommand)]
-    what: What,
+    benchmark: Benchmark,
 }
 
-/// Everything that is measured.
+/// Benchmarks.
 #[derive(Debug, Subcommand)]
-enum What {
-    /// How fast rays find their triangles: built-in meshes or files, six kinds of rays, all kernels
+enum Benchmark {
+    /// Ray casting: rays per second on meshes, for six kinds of rays and all kernels
     Rays(rays::Rays),
-    /// Compare ways to hand out pixels to threads: blocks of rows, a queue of rows, tiles that idle threads steal
+    /// Load balancing: blocks of rows, a queue of rows, and work stealing by tiles
     Schedulers(schedulers::Schedulers),
 }
 
 impl Bench {
-    /// Measures and prints a table.
+    /// Runs the benchmark and prints a table.
     pub fn run(self) -> Result<(), Failure> {
-        match self.what {
-            What::Rays(rays) => rays.run(),
-            What::Schedulers(schedulers) => schedulers.run(),
+        match self.benchmark {
+            Benchmark::Rays(rays) => rays.run(),
+            Benchmark::Schedulers(schedulers) => schedulers.run(),
         }
     }
 }

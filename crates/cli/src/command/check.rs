@@ -1,4 +1,4 @@
-//! `juggler check`: all mistakes of a scene at once, nothing rendered.
+//! `juggler check`: reports all mistakes of a scene at once, without rendering.
 
 use crate::console;
 use crate::failure::Failure;
@@ -9,12 +9,12 @@ use juggler::scene::{Illuminance, Problems};
 /// Flags of `juggler check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A scene file, a mesh (PLY, OBJ, STL), the name of a built-in scene, or `-` for standard input
+    /// Scene file, mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
     scene: String,
 }
 
 impl Check {
-    /// Prints what is wrong; warnings alone are no reason to say no.
+    /// Prints mistakes and warnings; warnings alone are no failure.
     pub fn run(self) -> Result<(), Failure> {
         match source::load(&self.scene, None) {
             Ok(scene) => {
@@ -28,12 +28,12 @@ impl Check {
 
     fn answer(&self, problems: &Problems, light: Option<&Illuminance>) -> Result<(), Failure> {
         if !problems.list().is_empty() {
-            console::say(&problems.render(console::color()));
+            console::print_message(&problems.render(console::color()));
         }
         if problems.errors() > 0 {
-            return Err(Failure::No);
+            return Err(Failure::Negative);
         }
         let light = light.map(|light| format!("; {light}")).unwrap_or_default();
-        console::print(&format!("{}: no mistakes{light}", self.scene))
+        console::print_result(&format!("{}: no mistakes{light}", self.scene))
     }
 }

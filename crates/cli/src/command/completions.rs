@@ -1,11 +1,11 @@
-//! `juggler completions SHELL`: what a shell needs to complete commands and flags.
+//! `juggler completions SHELL`: completion scripts for shells.
 
 use crate::args::Args;
 use crate::console;
 use crate::failure::Failure;
 use clap_complete::{Shell, generate};
 
-/// Shown after the help.
+/// Text after the help.
 pub const EXAMPLES: &str = "\
 Examples:
   juggler completions bash > ~/.local/share/bash-completion/completions/juggler
@@ -15,7 +15,7 @@ Examples:
 /// Flags of `juggler completions`.
 #[derive(Debug, clap::Args)]
 pub struct Completions {
-    /// The shell that completes
+    /// Shell to generate the script for
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -25,6 +25,6 @@ impl Completions {
     pub fn run(self) -> Result<(), Failure> {
         let mut script = Vec::new();
         generate(self.shell, &mut Args::command_line(), "juggler", &mut script);
-        console::print(&String::from_utf8_lossy(&script))
+        console::print_result(&String::from_utf8_lossy(&script))
     }
 }

@@ -1,5 +1,5 @@
-//! `juggler convert`: any readable scene as scene JSON, with everything that moves or as it stands at one frame; a mesh as a
-//! scene around it.
+//! `juggler convert`: writes any readable scene as scene JSON, with its animation or at one frame;
+//! a mesh becomes a scene around it.
 
 use crate::failure::Failure;
 use crate::output;
@@ -10,11 +10,11 @@ use std::path::Path;
 /// Flags of `juggler convert`.
 #[derive(Debug, Args)]
 pub struct Convert {
-    /// A scene file, a mesh (PLY, OBJ, STL), the name of a built-in scene, or `-` for standard input
+    /// Scene file, mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
     scene: String,
-    /// The file to write, `-` for standard output
+    /// Output file, or `-` for standard output
     output: String,
-    /// Write the scene as it stands at this frame, without expressions and animation
+    /// Evaluate the scene at this frame, without expressions and animations
     #[arg(long, value_name = "N")]
     frame: Option<u32>,
 }

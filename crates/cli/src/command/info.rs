@@ -1,4 +1,4 @@
-//! `juggler info`: what is in a scene or a mesh, and what a picture or a part of one says about itself.
+//! `juggler info`: contents of a scene or mesh, and metadata of a picture or partial render.
 
 mod mesh;
 mod motion;
@@ -12,43 +12,43 @@ use crate::source;
 use clap::Args;
 use juggler::film;
 use juggler::imaging::layered::{LayerName, layer_names};
-use juggler::imaging::{self, Facts, Format, regular};
+use juggler::imaging::{self, ImageFormat, ImageInfo, regular};
 use juggler::light::background::AnyBackground;
 use juggler::math::{Aabb, message};
 use juggler::scene::{Compiled, Illuminance, Scene, import};
-use juggler::world::Geometry;
+use juggler::world::GeometryStats;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// Flags of `juggler info`.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// A scene file, the name of a built-in scene, `-` for standard input, a mesh (PLY, OBJ, STL), a picture, or a part of
-    /// one (.jfilm)
+    /// Scene file, built-in scene, `-` for standard input, mesh (PLY, OBJ, STL), picture, or
+    /// partial render (.jfilm)
     scene: String,
-    /// As one JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
 impl Info {
-    /// Prints what a picture says, or builds the world or mesh and prints what is in it.
+    /// Prints the metadata of a picture, or builds the world or mesh and prints its contents.
     pub fn run(self) -> Result<(), Failure> {
         let answer = self.answer()?;
-        console::print(&if self.json { answer } else { message::printable_lines(&answer) })
+        console::print_result(&if self.json { answer } else { message::printable_lines(&answer) })
     }
 
     fn answer(&self) -> Result<String, Failure> {
         let path = Path::new(&self.scene);
-        if import::Content::of_file(path).is_mesh() {
+        if import::Content::detect(path).is_mesh() {
             return Ok(mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();
-        let named = Format::from_path(path).ok().filter(|_| path.is_file());
-        if let Some(format) = Format::from_first_bytes(&start).or(named) {
+        let named = ImageFormat::from_path(path).ok().filter(|_| path.is_file());
+        if let Some(format) = ImageFormat::from_first_bytes(&start).or(named) {
             return self.picture(format);
         }
-        if film::is_part(&start) {
+        if film::is_partial_render(&start) {
             return part::text(path, self.json);
         }
         let scene = source::load(&self.scene, None)?;
@@ -57,15 +57,15 @@ impl Info {
         Ok(text(&self.scene, &scene, &compiled))
     }
 
-    fn picture(&self, format: Format) -> Result<String, Failure> {
-        let Facts { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+    fn picture(&self, format: ImageFormat) -> Result<String, Failure> {
+        let ImageInfo { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
         let layers = layer_names(Path::new(&self.scene))?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
-            *text = reproduce::told_by(&self.scene, text);
+            *text = reproduce::with_file_name(&self.scene, text);
         }
         if self.json {
             let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
-            let name = format.ending();
+            let name = format.extension();
             let json = json!({
                 "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts,
                 "layers": layers.iter().map(|layer| json!({"name": layer.name, "channels": layer.channels})).collect::<Vec<_>>(),
@@ -74,26 +74,26 @@ impl Info {
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
         let keys = std::iter::once("layers").chain(std::iter::repeat(""));
-        let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_in_words(layer)));
+        let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_text(layer)));
         let head = [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))];
         let lines = head.into_iter().chain(layers).chain(texts);
         Ok(lines.collect::<Vec<_>>().join("\n"))
     }
 }
 
-/// A row of the answer: a key and its value.
+/// Row of the output: key and value.
 fn row(key: &str, value: &str) -> String {
     format!("{key:12} {value}")
 }
 
-/// `albedo: R, G, B`; channels without the name of a layer stand alone.
-fn layer_in_words(LayerName { name, channels }: &LayerName) -> String {
+/// `albedo: R, G, B`; only the channels if the layer has no name.
+fn layer_text(LayerName { name, channels }: &LayerName) -> String {
     let channels = channels.join(", ");
     if name.is_empty() { channels } else { format!("{name}: {channels}") }
 }
 
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
-    let geometry = compiled.world.geometry();
+    let geometry = compiled.world.geometry_stats();
     let settings = &compiled.settings;
     let description = &scene.description;
     let title = if description.title.is_empty() { name } else { &description.title };
@@ -107,27 +107,27 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("picture", format!("{width}x{height}, {}", counted(settings.samples.into(), "sample")));
     row("integrator", format!("{}, {}", compiled.integrator.integrator.name(), compiled.integrator.reason));
     row("shapes", geometry.shapes.to_string());
-    row("triangles", triangles_in_words(&geometry));
+    row("triangles", triangles_text(&geometry));
     if geometry.instances > 0 {
         row("instances", geometry.instances.to_string());
     }
     let brightest = compiled.illuminance.as_ref().map(|light| format!(", {light}")).unwrap_or_default();
     row("lights", format!("{}{brightest}", geometry.lights));
     row("emitting", counted(geometry.emitting_shapes as u128, "shape"));
-    row("background", background_in_words(compiled.world.backdrop()));
-    row("far lights", far_in_words(&compiled.world.far_lights()));
+    row("background", background_text(compiled.world.background()));
+    row("infinite", infinite_lights_text(&compiled.world.infinite_lights()));
     row("materials", description.materials.len().to_string());
-    row("textures", textures_in_words(description.textures.len(), geometry.texture_bytes));
+    row("textures", textures_text(description.textures.len(), geometry.texture_bytes));
     row("cameras", cameras.join(", "));
-    row("bounds", bounds_in_words(&compiled.world.bounds()));
-    row("memory", memory_in_words(geometry.geometry_bytes, geometry.bvh_bytes));
+    row("bounds", bounds_text(&compiled.world.bounds()));
+    row("memory", memory_text(geometry.geometry_bytes, geometry.bvh_bytes));
     motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
     lines.join("\n")
 }
 
 /// `1000000, 1000 of them stored`.
-fn triangles_in_words(geometry: &Geometry) -> String {
-    let Geometry { triangles, unique_triangles, .. } = *geometry;
+fn triangles_text(geometry: &GeometryStats) -> String {
+    let GeometryStats { triangles, unique_triangles, .. } = *geometry;
     if triangles == unique_triangles {
         triangles.to_string()
     } else {
@@ -135,31 +135,31 @@ fn triangles_in_words(geometry: &Geometry) -> String {
     }
 }
 
-fn memory_in_words(geometry: usize, bvh: usize) -> String {
+fn memory_text(geometry: usize, bvh: usize) -> String {
     format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
 }
 
 /// `gradient, 0.2 0.3 0.5 on average`.
-fn background_in_words(background: &AnyBackground) -> String {
-    let [r, g, b] = background.mean().to_array().map(|channel| (channel * 1e4).round() / 1e4);
+fn background_text(background: &AnyBackground) -> String {
+    let [r, g, b] = background.mean_radiance().to_array().map(|channel| (channel * 1e4).round() / 1e4);
     format!("{}, {r} {g} {b} on average", background.name())
 }
 
-/// What has no place and yet gives light to paths, and how often which of it is asked: `directional 85 %, sky 15 %`.
-fn far_in_words(lights: &[(&str, f32)]) -> String {
-    let told: Vec<String> = lights.iter().map(|(name, chance)| format!("{name} {:.0} %", chance * 100.0)).collect();
-    if told.is_empty() { "none".into() } else { told.join(", ") }
+/// Infinite lights with their probabilities of being light-sampled: `directional 85 %, sky 15 %`.
+fn infinite_lights_text(lights: &[(&str, f32)]) -> String {
+    let lights: Vec<String> = lights.iter().map(|(name, chance)| format!("{name} {:.0} %", chance * 100.0)).collect();
+    if lights.is_empty() { "none".into() } else { lights.join(", ") }
 }
 
 /// `3, 12 MiB of pictures`.
-fn textures_in_words(count: usize, pictures: usize) -> String {
+fn textures_text(count: usize, pictures: usize) -> String {
     if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures as u64)) } else { count.to_string() }
 }
 
-fn bounds_in_words(bounds: &Aabb) -> String {
+fn bounds_text(bounds: &Aabb) -> String {
     match corners(bounds) {
         Some([min, max]) => format!("[{}, {}, {}] to [{}, {}, {}]", min[0], min[1], min[2], max[0], max[1], max[2]),
-        None => "nothing bounded".into(),
+        None => "no bounded shape".into(),
     }
 }
 
@@ -169,10 +169,10 @@ fn corners(bounds: &Aabb) -> Option<[[f32; 3]; 2]> {
 
 fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     let world = &compiled.world;
-    let geometry = world.geometry();
+    let geometry = world.geometry_stats();
     let settings = &compiled.settings;
     let description = &scene.description;
-    let far = world.far_lights().into_iter().map(|(kind, chance)| json!({"kind": kind, "chance": chance}));
+    let far = world.infinite_lights().into_iter().map(|(kind, chance)| json!({"kind": kind, "chance": chance}));
     let far: Vec<Value> = far.collect();
     json!({
         "version": 1,
@@ -192,7 +192,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "emitting_shapes": geometry.emitting_shapes,
         },
         "illuminance": compiled.illuminance.as_ref().map(|Illuminance { light, value }| json!({"light": light, "middle": value})),
-        "background": {"kind": world.backdrop().name(), "mean": world.backdrop().mean().to_array()},
+        "background": {"kind": world.background().name(), "mean": world.background().mean_radiance().to_array()},
         "far_lights": far,
         "materials": description.materials.len(),
         "textures": description.textures.len(),

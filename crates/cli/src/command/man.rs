@@ -1,4 +1,4 @@
-//! `juggler man`: manual pages, from the same table of commands and flags as the help.
+//! `juggler man`: manual pages, from the same definitions as the help.
 
 use crate::args::Args;
 use crate::console;
@@ -11,15 +11,15 @@ use std::path::Path;
 /// Flags of `juggler man`.
 #[derive(Debug, clap::Args)]
 pub struct Manual {
-    /// A command, such as `render` [default: the page of `juggler` itself]
+    /// Command, such as `render` [default: the page of `juggler` itself]
     command: Option<String>,
-    /// Write the pages of all commands into this folder, as juggler.1, juggler-render.1 and so on
+    /// Write the pages of all commands into this folder: juggler.1, juggler-render.1 and so on
     #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
     folder: Option<String>,
 }
 
 impl Manual {
-    /// Prints a page, or writes all.
+    /// Prints a page, or writes all pages.
     pub fn run(self) -> Result<(), Failure> {
         let mut program = Args::command_line();
         program.build();
@@ -35,7 +35,7 @@ impl Manual {
 }
 
 fn print(command: &Command) -> Result<(), Failure> {
-    console::print(&String::from_utf8_lossy(&page(command)?))
+    console::print_result(&String::from_utf8_lossy(&page(command)?))
 }
 
 fn write(folder: &str, command: &Command) -> Result<(), Failure> {
@@ -43,7 +43,7 @@ fn write(folder: &str, command: &Command) -> Result<(), Failure> {
     atomic::write(Path::new(&file), &page(command)?).map_err(|error| Failure::file("write", &file, &error))
 }
 
-/// `juggler-render`.
+/// Title of a page, such as `juggler-render`.
 fn title(command: &Command) -> String {
     command.get_display_name().unwrap_or(command.get_name()).to_owned()
 }

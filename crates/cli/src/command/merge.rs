@@ -1,4 +1,4 @@
-//! `juggler merge`: parts of a picture become the picture, or a larger part.
+//! `juggler merge`: joins partial renders into a picture or a larger partial render.
 
 mod memory;
 
@@ -7,23 +7,23 @@ use crate::failure::Failure;
 use crate::format::{bytes, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::effect::{self, Given};
-use crate::plan::layers::{self, Place};
+use crate::plan::aovs::{self, AovOutput};
+use crate::plan::effect::{self, FlagUse};
 use crate::plan::{Encoding, PART_ENDING, Target};
-use crate::progress::{Goal, Reporter, Watch, watched};
+use crate::progress::{Goal, Reporter, Watch, with_progress};
 use crate::reproduce::SAMPLES;
-use crate::stats::{self, Clamped};
+use crate::stats::{self, ClampStats};
 use crate::value;
 use clap::Args;
-use juggler::camera::film::{Digest, Summary};
-use juggler::denoise::Guides;
-use juggler::film::counts::Spread;
-use juggler::film::{self, Description, Stop, Wanted};
+use juggler::camera::film::{FilmDigest, FilmSummary};
+use juggler::denoise::DenoiserInput;
+use juggler::film::counts::SampleCountStats;
+use juggler::film::{self, MergeGoal, RenderDescription, Stop};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
 use juggler::render::Control;
-use juggler::{Denoiser, LayerSet};
+use juggler::{AovSet, Denoiser};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,69 +34,84 @@ pub struct Merge {
     /// Parts of one picture (.jfilm), in any order
     #[arg(required = true, value_name = "PART")]
     parts: Vec<String>,
-    /// Where the picture goes; the ending says the format: a picture needs all its parts, a .jfilm takes what is there
+    /// Output file; its extension selects the format
+    ///
+    /// A picture needs all its parts. A .jfilm joins any parts to a larger one.
     #[arg(short, long, value_name = "FILE")]
     output: String,
-    /// The file format of the picture, instead of the one that the ending says
+    /// File format of the picture, instead of the one that the extension selects
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
-    /// Bits of a channel: 8 or 16 in a PNG, 16 or 32 in an EXR
+    /// Bits per channel: 8 or 16 for PNG, 16 or 32 for EXR
     #[arg(long, value_name = "N")]
     bits: Option<u8>,
-    /// Quality of a JPEG
+    /// Quality of a JPEG [default: 95]
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
-    /// Where layers go that the parts keep: one .exr, or one .exr or .npy each where the name holds `{}` for the layer's. Without
-    /// it an EXR holds them itself, another picture has them beside it (NAME.layers.exr)
+    /// File for the AOVs of the parts: one .exr, or one .exr or .npy per AOV if the name contains
+    /// `{}`
+    ///
+    /// By default, an EXR picture contains the AOVs as layers; other pictures get a file beside
+    /// them (NAME.layers.exr).
     #[arg(long, value_name = "FILE")]
     aov_output: Option<String>,
-    /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
+    /// Write statistics as JSON; `-` is standard output
+    ///
+    /// Statistics are counts, times, and a hash of the pixels.
     #[arg(long, value_name = "FILE")]
     stats: Option<String>,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
-    /// Refuse, before any tile is joined, what needs more memory than this
+    /// Memory limit, such as 4G
+    ///
+    /// A merge that needs more is refused before any tile is read.
     #[arg(long, value_name = "SIZE", value_parser = value::memory)]
     max_memory: Option<u64>,
 }
 
-/// What was made.
-enum Made {
-    /// A picture, and its samples per pixel where noise or time ended it.
-    Picture(Summary, Option<Spread>),
-    /// A part of so many bytes.
+/// Result of a merge.
+enum MergeOutput {
+    /// A picture, and its numbers of samples per pixel if a noise level or a time limit ended the
+    /// render.
+    Picture(FilmSummary, Option<SampleCountStats>),
+    /// A partial render of this length in bytes.
     Part(u64),
 }
 
-/// The pixels of the picture that the parts make, without noise.
+/// Denoised pixels of the merged picture.
 fn denoised(
     merge: &film::Merge,
-    set: &LayerSet,
+    set: &AovSet,
     denoiser: Denoiser,
     interrupts: &Interrupts,
 ) -> Result<Vec<Rgb>, Failure> {
-    let mut guides = Guides::new(merge.description().region);
-    merge.rows_of_tiles(|_, tiles, _| {
+    let mut input = DenoiserInput::new(merge.description().region);
+    merge.tile_rows(|_, tiles, _| {
         interrupts.check()?;
-        tiles.iter().for_each(|tile| guides.add(set, tile));
+        tiles.iter().for_each(|tile| input.add(set, tile));
         Ok::<(), Failure>(())
     })?;
     let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
     let control = Control::default();
-    let watch =
-        Watch { reporter: &Reporter::Nothing, interrupts, control: &control, goal: Goal::Samples(0), course: None };
-    let denoised = watched(&watch, || guides.denoise(denoiser, library.as_deref(), &control))?;
+    let watch = Watch {
+        reporter: &Reporter::Nothing,
+        interrupts,
+        control: &control,
+        goal: Goal::Samples(0),
+        frame_progress: None,
+    };
+    let denoised = with_progress(&watch, || input.denoise(denoiser, library.as_deref(), &control))?;
     interrupts.check()?;
     Ok(denoised.map(|denoised| denoised.pixels).unwrap_or_default())
 }
 
-/// The samples per pixel of a picture that noise or time ended.
-fn spread(merge: &film::Merge) -> Result<Option<Spread>, Failure> {
+/// Numbers of samples per pixel, if a noise level or a time limit ended the render.
+fn sample_counts(merge: &film::Merge) -> Result<Option<SampleCountStats>, Failure> {
     if merge.description().stop == Stop::Samples {
         return Ok(None);
     }
-    Ok(Some(Spread::of_counts(&merge.description().layout(), &merge.counts()?)))
+    Ok(Some(SampleCountStats::from_counts(&merge.description().tiling(), &merge.counts()?)))
 }
 
 impl Merge {
@@ -107,29 +122,30 @@ impl Merge {
         output::check_stream(&self.output)?;
         let is_part =
             Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
-        let (merge, made) = if is_part {
-            effect::check(Target::Part, &self.given())?;
-            let merge = film::Merge::open(&self.parts, Wanted::Part)?;
+        let (merge, merged) = if is_part {
+            effect::check(Target::Part, &self.flags())?;
+            let merge = film::Merge::open(&self.parts, MergeGoal::PartialRender)?;
             if self.max_memory.is_some() {
-                memory::check(&merge, &LayerSet::of_part(&merge.description().layers)?, None, self.max_memory)?;
+                memory::check(&merge, &AovSet::from_description(&merge.description().aovs)?, None, self.max_memory)?;
             }
             let interrupts = Interrupts::watch()?;
-            let made = Made::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
-            (merge, made)
+            let merged = MergeOutput::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
+            (merge, merged)
         } else {
             let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
-            effect::check(Target::Picture(encoding), &self.given())?;
-            let merge = film::Merge::open(&self.parts, Wanted::Whole)?;
-            let spread = spread(&merge)?;
+            effect::check(Target::Picture(encoding), &self.flags())?;
+            let merge = film::Merge::open(&self.parts, MergeGoal::Whole)?;
+            let sample_counts = sample_counts(&merge)?;
             let interrupts = Interrupts::watch()?;
-            let made = Made::Picture(self.picture(&merge, encoding, spread, &interrupts)?, spread);
-            (merge, made)
+            let merged =
+                MergeOutput::Picture(self.picture(&merge, encoding, sample_counts, &interrupts)?, sample_counts);
+            (merge, merged)
         };
-        self.report(merge.description(), &made, start)
+        self.report(merge.description(), &merged, start)
     }
 
-    /// Flags that not every target can obey.
-    fn given(&self) -> [Given; 4] {
+    /// Flags that not every target supports.
+    fn flags(&self) -> [FlagUse; 4] {
         [
             ("--format", self.format.is_some()),
             ("--bits", self.bits.is_some()),
@@ -142,25 +158,25 @@ impl Merge {
         &self,
         merge: &film::Merge,
         encoding: Encoding,
-        spread: Option<Spread>,
+        sample_counts: Option<SampleCountStats>,
         interrupts: &Interrupts,
-    ) -> Result<Summary, Failure> {
+    ) -> Result<FilmSummary, Failure> {
         let Encoding { format, options } = encoding;
-        let Description { region, tone, metadata, viewpoint, .. } = merge.description();
+        let RenderDescription { region, tone, metadata, viewpoint, .. } = merge.description();
         let (mut metadata, viewpoint) = (metadata.clone(), *viewpoint);
-        if let Some(spread) = spread {
-            metadata.push((SAMPLES.to_owned(), spread.to_string()));
+        if let Some(sample_counts) = sample_counts {
+            metadata.push((SAMPLES.to_owned(), sample_counts.to_string()));
         }
         let tone: Tone = serde_json::from_value(tone.clone())
-            .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
-        if let Some(warning) = effect::idle_tone(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
-            console::say(&warning);
+            .map_err(|error| Failure::System(format!("cannot read the tone settings of the parts: {error}")))?;
+        if let Some(warning) = effect::ignored_tone_warning(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
+            console::print_message(&warning);
         }
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
-        let set = LayerSet::of_part(&merge.description().layers)?;
+        let set = AovSet::from_description(&merge.description().aovs)?;
         memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
-        let mut layers = self.layers(&set, &header)?;
-        let with_picture = layers.as_ref().is_some_and(|(_, with_picture)| *with_picture);
+        let mut aov_writer = self.aov_writer(&set, &header)?;
+        let with_picture = aov_writer.as_ref().is_some_and(|(_, with_picture)| *with_picture);
         let mut writer = match self.output.as_str() {
             _ if with_picture => None,
             STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
@@ -168,92 +184,92 @@ impl Merge {
         };
         let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
         let mut rest = denoised.as_deref();
-        let summary = merge.rows_of_tiles(|band, tiles, rows| {
+        let summary = merge.tile_rows(|band, tiles, rows| {
             interrupts.check()?;
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
-            if let Some((writer, with_picture)) = &mut layers {
+            if let Some((writer, with_picture)) = &mut aov_writer {
                 writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
             }
             Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
         })?;
         writer.map_or(Ok(()), |writer| writer.finish())?;
-        layers.map_or(Ok(()), |(writer, _)| writer.finish())?;
+        aov_writer.map_or(Ok(()), |(writer, _)| writer.finish())?;
         let Some(pixels) = denoised else { return Ok(summary) };
-        let mut digest = Digest::new(region.width, region.height);
+        let mut digest = FilmDigest::new(region.width, region.height);
         digest.update(&pixels);
-        let Summary { hash, mean, .. } = digest.finish();
-        Ok(Summary { hash, mean, ..summary })
+        let FilmSummary { hash, mean, .. } = digest.finish();
+        Ok(FilmSummary { hash, mean, ..summary })
     }
 
-    /// The layers that the parts keep, and their file; whether the picture is in it.
-    fn layers(&self, set: &LayerSet, header: &Header) -> Result<Option<(LayeredWriter, bool)>, Failure> {
-        if set.wanted().is_empty() {
+    /// Writer of the AOVs of the parts, and whether its file contains the picture too.
+    fn aov_writer(&self, set: &AovSet, header: &Header) -> Result<Option<(LayeredWriter, bool)>, Failure> {
+        if set.aovs().is_empty() {
             return match &self.aov_output {
                 Some(_) => {
-                    Err(Failure::Wrong("--aov-output: the parts keep no layers (`juggler render --aov`)".into()))
+                    Err(Failure::Invalid("--aov-output: the parts contain no AOVs; render them with --aov".into()))
                 }
                 None => Ok(None),
             };
         }
-        let place = layers::place(&self.output, self.aov_output.as_deref());
+        let place = aovs::output_for(&self.output, self.aov_output.as_deref());
         let (file, with_picture) = match &place {
-            Place::InPicture => (self.output.as_str(), true),
-            Place::File(_) if self.aov_output.is_none() && self.output == STANDARD_OUTPUT => return Ok(None),
-            Place::File(file) => (file.as_str(), false),
+            AovOutput::InPicture => (self.output.as_str(), true),
+            AovOutput::File(_) if self.aov_output.is_none() && self.output == STANDARD_OUTPUT => return Ok(None),
+            AovOutput::File(file) => (file.as_str(), false),
         };
         let writer = LayeredWriter::create(Path::new(file), &set.file_header(header, with_picture))?;
         Ok(Some((writer, with_picture)))
     }
 
-    fn report(&self, picture: &Description, made: &Made, start: Instant) -> Result<(), Failure> {
+    fn report(&self, picture: &RenderDescription, merged: &MergeOutput, start: Instant) -> Result<(), Failure> {
         let took = start.elapsed();
         if let Some(file) = &self.stats {
-            output::write_text(file, &self.to_json(picture, made, took.as_secs_f64()))?;
+            output::write_text(file, &self.to_json(picture, merged, took.as_secs_f64()))?;
         }
         if self.quiet {
             return Ok(());
         }
         let [width, height] = [picture.region.width, picture.region.height];
-        let what = match made {
-            Made::Picture(film, spread) => {
-                let samples = samples(&spread.unwrap_or(Spread::even(picture.samples)));
+        let what = match merged {
+            MergeOutput::Picture(film, sample_counts) => {
+                let samples = samples(&sample_counts.unwrap_or(SampleCountStats::uniform(picture.samples)));
                 if picture.clamped { format!("{samples}, {}", clamping(film)) } else { samples }
             }
-            Made::Part(length) if picture.finished => format!("whole, {}", bytes(*length)),
-            Made::Part(length) => format!("not all of it, {}", bytes(*length)),
+            MergeOutput::Part(length) if picture.finished => format!("complete, {}", bytes(*length)),
+            MergeOutput::Part(length) => format!("incomplete, {}", bytes(*length)),
         };
         let parts = counted(self.parts.len() as u128, "part");
         let line = format!("{}: {width}x{height}, {what}, of {parts}, {}", self.output, duration(took));
         if self.output == STANDARD_OUTPUT || self.stats.as_deref() == Some(STANDARD_OUTPUT) {
-            console::say(&line);
+            console::print_message(&line);
             return Ok(());
         }
-        console::print(&line)
+        console::print_result(&line)
     }
 
-    /// The keys have the meaning that they have for a render.
-    fn to_json(&self, picture: &Description, made: &Made, seconds: f64) -> String {
-        let film = match made {
-            Made::Picture(film, _) if picture.clamped => {
-                json!({"mean": film.mean, "hash": film.hash, "clamped": Clamped::of(film)})
+    /// Statistics as JSON, with the keys of a render's.
+    fn to_json(&self, picture: &RenderDescription, merged: &MergeOutput, seconds: f64) -> String {
+        let film = match merged {
+            MergeOutput::Picture(film, _) if picture.clamped => {
+                json!({"mean": film.mean, "hash": film.hash, "clamped": ClampStats::of(film)})
             }
-            Made::Picture(Summary { hash, mean, .. }, _) => json!({"mean": mean, "hash": hash}),
-            Made::Part(_) => serde_json::Value::Null,
+            MergeOutput::Picture(FilmSummary { hash, mean, .. }, _) => json!({"mean": mean, "hash": hash}),
+            MergeOutput::Part(_) => serde_json::Value::Null,
         };
-        let spread = if let Made::Picture(_, spread) = made { *spread } else { None };
+        let sample_counts = if let MergeOutput::Picture(_, sample_counts) = merged { *sample_counts } else { None };
         let mut json = json!({
             "version": 1,
             "scene": picture.scene,
             "size": [picture.region.width, picture.region.height],
-            "samples": spread.map_or(picture.samples, |spread| spread.max),
+            "samples": sample_counts.map_or(picture.samples, |sample_counts| sample_counts.max),
             "finished": picture.finished,
             "camera": stats::camera(picture.viewpoint.as_ref()),
             "parts": self.parts.len(),
             "seconds": {"total": seconds},
             "film": film,
         });
-        if let Some(spread) = spread {
-            json["samples_per_pixel"] = json!(spread);
+        if let Some(sample_counts) = sample_counts {
+            json["samples_per_pixel"] = json!(sample_counts);
         }
         json.to_string()
     }

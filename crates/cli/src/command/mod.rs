@@ -1,4 +1,4 @@
-//! The commands: one file each, with its flags and what it does.
+//! The commands: one file each, with its flags and its implementation.
 
 use crate::failure::Failure;
 use clap::Subcommand;
@@ -21,48 +21,52 @@ mod serve;
 #[cfg(feature = "view")]
 mod view;
 
-/// Every command.
+/// All commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render a picture, or the pictures of an animation
+    /// Render a picture or the frames of an animation
     #[command(after_help = render::MORE, after_long_help = render::EXAMPLES)]
     Render(Box<crate::args::RenderArgs>),
-    /// Walk around in a scene, in a window
+    /// Open a scene in an interactive window
     #[cfg(feature = "view")]
     View(view::View),
-    /// Say all that is wrong with a scene, without rendering it
+    /// Report all mistakes in a scene without rendering it
     Check(check::Check),
-    /// Say what is in a scene, or what a picture or a part of one says about itself
+    /// Show the contents of a scene, mesh, picture or partial render
     Info(info::Info),
-    /// Join parts of a picture: to the picture, with the bytes of a single render, or to a larger part
+    /// Join partial renders into a picture or a larger partial render
+    ///
+    /// The picture is identical to that of a single render, byte by byte.
     Merge(merge::Merge),
-    /// Mix the lights of a rendered film anew: brighter, darker, of another colour, without tracing a ray
+    /// Change the brightness and color of lights after rendering
+    ///
+    /// Combines the light groups of a finished render with new factors, without tracing rays.
     Relight(relight::Relight),
-    /// Write the JSON Schema of the scene format
+    /// Print the JSON Schema of the scene format
     Schema,
-    /// Write any readable scene as scene JSON
+    /// Convert a scene or a mesh to scene JSON
     Convert(convert::Convert),
-    /// Say why a pixel is as it is, or which pixels are fireflies and why
+    /// Explain a pixel by its paths and lights, or find fireflies
     #[command(after_long_help = probe::EXAMPLES)]
     Probe(Box<probe::Probe>),
-    /// Say how different two pictures are
+    /// Measure the difference between two pictures
     Compare(compare::Compare),
     /// List the built-in scenes
     Scenes,
-    /// Look at a scene in a browser, fly through it, change it
+    /// Serve the interactive viewer to a web browser
     #[cfg(feature = "serve")]
     Serve(serve::Serve),
-    /// Measure this machine
+    /// Run benchmarks on this machine
     Bench(bench::Bench),
-    /// Print what a shell needs to complete commands and flags
+    /// Print a completion script for a shell
     #[command(after_help = completions::EXAMPLES)]
     Completions(completions::Completions),
-    /// Print a manual page, or write those of all commands
+    /// Print a manual page, or write the pages of all commands
     Man(man::Manual),
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the command.
     pub fn run(self) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(*args),

@@ -1,4 +1,5 @@
-//! `juggler relight`: a picture whose lights are brighter, darker or of another colour, without tracing a ray again.
+//! `juggler relight`: changes the brightness and color of light groups after rendering, without
+//! tracing rays.
 
 use crate::console;
 use crate::failure::Failure;
@@ -8,10 +9,10 @@ use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::camera::film::{Rect, Tile};
-use juggler::film::{self, Description, Wanted};
+use juggler::film::{self, MergeGoal, RenderDescription};
 use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
-use juggler::{LayerSet, MOST_GAIN};
+use juggler::{AovSet, MAX_GAIN};
 use std::path::Path;
 use std::time::Instant;
 
@@ -21,31 +22,34 @@ pub struct Relight {
     /// All parts (.jfilm) of a picture rendered with `--aov light_groups`, in any order
     #[arg(required = true, value_name = "FILM")]
     films: Vec<String>,
-    /// Factors on groups of lights with commas between: key=2,fill=#ffc080; `rest` are the lights of no group, 0 switches off
+    /// Factors of light groups, such as key=2,fill=#ffc080
+    ///
+    /// The group `rest` contains the lights of no group. A factor is a number or a color; 0
+    /// switches a group off.
     #[arg(short, long, value_name = "GROUP=FACTOR")]
     gain: String,
-    /// Where the picture goes; the ending says the format
+    /// Output file; its extension selects the format
     #[arg(short, long, value_name = "FILE")]
     output: String,
-    /// The file format, instead of the one that the ending says
+    /// File format, instead of the one that the extension selects
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
-    /// Bits of a channel: 8 or 16 in a PNG, 16 or 32 in an EXR
+    /// Bits per channel: 8 or 16 for PNG, 16 or 32 for EXR
     #[arg(long, value_name = "N")]
     bits: Option<u8>,
-    /// Quality of a JPEG
+    /// Quality of a JPEG [default: 95]
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
-    /// Stops by which the picture is brightened, instead of those of the render
+    /// Exposure in stops, instead of that of the render
     #[arg(long, value_name = "STOPS")]
     exposure: Option<f32>,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(short, long)]
     quiet: bool,
 }
 
 impl Relight {
-    /// Mixes the groups anew.
+    /// Combines the light groups with the factors and writes the picture.
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
         output::check_stream(&self.output)?;
@@ -53,12 +57,13 @@ impl Relight {
         let given = [("--quality", self.quality.is_some()), ("--exposure", self.exposure.is_some())];
         effect::check(Target::Picture(encoding), &given)?;
         let Encoding { format, options } = encoding;
-        let merge = film::Merge::open(&self.films, Wanted::Whole)?;
-        let Description { region, tone, metadata, layers, viewpoint, .. } = merge.description();
-        let set = LayerSet::of_part(layers)?;
+        let merge = film::Merge::open(&self.films, MergeGoal::Whole)?;
+        let RenderDescription { region, tone, metadata, aovs, viewpoint, .. } = merge.description();
+        let set = AovSet::from_description(aovs)?;
         let gains = gains(&self.gain, &set)?;
-        let mut tone: Tone = serde_json::from_value(tone.clone())
-            .map_err(|error| Failure::System(format!("the film's tone curve cannot be read: {error}")))?;
+        let mut tone: Tone = serde_json::from_value(tone.clone()).map_err(|error| {
+            Failure::System(format!("cannot read the tone settings of the partial render: {error}"))
+        })?;
         tone.exposure_stops = self.exposure.unwrap_or(tone.exposure_stops);
         let mut metadata = metadata.clone();
         metadata.push(("Gain".to_owned(), self.gain.clone()));
@@ -69,7 +74,7 @@ impl Relight {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
             file => imaging::create(Path::new(file), format, &header)?,
         };
-        merge.rows_of_tiles(|band, tiles, _| {
+        merge.tile_rows(|band, tiles, _| {
             interrupts.check()?;
             Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
         })?;
@@ -83,33 +88,35 @@ impl Relight {
         }
         let line = format!("{}: {width}x{height}, {}", self.output, duration(start.elapsed()));
         if self.output == STANDARD_OUTPUT {
-            console::say(&line);
+            console::print_message(&line);
             return Ok(());
         }
-        console::print(&line)
+        console::print_result(&line)
     }
 }
 
-/// A row of tiles, mixed anew.
-fn relit(set: &LayerSet, gains: &[Rgb], band: &Rect, tiles: &[Tile]) -> Vec<Rgb> {
+/// Relights a row of tiles.
+fn relit(set: &AovSet, gains: &[Rgb], band: &Rect, tiles: &[Tile]) -> Vec<Rgb> {
     let mut pixels = vec![Rgb::BLACK; band.area() as usize];
-    tiles.iter().for_each(|tile| tile.pixels().copy(&set.relit(tile, gains), band, &mut pixels));
+    tiles.iter().for_each(|tile| tile.pixels().copy_into(&set.relit(tile, gains), band, &mut pixels));
     pixels
 }
 
-/// The factor on each of the film's groups, by number.
-fn gains(text: &str, set: &LayerSet) -> Result<Vec<Rgb>, Failure> {
+/// Factors of the film's light groups, by index.
+fn gains(text: &str, set: &AovSet) -> Result<Vec<Rgb>, Failure> {
     let groups = set.light_groups();
     if groups.is_empty() {
-        return Err(Failure::Wrong("the film keeps no groups of lights: render it with --aov light_groups".into()));
+        return Err(Failure::Invalid(
+            "the partial render contains no light groups: render it with --aov light_groups".into(),
+        ));
     }
     let mut gains = vec![Rgb::WHITE; groups.len()];
     for part in text.split(',') {
-        let wrong = || Failure::Wrong(format!("`{part}`: a gain is GROUP=FACTOR, such as key=2 or key=#ffc080"));
+        let wrong = || Failure::Invalid(format!("`{part}`: a gain is GROUP=FACTOR, such as key=2 or key=#ffc080"));
         let (name, factor) = part.split_once('=').ok_or_else(wrong)?;
-        juggler::check_name("group of lights", name.trim(), groups.iter().map(String::as_str))?;
+        juggler::check_name("light group", name.trim(), groups.iter().map(String::as_str))?;
         let number =
-            factor.trim().parse().ok().filter(|number: &f32| (0.0..=MOST_GAIN).contains(number)).map(Rgb::splat);
+            factor.trim().parse().ok().filter(|number: &f32| (0.0..=MAX_GAIN).contains(number)).map(Rgb::splat);
         let factor = number.or_else(|| Rgb::from_hex(factor.trim())).ok_or_else(wrong)?;
         let group = groups.iter().position(|group| group == name.trim());
         if let Some(gain) = group.and_then(|group| gains.get_mut(group)) {

@@ -3,7 +3,7 @@
 use crate::console;
 use crate::failure::Failure;
 
-/// Prints it.
+/// Prints the schema.
 pub fn run() -> Result<(), Failure> {
-    console::print(&juggler::scene::schema_json())
+    console::print_result(&juggler::scene::schema_json())
 }

@@ -1,4 +1,4 @@
-//! `juggler serve`: the interactive viewer in a browser, also from a machine without a screen.
+//! `juggler serve`: the interactive viewer in a web browser, also from a machine without a screen.
 
 use crate::console;
 use crate::failure::{Failure, plain};
@@ -6,42 +6,42 @@ use crate::interrupt::Interrupts;
 use crate::source;
 use crate::value;
 use clap::Args;
-use juggler_serve::{Options, ServeError, Server};
+use juggler_serve::{ServeError, Server, ServerOptions};
 use juggler_session::Session;
 use std::net::{SocketAddr, ToSocketAddrs};
 
-/// What is shown when nothing is said.
+/// Default scene.
 const FIRST_SCENE: &str = "juggler";
 
 /// Flags of `juggler serve`.
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// A scene file or a mesh (PLY, OBJ, STL), which is watched, or the name of a built-in scene [default: juggler]
+    /// Scene file or mesh (PLY, OBJ, STL) to watch, or built-in scene [default: juggler]
     scene: Option<String>,
 
-    /// Where to listen; port 0 takes a free one
+    /// Address to listen on; port 0 selects a free port
     #[arg(long, value_name = "ADDRESS:PORT", value_parser = address, default_value = "127.0.0.1:8080")]
     addr: SocketAddr,
 
-    /// Serve at an address that other machines reach
+    /// Accept an address that other machines can reach
     #[arg(long)]
     allow_remote: bool,
 
-    /// Let every user and program of this machine look and steer, without the token in the printed address
+    /// Give all users and programs of this machine access, without a token in the address
     #[arg(long, conflicts_with = "allow_remote")]
     no_token: bool,
 
-    /// Width and height in pixels, instead of the scene's
+    /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = value::size)]
     size: Option<[u32; 2]>,
 
-    /// Threads that render [default: one for each core]
+    /// Number of rendering threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
 impl Serve {
-    /// Prints the address and serves until a signal comes.
+    /// Prints the address and serves until a signal arrives.
     pub fn run(self) -> Result<(), Failure> {
         let interrupts = Interrupts::watch()?;
         if let Some(scene) = &self.scene {
@@ -49,22 +49,23 @@ impl Serve {
         }
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
-        let options = juggler_session::Options { size: self.size, threads, watch: true, ..Default::default() };
+        let options = juggler_session::SessionOptions { size: self.size, threads, watch: true, ..Default::default() };
         let session = Session::open(name, options);
         let (address, allow_remote, token) = (self.addr, self.allow_remote, !self.no_token);
-        let options = Options { address, allow_remote, token, scene: self.scene, ..Options::default() };
-        let server = Server::bind(session, options, console::say)?;
+        let options = ServerOptions { address, allow_remote, token, scene: self.scene, ..ServerOptions::default() };
+        let server = Server::bind(session, options, console::print_message)?;
         let url = server.url();
         let _running = server.start()?;
-        console::print(&format!("juggler serves at {url}"))?;
+        console::print_result(&format!("juggler serves at {url}"))?;
         Err(interrupts.wait())
     }
 }
 
-/// A scene that is not there is refused at once; one with mistakes may be mended while it is watched.
+/// Refuses a scene that does not exist. A scene with mistakes is accepted, since it is watched and
+/// may be corrected.
 fn check(scene: &str) -> Result<(), Failure> {
     if scene == "-" {
-        return Err(Failure::Wrong(
+        return Err(Failure::Invalid(
             "standard input cannot be watched: give a scene file or the name of a built-in scene".into(),
         ));
     }
@@ -74,12 +75,12 @@ fn check(scene: &str) -> Result<(), Failure> {
     }
 }
 
-/// `127.0.0.1:8080`, `[::1]:8080`, `localhost:8080`.
+/// Parses an address: `127.0.0.1:8080`, `[::1]:8080`, `localhost:8080`.
 fn address(text: &str) -> Result<SocketAddr, String> {
     let wrong = "an address is ADDRESS:PORT, such as 127.0.0.1:8080";
     let found = text.to_socket_addrs().map_err(|error| format!("{wrong} ({})", plain(&error)))?;
     let mut addresses: Vec<_> = found.collect();
-    // Version 4 first: it is what is printed and typed.
+    // Prefer IPv4, which is easier to type.
     addresses.sort_by_key(SocketAddr::is_ipv6);
     addresses.first().copied().ok_or_else(|| wrong.to_owned())
 }
@@ -87,7 +88,7 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 impl From<ServeError> for Failure {
     fn from(error: ServeError) -> Self {
         match error {
-            ServeError::Remote(_) => Self::Wrong(error.to_string()),
+            ServeError::Remote(_) => Self::Invalid(error.to_string()),
             ServeError::Busy(_) | ServeError::Listen { .. } | ServeError::System(_) => Self::System(error.to_string()),
         }
     }

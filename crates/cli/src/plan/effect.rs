@@ -1,43 +1,41 @@
-//! Which flags can act and which settings have an effect. One rule: a flag that cannot act is
-//! refused, a setting of the scene that has no effect is warned of. Everything that decides it is
-//! in this file.
+//! Checks that every flag and setting has an effect: a flag without effect is an error, a setting
+//! of the scene without effect is a warning.
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::plan::{Encoding, Product, Reel};
+use crate::plan::{Encoding, Movie, OutputKind};
 use juggler::Settings;
-use juggler::imaging::{AnimationFormat, Format, Look, Tone};
+use juggler::imaging::{AnimationFormat, DisplayLook, ImageFormat, Tone};
 use juggler::integrator::AnyIntegrator;
 use juggler::scene::Scene;
 
-/// What a command writes in the end.
+/// Kind of file that a command writes in the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// A picture.
     Picture(Encoding),
-    /// A film part.
+    /// A partial render.
     Part,
     /// A movie.
     Movie(AnimationFormat),
 }
 
 impl Target {
-    /// Of a render.
-    pub fn new(product: Product, reel: Option<&Reel>) -> Self {
-        match (product, reel) {
-            (_, Some(reel)) => Self::Movie(reel.format),
-            (Product::Picture(encoding), None) => Self::Picture(encoding),
-            (Product::Part, None) => Self::Part,
+    /// Target of a render.
+    pub fn new(output_kind: OutputKind, movie: Option<&Movie>) -> Self {
+        match (output_kind, movie) {
+            (_, Some(movie)) => Self::Movie(movie.format),
+            (OutputKind::Picture(encoding), None) => Self::Picture(encoding),
+            (OutputKind::Part, None) => Self::Part,
         }
     }
 }
 
-/// A flag, and whether the command line has it.
-pub type Given = (&'static str, bool);
+/// A flag, and whether it was given.
+pub type FlagUse = (&'static str, bool);
 
-/// The flags of a render that not every target can obey; `several`: the render makes several
-/// frames.
-pub fn given(args: &RenderArgs, several: bool) -> [Given; 15] {
+/// Flags of a render that only some targets support. `several`: the command renders several frames.
+pub fn flags(args: &RenderArgs, several: bool) -> [FlagUse; 15] {
     [
         ("--bits", args.bits.is_some()),
         ("--quality", args.quality.is_some()),
@@ -45,7 +43,7 @@ pub fn given(args: &RenderArgs, several: bool) -> [Given; 15] {
         ("--tone", args.tone.is_some()),
         ("--exposure", args.exposure.is_some()),
         ("--white-balance", args.white_balance.is_some()),
-        // What is never dithered obeys `off`.
+        // `off` is valid for targets without dithering.
         ("--dither on", args.dither == Some(true)),
         ("--fps", args.fps.is_some()),
         ("--plays", args.plays.is_some()),
@@ -53,84 +51,86 @@ pub fn given(args: &RenderArgs, several: bool) -> [Given; 15] {
         ("--at", args.view.at.is_some()),
         ("--aov", args.aov.is_some()),
         ("--aov-output", args.aov_output.is_some()),
-        // Of several frames a shard takes some, whole.
+        // A shard of several frames consists of whole frames.
         ("--shard", args.shard.is_some() && !several),
         ("--sample-range", args.sample_range.is_some()),
     ]
 }
 
-/// Refuses the first flag that cannot act on the target, and says why.
-pub fn check(target: Target, given: &[Given]) -> Result<(), Failure> {
+/// Fails for the first given flag that the target does not support.
+pub fn check(target: Target, given: &[FlagUse]) -> Result<(), Failure> {
     let mut given = given.iter().filter(|(_, is_given)| *is_given);
-    match given.find_map(|(flag, _)| obstacle(flag, target)) {
-        Some(message) => Err(Failure::Wrong(message)),
+    match given.find_map(|(flag, _)| unsupported(flag, target)) {
+        Some(message) => Err(Failure::Invalid(message)),
         None => Ok(()),
     }
 }
 
-/// Why a flag cannot act on a target.
-fn obstacle(flag: &str, target: Target) -> Option<String> {
+/// Reason why the target does not support a flag.
+fn unsupported(flag: &str, target: Target) -> Option<String> {
     match target {
-        Target::Picture(encoding) => of_picture(flag, encoding),
-        Target::Part => of_part(flag),
-        Target::Movie(format) => of_movie(flag, format),
+        Target::Picture(encoding) => unsupported_by_picture(flag, encoding),
+        Target::Part => unsupported_by_part(flag),
+        Target::Movie(format) => unsupported_by_movie(flag, format),
     }
 }
 
-fn of_picture(flag: &str, Encoding { format, options }: Encoding) -> Option<String> {
-    let is_dithered = format.is_tone_mapped() && options.look == Look::Plain && !options.png_16_bit;
+fn unsupported_by_picture(flag: &str, Encoding { format, options }: Encoding) -> Option<String> {
+    let is_dithered = format.is_tone_mapped() && options.look == DisplayLook::Plain && !options.png_16_bit;
     Some(match flag {
-        "--quality" if format != Format::Jpeg => {
-            format!("--quality is for JPEG and MP4 files; a {format} file has none")
+        "--quality" if format != ImageFormat::Jpeg => {
+            format!("--quality is for JPEG and MP4 files; {format} files have none")
         }
-        "--look" if !format.has_looks() => format!("--look is for levels; a {format} file keeps light as it is"),
+        "--look" if !format.supports_display_looks() => {
+            format!("--look is for PNG, JPEG and WebP pictures; a {format} file stores linear radiance")
+        }
         "--tone" | "--exposure" | "--white-balance" if !format.is_tone_mapped() => {
-            format!("{flag} is for PNG, JPEG and WebP pictures and for movies; {format} files keep linear light")
+            format!("{flag} is for PNG, JPEG and WebP pictures and for movies; {format} files store linear radiance")
         }
         "--dither on" if !is_dithered => {
-            format!("{flag} is for pictures of 8 bits without a look; this {format} file is never dithered")
+            format!("{flag} is for 8-bit pictures without a display look; this {format} file is never dithered")
         }
-        "--fps" | "--plays" => format!("{flag} is for moving pictures: {}", AnimationFormat::endings()),
-        "--shard" => format!("{}; of several frames (--frames) it takes some", makes_part(flag)),
+        "--fps" | "--plays" => format!("{flag} is for movies: {}", AnimationFormat::extensions()),
+        "--shard" => format!("{}; with --frames, it selects frames", makes_part(flag)),
         "--sample-range" => makes_part(flag),
         _ => return None,
     })
 }
 
 fn makes_part(flag: &str) -> String {
-    format!("{flag} makes a part of a picture, for `juggler merge`: give an output that ends in .jfilm")
+    format!("{flag} makes a partial render, for `juggler merge`: give an output with the extension .jfilm")
 }
 
-fn of_part(flag: &str) -> Option<String> {
+fn unsupported_by_part(flag: &str) -> Option<String> {
     Some(match flag {
-        "--bits" | "--look" => format!("{flag} is for pictures; a film part keeps the sums as they are"),
-        "--quality" => "--quality is for JPEG and MP4 files; a film part has none".into(),
-        "--format" => "--format is for pictures; a film part has one format".into(),
-        "--fps" | "--plays" => format!("{flag} is for moving pictures: {}", AnimationFormat::endings()),
-        "--aov-output" => "--aov-output is for pictures; a film part keeps its AOVs itself, for `juggler merge`".into(),
+        "--bits" | "--look" => format!("{flag} is for pictures; a partial render stores sums of samples"),
+        "--quality" => "--quality is for JPEG and MP4 files; a partial render has none".into(),
+        "--format" => "--format is for pictures; a partial render has one format".into(),
+        "--fps" | "--plays" => format!("{flag} is for movies: {}", AnimationFormat::extensions()),
+        "--aov-output" => "--aov-output is for pictures; give it to `juggler merge` instead".into(),
         _ => return None,
     })
 }
 
-fn of_movie(flag: &str, format: AnimationFormat) -> Option<String> {
+fn unsupported_by_movie(flag: &str, format: AnimationFormat) -> Option<String> {
     Some(match flag {
         "--bits" | "--frame" | "--at" => format!("{flag} is for pictures; this {format} movie has several frames"),
-        "--aov" => "--aov is for pictures: numbered ones (-o 'frame_####.exr') can have AOVs, a movie has none".into(),
+        "--aov" => "--aov is for pictures, also numbered ones (-o 'frame_####.exr'), not for movies".into(),
         "--dither on" => format!("{flag} is for pictures; frames of a movie are never dithered"),
         "--quality" if !format.has_quality() => {
             format!("--quality is for JPEG and MP4 files; {format} has none")
         }
-        "--plays" if !format.says_how_often() => {
-            format!("--plays: how often an {format} is shown is up to who shows it; .webp .apng .gif say it")
+        "--plays" if !format.stores_play_count() => {
+            format!("--plays is for .webp, .apng and .gif; the player decides how often an {format} plays")
         }
         "--sample-range" => makes_part(flag),
         _ => return None,
     })
 }
 
-/// Refuses flags that cannot act on a scene that is rendered with these settings.
+/// Fails for flags that have no effect on the scene with these settings.
 pub fn check_scene(settings: &Settings, scene: &Scene) -> Result<(), Failure> {
-    let wrong = |message: String| Err(Failure::Wrong(message));
+    let wrong = |message: String| Err(Failure::Invalid(message));
     let (mut render, mut tone) = ((*scene.description.render).clone(), (*scene.description.tone).clone());
     Settings { max_depth: None, ..settings.clone() }.apply_to(&mut render, &mut tone)?;
     let integrator = render.integrator.unwrap_or_else(|| scene.integrator_choice().integrator);
@@ -138,17 +138,17 @@ pub fn check_scene(settings: &Settings, scene: &Scene) -> Result<(), Failure> {
     if settings.max_depth.is_some() && !follows_paths {
         let name = integrator.name();
         return wrong(format!(
-            "--max-depth is for the integrators `classic` and `path`; `{name}` follows no paths whose depth has a limit"
+            "--max-depth is for the integrators `classic` and `path`; `{name}` has no maximum depth"
         ));
     }
     if settings.denoiser.is_some() && render.samples < 2 {
-        return wrong("--denoise needs 2 samples a pixel or more: their differences are what it goes by".into());
+        return wrong("--denoise needs at least 2 samples per pixel to estimate the noise".into());
     }
     Ok(())
 }
 
-/// Settings of a tone that have no effect on a target, as a warning; `None` where all have.
-pub fn idle_tone(target: Target, tone: &Tone) -> Option<String> {
+/// Warning of tone settings that have no effect on the target, if any.
+pub fn ignored_tone_warning(target: Target, tone: &Tone) -> Option<String> {
     let Target::Picture(Encoding { format, .. }) = target else { return None };
     let usual = Tone::default();
     let idle = [
@@ -162,7 +162,7 @@ pub fn idle_tone(target: Target, tone: &Tone) -> Option<String> {
         return None;
     }
     let have = if names.len() == 1 { "has" } else { "have" };
-    Some(format!("warning: {} {have} no effect: {format} files keep linear light", names.join(", ")))
+    Some(format!("warning: {} {have} no effect: {format} files store linear radiance", names.join(", ")))
 }
 
 #[cfg(test)]
@@ -171,9 +171,9 @@ mod tests {
     use crate::plan::Plan;
 
     fn refused(line: &str) -> Option<String> {
-        match Plan::new(RenderArgs::of(line.split(' ')).unwrap()) {
+        match Plan::new(RenderArgs::from_words(line.split(' ')).unwrap()) {
             Ok(_) => None,
-            Err(Failure::Wrong(message)) => Some(message),
+            Err(Failure::Invalid(message)) => Some(message),
             Err(other) => panic!("{line}: {other:?}"),
         }
     }
@@ -190,7 +190,7 @@ mod tests {
                 assert_eq!(refused(&format!("a {flag} -o b.{ending}")), None, "{flag} {ending}");
             }
         }
-        // The picture that a part becomes, and the levels of a movie, obey them.
+        // The picture merged from a partial render, and frames of a movie, are tone mapped.
         for line in ["a --tone agx -o b.jfilm", "a --exposure 1 -o b.gif", "a --dither off -o b.exr"] {
             assert_eq!(refused(line), None, "{line}");
         }
@@ -225,9 +225,9 @@ mod tests {
         let encoding = |output: &str| Target::Picture(Encoding::new(None, None, None, output).unwrap());
         let text = r#"{"version": 1, "tone": {"curve": "linear", "exposure_stops": 0.5}}"#;
         let tone = Scene::from_json(text.to_owned(), "a.json").unwrap().description.tone.into_inner();
-        let warning = idle_tone(encoding("a.exr"), &tone).unwrap();
+        let warning = ignored_tone_warning(encoding("a.exr"), &tone).unwrap();
         assert!(warning.contains("`tone.curve`, `tone.exposure_stops` have no effect"), "{warning}");
-        assert_eq!(idle_tone(encoding("a.png"), &tone), None);
-        assert_eq!(idle_tone(encoding("a.exr"), &Tone::default()), None);
+        assert_eq!(ignored_tone_warning(encoding("a.png"), &tone), None);
+        assert_eq!(ignored_tone_warning(encoding("a.exr"), &Tone::default()), None);
     }
 }

@@ -1,99 +1,100 @@
-//! Parts of pictures: where work is kept, what is shared with other machines.
+//! Partial renders: checkpoints, shards and cuts.
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::plan::{Product, Reel};
+use crate::plan::{Movie, OutputKind};
 use crate::value;
 use juggler::camera::film::Rect;
 use std::env;
 use std::ops::Range;
 use std::time::Duration;
 
-/// Variables in which clusters say which of many tasks this is: Slurm, Kubernetes, HyperQueue.
+/// Environment variables with the index of a cluster's task: Slurm, Kubernetes and HyperQueue.
 const INDICES: [&str; 3] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX", "HQ_TASK_ID"];
 
-/// Where work is kept, and how often.
+/// Checkpoint file and interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// The film part's file.
+    /// Checkpoint file (.jfilm).
     pub file: String,
-    /// From one to the next.
+    /// Time between checkpoints.
     pub every: Duration,
-    /// Whether nobody asked for it: then it goes when its picture is there, and what does not fit is no mistake.
-    pub is_own: bool,
+    /// Whether the checkpoint is automatic. Such a checkpoint is removed when its picture is
+    /// complete, and replaced if it does not match.
+    pub is_automatic: bool,
 }
 
-/// Which of how many shards.
+/// Index and number of shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 0 on.
+    /// Index, from 0.
     pub index: u32,
-    /// 1 when nothing is shared.
+    /// Number of shards; 1 if the work is not divided.
     pub count: u32,
 }
 
-/// What of a picture a part holds when somebody cut it by hand.
+/// Pixels and samples of a partial render, chosen by flags.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cut {
-    /// Some pixels.
+    /// Region in pixels; `None` for all.
     pub crop: Option<Rect>,
-    /// Some samples of each.
+    /// Range of samples per pixel; `None` for all.
     pub samples: Option<Range<u32>>,
 }
 
 impl Checkpoint {
-    /// What was asked for; the frames of a film are kept in any case.
-    pub fn new(args: &RenderArgs, reel: Option<&Reel>) -> Result<Option<Self>, Failure> {
+    /// Checkpoint given by flags; automatic for frames of a movie.
+    pub fn new(args: &RenderArgs, movie: Option<&Movie>) -> Result<Option<Self>, Failure> {
         let every = Duration::from_secs_f64(args.checkpoint_every);
-        match (&args.checkpoint, reel) {
-            (Some(file), _) if file.is_empty() => Err(Failure::Wrong("the checkpoint has no name".into())),
-            (Some(file), _) => Ok(Some(Self { file: file.clone(), every, is_own: false })),
-            (None, Some(reel)) => Ok(Some(Self { file: reel.checkpoints(), every, is_own: true })),
+        match (&args.checkpoint, movie) {
+            (Some(file), _) if file.is_empty() => Err(Failure::Invalid("--checkpoint needs the name of a file".into())),
+            (Some(file), _) => Ok(Some(Self { file: file.clone(), every, is_automatic: false })),
+            (None, Some(movie)) => Ok(Some(Self { file: movie.checkpoints(), every, is_automatic: true })),
             (None, None) => Ok(None),
         }
     }
 }
 
 impl Shard {
-    /// The picture is nobody else's.
+    /// The only shard of undivided work.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// What was asked for; `variable` reads the environment.
+    /// Shard given by a flag; `variable` reads the environment.
     pub fn new(typed: Option<value::Shard>, variable: impl Fn(&str) -> Option<String>) -> Result<Self, Failure> {
         let Some(value::Shard { index, count }) = typed else { return Ok(Self::WHOLE) };
         let index = match index {
             Some(index) => index,
-            None => of_cluster(count, variable)?,
+            None => index_from_environment(count, variable)?,
         };
         Ok(Self { index, count })
     }
 }
 
-/// The index that a cluster gave, counted from 0.
-fn of_cluster(count: u32, variable: impl Fn(&str) -> Option<String>) -> Result<u32, Failure> {
-    let wrong = |message: String| Err(Failure::Wrong(message));
+/// Index from the environment of a cluster's task, from 0.
+fn index_from_environment(count: u32, variable: impl Fn(&str) -> Option<String>) -> Result<u32, Failure> {
+    let wrong = |message: String| Err(Failure::Invalid(message));
     let Some((name, text)) = INDICES.iter().find_map(|name| Some((name, variable(name)?))) else {
         return wrong(format!("--shard auto/{count}: none of {} is set", INDICES.join(", ")));
     };
     match text.parse::<u32>() {
         Ok(index) if index < count => Ok(index),
         Ok(index) => wrong(format!(
-            "--shard auto/{count}: {name} is {index}, but shards are 0 to {}: let the array begin with 0",
+            "--shard auto/{count}: {name} is {index}, but shards are 0 to {}: start the array at 0",
             count - 1
         )),
-        Err(_) => wrong(format!("--shard auto/{count}: {name} is `{text}`, no number")),
+        Err(_) => wrong(format!("--shard auto/{count}: {name} is `{text}`, which is not a number")),
     }
 }
 
-/// The environment's variable.
+/// Value of an environment variable.
 pub fn variable(name: &str) -> Option<String> {
     env::var(name).ok()
 }
 
 impl Cut {
-    /// What was asked for. A picture's crop is the picture; a part's is a piece of it.
-    pub fn new(args: &RenderArgs, product: Product) -> Self {
-        let crop = args.crop.filter(|_| product == Product::Part);
+    /// Cut given by flags. The crop of a picture is no cut, but the picture's region.
+    pub fn new(args: &RenderArgs, output_kind: OutputKind) -> Self {
+        let crop = args.crop.filter(|_| output_kind == OutputKind::Part);
         Self { crop, samples: args.sample_range.clone() }
     }
 }
@@ -109,7 +110,7 @@ mod tests {
         };
         match Shard::new(Some(value::Shard { index: None, count: 4 }), variable) {
             Ok(shard) => Ok(shard),
-            Err(Failure::Wrong(message)) => Err(message),
+            Err(Failure::Invalid(message)) => Err(message),
             Err(other) => panic!("{other:?}"),
         }
     }

@@ -1,10 +1,10 @@
-//! What a picture is of and how it is sampled, for all that render.
+//! View and sampling of a picture, for all commands that render.
 
 use crate::args::ViewArgs;
 use juggler::Settings;
 
 impl ViewArgs {
-    /// What is wished for beyond what the scene says.
+    /// Overrides of the scene's settings.
     pub fn settings(&self) -> Settings {
         Settings {
             size: self.size,
@@ -18,7 +18,7 @@ impl ViewArgs {
         }
     }
 
-    /// The frame that is looked at, for an animation of this pace.
+    /// Frame number of the view; fractional for times between frames.
     pub fn frame(&self, frames_per_second: f64) -> f64 {
         match (self.frame, self.at) {
             (Some(frame), _) => f64::from(frame),
@@ -28,9 +28,9 @@ impl ViewArgs {
     }
 }
 
-/// Warns of a frame beyond the end of an animation, which is rendered all the same. A scene of one
-/// frame does not say how long it goes on.
-pub fn beyond_the_end(frame: u32, frames: u32) -> Option<String> {
+/// Warning for a frame beyond the end of an animation, which is rendered nevertheless. Scenes of
+/// one frame have no end.
+pub fn end_warning(frame: u32, frames: u32) -> Option<String> {
     (frames > 1 && frame >= frames).then(|| {
         let last = frames - 1;
         format!("warning: frame {frame} is beyond the end of the animation, which has {frames} frames, 0 to {last}")
@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn frames_that_there_are_are_told() {
-        assert_eq!((beyond_the_end(29, 30), beyond_the_end(7, 1)), (None, None));
-        assert!(beyond_the_end(40, 30).is_some_and(|message| message.contains("30 frames, 0 to 29")));
+        assert_eq!((end_warning(29, 30), end_warning(7, 1)), (None, None));
+        assert!(end_warning(40, 30).is_some_and(|message| message.contains("30 frames, 0 to 29")));
     }
 }

@@ -1,11 +1,11 @@
-//! Commands that answer: help, lists, checks, comparisons.
+//! Commands that print answers: help, lists, checks and comparisons.
 
 use crate::harness::{Folder, Run, SCENE};
 use std::fs;
 use std::io::{Read, Write};
 use std::process::{Command, Stdio};
 
-/// What a scene begins with whose background moves.
+/// Beginning of a scene with an animated background.
 const MOVING: &str = r##""version": 1,
     "background": {"animate": {"keys": [[0, "#203040"], [2, "#ffffff"]], "repeat": "loop"}},"##;
 
@@ -108,11 +108,11 @@ fn what_is_in_a_scene() {
     );
     fs::write(folder.path("emitting.json"), format!(r#"{{"version": 1, "objects": [{balls}]}}"#)).unwrap();
     assert!(folder.good("info emitting.json").stdout.contains("\nemitting     2 shapes\n"));
-    let reason = "chosen because all lights and materials are of the classic kind";
+    let reason = "chosen because `classic` supports all lights and materials of the scene";
     assert_eq!((&json["integrator"], &json["integrator_reason"]), (&"classic".into(), &reason.into()));
     for said in [
         "background   solid, 0.2 0.3 0.5 on average\n",
-        "far lights   solid 100 %\n",
+        "infinite     solid 100 %\n",
         &format!("integrator   classic, {reason}\n"),
     ] {
         assert!(words.contains(said), "{words}");
@@ -161,7 +161,7 @@ fn a_scene_comes_through_standard_input() {
     let piped = |line: &str, text: &[u8]| {
         let mut command = folder.command(line);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // A program that has seen enough closes its end.
+        // The program may close its end before it has read everything.
         let _ = child.stdin.take().unwrap().write_all(text);
         Run::of(child.wait_with_output().unwrap())
     };
@@ -188,7 +188,7 @@ fn comparisons_answer_with_their_status() {
     folder.good("render ball.json -q -o a.pfm");
     folder.good("render ball.json -q -o b.pfm --seed 1");
     folder.good("render ball.json -q -o small.pfm --size 4x4");
-    assert!(folder.good("compare a.pfm a.pfm").stdout.starts_with("equal to the bit"));
+    assert!(folder.good("compare a.pfm a.pfm").stdout.starts_with("identical, bit for bit"));
     let different = folder.run("compare a.pfm b.pfm");
     assert!(different.status == 1 && different.stdout.starts_with("different") && different.stderr.is_empty());
     assert!(folder.good("compare a.pfm b.pfm --tolerance 10").stdout.starts_with("equal within"));
@@ -207,7 +207,7 @@ fn comparisons_tell_how_different_pictures_look_and_where() {
         folder.good(&format!("render ball.json -q -o {name} {flags}"));
     }
     let stats = |line: &str| -> serde_json::Value { serde_json::from_str(&folder.run(line).stdout).unwrap() };
-    // Levels are what a screen shows; where one file holds light, both are.
+    // Tone-mapped files are compared as LDR; if one file contains linear radiance, as HDR.
     for (pair, range) in [("a.png b.png", "ldr"), ("a.pfm b.exr", "hdr"), ("a.png a.pfm", "hdr")] {
         let flip = &stats(&format!("compare {pair} --stats -"))["flip"];
         assert!(flip["range"] == range && (1e-4..1.0).contains(&flip["mean"].as_f64().unwrap()), "{pair}: {flip}");
@@ -218,7 +218,8 @@ fn comparisons_tell_how_different_pictures_look_and_where() {
     let map = juggler::imaging::read(&folder.path("map.png")).unwrap();
     assert_eq!((map.width(), map.height()), (16, 9));
     assert!(map.pixels().iter().any(|pixel| pixel.luminance() > 0.1));
-    // The same pictures have a black one, whatever the format; the status stays that of the comparison.
+    // The map of equal pictures is black in every format, and the exit status is that of the
+    // comparison.
     for name in ["none.exr", "none.jpg"] {
         folder.good(&format!("compare a.png a.png --difference {name}"));
         let map = juggler::imaging::read(&folder.path(name)).unwrap();
@@ -252,7 +253,7 @@ fn a_reader_of_the_picture_that_goes_away_is_a_failure_but_no_panic() {
     assert!(run.status.code() == Some(3) && !message.contains("panicked"), "{:?}: {message}", run.status);
 }
 
-/// Errors that the program and its command-line parser print in color where they may.
+/// Commands whose errors are colored on a terminal, by the program and by its command-line parser.
 const COLORED: [&str; 2] = ["render jugler", "render ball.json --size 3"];
 
 #[test]
@@ -293,12 +294,12 @@ fn a_terminal_gets_no_picture() {
     }
 }
 
-/// Runs a command with standard error on a pseudo-terminal; returns what appeared there.
+/// Runs a command with standard error on a pseudo-terminal and returns its output there.
 #[cfg(unix)]
 fn on_a_terminal(command: &mut Command) -> String {
     let (controller, terminal) = terminal();
     let mut child = command.stdout(Stdio::null()).stderr(terminal).spawn().unwrap();
-    // The reading end reports an error as soon as nobody holds the other end any more.
+    // Close our copy of the terminal, so that reading ends with the child.
     command.stderr(Stdio::null());
     let mut bytes = Vec::new();
     let _ = fs::File::from(controller).read_to_end(&mut bytes);
@@ -306,7 +307,7 @@ fn on_a_terminal(command: &mut Command) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Both ends of a pseudo-terminal.
+/// Controller and terminal side of a pseudo-terminal.
 #[cfg(unix)]
 fn terminal() -> (std::os::fd::OwnedFd, std::os::fd::OwnedFd) {
     use rustix::fs::{Mode, OFlags};
@@ -347,7 +348,8 @@ fn rays_are_measured_on_built_in_meshes_and_on_files() {
         }
     }
 
-    // The camera of a file sees all of it: two triangles whose box fills the picture's height.
+    // The default camera of a mesh file shows all of it: the bounding box fills the picture's
+    // height.
     fs::write(folder.path("sheet.obj"), "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n").unwrap();
     let json =
         folder.good(&format!("bench rays sheet.obj --json --kind primary,random --kernel batch {sparing}")).stdout;
@@ -366,7 +368,7 @@ fn rays_are_measured_on_built_in_meshes_and_on_files() {
     let hits = rates[0]["hits"].as_u64().unwrap();
     assert!((30..320).contains(&hits) && rates[1]["hits"] == hits, "{hits}");
     assert!(rates[0]["mrays_per_second"].as_f64().unwrap() > 0.0);
-    // Nothing is above the sheet for a second bounce.
+    // No geometry lies above the sheet, so there is no second bounce.
     assert_eq!((&rates[2]["rays"], &rates[2]["mrays_per_cpu_second"]), (&0.into(), &serde_json::Value::Null));
     assert_eq!(folder.files(), ["sheet.obj"]);
 }

@@ -1,9 +1,10 @@
-//! What is wrong is said once, on standard error, with the exit status that fits, and nothing is left behind.
+//! Error messages: printed once, on standard error, with the right exit status, and without files
+//! left behind.
 
 use crate::harness::Folder;
 use std::fs;
 
-/// Each of them is refused, and leaves nothing behind.
+/// Asserts that each command fails with status 2 and leaves no files behind.
 fn refused(lines: &[&str]) {
     let folder = Folder::new();
     for line in lines {
@@ -87,7 +88,7 @@ fn rays_that_cannot_be_measured() {
         assert!(!folder.bad(&format!("bench rays {line}"), 2).trim().is_empty(), "{line}");
     }
     let message = folder.bad("bench rays blbo", 2);
-    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`, did you mean `blob`?\n");
+    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`; did you mean `blob`?\n");
     assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
     assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
     assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
@@ -97,7 +98,7 @@ fn rays_that_cannot_be_measured() {
 fn names_that_were_probably_meant() {
     let folder = Folder::new();
     let message = folder.bad("render jugler", 2);
-    assert_eq!(message.trim(), "error: no file and no built-in scene is called `jugler`, did you mean `juggler`?");
+    assert_eq!(message.trim(), "error: no file and no built-in scene is called `jugler`; did you mean `juggler`?");
     assert!(folder.bad("render bal.json", 3).contains("did you mean `ball.json`?"));
     assert!(folder.bad("render none/bal.json", 3).contains("`none/bal.json`"));
     assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));
@@ -127,7 +128,7 @@ fn full_disks_are_failures_of_the_system() {
     let folder = Folder::new();
     for format in ["png", "jpg", "exr", "hdr", "webp", "pfm"] {
         let message = folder.bad(&format!("render ball.json -q -o /dev/full --format {format}"), 3);
-        assert_eq!(message, "error: cannot write `/dev/full`: no space is left\n", "{format}");
+        assert_eq!(message, "error: cannot write `/dev/full`: no space left on the device\n", "{format}");
         let mut command = folder.command(&format!("render ball.json -q -o - --format {format}"));
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         assert_eq!(command.stdout(full).output().unwrap().status.code(), Some(3), "{format}");
@@ -187,7 +188,7 @@ fn flags_that_cannot_act_are_refused_and_settings_warned_of() {
     folder.good("render cornell-box --max-depth 4 --size 8x8 --samples 1 -q -o box.png");
     let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
     fs::write(folder.path("toned.json"), scene.replacen('{', r#"{"tone": {"exposure_stops": 1},"#, 1)).unwrap();
-    let warning = "warning: `tone.exposure_stops` has no effect: OpenEXR files keep linear light\n";
+    let warning = "warning: `tone.exposure_stops` has no effect: OpenEXR files store linear radiance\n";
     let run = folder.run("render toned.json -o toned.exr");
     assert_eq!((run.status, run.stderr.as_str()), (0, warning));
     folder.good("render toned.json -q -o toned.exr");

@@ -1,4 +1,4 @@
-//! Films: all frames in one file, whatever happens in between.
+//! Movies: all frames in one file, also after interruptions.
 #![cfg(unix)]
 
 use crate::harness::{self, Folder, Run, wait_until};
@@ -19,14 +19,14 @@ fn a_film_has_all_frames_and_leaves_nothing_else() {
     assert_eq!(folder.files(), ["film.apng", "film.gif", "film.mp4", "film.webp"]);
     let [gif, apng, webp] = ["film.gif", "film.apng", "film.webp"].map(|name| fs::read(folder.path(name)).unwrap());
     assert_eq!(webp.windows(4).filter(|bytes| bytes == b"ANMF").count(), 4);
-    // Graphic control extensions; frame controls.
+    // Count graphic control extensions and frame controls.
     assert_eq!(gif.windows(3).filter(|bytes| bytes == b"\x21\xf9\x04").count(), 4);
     assert_eq!(apng.windows(4).filter(|bytes| bytes == b"fcTL").count(), 4);
-    // Without several frames it is a picture.
+    // Without several frames, the output is a picture.
     folder.good(&format!("{LINE} -o still.webp"));
     folder.good(&format!("{LINE} -o still.png"));
     folder.good("compare still.webp still.png");
-    // The first frame is what shows only PNG shows.
+    // Programs that know only PNG show the first frame.
     fs::rename(folder.path("film.apng"), folder.path("film.png")).unwrap();
     folder.good(&format!("{LINE} -o one.png --dither off"));
     folder.good("compare film.png one.png");
@@ -55,7 +55,7 @@ fn a_film_that_was_killed_goes_on_to_the_same_bytes() {
     harness::signal(&child, "-KILL");
     child.wait().unwrap();
     let made = frame.exists().then(|| fs::metadata(&frame).unwrap().modified().unwrap());
-    // Another tone is another film: its frames are not those that are there.
+    // Another tone makes another movie, so existing frames are not reused.
     folder.good(&format!("{line} --exposure 1 --frames 0..1"));
     assert_ne!(fs::read(folder.path("film.apng")).unwrap(), straight);
     assert_eq!(made, frame.exists().then(|| fs::metadata(&frame).unwrap().modified().unwrap()), "it stays");
@@ -68,7 +68,7 @@ fn a_film_that_was_killed_goes_on_to_the_same_bytes() {
 fn an_interrupted_film_says_where_its_frames_are_and_leaves_no_half_of_itself() {
     let folder = Folder::new();
     let log = interrupted(&folder, "render ball.json --size 120x80 --samples 100000 -o film.gif");
-    assert!(log.contains("the work so far is in `film.gif.frames`"), "{log}");
+    assert!(log.contains("progress is saved in `film.gif.frames`"), "{log}");
     assert_eq!(folder.files(), ["film.gif.frames"]);
 }
 
@@ -103,18 +103,18 @@ fn a_frame_under_way_goes_on_too() {
         let line = log.lines().find(|line| line.contains(&format!("\"{event}\""))).unwrap();
         serde_json::from_str::<serde_json::Value>(line).unwrap()
     });
-    // One frame is a picture: there is nothing more to say.
+    // For a single frame, the events have no keys of frames.
     assert!(start["frame"].is_null() && progress["film_eta_seconds"].is_null(), "{log}");
     let kept = folder.path("film.apng.frames/frame_0000.jfilm");
     let samples = fs::metadata(&kept).unwrap().len();
     assert!(samples > 0);
-    // Another scene's work is no mistake: it is begun anew.
+    // A checkpoint of other settings is no error; the frame is rendered anew.
     let few = line.replace("20000", "2");
     folder.good(&few);
     assert_eq!(folder.files(), ["film.apng"]);
     interrupted(&folder, line);
     let again = interrupted(&folder, line);
-    assert!(again.contains("frame_0000.jfilm: ") && again.contains("% is there, going on"), "{again}");
+    assert!(again.contains("frame_0000.jfilm: ") && again.contains("% is done, resuming"), "{again}");
 }
 
 #[test]
@@ -140,8 +140,9 @@ fn shards_of_a_film_fill_its_folder_together() {
     for (number, shard) in shards.into_iter().enumerate() {
         let run = Run::of(shard.wait_with_output().unwrap());
         assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-        let said =
-            format!("film.apng.frames: 2 frames of shard {number}/2; the same command without --shard makes the film");
+        let said = format!(
+            "film.apng.frames: 2 frames of shard {number}/2; the same command without --shard encodes the movie"
+        );
         assert_eq!(run.stdout.trim(), said);
     }
     let frames = fs::read_dir(folder.path("film.apng.frames")).unwrap();
@@ -157,15 +158,15 @@ fn shards_of_a_film_fill_its_folder_together() {
 fn a_film_is_made_by_one_process_at_a_time() {
     let folder = Folder::new();
     let line = "render ball.json --size 160x120 --samples 100000 -o film.apng";
-    // A process that reports progress holds the lock.
+    // The process holds the lock once it reports progress.
     let (mut first, _, _lines) = under_way(&folder, line);
     for flags in ["", " --shard 1/2"] {
         let message = folder.bad(&format!("{line}{flags}"), 3);
-        assert!(message.contains("other processes are at work in `film.apng.frames`"), "{message}");
+        assert!(message.contains("other processes are writing to `film.apng.frames`"), "{message}");
     }
     first.kill().unwrap();
     first.wait().unwrap();
-    // The lock went with it.
+    // The killed process has released the lock.
     folder.good(&line.replace("100000", "1"));
     assert_eq!(folder.files(), ["film.apng"]);
 }
@@ -179,7 +180,7 @@ fn numbered_pictures_that_are_there_are_left() {
         let time = || fs::metadata(folder.path(&format!("f_1.{ending}"))).unwrap().modified().unwrap();
         let before = time();
         let run = folder.good(&line);
-        let left = format!("f_1.{ending}: is there already, made by the same command");
+        let left = format!("f_1.{ending}: exists already, made by the same command");
         assert_eq!((run.stdout.lines().count(), time()), (3, before));
         assert_eq!(run.stdout.lines().nth(1), Some(left.as_str()));
         folder.good(&format!("{line} --seed 2"));
@@ -192,7 +193,7 @@ fn numbered_pictures_that_are_there_are_left() {
     let plain = again();
     folder.good(&format!("{LINE} --frame 1 -o one.png"));
     assert!(plain == fs::read(folder.path("one.png")).unwrap(), "equal pictures are equal files");
-    // The scene's tone is no part of its fingerprint, but it shows.
+    // The scene's tone is not part of its fingerprint, but changes the picture.
     let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
     let bright = scene.replacen('{', r#"{"tone": {"exposure_stops": 1},"#, 1);
     fs::write(folder.path("ball.json"), bright).unwrap();
@@ -207,13 +208,13 @@ fn a_mesh_is_read_once_for_all_frames() {
     let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
     let mesh = r#"{"shape": {"mesh": {"file": "three.obj"}}, "transform": [{"translate": ["=frame / 9", 0, 1]}]},"#;
     fs::write(folder.path("meshes.json"), scene.replace("{\"shape\": \"plane\"},", &format!("{mesh}{mesh}"))).unwrap();
-    // A fast machine gets more to do, until frames are missing when the file goes.
+    // Use more samples on fast machines, until the file is removed before the last frame.
     let midway = [200, 800, 3200, 12_800].into_iter().any(|samples| removed_midway(&folder, samples));
     assert!(midway, "the film was complete before the mesh could be removed");
 }
 
-/// Makes a film of `meshes.json`, and removes its mesh when the first of four frames is there; says whether frames were
-/// missing then.
+/// Renders a movie of `meshes.json` and removes its mesh file after the first of four frames.
+/// Returns whether frames were missing then.
 fn removed_midway(folder: &Folder, samples: u32) -> bool {
     fs::write(folder.path("three.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let line = format!("render meshes.json --size 160x90 --samples {samples} --threads 1 -o film.apng");
@@ -223,7 +224,7 @@ fn removed_midway(folder: &Folder, samples: u32) -> bool {
     fs::remove_file(folder.path("three.obj")).unwrap();
     let midway = first.exists() && !third.exists();
     let ended = child.wait_with_output().unwrap();
-    // A film that was complete is gone before its frames are looked at: it says nothing about the file.
+    // If the movie was complete already, the run proves nothing.
     assert!(ended.status.success(), "the other frames need no file: {}", String::from_utf8_lossy(&ended.stderr));
     fs::remove_file(folder.path("film.apng")).unwrap();
     midway
@@ -238,20 +239,20 @@ fn what_a_film_cannot_be_is_said() {
         ("-o f.gif --frame 1", "--frame is for pictures"),
         ("-o f.gif --at 1", "--at is for pictures"),
         ("-o f.webp --fps 5 --quality 50", "--quality is for JPEG and MP4 files"),
-        ("-o f.mp4 --plays 2", "--plays: how often"),
-        ("-o f.gif --fps 101", "0.01 to 100 can"),
+        ("-o f.mp4 --plays 2", "--plays is for .webp, .apng and .gif"),
+        ("-o f.gif --fps 101", "only 0.01 to 100"),
         ("-o f.gif --size 65536x1", "65536 × 1"),
         ("-o f.webp --frames 0..2 --size 2x16384", "1 to 16383"),
         ("-o f.mp4 --size 15x16", "16 to 65535"),
         ("-o f.mp4 --crop 0,0,8,8", "8 × 8"),
         ("-o f.apng --frames 0..4000000000", "at most 1000000 are allowed"),
-        ("-o f.mp4 --size 4000x4000 --max-memory 1G", "for the MP4 film"),
+        ("-o f.mp4 --size 4000x4000 --max-memory 1G", "for the MP4 movie"),
         ("-o f.png --shard 0/2", "--frames"),
-        ("-o f.png --fps 10", "--fps is for moving pictures: .apng .gif .mp4 .webp"),
-        ("-o f.png --plays 1", "--plays is for moving pictures"),
-        ("-o - --format gif", "a film needs a file"),
+        ("-o f.png --fps 10", "--fps is for movies: .apng .gif .mp4 .webp"),
+        ("-o f.png --plays 1", "--plays is for movies"),
+        ("-o - --format gif", "a movie needs a file"),
         ("-o f.gif --fps 0", "a number from 0.01 to 1000"),
-        ("-o f.gif --frames 9..", "no frame is left"),
+        ("-o f.gif --frames 9..", "--frames starts at 9, beyond the end"),
     ] {
         let message = folder.bad(&format!("render ball.json {flags}"), 2);
         assert!(message.contains(word), "{flags}: {message}");

@@ -1,4 +1,4 @@
-//! A fresh folder, a small scene in it, and the program run there.
+//! Test harness: a temporary folder with a small scene, in which the program runs.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A red ball over a floor; the ball moves with the frame.
+/// A red sphere over a floor; the sphere moves with the frame.
 pub const SCENE: &str = r#"{
     "version": 1,
     "title": "Ball",
@@ -25,10 +25,10 @@ pub const SCENE: &str = r#"{
     ],
 }"#;
 
-/// How long a test waits for what must happen, however busy the machine is.
+/// Timeout of waiting, for busy machines.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Polls until the condition holds; fails after two minutes, saying what it waited for.
+/// Polls until the condition holds; panics after the timeout with the description `what`.
 pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
     let start = Instant::now();
     while !condition() {
@@ -43,10 +43,10 @@ pub fn signal(child: &Child, name: &str) {
     let _ = Command::new("kill").args([name, &child.id().to_string()]).stderr(Stdio::null()).status();
 }
 
-/// A fresh folder.
+/// A temporary folder.
 pub struct Folder(tempfile::TempDir);
 
-/// What a run came to.
+/// Result of a run.
 pub struct Run {
     pub status: i32,
     pub stdout: String,
@@ -55,7 +55,7 @@ pub struct Run {
 }
 
 impl Folder {
-    /// With `ball.json` in it.
+    /// Creates a folder with `ball.json`.
     pub fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         fs::write(folder.path("ball.json"), SCENE).unwrap();
@@ -66,7 +66,7 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Names of all files, hidden ones too, but the scene.
+    /// Names of all files except the scene, including hidden ones.
     pub fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -88,14 +88,14 @@ impl Folder {
         Run::of(self.command(line).output().unwrap())
     }
 
-    /// Runs what must work, without a word on standard error.
+    /// Runs a command that must succeed without output on standard error.
     pub fn good(&self, line: &str) -> Run {
         let run = self.run(line);
         assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{line}");
         run
     }
 
-    /// Runs what must fail, with nothing on standard output; returns the message.
+    /// Runs a command that must fail without output on standard output; returns its error message.
     pub fn bad(&self, line: &str, status: i32) -> String {
         let run = self.run(line);
         assert_eq!((run.status, run.stdout.as_str()), (status, ""), "{line}: {}", run.stderr);
@@ -103,14 +103,14 @@ impl Folder {
         run.stderr
     }
 
-    /// The statistics of a render.
+    /// Statistics of a render.
     pub fn stats(&self, line: &str) -> serde_json::Value {
         let run = self.run(&format!("render {line} --quiet --stats -"));
         assert_eq!(run.status, 0, "{line}: {}", run.stderr);
         serde_json::from_str(&run.stdout).unwrap()
     }
 
-    /// The hash of a render's pixels.
+    /// Hash of a render's pixels.
     pub fn hash(&self, line: &str) -> String {
         self.stats(line)["film"]["hash"].as_str().unwrap().to_owned()
     }

@@ -1,4 +1,5 @@
-//! Files that are no files, and files that claim too much: refused by name, at once, by every command that reads.
+//! Paths that are no regular files, and files with false headers: every command refuses them by
+//! name and without delay.
 #![cfg(unix)]
 
 use crate::harness::Folder;
@@ -7,7 +8,7 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
-/// A folder with a named pipe, a link to itself and a folder, each under all endings.
+/// A folder with a named pipe, a link to itself and a folder, each with every extension.
 fn folder() -> Folder {
     let folder = Folder::new();
     for ending in ["png", "jfilm", "ply", "json"] {
@@ -88,9 +89,7 @@ fn a_broken_picture_is_told_as_such() {
     fs::write(folder.path("short.png"), &good[..20]).unwrap();
     fs::write(folder.path("empty.png"), "").unwrap();
     let told = |name: &str| folder.bad(&format!("info {name}"), 3);
-    assert!(
-        told("start.png").contains("cannot read `start.png`: its first bytes are those of no known picture format")
-    );
+    assert!(told("start.png").contains("cannot read `start.png`: its first bytes match no supported format"));
     assert!(told("empty.png").contains("cannot read `empty.png`: its first bytes"));
     assert!(told("short.png").contains("cannot read `short.png`: unexpected end of file at byte 20"));
 }
@@ -105,7 +104,7 @@ fn comparing_and_merging_keep_to_a_budget() {
     }
     let message = folder.bad("merge good.jfilm -o a.jfilm --max-memory 1M", 2);
     assert!(message.contains("merging the parts needs about"), "{message}");
-    // FLIP takes most: without room for it the rest is told all the same.
+    // FLIP needs most memory; without room for it, the other results are printed.
     folder.good("render ball.json --size 400x300 --samples 1 -o a.pfm");
     folder.good("render ball.json --size 400x300 --samples 1 --seed 2 -o b.pfm");
     let line = format!("compare a.pfm b.pfm --tolerance 10 --max-memory {}", PROGRAM + (22 << 20));

@@ -1,4 +1,4 @@
-//! Layers beside the picture, from the command line to the file.
+//! AOVs, from the command line to the file.
 
 use crate::harness::{Folder, SCENE};
 use std::fs;
@@ -7,7 +7,7 @@ const BALL: &str = "ball.json --size 48x36 --samples 20 --integrator path";
 
 #[test]
 fn shards_with_all_layers_are_the_bytes_of_the_whole() {
-    // With something to tell of in each: what moves, and what is clamped.
+    // Use motion and clamping, so that every AOV has content.
     let folder = Folder::new();
     let limits = r#""samples": 2, "integrator": {"path": {"clamp_direct": 0.2}}"#;
     let clamped = SCENE.replace(r#""samples": 2"#, limits);
@@ -21,7 +21,7 @@ fn shards_with_all_layers_are_the_bytes_of_the_whole() {
     folder.good(&format!("merge {} -o merged.exr -q", parts.join(" ")));
     let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
     assert!(bytes("whole.exr") == bytes("merged.exr"), "the merged file differs");
-    // Parts that are joined keep their layers, and so does a checkpoint that is gone on with.
+    // Merged partial renders and resumed checkpoints keep their AOVs.
     folder.good(&format!("merge {} -o some.jfilm -q", parts[..3].join(" ")));
     folder.good(&format!("merge some.jfilm {} -o again.exr -q", parts[3..].join(" ")));
     assert!(bytes("whole.exr") == bytes("again.exr"), "the file of joined parts differs");
@@ -92,13 +92,13 @@ fn parts_of_other_motion_are_told_apart() {
     };
     part("first.jfilm", 0, "motion,depth");
     part("plain.jfilm", 0, "depth");
-    // The same at this frame, and elsewhere at the next.
+    // The position at this frame is the same, that at the next frame differs.
     fs::write(folder.path("ball.json"), SCENE.replace("=frame / 4", "=frame / 2")).unwrap();
     part("second.jfilm", 1, "motion,depth");
     part("rest.jfilm", 1, "depth");
     folder.good("merge plain.jfilm rest.jfilm -o a.exr -q");
     let message = folder.bad("merge first.jfilm second.jfilm -o b.exr", 2);
-    assert!(message.contains("frames beside"), "{message}");
+    assert!(message.contains("neighbor frames"), "{message}");
 }
 
 #[test]
@@ -138,9 +138,9 @@ fn what_cannot_be_is_said() {
     }
     folder.good("render ball.json --aov depth -o a.jfilm -q");
     let other = folder.bad("render ball.json --aov depth,albedo --checkpoint a.jfilm -o b.png", 2);
-    assert!(other.contains("layers: depth instead of albedo,depth"), "{other}");
+    assert!(other.contains("AOVs: depth instead of albedo,depth"), "{other}");
     folder.good("render ball.json -o plain.jfilm -q");
-    assert!(folder.bad("merge plain.jfilm -o a.png --aov-output b.exr", 2).contains("no layers"));
+    assert!(folder.bad("merge plain.jfilm -o a.png --aov-output b.exr", 2).contains("no AOVs"));
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn lights_are_mixed_anew_without_a_ray() {
     folder.good("relight film.jfilm --gain key=1 -o same.pfm -q");
     assert!(fs::read(folder.path("same.pfm")).unwrap() == fs::read(folder.path("as_it_was.pfm")).unwrap());
     folder.good("relight film.jfilm --gain key=2,fill=#00bc00 -o mixed.pfm -q");
-    // #bc is 0.503 of linear light.
+    // #bc is 0.503 in linear light.
     folder.good("compare mixed.pfm other.pfm --tolerance 2e-3");
     assert_eq!(folder.run("compare mixed.pfm as_it_was.pfm --tolerance 2e-3").status, 1);
     for (gain, said) in [("kye=2", "did you mean `key`"), ("key", "GROUP=FACTOR"), ("key=-1", "GROUP=FACTOR")] {
@@ -200,7 +200,7 @@ fn noise_is_taken_out_the_same_way_by_shards() {
     assert!(error("whole.pfm") < 0.8 * error("noisy.pfm"), "{} {}", error("whole.pfm"), error("noisy.pfm"));
     let message = folder.bad(&format!("render {BALL} --denoise owl"), 2);
     assert!(message.contains("own"), "{message}");
-    // A scene after the flag is the scene.
+    // A scene after the flag is parsed as the scene.
     folder.good(&format!("render --denoise {BALL} -o after.png -q"));
     assert!(bytes("whole.png") == bytes("after.png"));
 }

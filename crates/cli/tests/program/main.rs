@@ -1,4 +1,4 @@
-//! The program as people and scripts use it: each test in a fresh folder.
+//! Tests of the program from outside, each in a temporary folder.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

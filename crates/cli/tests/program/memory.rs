@@ -1,4 +1,5 @@
-//! `--max-memory`: what is foretold is enough, what fits stays inside, what does not is refused with a reason.
+//! `--max-memory`: estimates are sufficient, renders that fit stay below the limit, and others are
+//! refused with a reason.
 
 use crate::harness::{Folder, Run};
 use juggler::memory::PROGRAM;
@@ -9,19 +10,20 @@ use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
 
-/// Memory budget in bytes, from the need of an optimized program in MiB, of which its code takes
-/// 20: unoptimized code takes more.
+/// Memory limit in bytes, from the need of an optimized program in MiB, of which its code takes 20;
+/// unoptimized code takes more.
 fn budget(mib: u64) -> u64 {
     (mib - 20) * MIB + PROGRAM
 }
 
-/// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the
-/// program and its libraries, and for each thread (those that render and two more) a stack and an arena of glibc.
+/// Address space that is reserved but not used, by which `ulimit -v` must exceed `--max-memory`:
+/// the program and its libraries, and a stack and a glibc arena for each rendering thread and two
+/// more.
 fn reserved(threads: u64) -> u64 {
     64 * MIB + (threads + 2) * (64 + 8) * MIB
 }
 
-/// A bent surface of 2 `edge`² triangles as binary PLY, and a scene of it.
+/// A curved surface of 2 `edge`² triangles as binary PLY, and a scene of it.
 fn with_mesh(edge: u32) -> Folder {
     let folder = Folder::new();
     let side = edge + 1;
@@ -52,7 +54,7 @@ fn scene_of(folder: &Folder, mesh: &str) {
     fs::write(folder.path("mesh.json"), text).unwrap();
 }
 
-/// Runs under a limit of address space; `None` where there is no such thing.
+/// Runs a command with a limited address space; `None` if the system does not support limits.
 fn limited(folder: &Folder, line: &str, budget: u64, threads: u64) -> Option<Run> {
     if !cfg!(target_os = "linux") {
         skipped("limits of address space: `ulimit -v` is only on Linux");
@@ -71,7 +73,7 @@ fn stats(folder: &Folder) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.path("stats.json")).unwrap()).unwrap()
 }
 
-/// Renders under the limit: the peak stays in the budget, and the picture is the one without any.
+/// Asserts that a render stays below the limit and gives the same picture as without one.
 fn fits(folder: &Folder, line: &str, budget: u64, threads: u64) {
     let Some(run) = limited(folder, line, budget, threads) else { return };
     assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{line}");
@@ -92,7 +94,7 @@ fn a_large_picture_fits_into_little_memory() {
     for output in ["a.png", "a.exr"] {
         fits(&folder, &format!("empty.json --size 20000x400 --samples 1 -o {output}"), budget(72), 2);
     }
-    // Whatever the bands.
+    // The size of the bands does not matter.
     let line = "ball.json --size 300x700 --samples 1 -o a.png --threads 2";
     let free = folder.hash(line);
     assert_eq!(folder.hash(&format!("{line} --max-memory {}", budget(24))), free);
@@ -101,12 +103,12 @@ fn a_large_picture_fits_into_little_memory() {
 #[test]
 fn a_mesh_fits_where_its_tree_does() {
     let folder = with_mesh(400);
-    // 320,000 triangles.
+    // The mesh has 320,000 triangles.
     fits(&folder, "mesh.json --size 64x36 --samples 1 -o a.png", budget(58), 2);
     let message = folder.bad(&format!("render mesh.json --size 64x36 -o a.png --max-memory {}", budget(32)), 2);
     let said = format!("{}.0 MiB", budget(32) / MIB);
     assert!(message.contains("mesh `bent.ply`") && message.contains(&said), "{message}");
-    // Before it is read: nobody could know otherwise that this one breaks off.
+    // The render is refused before the file is read, since its last byte is missing.
     let whole = fs::read(folder.path("bent.ply")).unwrap();
     fs::write(folder.path("broken.ply"), &whole[..whole.len() - 1]).unwrap();
     scene_of(&folder, "broken.ply");
@@ -122,10 +124,10 @@ fn a_kept_film_fits_or_is_refused_with_advice() {
     let line = "ball.json --size 1000x600 --samples 17 -o a.png --checkpoint a.jfilm --checkpoint-every 1";
     fits(&folder, line, budget(84), 2);
     let message = folder.bad(&format!("render {line} --max-memory {}", budget(40)), 2);
-    for said in ["for the film", "36 bytes a pixel", "--checkpoint", "--shard", "--size"] {
+    for said in ["for the film", "36 bytes per pixel", "--checkpoint", "--shard", "--size"] {
         assert!(message.contains(said), "{said}: {message}");
     }
-    // A share of it needs a share of that.
+    // A shard needs its share of the memory.
     fits(&folder, "ball.json --size 1000x600 --samples 17 -o a.jfilm --shard 1/4", budget(40), 2);
 }
 
@@ -157,7 +159,7 @@ fn what_is_foretold_is_enough() {
 #[test]
 fn meshes_of_all_formats_are_foretold() {
     let folder = Folder::new();
-    // Long enough that only parts of it are looked at.
+    // The file is so long that the estimate samples only parts of it.
     let edge = 250_u32;
     let side = edge + 1;
     let mut text = String::new();
@@ -192,7 +194,7 @@ fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
     assert!(message.contains("the scene `many.json` needs about"), "{message}");
 }
 
-/// In a control group of its own, where this machine lets us make one.
+/// Limits memory by a control group, if the system allows its creation.
 #[test]
 fn a_control_group_holds_it() {
     let folder = with_mesh(300);
@@ -225,22 +227,23 @@ fn instanced_emitters_are_foretold() {
         )
     };
     let line = "row.json --size 8x8 --samples 1 -o a.png --threads 2";
-    // 300,000 emitters of a file of 1,000 bytes.
+    // 300,000 emitters from a file of 1,000 bytes.
     fs::write(folder.path("row.json"), scene(&[r#"{"group": "c"}"#; 3].join(", "))).unwrap();
     let stats = folder.stats(line);
     let (peak, expected) = peaks(&stats);
     assert!(peak <= expected && expected < 2 * peak, "{peak} of {expected}");
     let refused = folder.run(&format!("render {line} --max-memory 100M"));
     assert_eq!((refused.status, refused.stderr.contains("the scene")), (2, true), "{}", refused.stderr);
-    // Ten million are too many.
+    // Ten million emitters exceed the limit.
     fs::write(folder.path("row.json"), scene(&ten("d"))).unwrap();
     let refused = folder.run(&format!("render {line}"));
     assert_eq!(refused.status, 2);
-    assert!(refused.stderr.contains("10000000 shapes that emit light, the limit is 4000000"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("10000000 emissive shapes, the limit is 4000000"), "{}", refused.stderr);
     assert!(refused.stderr.contains("objects[4]"), "{}", refused.stderr);
 }
 
-/// Twice or half as many bytes an object would be noticed: they are most of what is held.
+/// The estimate of the bytes per object is within a factor of two; objects are most of the memory
+/// here.
 #[test]
 fn stored_objects_are_foretold() {
     let folder = Folder::new();

@@ -1,17 +1,17 @@
-//! `juggler merge` and `juggler info` on parts of pictures.
+//! `juggler merge` and `juggler info` on partial renders.
 
 use crate::harness::Folder;
-use juggler::camera::film::{Accumulator, Rect, Run, Tile, runs};
-use juggler::film::share::Work;
-use juggler::film::{Description, Layered, Share, Stop, write};
+use juggler::camera::film::{Accumulator, Rect, SampleRun, Tile, runs};
+use juggler::film::shard::Work;
+use juggler::film::{AovDescription, RenderDescription, ShardDescription, Stop, write};
 use juggler::imaging::Tone;
 use juggler::math::Rgb;
 use std::fs;
 
 const SAMPLES: u32 = 40;
 
-fn description() -> Description {
-    Description {
+fn description() -> RenderDescription {
+    RenderDescription {
         software: "Juggler".into(),
         command: "juggler render ball.json --samples 40".into(),
         scene: "ball".into(),
@@ -21,8 +21,8 @@ fn description() -> Description {
         samples: SAMPLES,
         stop: Stop::Samples,
         clamped: false,
-        layers: Layered::default(),
-        share: Share::whole(SAMPLES),
+        aovs: AovDescription::default(),
+        shard: ShardDescription::whole(SAMPLES),
         finished: true,
         fingerprint: [("seed".to_owned(), "7".to_owned())].into(),
         tone: serde_json::to_value(Tone::default()).unwrap(),
@@ -31,13 +31,16 @@ fn description() -> Description {
     }
 }
 
-/// Writes share `index` of `count` of a picture that is a ramp, as `index.jfilm`.
-fn share(folder: &Folder, index: u32, count: u32, change: impl Fn(&mut Description)) {
-    let mut description = Description { share: Share { index, count, ..Share::whole(SAMPLES) }, ..description() };
+/// Writes shard `index` of `count` of a picture of a gradient, as `index.jfilm`.
+fn shard(folder: &Folder, index: u32, count: u32, change: impl Fn(&mut RenderDescription)) {
+    let mut description = RenderDescription {
+        shard: ShardDescription { index, count, ..ShardDescription::whole(SAMPLES) },
+        ..description()
+    };
     change(&mut description);
-    let layout = description.layout();
+    let tiling = description.tiling();
     let tile = |number: u64| {
-        let mut tile = Tile::new(layout.tile(number).unwrap());
+        let mut tile = Tile::new(tiling.tile(number).unwrap());
         let Rect { x, y, width, .. } = tile.pixels();
         for samples in runs(0..SAMPLES) {
             let sum = |pixel: u32| {
@@ -48,19 +51,20 @@ fn share(folder: &Folder, index: u32, count: u32, change: impl Fn(&mut Descripti
                 accumulator.sums().next().unwrap()
             };
             let sums = (0..tile.pixels().area() as u32).map(sum).collect();
-            tile.add(Run::new(samples, sums)).unwrap();
+            tile.add(SampleRun::new(samples, sums)).unwrap();
         }
         (number, tile)
     };
-    // Of pieces of a tile's samples those from the first are taken with all.
-    let units = Work::of(&Description { stop: Stop::Time { seconds: 1.0 }, ..description.clone() }).share(index, count);
+    // If units divide a tile's samples, the first of them carries all.
+    let units = Work::from_description(&RenderDescription { stop: Stop::Time { seconds: 1.0 }, ..description.clone() })
+        .shard(index, count);
     let tiles = units.into_iter().map(|unit| tile(unit.tile));
     write(&folder.path(&format!("{index}.jfilm")), &description, tiles).unwrap();
 }
 
-fn shares(folder: &Folder, count: u32) -> String {
+fn shards(folder: &Folder, count: u32) -> String {
     let name = |index: u32| {
-        share(folder, index, count, |description| description.stop = Stop::Noise { level: 0.1 });
+        shard(folder, index, count, |description| description.stop = Stop::Noise { level: 0.1 });
         format!("{index}.jfilm ")
     };
     (0..count).rev().map(name).collect()
@@ -69,15 +73,15 @@ fn shares(folder: &Folder, count: u32) -> String {
 #[test]
 fn parts_become_the_picture_of_the_whole() {
     let folder = Folder::new();
-    share(&folder, 0, 1, |description| description.stop = Stop::Noise { level: 0.1 });
+    shard(&folder, 0, 1, |description| description.stop = Stop::Noise { level: 0.1 });
     folder.good("merge 0.jfilm -o whole.png");
-    let parts = shares(&folder, 3);
+    let parts = shards(&folder, 3);
     let line = folder.good(&format!("merge {parts} -o parts.png")).stdout;
     assert!(line.starts_with("parts.png: 70x40, 40 samples, of 3 parts, "), "{line}");
     assert_eq!(fs::read(folder.path("whole.png")).unwrap(), fs::read(folder.path("parts.png")).unwrap());
-    // By way of a larger part, through standard output.
+    // Through a larger partial render, and to standard output.
     let line = folder.good("merge 2.jfilm 0.jfilm -o some.jfilm").stdout;
-    assert!(line.starts_with("some.jfilm: 70x40, not all of it, "), "{line}");
+    assert!(line.starts_with("some.jfilm: 70x40, incomplete, "), "{line}");
     let streamed = folder.run("merge some.jfilm 1.jfilm -o - --quiet");
     assert_eq!(streamed.bytes, fs::read(folder.path("whole.png")).unwrap());
     let stats = folder.good(&format!("merge {parts} -o a.pfm --stats - --quiet")).stdout;
@@ -90,14 +94,14 @@ fn parts_become_the_picture_of_the_whole() {
 #[test]
 fn wrong_choices_of_parts_are_named() {
     let folder = Folder::new();
-    shares(&folder, 5);
+    shards(&folder, 5);
     let message = folder.bad("merge 0.jfilm 2.jfilm 0.jfilm -o a.png", 2);
-    assert!(message.contains("0.jfilm: holds samples that 0.jfilm holds too"), "{message}");
+    assert!(message.contains("`0.jfilm` repeats samples of `0.jfilm`"), "{message}");
     assert!(message.contains("still to do: shards 1,3-4 of 5 (--shard 1/5)"), "{message}");
-    share(&folder, 1, 5, |description| drop(description.fingerprint.insert("seed".into(), "8".into())));
+    shard(&folder, 1, 5, |description| drop(description.fingerprint.insert("seed".into(), "8".into())));
     let message = folder.bad("merge 0.jfilm 1.jfilm 2.jfilm -o a.jfilm", 2);
     let expected =
-        "1.jfilm: is of another picture than 0.jfilm: stop: samples instead of noise 0.1; seed: 8 instead of 7";
+        "`1.jfilm` is of another picture than `0.jfilm`: stop: samples instead of noise 0.1; seed: 8 instead of 7";
     assert!(message.contains(expected), "{message}");
     assert!(folder.bad("merge 0.jfilm -o a.jfilm --bits 8", 2).contains("--bits"));
     assert!(folder.bad("merge 0.jfilm -o a.tga", 2).contains(".png"));
@@ -108,22 +112,25 @@ fn wrong_choices_of_parts_are_named() {
 #[test]
 fn files_that_fail_are_named() {
     let folder = Folder::new();
-    shares(&folder, 2);
+    shards(&folder, 2);
     let bytes = fs::read(folder.path("1.jfilm")).unwrap();
     fs::write(folder.path("1.jfilm"), &bytes[..bytes.len() - 1]).unwrap();
     let message = folder.bad("merge 0.jfilm 1.jfilm none.jfilm ball.json -o a.png", 3);
-    for expected in
-        ["1.jfilm: is cut short", "none.jfilm: cannot be read", "ball.json: is no part", "still to do: shard 1 of 2"]
-    {
+    for expected in [
+        "cannot read `1.jfilm`: unexpected end of file",
+        "cannot read `none.jfilm`: ",
+        "`ball.json` is not a partial render",
+        "still to do: shard 1 of 2",
+    ] {
         assert!(message.contains(expected), "{expected}: {message}");
     }
-    assert!(folder.bad("info 1.jfilm", 3).contains("1.jfilm: is cut short"));
+    assert!(folder.bad("info 1.jfilm", 3).contains("cannot read `1.jfilm`: unexpected end of file"));
 }
 
 #[test]
 fn parts_explain_themselves() {
     let folder = Folder::new();
-    shares(&folder, 3);
+    shards(&folder, 3);
     let words = folder.good("info 1.jfilm").stdout;
     for expected in [
         "part         shard 1/3, finished",

@@ -1,11 +1,11 @@
-//! Mesh files: what `info` says about them, and that objects share them.
+//! Mesh files: the output of `info`, and sharing between objects.
 
 use crate::harness::Folder;
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 
-/// A floor of 2 * 32 * 32 triangles with one more that has no area.
+/// A floor of 2 * 32 * 32 triangles, plus a degenerate one.
 fn with_floor() -> Folder {
     let folder = Folder::new();
     let mut text = String::from("usemtl grey\n");
@@ -49,7 +49,9 @@ fn info_of_a_mesh() {
 fn a_mesh_that_cannot_be_read() {
     let folder = Folder::new();
     fs::write(folder.path("broken.ply"), "ply\nformat ascii 1.0\nelement x\n").unwrap();
-    assert!(folder.bad("info broken.ply", 2).contains("cannot read `broken.ply`: line 3: expected the number of rows"));
+    assert!(
+        folder.bad("info broken.ply", 2).contains("cannot read `broken.ply`: line 3: expected the number of elements")
+    );
     fs::write(folder.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").unwrap();
     assert!(folder.bad("info flat.obj", 2).contains("all 1 are degenerate"));
     fs::create_dir(folder.path("folder.stl")).unwrap();
@@ -78,7 +80,7 @@ fn objects_share_a_mesh_and_its_hierarchy() {
     }
 }
 
-/// A mesh is rendered as it is, checked, and converted to a scene with the same picture.
+/// A mesh can be rendered and checked like a scene, and converts to a scene with the same picture.
 #[test]
 fn a_mesh_in_place_of_a_scene() {
     let folder = Folder::new();
@@ -105,9 +107,9 @@ fn files_of_other_programs_are_named() {
     for command in ["render", "check", "info", "convert"] {
         let output = if command == "convert" { " a.json" } else { "" };
         let message = folder.bad(&format!("{command} car.glb{output}"), 2);
-        assert_eq!(message, "error: `car.glb`: glTF is not read yet; meshes in OBJ, PLY and STL are\n");
+        assert_eq!(message, "error: `car.glb`: glTF is not supported; supported mesh formats: OBJ, PLY and STL\n");
         assert!(
-            folder.bad(&format!("{command} room.pov{output}"), 2).contains("POV-Ray's scene language is not read yet")
+            folder.bad(&format!("{command} room.pov{output}"), 2).contains("POV-Ray's scene language is not supported")
         );
     }
 }

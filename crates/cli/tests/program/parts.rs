@@ -1,4 +1,4 @@
-//! Work that is kept, gone on with, shared and joined.
+//! Checkpoints, shards and merging.
 
 use crate::harness::{self, Folder, Run, wait_until};
 use serde_json::Value;
@@ -18,7 +18,7 @@ fn a_checkpoint_changes_nothing_and_is_gone_on_with() {
         folder.good(&format!("render {BALL} --samples {samples} -o out.png -q --checkpoint kept.jfilm"));
         assert_eq!(fs::read(folder.path("out.png")).unwrap(), straight(samples), "{samples} samples");
     }
-    // All is there already: no ray is traced.
+    // Everything is in the checkpoint, so no ray is traced.
     let again = folder.stats(&format!("{BALL} --samples 70 -o again.png --checkpoint kept.jfilm"));
     assert_eq!(again["rays"]["camera"], 0);
     assert_eq!(fs::read(folder.path("again.png")).unwrap(), straight(70));
@@ -33,7 +33,7 @@ fn logs_say_what_was_there_already() {
         String::from_utf8(folder.command(&line).output().unwrap().stderr).unwrap()
     };
     assert_eq!(said("--samples 70"), "");
-    assert_eq!(said("--samples 100"), "kept.jfilm: 70.0 % is there, going on\n");
+    assert_eq!(said("--samples 100"), "kept.jfilm: 70.0 % is done, resuming\n");
     assert_eq!(said("--samples 100 -q"), "");
 }
 
@@ -78,7 +78,7 @@ fn an_interrupted_render_keeps_its_work() {
         assert_eq!(output.status.code().unwrap_or(-1), status);
         if status > 0 {
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(said.contains("the work so far is in `kept.jfilm`"), "{said}");
+            assert!(said.contains("progress is saved in `kept.jfilm`"), "{said}");
         }
     }
     let left: Vec<String> = folder.files().into_iter().filter(|name| !name.starts_with(".kept")).collect();
@@ -103,7 +103,8 @@ fn shards_make_the_picture() {
     assert!(message.contains("part0.jfilm") && message.contains("1-2,4"), "{message}");
 }
 
-/// Renders a shard whose checkpoint is `kept`, and kills it as soon as there is one; says whether it was still at work.
+/// Renders a shard with the checkpoint `kept`, kills it at its first checkpoint, and returns
+/// whether it was still running.
 fn killed_midway(folder: &Folder, line: &str, kept: &str) -> bool {
     let line = format!("{line} --checkpoint-every 0.005");
     let mut child = folder.command(&line).stderr(Stdio::null()).spawn().unwrap();
@@ -112,8 +113,8 @@ fn killed_midway(folder: &Folder, line: &str, kept: &str) -> bool {
     child.wait().unwrap().code().is_none()
 }
 
-/// Renders the five shards of a picture, two of which are killed midway and begun again; says whether they were at work
-/// when they were killed.
+/// Renders the five shards of a picture, two of which are killed and resumed. Returns whether they
+/// were still running when killed.
 fn with_killed_shards(folder: &Folder, picture: &str) -> bool {
     let mut midway = true;
     for index in [3, 0, 4, 1, 2] {
@@ -129,7 +130,7 @@ fn with_killed_shards(folder: &Folder, picture: &str) -> bool {
 
 #[test]
 fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
-    // A fast machine gets more to do, until it is not done before it is killed.
+    // Use more samples on fast machines, until the shards are killed before they finish.
     let found = [400, 1600, 6400, 25_600].into_iter().find_map(|samples| {
         let folder = Folder::new();
         let picture = format!("ball.json --size 160x120 --samples {samples}");
@@ -142,7 +143,7 @@ fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
     fs::copy(folder.path("part3.jfilm"), folder.path("copy.jfilm")).unwrap();
     let all = "merge part2.jfilm copy.jfilm part0.jfilm part4.jfilm part3.jfilm part1.jfilm -o again.png -q";
     let message = folder.bad(all, 2);
-    assert!(message.contains("part3.jfilm: holds samples that copy.jfilm holds too"), "{message}");
+    assert!(message.contains("`part3.jfilm` repeats samples of `copy.jfilm`"), "{message}");
     assert!(!folder.files().contains(&"again.png".to_owned()));
 }
 
@@ -212,8 +213,12 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
     assert_eq!(fs::read(folder.path("again.png")).unwrap(), fs::read(folder.path("timed.png")).unwrap());
     assert!(folder.bad("render ball.json --samples-from timed.png", 2).contains("another picture"));
     folder.good(&format!("render {BALL} -o plain.png -q"));
-    assert!(folder.bad(&format!("render {BALL} --samples-from plain.png"), 2).contains("does not say"));
-    // The command that a picture tells names the picture itself, wherever it lies now.
+    assert!(
+        folder
+            .bad(&format!("render {BALL} --samples-from plain.png"), 2)
+            .contains("does not contain the numbers of samples")
+    );
+    // The command in the metadata names the file itself, at its current path.
     fs::rename(folder.path("timed.png"), folder.path("moved.png")).unwrap();
     let told = folder.good("info moved.png").stdout;
     assert!(told.contains("--samples-from moved.png"), "{told}");
@@ -222,8 +227,7 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
 #[test]
 fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
     let folder = Folder::new();
-    // The shell's limit on the size of files stands for a full disk: the picture is small, the
-    // checkpoint is not.
+    // A limit on file sizes stands for a full disk: the picture fits, the checkpoint does not.
     let program = env!("CARGO_BIN_EXE_juggler");
     let line = format!(
         "trap '' XFSZ; ulimit -f 40; exec {program} render ball.json --size 96x64 --samples 16 -o a.png --checkpoint a.jfilm"
@@ -234,7 +238,7 @@ fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
     assert!(run.stderr.contains("cannot write `a.jfilm`") && run.stdout.starts_with("a.png: "), "{}", run.stderr);
     folder.good("render ball.json --size 96x64 --samples 16 -o b.png -q");
     assert!(fs::read(folder.path("a.png")).unwrap() == fs::read(folder.path("b.png")).unwrap());
-    // AOVs beside the picture cost it neither.
+    // A failed AOV file does not prevent the picture either.
     let message = folder.bad("render ball.json --aov depth -q -o c.png --aov-output /dev/null/a.exr", 3);
     assert!(message.contains("/dev/null/a.exr"), "{message}");
 }
@@ -252,7 +256,7 @@ fn pictures_that_end_by_noise_or_time_say_how_many_samples_they_got() {
     assert!(run.stdout.contains(&format!("{min} to {max} samples, ")) || min == max, "{}", run.stdout);
     let told = folder.good("info a.png").stdout;
     assert!(told.contains(&format!("Samples      {min}")) && !told.contains("65536"), "{told}");
-    // Shards say the same, byte by byte.
+    // The shards merge to identical bytes.
     for shard in 0..2 {
         folder.good(&format!("{line} -q --shard {shard}/2 -o {shard}.jfilm"));
     }

@@ -1,4 +1,4 @@
-//! What `juggler render` writes, and where.
+//! Output files of `juggler render`.
 
 use crate::harness::{Folder, wait_until};
 use juggler::imaging;
@@ -167,8 +167,8 @@ fn a_converted_scene_is_the_same_picture() {
     assert!(run.stdout.starts_with('{') && run.stdout.contains("\"version\": 1"), "{}", run.stdout);
 }
 
-/// Transforms that stretch a flat shape beyond what single precision can invert once made a ray meet
-/// the same shape for ever.
+/// Regression test: transforms that stretch a flat shape beyond what single precision can invert
+/// made rays hit the same shape forever.
 #[test]
 fn extreme_scales_end() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! `juggler probe` and what `juggler compare` says of noise.
+//! `juggler probe`, and the noise test of `juggler compare`.
 
 use crate::harness::{Folder, SCENE};
 use serde_json::Value;
@@ -33,7 +33,7 @@ fn a_probe_says_why_in_words() {
     let said = folder.good(&format!("probe {BALL} 12,9")).stdout;
     for part in [
         "pixel 12,9 of 24x18, path, 20 samples",
-        "sees",
+        "first hit",
         "objects[1], sphere",
         "material red",
         "lights[0] (point)",
@@ -44,11 +44,11 @@ fn a_probe_says_why_in_words() {
     }
     let sky = folder.good(&format!("probe {BALL} 0,0 --brightest 0 --branches 0")).stdout;
     assert!(
-        sky.contains("sees       background") && sky.contains("1 other branch") && !sky.contains("brightest"),
+        sky.contains("first hit  background") && sky.contains("1 other branch") && !sky.contains("brightest"),
         "{sky}"
     );
     let normals = folder.good("probe ball.json 3,3 --integrator normals").stdout;
-    assert!(normals.contains("follows no paths"), "{normals}");
+    assert!(normals.contains("traces no paths"), "{normals}");
     folder.good("probe ball.json 0,0 --size 1x1 --samples 1 --stats a.json");
     assert_eq!(json(&fs::read_to_string(folder.path("a.json")).unwrap())["version"], 1);
     fs::write(folder.path("empty.json"), r#"{"version": 1, "objects": []}"#).unwrap();
@@ -59,9 +59,9 @@ fn a_probe_says_why_in_words() {
 fn probes_of_what_is_not_there_are_refused() {
     let folder = Folder::new();
     for (line, said) in [
-        ("probe ball.json 16,0", "X goes from 0 to 15, Y from 0 to 8"),
-        ("probe ball.json 0,9", "0,9 is not in the picture"),
-        ("probe ball.json 4294967295,0", "is not in the picture"),
+        ("probe ball.json 16,0", "X is 0 to 15, Y is 0 to 8"),
+        ("probe ball.json 0,9", "0,9 is outside the picture"),
+        ("probe ball.json 4294967295,0", "is outside the picture"),
         ("probe ball.json 4294967296,0", "X,Y"),
         ("probe ball.json 3", "X,Y"),
         ("probe ball.json a,b", "320,180"),
@@ -92,7 +92,7 @@ fn fireflies_are_listed() {
     assert!(folder.good("probe clamped.json --fireflies").stdout.contains("clamping removed "));
 }
 
-/// Pictures of the ball, as they are and brighter, that know their variances.
+/// Pictures of the scene and of a brighter version, with their variances.
 fn noisy() -> Folder {
     let folder = Folder::new();
     let brighter = SCENE.replace(r#""intensity": 60"#, r#""intensity": 63"#);
@@ -118,7 +118,7 @@ fn noisy() -> Folder {
 #[test]
 fn noise_is_told_from_differences() {
     let folder = noisy();
-    assert!(folder.good("compare a.exr a.jfilm").stdout.starts_with("equal to the bit"));
+    assert!(folder.good("compare a.exr a.jfilm").stdout.starts_with("identical, bit for bit"));
     for pair in ["a.exr b.exr", "a.jfilm b.jfilm", "a.exr b.jfilm"] {
         let said = folder.good(&format!("compare {pair}")).stdout;
         assert!(said.starts_with("same up to noise, p = 0."), "{pair}: {said}");
@@ -143,8 +143,8 @@ fn where_noise_cannot_be_told_it_is_said() {
     let folder = noisy();
     for (pair, reason) in [
         ("a.jfilm more.jfilm", "share samples"),
-        ("a.jfilm few.jfilm", "32 a pixel or more"),
-        ("a.exr d.exr", "taken out"),
+        ("a.jfilm few.jfilm", "at least 32 per pixel"),
+        ("a.exr d.exr", "before denoising"),
     ] {
         let run = folder.run(&format!("compare {pair}"));
         assert!(run.status == 1 && run.stdout.contains("not tested"), "{pair}: {}", run.stdout);

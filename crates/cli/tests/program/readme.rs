@@ -1,5 +1,4 @@
-//! The console blocks of README.md say what happens: their commands are run, and what they print is
-//! compared.
+//! Runs the commands in the console blocks of README.md and compares their output.
 #![cfg(target_os = "linux")]
 
 use crate::harness::{self, Folder, Run, wait_until};
@@ -9,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 
 const README: &str = include_str!("../../../../README.md");
 
-/// The scene whose mistakes README shows.
+/// Scene whose mistakes README shows.
 const WRONG: &str = r##"{
   "version": 1,
   "materials": {"red": {"phong": {"diffuse": "#c02020"}}},
@@ -20,13 +19,13 @@ const WRONG: &str = r##"{
 }
 "##;
 
-/// A command of a console block, with the lines that README shows after it.
+/// A command of a console block, with the output that README shows.
 struct Step {
     command: String,
     shown: Vec<String>,
 }
 
-/// The console blocks.
+/// Steps of each console block.
 fn blocks() -> Vec<Vec<Step>> {
     let blocks = README.split("```console\n").skip(1).filter_map(|rest| rest.split("```").next());
     blocks.map(|block| steps(block).collect()).collect()
@@ -41,8 +40,7 @@ fn steps(block: &str) -> impl Iterator<Item = Step> {
     })
 }
 
-/// Starts what is typed into a shell that finds the program; the shell becomes it where nothing
-/// else is to be done.
+/// Starts a command line in a shell that finds the program. Simple commands replace the shell.
 fn typed(folder: &Folder, line: &str) -> Child {
     let program = Path::new(env!("CARGO_BIN_EXE_juggler")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
@@ -53,8 +51,8 @@ fn typed(folder: &Folder, line: &str) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Presses Ctrl-C as soon as the program has its own way of taking that. The program watches for
-/// SIGTERM next; shells watch for SIGINT, but not for SIGTERM.
+/// Sends SIGINT as soon as the program handles it. The program registers SIGTERM next; shells
+/// handle SIGINT, but not SIGTERM.
 fn interrupt(child: &Child) {
     let status = format!("/proc/{}/status", child.id());
     let catches = || {
@@ -66,7 +64,7 @@ fn interrupt(child: &Child) {
     harness::signal(child, "-INT");
 }
 
-/// What a command prints; after `^C` the program goes on until it is interrupted.
+/// Output of a command; after `^C`, the program is interrupted.
 fn run(folder: &Folder, step: &Step) -> Vec<String> {
     let child = typed(folder, &step.command);
     let is_interrupted = step.shown.first().is_some_and(|line| line == "^C");
@@ -78,14 +76,14 @@ fn run(folder: &Folder, step: &Step) -> Vec<String> {
     typed.into_iter().chain(stdout.lines().map(str::to_owned)).collect()
 }
 
-/// Whether two lines say the same, whatever the machine's speed.
+/// Whether two lines are equal except for measured values.
 fn alike(shown: &str, printed: &str) -> bool {
     let pairs = shown.split_whitespace().zip(printed.split_whitespace());
     let same_length = shown.split_whitespace().count() == printed.split_whitespace().count();
     same_length && pairs.into_iter().all(|(a, b)| a == b || (is_measured(a) && is_measured(b)))
 }
 
-/// `1.21s,`, `9m56s`, `41.2`, `million`: what depends on the machine.
+/// Whether a word depends on the machine's speed, such as `1.21s,`, `9m56s`, `41.2` or `million`.
 fn is_measured(word: &str) -> bool {
     let number = word.starts_with(|c: char| c.is_ascii_digit());
     let unit = word.trim_end_matches(',').trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');

@@ -1,4 +1,4 @@
-//! `juggler serve` from the outside.
+//! `juggler serve` from outside.
 #![cfg(all(unix, feature = "serve"))]
 
 use crate::harness::Folder;
@@ -7,7 +7,7 @@ use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A server that has said where it is.
+/// Starts a server and returns its process and its address.
 fn start(folder: &Folder, line: &str) -> (Child, String) {
     let mut child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = String::new();
@@ -26,7 +26,7 @@ fn end(mut child: Child, signal: &str) -> (Option<i32>, String) {
     (status, errors)
 }
 
-/// The answer to a request.
+/// Response to a request.
 fn get(host: &str, path: &str) -> String {
     let mut stream = TcpStream::connect(host).unwrap();
     write!(stream, "GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();

@@ -1,4 +1,4 @@
-//! Signals end a render in order: nothing half done is left, and the exit status says so.
+//! Signals end a render cleanly: without incomplete files, and with the right exit status.
 #![cfg(unix)]
 
 use crate::harness::{self, Folder, Run, wait_until};
@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Starts a render that would take hours, and sends a signal when its first bytes are there.
+/// Starts a render of hours, and sends a signal once the output file has its first bytes.
 fn interrupt(folder: &Folder, signal: &str) -> Run {
     let mut command = folder.command("render ball.json --samples 1000000 --size 200x200 -o out.png");
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -61,7 +61,8 @@ fn progress_comes_while_it_renders() {
 #[test]
 fn a_second_signal_ends_the_program_at_once() {
     let folder = Folder::new();
-    // Nobody reads on: the program waits in the midst of writing, where the first signal can only be remembered.
+    // No process reads the pipe, so the program blocks in a write, during which the first signal is
+    // only recorded.
     let mut command = folder.command("render ball.json --samples 1 --size 1000x1000 -o -");
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     child.stdout.as_mut().unwrap().read_exact(&mut [0; 8]).unwrap();
@@ -75,7 +76,7 @@ fn a_second_signal_ends_the_program_at_once() {
     assert!(second.elapsed() < Duration::from_secs(5), "{:?}", second.elapsed());
 }
 
-/// Whether this process, and so what it starts, ignores SIGHUP, as under `nohup`.
+/// Whether this process, and thus its children, ignore SIGHUP, as under `nohup`.
 #[cfg(target_os = "linux")]
 fn ignores_hangups() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap();
@@ -106,7 +107,7 @@ fn what_a_killed_render_left_goes_with_the_next_that_succeeds() {
 #[test]
 fn an_interrupted_merge_leaves_nothing() {
     let folder = Folder::new();
-    // Larger pictures take a fast machine long enough.
+    // Try a larger picture on fast machines.
     let interrupted = [700, 2000].into_iter().any(|side| {
         folder.good(&format!("render ball.json --integrator normals --samples 1 --size {side}x{side} -o a.jfilm -q"));
         let _ = fs::remove_file(folder.path("out.png"));

@@ -1,4 +1,4 @@
-//! `--stats` and `--progress json`: keys that other people's scripts read.
+//! `--stats` and `--progress json`: keys that scripts rely on.
 
 use crate::harness::{Folder, SCENE};
 use serde_json::Value;
@@ -40,7 +40,7 @@ fn the_keys_are_those_that_were_promised() {
     assert_eq!((&stats["version"], &stats["scene"], &stats["threads"]), (&1.into(), &"ball.json".into(), &2.into()));
     assert_eq!((&stats["size"], &stats["samples"]), (&serde_json::json!([16, 9]), &2.into()));
     assert_eq!((&stats["rays"]["camera"], &stats["integrator"]), (&(16 * 9 * 2).into(), &"classic".into()));
-    assert_eq!(stats["integrator_reason"], "chosen because all lights and materials are of the classic kind");
+    assert_eq!(stats["integrator_reason"], "chosen because `classic` supports all lights and materials of the scene");
     let whole = stats["seconds"]["total"].as_f64().unwrap();
     let parts = ["load", "build", "render", "write"].map(|part| stats["seconds"][part].as_f64().unwrap());
     assert!(parts.iter().sum::<f64>() <= whole && parts.iter().all(|part| *part >= 0.0), "{}", stats["seconds"]);
@@ -105,11 +105,11 @@ fn what_clamping_takes_is_always_told() {
         told(&format!("{render} --shard {shard}/2 -o {shard}.jfilm"));
     }
     assert_eq!(told("merge 0.jfilm 1.jfilm -o merged.png"), whole);
-    // Fewer samples first, then gone on with.
+    // Start with fewer samples, then resume.
     told("render clamped.json --size 40x25 --samples 7 -o a.jfilm --checkpoint a.jfilm");
     assert_eq!(told(&format!("{render} -o a.jfilm --checkpoint a.jfilm")), whole);
     assert!(folder.good("info whole.png").stdout.contains("direct light at 0.4, indirect light at 0.02"));
-    // Frames of a film say it too.
+    // Frames of a movie report clamping too.
     let film = folder.run("render clamped.json --frames 0..2 -o film.gif");
     assert_eq!(film.status, 0, "{}", film.stderr);
     assert_eq!(film.stderr.matches("clamping removed ").count(), 2, "{}", film.stderr);

@@ -1,7 +1,7 @@
-//! Compiled expressions against a tree that is walked: random expressions have the same bits.
+//! Compiled expressions against a tree walk: random expressions have the same bits.
 
 use juggler_expression::{FUNCTIONS, Names, PointEvaluator, Program, Quantity};
-use juggler_math::fun;
+use juggler_math::portable;
 use juggler_math::testing::Random;
 use std::fmt::Write;
 
@@ -50,7 +50,7 @@ impl Tree {
             }
             _ => {
                 let function = &FUNCTIONS[random.below(FUNCTIONS.len())];
-                let count = *function.takes.start() + if function.takes.contains(&4) { random.below(4) } else { 0 };
+                let count = *function.arity.start() + if function.arity.contains(&4) { random.below(4) } else { 0 };
                 Self::Call(function.name, (0..count).map(|_| Self::random(random, depth - 1)).collect())
             }
         }
@@ -113,7 +113,7 @@ fn operator_value(operator: &str, x: f64, y: f64) -> f64 {
         "*" => x * y,
         "/" => x / y,
         "%" => x - y * (x / y).floor(),
-        "^" => fun::pow_f64(x, y),
+        "^" => portable::pow_f64(x, y),
         "<" => truth(x < y),
         "<=" => truth(x <= y),
         ">" => truth(x > y),
@@ -130,9 +130,9 @@ fn call_value(name: &str, arguments: &[f64]) -> f64 {
         ("min", all) => all.iter().copied().fold(f64::INFINITY, f64::min),
         ("max", all) => all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         (name, [x]) => function_value(name, *x),
-        ("atan2", [y, x]) => fun::atan2_f64(*y, *x),
+        ("atan2", [y, x]) => portable::atan2_f64(*y, *x),
         ("hypot", [x, y]) => (x * x + y * y).sqrt(),
-        ("pow", [x, y]) => fun::pow_f64(*x, *y),
+        ("pow", [x, y]) => portable::pow_f64(*x, *y),
         ("mod", [x, y]) => x - y * (x / y).floor(),
         ("clamp", [x, a, b]) => clamp(*x, *a, *b),
         ("lerp", [a, b, t]) => a + (b - a) * t,
@@ -153,17 +153,17 @@ fn call_value(name: &str, arguments: &[f64]) -> f64 {
 
 fn function_value(name: &str, x: f64) -> f64 {
     match name {
-        "sin" => fun::sin_f64(x),
-        "cos" => fun::cos_f64(x),
-        "tan" => fun::tan_f64(x),
-        "asin" => fun::asin_f64(x),
-        "acos" => fun::acos_f64(x),
-        "atan" => fun::atan2_f64(x, 1.0),
+        "sin" => portable::sin_f64(x),
+        "cos" => portable::cos_f64(x),
+        "tan" => portable::tan_f64(x),
+        "asin" => portable::asin_f64(x),
+        "acos" => portable::acos_f64(x),
+        "atan" => portable::atan2_f64(x, 1.0),
         "radians" => x.to_radians(),
         "degrees" => x.to_degrees(),
         "sqrt" => x.sqrt(),
-        "exp" => fun::exp_f64(x),
-        "ln" => fun::ln_f64(x),
+        "exp" => portable::exp_f64(x),
+        "ln" => portable::ln_f64(x),
         "abs" => x.abs(),
         "sign" if x == 0.0 || x.is_nan() => x,
         "sign" => x.signum(),

@@ -1,4 +1,4 @@
-//! What a tape holds: folded constants and joined common subexpressions.
+//! Contents of a tape: folded constants and joined common subexpressions.
 
 use juggler_expression::{Binary, Op, PointEvaluator, Program, Ternary, Unary};
 

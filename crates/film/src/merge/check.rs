@@ -1,18 +1,19 @@
-//! What is wrong with parts that are to be merged.
+//! Validation of partial renders before they are merged.
 
-use super::Wanted;
-use super::complaint::{Complaint, MergeError, ToDo};
-use crate::part::{Description, Part, PartError, Share, Stop};
-use crate::share::Work;
+use super::MergeGoal;
+use super::problem::{MergeError, MergeProblem, RemainingWork};
+use crate::partial_render::{PartialRender, PartialRenderError, RenderDescription, ShardDescription, Stop};
+use crate::shard::Work;
 use juggler_camera::film::Tile;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
 
-/// Most tiles of a picture whose missing shares are found out: dealing takes a hundred bytes a tile.
-const MOST_DEALT: u64 = 1 << 20;
+/// Maximum number of tiles for which missing shards are determined; dealing takes about 100 bytes a
+/// tile.
+const MAX_ASSIGNED_TILES: u64 = 1 << 20;
 
-/// Samples without a gap that a part has of a tile.
+/// Contiguous range of samples of one tile in one partial render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Span {
     tile: u64,
@@ -21,51 +22,57 @@ struct Span {
     part: u32,
 }
 
-/// The parts that fit together, and what they become; or all that is wrong.
-pub(super) fn check<P: AsRef<Path>>(files: &[P], wanted: Wanted) -> Result<(Vec<Part>, Description), MergeError> {
-    let mut complaints = Vec::new();
-    let refused = |complaints| {
+/// Opens and verifies all files. Returns the compatible partial renders and the description of the
+/// merged result, or every problem at once.
+pub(super) fn check<P: AsRef<Path>>(
+    files: &[P],
+    goal: MergeGoal,
+) -> Result<(Vec<PartialRender>, RenderDescription), MergeError> {
+    let mut problems = Vec::new();
+    let refused = |problems| {
         let files = files.iter().map(|file| file.as_ref().display().to_string()).collect();
-        Err(MergeError { files, complaints })
+        Err(MergeError { files, problems })
     };
     if files.is_empty() {
-        complaints.push(Complaint::None);
+        problems.push(MergeProblem::None);
     }
     let mut parts = Vec::new();
     for file in files {
-        match Part::open(file.as_ref()) {
+        match PartialRender::open(file.as_ref()) {
             Ok(part) => parts.push(part),
-            Err(error) => complaints.push(Complaint::Unreadable(error)),
+            Err(error) => problems.push(MergeProblem::Unreadable(error)),
         }
     }
-    let parts = without_foreign(parts, &mut complaints);
-    let (parts, mut spans) = verified(parts, &mut complaints);
+    let parts = without_foreign(parts, &mut problems);
+    let (parts, mut spans) = verified(parts, &mut problems);
     spans.sort_unstable();
-    complaints.extend(doubled(&parts, &spans));
-    let Some(first) = parts.iter().min_by_key(|part| (part.description().share.index, part.path())) else {
-        return refused(complaints);
+    problems.extend(duplicates(&parts, &spans));
+    let Some(first) = parts.iter().min_by_key(|part| (part.description().shard.index, part.path())) else {
+        return refused(problems);
     };
     let samples = first.description().samples;
     let coverage = Coverage::new(first.description(), &parts, &spans);
     let finished = coverage.is_whole();
-    let description = Description { share: Share::whole(samples), finished, ..first.description().clone() };
-    if wanted == Wanted::Whole && !finished {
+    let description =
+        RenderDescription { shard: ShardDescription::whole(samples), finished, ..first.description().clone() };
+    if goal == MergeGoal::Whole && !finished {
         let unfinished = parts.iter().filter(|part| !part.description().finished).map(name);
-        complaints.extend(unfinished.map(|file| Complaint::Unfinished { file }));
-        complaints.push(Complaint::Missing(coverage.to_do(&parts)));
+        problems.extend(unfinished.map(|file| MergeProblem::Unfinished { file }));
+        problems.push(MergeProblem::Missing(coverage.remaining_work(&parts)));
     }
-    if complaints.is_empty() { Ok((parts, description)) } else { refused(complaints) }
+    if problems.is_empty() { Ok((parts, description)) } else { refused(problems) }
 }
 
-fn name(part: &Part) -> String {
+fn name(part: &PartialRender) -> String {
     part.path().display().to_string()
 }
 
-/// Most parts are right; what differs from them is foreign.
-fn without_foreign(parts: Vec<Part>, complaints: &mut Vec<Complaint>) -> Vec<Part> {
-    let mut groups: Vec<Vec<Part>> = Vec::new();
+/// Keeps the largest group of partial renders with equal settings and reports every other one as
+/// belonging to another image.
+fn without_foreign(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> Vec<PartialRender> {
+    let mut groups: Vec<Vec<PartialRender>> = Vec::new();
     for part in parts {
-        let same = |group: &&mut Vec<Part>| {
+        let same = |group: &&mut Vec<PartialRender>| {
             group.first().is_some_and(|first| first.description().mismatches(part.description()).is_empty())
         };
         match groups.iter_mut().find(same) {
@@ -73,7 +80,7 @@ fn without_foreign(parts: Vec<Part>, complaints: &mut Vec<Complaint>) -> Vec<Par
             None => groups.push(vec![part]),
         }
     }
-    // Of groups of one size the one that comes first.
+    // Among groups of equal size, the first one wins.
     let largest = groups.iter().enumerate().rev().max_by_key(|(_, group)| group.len()).map_or(0, |(at, _)| at);
     if groups.is_empty() {
         return Vec::new();
@@ -82,13 +89,14 @@ fn without_foreign(parts: Vec<Part>, complaints: &mut Vec<Complaint>) -> Vec<Par
     let Some(first) = chosen.first() else { return chosen };
     for part in groups.iter().flatten() {
         let mismatches = first.description().mismatches(part.description());
-        complaints.push(Complaint::Foreign { file: name(part), other: name(first), mismatches });
+        problems.push(MergeProblem::OtherImage { file: name(part), other: name(first), mismatches });
     }
     chosen
 }
 
-/// The parts of which every byte is right, and their samples.
-fn verified(parts: Vec<Part>, complaints: &mut Vec<Complaint>) -> (Vec<Part>, Vec<Span>) {
+/// Reads every tile of every partial render and returns the valid partial renders with their sample
+/// ranges.
+fn verified(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> (Vec<PartialRender>, Vec<Span>) {
     let mut whole = Vec::new();
     let mut spans = Vec::new();
     for part in parts {
@@ -97,13 +105,13 @@ fn verified(parts: Vec<Part>, complaints: &mut Vec<Complaint>) -> (Vec<Part>, Ve
                 spans.extend(own);
                 whole.push(part);
             }
-            Err(error) => complaints.push(Complaint::Unreadable(error)),
+            Err(error) => problems.push(MergeProblem::Unreadable(error)),
         }
     }
     (whole, spans)
 }
 
-fn own_spans(part: &Part, number: u32) -> Result<Vec<Span>, PartError> {
+fn own_spans(part: &PartialRender, number: u32) -> Result<Vec<Span>, PartialRenderError> {
     let mut reader = part.reader()?;
     let mut spans = Vec::new();
     for tile in part.tiles() {
@@ -113,14 +121,14 @@ fn own_spans(part: &Part, number: u32) -> Result<Vec<Span>, PartError> {
     Ok(spans)
 }
 
-/// The samples that are there, neighbouring runs as one.
+/// Sample ranges of a tile, adjacent runs merged.
 fn ranges(tile: &Tile) -> impl Iterator<Item = Range<u32>> {
     let alone = tile.runs().chunk_by(|a, b| a.samples.end == b.samples.start);
     alone.filter_map(|runs| Some(runs.first()?.samples.start..runs.last()?.samples.end))
 }
 
-/// Pairs of parts that hold the same samples.
-fn doubled(parts: &[Part], spans: &[Span]) -> Vec<Complaint> {
+/// Pairs of partial renders that hold the same samples, with the number of tiles affected.
+fn duplicates(parts: &[PartialRender], spans: &[Span]) -> Vec<MergeProblem> {
     let mut tiles: BTreeMap<[u32; 2], u64> = BTreeMap::new();
     for tile in spans.chunk_by(|a, b| a.tile == b.tile) {
         let mut pairs = BTreeSet::new();
@@ -136,29 +144,29 @@ fn doubled(parts: &[Part], spans: &[Span]) -> Vec<Complaint> {
         pairs.into_iter().for_each(|pair| *tiles.entry(pair).or_default() += 1);
     }
     let file = |number: u32| parts.get(number as usize).map(name).unwrap_or_default();
-    tiles.into_iter().map(|(pair, tiles)| Complaint::Doubled { files: pair.map(file), tiles }).collect()
+    tiles.into_iter().map(|(pair, tiles)| MergeProblem::Duplicate { files: pair.map(file), tiles }).collect()
 }
 
-/// What of a picture is not there.
+/// Samples that no partial render holds.
 struct Coverage<'a> {
-    picture: &'a Description,
-    /// Tiles of which samples are missing, rising.
-    gaps: Vec<Gap>,
+    picture: &'a RenderDescription,
+    /// Runs of tiles with missing samples, in ascending order.
+    missing_runs: Vec<MissingRun>,
 }
 
-/// Neighboring tiles of which the same samples are missing.
-struct Gap {
+/// Consecutive tiles that lack the same samples.
+struct MissingRun {
     tiles: Range<u64>,
     samples: Vec<Range<u32>>,
 }
 
 impl<'a> Coverage<'a> {
-    fn new(picture: &'a Description, parts: &[Part], spans: &[Span]) -> Self {
-        let mut gaps: Vec<Gap> = Vec::new();
+    fn new(picture: &'a RenderDescription, parts: &[PartialRender], spans: &[Span]) -> Self {
+        let mut missing_runs: Vec<MissingRun> = Vec::new();
         let mut add = |tiles: Range<u64>, spans: &[Span]| {
             let samples = missing(picture, parts, spans);
             if !tiles.is_empty() && !samples.is_empty() {
-                gaps.push(Gap { tiles, samples });
+                missing_runs.push(MissingRun { tiles, samples });
             }
         };
         let mut next = 0;
@@ -168,64 +176,68 @@ impl<'a> Coverage<'a> {
             add(tile..tile + 1, own);
             next = tile + 1;
         }
-        add(next..picture.layout().tiles(), &[]);
-        Self { picture, gaps }
+        add(next..picture.tiling().tile_count(), &[]);
+        Self { picture, missing_runs }
     }
 
     fn is_whole(&self) -> bool {
-        self.gaps.is_empty()
+        self.missing_runs.is_empty()
     }
 
-    /// The shares that would fill the gaps; or the gaps themselves, when the parts are no shares.
-    fn to_do(&self, parts: &[Part]) -> ToDo {
-        let whole = Share::whole(self.picture.samples);
+    /// Shards that cover the missing samples, or the missing sample ranges if the partial renders
+    /// are not shards.
+    fn remaining_work(&self, parts: &[PartialRender]) -> RemainingWork {
+        let whole = ShardDescription::whole(self.picture.samples);
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
-        for share in parts.iter().map(|part| &part.description().share) {
-            if share.count > 1 && share.samples == whole.samples && share.crop.is_none() {
-                *counts.entry(share.count).or_default() += 1;
+        for shard in parts.iter().map(|part| &part.description().shard) {
+            if shard.count > 1 && shard.samples == whole.samples && shard.crop.is_none() {
+                *counts.entry(shard.count).or_default() += 1;
             }
         }
-        let can_be_dealt = self.picture.layout().tiles() <= MOST_DEALT;
-        let most = counts.into_iter().filter(|_| can_be_dealt).max_by_key(|(_, parts)| *parts);
+        let can_be_assigned = self.picture.tiling().tile_count() <= MAX_ASSIGNED_TILES;
+        let most = counts.into_iter().filter(|_| can_be_assigned).max_by_key(|(_, parts)| *parts);
         let Some((count, _)) = most else { return self.samples() };
         let open = |tile: u64, samples: &Range<u32>| {
-            let gap = self.gaps.get(self.gaps.partition_point(|gap| gap.tiles.end <= tile));
-            let gaps = gap.filter(|gap| gap.tiles.contains(&tile)).map(|gap| gap.samples.as_slice());
-            gaps.unwrap_or_default().iter().any(|gap| gap.start < samples.end && gap.end > samples.start)
+            let run = self.missing_runs.get(self.missing_runs.partition_point(|run| run.tiles.end <= tile));
+            let ranges = run.filter(|run| run.tiles.contains(&tile)).map(|run| run.samples.as_slice());
+            ranges.unwrap_or_default().iter().any(|range| range.start < samples.end && range.end > samples.start)
         };
-        let dealt = Work::of(self.picture).deal(count).into_iter();
+        let assigned = Work::from_description(self.picture).assign(count).into_iter();
         let shards: BTreeSet<u32> =
-            dealt.filter(|(_, unit)| open(unit.tile, &unit.samples)).map(|(share, _)| share).collect();
-        ToDo::Shards { shards: shards.into_iter().collect(), count }
+            assigned.filter(|(_, unit)| open(unit.tile, &unit.samples)).map(|(shard, _)| shard).collect();
+        RemainingWork::Shards { shards: shards.into_iter().collect(), count }
     }
 
-    fn samples(&self) -> ToDo {
-        let layout = self.picture.layout();
+    fn samples(&self) -> RemainingWork {
+        let tiling = self.picture.tiling();
         let mut found: BTreeMap<(u32, u32), (u64, [u32; 2])> = BTreeMap::new();
-        for (tiles, gap) in self.gaps.iter().flat_map(|gap| gap.samples.iter().map(|samples| (&gap.tiles, samples))) {
-            let corner = layout.tile(tiles.start).map_or([0; 2], |pixels| [pixels.x, pixels.y]);
-            found.entry((gap.start, gap.end)).or_insert((0, corner)).0 += tiles.end - tiles.start;
+        for (tiles, range) in
+            self.missing_runs.iter().flat_map(|run| run.samples.iter().map(|samples| (&run.tiles, samples)))
+        {
+            let corner = tiling.tile(tiles.start).map_or([0; 2], |pixels| [pixels.x, pixels.y]);
+            found.entry((range.start, range.end)).or_insert((0, corner)).0 += tiles.end - tiles.start;
         }
-        let gap = |((start, end), (tiles, corner))| (start..end, tiles, corner);
-        ToDo::Samples(found.into_iter().map(gap).collect())
+        let missing = |((start, end), (tiles, corner))| (start..end, tiles, corner);
+        RemainingWork::Samples(found.into_iter().map(missing).collect())
     }
 }
 
-/// The samples that are missing of a tile, of which these are there.
-fn missing(picture: &Description, parts: &[Part], spans: &[Span]) -> Vec<Range<u32>> {
-    let mut gaps = Vec::new();
+/// Missing sample ranges of one tile, of which `spans` are present.
+fn missing(picture: &RenderDescription, parts: &[PartialRender], spans: &[Span]) -> Vec<Range<u32>> {
+    let mut missing = Vec::new();
     let mut end = 0;
     for span in spans {
         if span.start > end {
-            gaps.push(end..span.start);
+            missing.push(end..span.start);
         }
         end = end.max(span.end);
     }
     let is_finished = |span: &Span| parts.get(span.part as usize).is_some_and(|part| part.description().finished);
-    // Where noise or time ends a picture, each tile has as many samples as it needed: whoever rendered it knows.
+    // With a noise or time limit the number of samples varies between tiles, so a finished partial
+    // render decides how many its tiles need.
     let ended = picture.stop != Stop::Samples && !spans.is_empty() && spans.iter().all(is_finished);
     if end < picture.samples && !ended {
-        gaps.push(end..picture.samples);
+        missing.push(end..picture.samples);
     }
-    gaps
+    missing
 }

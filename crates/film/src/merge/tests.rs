@@ -1,8 +1,8 @@
-//! Parts in every order and cut against the whole; and exact complaints.
+//! Any partition of an image, in any order, merges to the whole image; error messages are exact.
 
 use super::*;
-use crate::part::{Share, Stop, write};
-use crate::share::{Work, whole_tiles};
+use crate::partial_render::{ShardDescription, Stop, write};
+use crate::shard::{Work, whole_tiles};
 use crate::testing::{clamped_tiles, description, tile, tiles};
 use juggler_camera::film::Rect;
 use juggler_math::testing::Random;
@@ -22,11 +22,11 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Writes a part that holds this much.
-    fn part(&self, name: &str, description: &Description, units: &[(u64, Range<u32>)]) -> PathBuf {
-        let layout = description.layout();
+    /// Writes a partial render that holds the given sample ranges of the given tiles.
+    fn part(&self, name: &str, description: &RenderDescription, units: &[(u64, Range<u32>)]) -> PathBuf {
+        let tiling = description.tiling();
         let tiles =
-            units.iter().map(|(number, samples)| (*number, tile(layout.tile(*number).unwrap(), samples.clone())));
+            units.iter().map(|(number, samples)| (*number, tile(tiling.tile(*number).unwrap(), samples.clone())));
         let path = self.path(name);
         let mut joined: std::collections::BTreeMap<u64, Tile> = Default::default();
         for (number, tile) in tiles {
@@ -36,49 +36,52 @@ impl Folder {
         path
     }
 
-    /// Writes share `index` of `count`.
-    fn share(&self, index: u32, count: u32) -> PathBuf {
-        let share = Share { index, count, ..Share::whole(SAMPLES) };
-        let description = Description { share, ..description(REGION, SAMPLES) };
-        let units = Work::of(&description).share(index, count);
+    /// Writes shard `index` of `count`.
+    fn shard(&self, index: u32, count: u32) -> PathBuf {
+        let shard = ShardDescription { index, count, ..ShardDescription::whole(SAMPLES) };
+        let description = RenderDescription { shard, ..description(REGION, SAMPLES) };
+        let units = Work::from_description(&description).shard(index, count);
         let units: Vec<_> = units.into_iter().map(|unit| (unit.tile, unit.samples)).collect();
         self.part(&format!("{index}.jfilm"), &description, &units)
     }
 
-    fn complaints(&self, files: &[PathBuf]) -> String {
-        let error = Merge::open(files, Wanted::Whole).unwrap_err();
+    fn problems(&self, files: &[PathBuf]) -> String {
+        let error = Merge::open(files, MergeGoal::Whole).unwrap_err();
         error.to_string().replace(&format!("{}/", self.0.path().display()), "")
     }
 }
 
-/// The largest picture, of which nothing is there: that is told at once and in little memory, whatever its parts are.
+/// An image of the largest size with no tiles is reported at once and in little memory.
 #[test]
-fn a_large_picture_without_tiles_is_told_at_once() {
+fn a_large_image_without_tiles_is_reported_at_once() {
     let folder = Folder::new();
     let region = Rect { x: 0, y: 0, width: 65_536, height: 32_768 };
-    let shares = [Share::whole(SAMPLES), Share { index: 7, count: u32::MAX, ..Share::whole(SAMPLES) }];
-    for share in shares {
-        let file = folder.part("large.jfilm", &Description { share, ..description(region, SAMPLES) }, &[]);
+    let shards = [
+        ShardDescription::whole(SAMPLES),
+        ShardDescription { index: 7, count: u32::MAX, ..ShardDescription::whole(SAMPLES) },
+    ];
+    for shard in shards {
+        let file = folder.part("large.jfilm", &RenderDescription { shard, ..description(region, SAMPLES) }, &[]);
         let start = std::time::Instant::now();
-        let complaints = folder.complaints(&[file]);
+        let problems = folder.problems(&[file]);
         assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
         let expected = "still to do: samples 0..100 of 8388608 tiles (the first at 0,0)";
-        assert!(complaints.contains(expected), "{complaints}");
+        assert!(problems.contains(expected), "{problems}");
     }
 }
 
 #[test]
-fn what_differs_is_told_in_a_few_printable_words() {
+fn differences_are_reported_in_a_few_printable_words() {
     let folder = Folder::new();
     let mut other = description(REGION, SAMPLES);
     other.fingerprint.insert("seed".into(), format!("\u{1b}[31m{}", "x".repeat(1_000_000)));
-    let files = [folder.share(0, 1), folder.part("b.jfilm", &other, &[])];
-    let complaints = folder.complaints(&files);
-    assert!(complaints.len() < 1000 && complaints.contains("x…x") && !complaints.contains('\u{1b}'), "{complaints}");
+    let files = [folder.shard(0, 1), folder.part("b.jfilm", &other, &[])];
+    let problems = folder.problems(&files);
+    assert!(problems.len() < 1000 && problems.contains("x…x") && !problems.contains('\u{1b}'), "{problems}");
 }
 
-/// The picture of all tiles, pixel by pixel.
-fn whole() -> (Vec<Rgb>, Summary) {
+/// Pixels and digest of the complete image.
+fn whole() -> (Vec<Rgb>, FilmSummary) {
     let Rect { x, y, width, height } = REGION;
     let mut pixels = vec![Rgb::BLACK; REGION.area() as usize];
     for (_, tile) in tiles(REGION, 0..SAMPLES) {
@@ -88,19 +91,19 @@ fn whole() -> (Vec<Rgb>, Summary) {
             pixels[(row * width + column) as usize] = mean;
         }
     }
-    let mut digest = Digest::new(width, height);
+    let mut digest = FilmDigest::new(width, height);
     digest.update(&pixels);
     (pixels, digest.finish())
 }
 
-fn merged(files: &[PathBuf]) -> (Vec<Rgb>, Summary) {
-    let merge = Merge::open(files, Wanted::Whole).unwrap();
-    assert!(merge.description().finished && merge.description().share == Share::whole(SAMPLES));
+fn merged(files: &[PathBuf]) -> (Vec<Rgb>, FilmSummary) {
+    let merge = Merge::open(files, MergeGoal::Whole).unwrap();
+    assert!(merge.description().finished && merge.description().shard == ShardDescription::whole(SAMPLES));
     let mut pixels = Vec::new();
     let summary = merge.rows(|rows| {
         assert_eq!(rows.len() % REGION.width as usize, 0);
         pixels.extend_from_slice(rows);
-        Ok::<(), PartError>(())
+        Ok::<(), PartialRenderError>(())
     });
     (pixels, summary.unwrap())
 }
@@ -110,12 +113,12 @@ fn shuffle<T>(items: &mut [T], random: &mut Random) {
 }
 
 #[test]
-fn shares_in_any_order_are_the_whole() {
+fn shards_in_any_order_are_the_whole() {
     let mut random = Random::new(3);
     let expected = whole();
     for count in 1..=7 {
         let folder = Folder::new();
-        let mut files: Vec<PathBuf> = (0..count).map(|index| folder.share(index, count)).collect();
+        let mut files: Vec<PathBuf> = (0..count).map(|index| folder.shard(index, count)).collect();
         shuffle(&mut files, &mut random);
         assert_eq!(merged(&files), expected, "{count} shares");
     }
@@ -123,26 +126,29 @@ fn shares_in_any_order_are_the_whole() {
 
 #[test]
 fn what_clamping_took_is_summed_over_all_parts() {
-    let lost: juggler_camera::film::Clamped =
+    let lost: juggler_camera::film::ClampedRadiance =
         clamped_tiles(REGION, 0..SAMPLES).iter().map(|(_, tile)| tile.clamped()).sum();
     let expected = lost.total() / REGION.area() as f64;
     assert!(expected > 0.0);
     for cut in [16, 48] {
         let folder = Folder::new();
         let part = |name: &str, samples: Range<u32>| {
-            let share = Share { samples: samples.clone(), ..Share::whole(SAMPLES) };
+            let shard = ShardDescription { samples: samples.clone(), ..ShardDescription::whole(SAMPLES) };
             let path = folder.path(name);
-            let description = Description { share, clamped: true, ..description(REGION, SAMPLES) };
+            let description = RenderDescription { shard, clamped: true, ..description(REGION, SAMPLES) };
             write(&path, &description, clamped_tiles(REGION, samples)).unwrap();
             path
         };
         let mut files = vec![part("b.jfilm", cut..SAMPLES), part("a.jfilm", 0..cut)];
         assert_eq!(merged(&files).1.clamped, expected);
         let joined = folder.path("joined.jfilm");
-        Merge::open(&files, Wanted::Part).unwrap().write(&joined, || Ok::<(), PartError>(())).unwrap();
+        Merge::open(&files, MergeGoal::PartialRender)
+            .unwrap()
+            .write(&joined, || Ok::<(), PartialRenderError>(()))
+            .unwrap();
         assert_eq!(merged(&[joined]).1.clamped, expected);
-        files.push(folder.share(0, 1));
-        assert!(folder.complaints(&files).contains("clamped"), "{}", folder.complaints(&files));
+        files.push(folder.shard(0, 1));
+        assert!(folder.problems(&files).contains("clamped"), "{}", folder.problems(&files));
     }
 }
 
@@ -150,11 +156,11 @@ fn what_clamping_took_is_summed_over_all_parts() {
 fn any_cut_and_any_way_of_joining_is_the_whole() {
     let mut random = Random::new(4);
     let expected = whole();
-    let layout = Layout::new(REGION);
+    let tiling = Tiling::new(REGION);
     for round in 0..6 {
         let folder = Folder::new();
         let mut parts: Vec<Vec<(u64, Range<u32>)>> = vec![Vec::new(); 2 + round];
-        for tile in 0..layout.tiles() {
+        for tile in 0..tiling.tile_count() {
             let mut cuts: Vec<u32> =
                 (0..random.below(4)).map(|_| 16 * random.below(7) as u32).chain([0, SAMPLES]).collect();
             cuts.sort_unstable();
@@ -168,16 +174,16 @@ fn any_cut_and_any_way_of_joining_is_the_whole() {
         let mut files: Vec<PathBuf> = parts.iter().enumerate().map(part).collect();
         shuffle(&mut files, &mut random);
         assert_eq!(merged(&files), expected);
-        // Some of them first, into one part, then the rest.
+        // Merge one half into one file, then merge that file with the others.
         let half = files.split_off(files.len() / 2);
         let joined = folder.path("joined.jfilm");
-        let first = Merge::open(&half, Wanted::Part).unwrap();
+        let first = Merge::open(&half, MergeGoal::PartialRender).unwrap();
         assert!(!first.description().finished);
-        first.write(&joined, || Ok::<(), PartError>(())).unwrap();
+        first.write(&joined, || Ok::<(), PartialRenderError>(())).unwrap();
         files.push(joined);
         assert_eq!(merged(&files), expected);
         let one = folder.path("one.jfilm");
-        Merge::open(&files, Wanted::Whole).unwrap().write(&one, || Ok::<(), PartError>(())).unwrap();
+        Merge::open(&files, MergeGoal::Whole).unwrap().write(&one, || Ok::<(), PartialRenderError>(())).unwrap();
         assert_eq!(merged(std::slice::from_ref(&one)), expected);
         let all = folder.path("all.jfilm");
         write(&all, &description, tiles(REGION, 0..SAMPLES)).unwrap();
@@ -188,25 +194,26 @@ fn any_cut_and_any_way_of_joining_is_the_whole() {
 #[test]
 fn the_order_of_files_does_not_show_in_the_part() {
     let folder = Folder::new();
-    let mut files: Vec<PathBuf> = (0..3).map(|index| folder.share(index, 3)).collect();
+    let mut files: Vec<PathBuf> = (0..3).map(|index| folder.shard(index, 3)).collect();
     let (a, b) = (folder.path("a.jfilm"), folder.path("b.jfilm"));
-    Merge::open(&files, Wanted::Whole).unwrap().write(&a, || Ok::<(), PartError>(())).unwrap();
+    Merge::open(&files, MergeGoal::Whole).unwrap().write(&a, || Ok::<(), PartialRenderError>(())).unwrap();
     files.reverse();
-    Merge::open(&files, Wanted::Whole).unwrap().write(&b, || Ok::<(), PartError>(())).unwrap();
+    Merge::open(&files, MergeGoal::Whole).unwrap().write(&b, || Ok::<(), PartialRenderError>(())).unwrap();
     assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap());
 }
 
 #[test]
-fn all_that_is_wrong_is_said_at_once() {
+fn all_problems_are_reported_at_once() {
     let folder = Folder::new();
-    let mut files: Vec<PathBuf> = (0..20).map(|index| folder.share(index, 20)).collect();
-    // Shares 3, 7, 8 and 9 are missing; 11 is damaged, 12 cut short, 13 of another scene, 14 there twice.
+    let mut files: Vec<PathBuf> = (0..20).map(|index| folder.shard(index, 20)).collect();
+    // Shards 3, 7, 8 and 9 are missing; 11 is damaged, 12 truncated, 13 of another scene, 14
+    // present twice.
     let bytes = std::fs::read(&files[11]).unwrap();
     let middle = bytes.len() - 200;
     std::fs::write(&files[11], [&bytes[..middle], &[bytes[middle] ^ 1], &bytes[middle + 1..]].concat()).unwrap();
     let bytes = std::fs::read(&files[12]).unwrap();
     std::fs::write(&files[12], &bytes[..700]).unwrap();
-    let mut other = Part::open(&files[13]).unwrap().description().clone();
+    let mut other = PartialRender::open(&files[13]).unwrap().description().clone();
     other.fingerprint.insert("scene".into(), "other".into());
     other.frame = 3.0;
     files[13] = folder.part("13.jfilm", &other, &[]);
@@ -214,94 +221,103 @@ fn all_that_is_wrong_is_said_at_once() {
     files.insert(15, folder.path("14b.jfilm"));
     files.drain(7..10);
     files.remove(3);
-    let tiles = Work::of(&description(REGION, SAMPLES)).share(14, 20).len();
+    let tiles = Work::from_description(&description(REGION, SAMPLES)).shard(14, 20).len();
     let expected = format!(
-        "the parts `0.jfilm` and 16 more cannot be merged:
-  12.jfilm: is cut short: 700 of {} bytes are there
-  13.jfilm: is of another picture than 0.jfilm: frame: 3 instead of 2.4000000000000004; scene: other instead of 5ce4e
-  11.jfilm: is damaged: its head or index is not what was written
-  14b.jfilm: holds samples that 14.jfilm holds too, of {tiles} tiles
+        "the partial renders `0.jfilm` and 16 more cannot be merged:
+  cannot read `12.jfilm`: unexpected end of file at byte 700 of {}
+  `13.jfilm` is of another picture than `0.jfilm`: frame: 3 instead of 2.4000000000000004; scene: other instead of 5ce4e
+  `11.jfilm` is damaged: the checksum of its header and index is wrong
+  `14b.jfilm` repeats samples of `14.jfilm` in {tiles} tiles
   still to do: shards 3,7-9,11-13 of 20 (--shard 3/20)",
         bytes.len()
     );
-    let mut found: Vec<String> = folder.complaints(&files).lines().map(String::from).collect();
+    let mut found: Vec<String> = folder.problems(&files).lines().map(String::from).collect();
     let mut expected: Vec<String> = expected.lines().map(String::from).collect();
     found.sort();
     expected.sort();
     assert_eq!(found, expected);
-    let error = Merge::open(&files, Wanted::Whole).unwrap_err();
-    assert!(error.is_of_files());
-    assert_eq!(error.to_do(), Some(&ToDo::Shards { shards: vec![3, 7, 8, 9, 11, 12, 13], count: 20 }));
+    let error = Merge::open(&files, MergeGoal::Whole).unwrap_err();
+    assert!(error.has_file_errors());
+    assert_eq!(
+        error.remaining_work(),
+        Some(&RemainingWork::Shards { shards: vec![3, 7, 8, 9, 11, 12, 13], count: 20 })
+    );
 }
 
 #[test]
-fn missing_samples_of_parts_that_are_no_shares_are_named() {
+fn missing_samples_of_parts_that_are_no_shards_are_named() {
     let folder = Folder::new();
     let description = description(REGION, SAMPLES);
     let units: Vec<_> = (0..14).map(|tile| (tile, 0..48)).collect();
     let files = [folder.part("a.jfilm", &description, &units), folder.part("b.jfilm", &description, &[(1, 48..64)])];
-    let expected = "the parts `a.jfilm` and 1 more cannot be merged:
+    let expected = "the partial renders `a.jfilm` and 1 more cannot be merged:
   still to do: samples 0..100 of 1 tile (the first at 64,32), samples 48..100 of 13 tiles (the first at 5,3), \
         samples 64..100 of 1 tile (the first at 16,3)";
-    assert_eq!(folder.complaints(&files), expected);
-    assert!(!Merge::open(&files, Wanted::Whole).unwrap_err().is_of_files());
-    let part = Merge::open(&files, Wanted::Part).unwrap();
+    assert_eq!(folder.problems(&files), expected);
+    assert!(!Merge::open(&files, MergeGoal::Whole).unwrap_err().has_file_errors());
+    let part = Merge::open(&files, MergeGoal::PartialRender).unwrap();
     assert!(!part.description().finished);
 }
 
 #[test]
 fn the_same_file_twice_is_doubled() {
     let folder = Folder::new();
-    let file = folder.share(0, 1);
-    let tiles = Layout::new(REGION).tiles();
+    let file = folder.shard(0, 1);
+    let tiles = Tiling::new(REGION).tile_count();
     let expected = format!(
-        "the parts `0.jfilm` and 1 more cannot be merged:\n  0.jfilm: holds samples that 0.jfilm holds too, of {tiles} tiles"
+        "the partial renders `0.jfilm` and 1 more cannot be merged:\n  `0.jfilm` repeats samples of `0.jfilm` in {tiles} tiles"
     );
-    assert_eq!(folder.complaints(&[file.clone(), file.clone()]), expected);
-    assert!(Merge::open(&[file.clone(), file], Wanted::Part).is_err());
+    assert_eq!(folder.problems(&[file.clone(), file.clone()]), expected);
+    assert!(Merge::open(&[file.clone(), file], MergeGoal::PartialRender).is_err());
 }
 
 #[test]
 fn damaged_chunks_are_found_before_anything_is_merged() {
     let folder = Folder::new();
-    let files: Vec<PathBuf> = (0..3).map(|index| folder.share(index, 3)).collect();
+    let files: Vec<PathBuf> = (0..3).map(|index| folder.shard(index, 3)).collect();
     let mut bytes = std::fs::read(&files[1]).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 16;
     std::fs::write(&files[1], bytes).unwrap();
-    let complaints = folder.complaints(&files);
-    assert!(complaints.contains("1.jfilm: is damaged: the bytes of tile"), "{complaints}");
-    assert!(complaints.contains("still to do: shard 1 of 3 (--shard 1/3)"), "{complaints}");
+    let problems = folder.problems(&files);
+    assert!(problems.contains("`1.jfilm` is damaged: the checksum of tile"), "{problems}");
+    assert!(problems.contains("still to do: shard 1 of 3 (--shard 1/3)"), "{problems}");
 }
 
 #[test]
 fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
     let folder = Folder::new();
-    let noise = Description { stop: Stop::Noise { level: 0.1 }, ..description(REGION, SAMPLES) };
-    let half = |index| Description { share: Share { index, count: 2, ..Share::whole(SAMPLES) }, ..noise.clone() };
+    let noise = RenderDescription { stop: Stop::Noise { level: 0.1 }, ..description(REGION, SAMPLES) };
+    let half = |index| RenderDescription {
+        shard: ShardDescription { index, count: 2, ..ShardDescription::whole(SAMPLES) },
+        ..noise.clone()
+    };
     let units = |index| {
-        Work::of(&noise).share(index, 2).into_iter().map(|unit| (unit.tile, 0..16 + 16 * (unit.tile as u32 % 3)))
+        Work::from_description(&noise)
+            .shard(index, 2)
+            .into_iter()
+            .map(|unit| (unit.tile, 0..16 + 16 * (unit.tile as u32 % 3)))
     };
     let units = |index| units(index).collect::<Vec<_>>();
     let files = [folder.part("0.jfilm", &half(0), &units(0)), folder.part("1.jfilm", &half(1), &units(1))];
-    assert!(Merge::open(&files, Wanted::Whole).unwrap().description().finished);
-    let unfinished = Description { finished: false, ..half(1) };
+    assert!(Merge::open(&files, MergeGoal::Whole).unwrap().description().finished);
+    let unfinished = RenderDescription { finished: false, ..half(1) };
     folder.part("1.jfilm", &unfinished, &units(1));
-    let expected = "the parts `0.jfilm` and 1 more cannot be merged:
-  1.jfilm: is not finished; the same command goes on with it
+    let expected = "the partial renders `0.jfilm` and 1 more cannot be merged:
+  `1.jfilm` is not finished; run its command again to continue
   still to do: shard 1 of 2 (--shard 1/2)";
-    assert_eq!(folder.complaints(&files), expected);
+    assert_eq!(folder.problems(&files), expected);
 }
 
 #[test]
 fn crops_are_parts_too() {
     let folder = Folder::new();
-    let layout = Layout::new(REGION);
+    let tiling = Tiling::new(REGION);
     let half = |name: &str, crop: Rect| {
-        let share = Share { crop: Some(whole_tiles(&REGION, &crop)), ..Share::whole(SAMPLES) };
-        let description = Description { share, ..description(REGION, SAMPLES) };
-        let units = Work::of(&description).share(0, 1);
-        assert!(!units.is_empty() && units.len() < layout.tiles() as usize);
+        let shard = ShardDescription { crop: Some(whole_tiles(&REGION, &crop)), ..ShardDescription::whole(SAMPLES) };
+        let description = RenderDescription { shard, ..description(REGION, SAMPLES) };
+        let units = Work::from_description(&description).shard(0, 1);
+        assert!(!units.is_empty() && units.len() < tiling.tile_count() as usize);
         folder.part(name, &description, &units.into_iter().map(|unit| (unit.tile, unit.samples)).collect::<Vec<_>>())
     };
     let files = [half("a.jfilm", Rect { width: 27, ..REGION }), half("b.jfilm", Rect { x: 32, width: 43, ..REGION })];
@@ -311,12 +327,12 @@ fn crops_are_parts_too() {
 #[test]
 fn a_single_part_that_is_no_picture_is_named() {
     let folder = Folder::new();
-    let message = folder.complaints(&[folder.share(1, 2)]);
-    assert_eq!(message, "the part `1.jfilm` cannot be merged:\n  still to do: shard 0 of 2 (--shard 0/2)");
+    let message = folder.problems(&[folder.shard(1, 2)]);
+    assert_eq!(message, "the partial render `1.jfilm` cannot be merged:\n  still to do: shard 0 of 2 (--shard 0/2)");
 }
 
 #[test]
 fn nothing_is_no_picture() {
-    let error = Merge::open::<PathBuf>(&[], Wanted::Whole).unwrap_err();
-    assert_eq!(error.to_string(), "the parts cannot be merged:\n  no part was given");
+    let error = Merge::open::<PathBuf>(&[], MergeGoal::Whole).unwrap_err();
+    assert_eq!(error.to_string(), "the partial renders cannot be merged:\n  no partial render was given");
 }

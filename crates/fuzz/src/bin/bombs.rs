@@ -1,4 +1,5 @@
-//! Gives all bombs to a program: `bombs PROGRAM [CLASS]`. Prints each failure and a line a class; ends with 1 where one failed.
+//! Runs all bombs against a program: `bombs PROGRAM [CLASS]`. Prints each failure and a summary
+//! line per class. Exits with 1 if a bomb failed and with 2 if no program is given.
 
 use juggler_fuzz::bombs::{all, run};
 use std::collections::BTreeMap;
@@ -12,18 +13,18 @@ fn main() -> io::Result<ExitCode> {
     let program = PathBuf::from(program).canonicalize()?;
     let class = words.next();
     let mut out = io::stdout().lock();
-    // Bombs, command lines, failures and the slowest second of each class.
+    // By class: numbers of bombs, command lines and failures, and the longest time in seconds.
     let mut classes: BTreeMap<&str, (usize, usize, usize, f64)> = BTreeMap::new();
     for bomb in all().iter().filter(|bomb| class.as_deref().is_none_or(|class| class == bomb.class)) {
         let found = classes.entry(bomb.class).or_default();
         found.0 += 1;
-        for verdict in run(&program, bomb)? {
+        for result in run(&program, bomb)? {
             found.1 += 1;
-            found.3 = found.3.max(verdict.seconds);
-            if let Some(fault) = verdict.fault {
+            found.3 = found.3.max(result.seconds);
+            if let Some(fault) = result.fault {
                 found.2 += 1;
                 let name: String = bomb.name.chars().take(100).collect();
-                writeln!(out, "FAILED {}: {name}\n  juggler {}\n  {fault}", bomb.class, verdict.line)?;
+                writeln!(out, "FAILED {}: {name}\n  juggler {}\n  {fault}", bomb.class, result.line)?;
             }
         }
     }

@@ -1,5 +1,6 @@
-//! Runs numbered cases of one kind and says what comes of each: `cases KIND FIRST END`. `cases KIND CASE` writes the bytes of one
-//! case to standard output. Kinds are the names of the readers, and `fields`.
+//! `cases KIND FIRST END` runs numbered cases of one kind and prints the result of each.
+//! `cases KIND CASE` writes the bytes of one case to standard output. Kinds are the names of the
+//! readers, and `fields`.
 
 use juggler_fuzz::{cases, fields, mutate, seeds};
 use std::io::{self, Write};
@@ -13,8 +14,10 @@ fn main() -> ExitCode {
     let written = match words.as_slice() {
         [kind, first, end] => match (number(first), number(end)) {
             (Some(first), Some(end)) => {
-                // A parent that has gone away needs nothing more.
-                cases::run_here(kind, first, end, &mut |line| drop(writeln!(out, "{line}").and_then(|()| out.flush())));
+                // Ignore write errors: the parent has exited.
+                cases::run_in_process(kind, first, end, &mut |line| {
+                    drop(writeln!(out, "{line}").and_then(|()| out.flush()));
+                });
                 Ok(())
             }
             _ => return ExitCode::from(2),
@@ -23,7 +26,7 @@ fn main() -> ExitCode {
             let (_, text) = fields::case(&fields::fields(), number(case).unwrap_or(0));
             out.write_all(text.as_bytes())
         }
-        [kind, case] => out.write_all(&mutate::mutated(&seeds::of(kind), number(case).unwrap_or(0))),
+        [kind, case] => out.write_all(&mutate::mutate(&seeds::for_target(kind), number(case).unwrap_or(0))),
         _ => return ExitCode::from(2),
     };
     if written.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(3) }

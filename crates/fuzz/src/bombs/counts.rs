@@ -1,14 +1,14 @@
-//! Counts: objects, instances, emitters, lights, frames, samples, pixels.
+//! Bombs of huge counts: objects, instances, emitters, lights, frames, samples and pixels.
 
 use super::{Bomb, objects};
 
 const CLASS: &str = "counts";
 
-fn scene(name: &str, text: impl Into<Vec<u8>>, place: &str) -> Bomb {
-    Bomb::scene(CLASS, name, text, place)
+fn scene(name: &str, text: impl Into<Vec<u8>>, must_name: &str) -> Bomb {
+    Bomb::from_scene(CLASS, name, text, must_name)
 }
 
-/// A chain of 1,000 spheres, in groups of groups of ten, `depth` deep.
+/// A chain of 1,000 spheres in nested groups of ten members, `depth` levels deep.
 fn emitters(depth: usize, material: &str) -> String {
     let chain = r#"{"chain": {"from": {"center": [0,0,0], "radius": 1}, "to": {"center": [0,9,0], "radius": 1}, "count": 1000}"#;
     let mut groups = vec![format!(r#""g0": [{chain}, "material": {material}}}]"#)];
@@ -36,7 +36,7 @@ pub fn bombs() -> Vec<Bomb> {
             r#"{{"chain": {{"from": {{"center": [0,0,0], "radius": 1}}, "to": {{"center": [0,5,0], "radius": 1}}, "count": {count}}}}}"#
         ))
     };
-    let line = |line: &str, place: &str| Bomb::line(CLASS, line, place);
+    let line = |line: &str, must_name: &str| Bomb::from_command_line(CLASS, line, must_name);
     vec![
         scene("a million emitting spheres in groups", emitters(3, r#"{"emissive": {}}"#), "memory"),
         scene("a thousand million emitting spheres in groups", emitters(6, r#"{"emissive": {}}"#), ""),

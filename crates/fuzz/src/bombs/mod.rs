@@ -1,74 +1,75 @@
-//! Bombs: small files and command lines that ask for much, or are what no program expects. Each is given to the program, which
-//! must answer within ten seconds, in the memory that it was allowed, with a picture or a message that names the place.
+//! Bombs: small files and command lines that demand excessive resources or violate the program's
+//! expectations. For each, the program must finish within ten seconds and its memory limit, with a
+//! picture or with an error message that names the place.
 
-mod claims;
 mod counts;
+mod headers;
 mod nesting;
-mod places;
+mod paths;
 mod run;
 mod sizes;
 mod strings;
 mod times;
 
-pub use run::{Verdict, run};
+pub use run::{BombResult, run};
 
-/// What a file of a bomb is.
+/// Kind and content of a file.
 #[derive(Clone, Debug)]
 pub enum Content {
-    /// A file of these bytes.
+    /// Regular file with these bytes.
     Bytes(Vec<u8>),
-    /// A named pipe that nobody writes to.
+    /// Named pipe without a writer.
     Pipe,
-    /// A link to that path.
+    /// Symbolic link to this path.
     Link(String),
     /// A folder.
     Folder,
-    /// A file that may not be read.
+    /// Regular file without read permission.
     Closed,
 }
 
 /// Small files, and the command lines that read them.
 #[derive(Clone, Debug)]
 pub struct Bomb {
-    /// The class that it belongs to.
+    /// Class of the bomb.
     pub class: &'static str,
-    /// What it is.
+    /// Name of the bomb.
     pub name: String,
     /// Files by name.
     pub files: Vec<(String, Content)>,
-    /// What is run in their folder, without the program's name.
+    /// Command lines to run in the folder of the files, without the program's name.
     pub lines: Vec<String>,
-    /// What a message must contain where the bomb is refused.
-    pub place: String,
+    /// Text that the error message must contain if the program refuses the bomb.
+    pub must_name: String,
 }
 
 impl Bomb {
-    /// A scene that is checked and rendered; a refusal contains `place`.
-    fn scene(class: &'static str, name: impl Into<String>, text: impl Into<Vec<u8>>, place: &str) -> Self {
+    /// A scene to check and to render; an error message must contain `must_name`.
+    fn from_scene(class: &'static str, name: impl Into<String>, text: impl Into<Vec<u8>>, must_name: &str) -> Self {
         let lines = vec![
             "check bomb.json".to_owned(),
             "render bomb.json --size 8x8 --samples 1 --threads 2 --max-memory 512M -o bomb.pfm".to_owned(),
         ];
         let files = vec![("bomb.json".to_owned(), Content::Bytes(text.into()))];
-        Self { class, name: name.into(), files, lines, place: place.to_owned() }
+        Self { class, name: name.into(), files, lines, must_name: must_name.to_owned() }
     }
 
-    /// The same with another file beside the scene.
-    fn with(mut self, name: &str, content: Content) -> Self {
+    /// Adds a file beside the scene.
+    fn with_file(mut self, name: &str, content: Content) -> Self {
         self.files.push((name.to_owned(), content));
         self
     }
 
-    /// A command line; a refusal contains `place`.
-    fn line(class: &'static str, line: impl Into<String>, place: &str) -> Self {
+    /// A single command line; an error message must contain `must_name`.
+    fn from_command_line(class: &'static str, line: impl Into<String>, must_name: &str) -> Self {
         let line = line.into();
         let scene = r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#;
         let files = vec![("good.json".to_owned(), Content::Bytes(scene.into()))];
-        Self { class, name: line.clone(), files, lines: vec![line], place: place.to_owned() }
+        Self { class, name: line.clone(), files, lines: vec![line], must_name: must_name.to_owned() }
     }
 }
 
-/// A scene of these objects.
+/// JSON of a scene with these objects.
 fn objects(objects: &str) -> String {
     format!(r#"{{"version": 1, "objects": [{objects}]}}"#)
 }
@@ -79,10 +80,10 @@ pub fn all() -> Vec<Bomb> {
         nesting::bombs(),
         counts::bombs(),
         sizes::bombs(),
-        claims::bombs(),
+        headers::bombs(),
         times::bombs(),
         strings::bombs(),
-        places::bombs(),
+        paths::bombs(),
     ]
     .concat()
 }

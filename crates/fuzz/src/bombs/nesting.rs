@@ -1,14 +1,15 @@
-//! Nesting: groups, objects, materials, textures, includes, expressions and plain JSON, deeper than anything is.
+//! Bombs of deep nesting: groups, objects, materials, textures, includes, expressions and plain
+//! JSON.
 
 use super::{Bomb, Content, objects};
 
 const CLASS: &str = "nesting";
 
-fn scene(name: &str, text: impl Into<Vec<u8>>, place: &str) -> Bomb {
-    Bomb::scene(CLASS, name, text, place)
+fn scene(name: &str, text: impl Into<Vec<u8>>, must_name: &str) -> Bomb {
+    Bomb::from_scene(CLASS, name, text, must_name)
 }
 
-/// Groups of which each places the next `times` times, `depth` deep.
+/// `depth` groups, each of which places the next one `times` times.
 fn tower(depth: usize, times: usize) -> String {
     let member = |number: usize| match number + 1 {
         next if next == depth => r#"{"shape": "sphere"}"#.to_owned(),
@@ -59,7 +60,7 @@ pub fn bombs() -> Vec<Bomb> {
     let mut chain = scene("2,000 includes in a chain", r#"{"version": 1, "include": ["0.json"]}"#, "include");
     for number in 0..2_000 {
         let text = format!(r#"{{"version": 1, "include": ["{}.json"]}}"#, number + 1);
-        chain = chain.with(&format!("{number}.json"), Content::Bytes(text.into()));
+        chain = chain.with_file(&format!("{number}.json"), Content::Bytes(text.into()));
     }
     found.push(chain);
     found

@@ -1,4 +1,4 @@
-//! Gives a bomb to the program, and judges what comes back.
+//! Runs the program on a bomb and judges the result.
 
 use super::{Bomb, Content};
 use juggler::imaging;
@@ -8,31 +8,32 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest time that the program may take for one command line.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// Address space: a budget of 512 MiB, and what threads and libraries reserve and never use.
+/// Time limit of one command line.
+const TIME_LIMIT: Duration = Duration::from_secs(10);
+/// Limit of the address space, in bytes: a memory budget of 512 MiB, plus address space that
+/// threads and libraries reserve but do not use.
 const ADDRESS_SPACE: u64 = 2 << 30;
 
-/// What came of one command line.
+/// Result of one command line.
 #[derive(Clone, Debug, Default)]
-pub struct Verdict {
+pub struct BombResult {
     /// The command line.
     pub line: String,
-    /// The exit status, if the program ended by itself.
+    /// Exit status; `None` if a signal or the time limit ended the program.
     pub status: Option<i32>,
-    /// Seconds.
+    /// Run time in seconds.
     pub seconds: f64,
-    /// What is wrong with it; nothing where the promise is kept.
+    /// Description of the failure; `None` if the program behaved as promised.
     pub fault: Option<String>,
 }
 
-/// Runs all command lines of a bomb in a fresh folder.
-pub fn run(program: &Path, bomb: &Bomb) -> io::Result<Vec<Verdict>> {
+/// Runs all command lines of a bomb in a new folder.
+pub fn run(program: &Path, bomb: &Bomb) -> io::Result<Vec<BombResult>> {
     let folder = tempfile::tempdir()?;
     for (name, content) in &bomb.files {
         put(&folder.path().join(name), content)?;
     }
-    bomb.lines.iter().map(|line| run_line(program, folder.path(), line, &bomb.place)).collect()
+    bomb.lines.iter().map(|line| run_line(program, folder.path(), line, &bomb.must_name)).collect()
 }
 
 #[cfg(unix)]
@@ -59,7 +60,7 @@ fn put(path: &Path, content: &Content) -> io::Result<()> {
     }
 }
 
-fn run_line(program: &Path, folder: &Path, line: &str, place: &str) -> io::Result<Verdict> {
+fn run_line(program: &Path, folder: &Path, line: &str, must_name: &str) -> io::Result<BombResult> {
     let limited = format!("ulimit -v {}; exec \"$@\"", ADDRESS_SPACE / 1024);
     let (out, err) = (folder.join(".out"), folder.join(".err"));
     let mut command = Command::new("sh");
@@ -70,7 +71,7 @@ fn run_line(program: &Path, folder: &Path, line: &str, place: &str) -> io::Resul
     let status = loop {
         match child.try_wait()? {
             Some(status) => break Some(status),
-            None if start.elapsed() > PATIENCE => {
+            None if start.elapsed() > TIME_LIMIT => {
                 child.kill()?;
                 child.wait()?;
                 break None;
@@ -80,38 +81,38 @@ fn run_line(program: &Path, folder: &Path, line: &str, place: &str) -> io::Resul
     };
     let seconds = start.elapsed().as_secs_f64();
     let code = status.and_then(|status| status.code());
-    let told = format!("{}{}", text(&out)?, text(&err)?);
+    let output = format!("{}{}", text(&out)?, text(&err)?);
     let fault = match (status, code) {
-        (None, _) => Some(format!("takes longer than {} s", PATIENCE.as_secs())),
+        (None, _) => Some(format!("takes longer than {} s", TIME_LIMIT.as_secs())),
         (Some(status), None) => Some(format!("ended by a signal: {status}")),
-        (_, Some(code)) => fault(code, &told, place).or_else(|| not_finite(&folder.join("bomb.pfm"))),
+        (_, Some(code)) => fault(code, &output, must_name).or_else(|| not_finite(&folder.join("bomb.pfm"))),
     };
-    let fault = fault.map(|fault| format!("{fault}: {}", told.chars().take(500).collect::<String>().trim()));
+    let fault = fault.map(|fault| format!("{fault}: {}", output.chars().take(500).collect::<String>().trim()));
     let line = line.chars().take(200).collect();
-    Ok(Verdict { line, status: code, seconds, fault })
+    Ok(BombResult { line, status: code, seconds, fault })
 }
 
-/// As much of a file as is looked at.
+/// Reads at most the first MiB of a text file.
 fn text(path: &Path) -> io::Result<String> {
     let mut bytes = Vec::new();
     fs::File::open(path)?.take(1 << 20).read_to_end(&mut bytes)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn fault(code: i32, told: &str, place: &str) -> Option<String> {
-    if told.contains("panicked") || !(0..=3).contains(&code) {
+fn fault(code: i32, output: &str, must_name: &str) -> Option<String> {
+    if output.contains("panicked") || !(0..=3).contains(&code) {
         return Some(format!("status {code}"));
     }
-    if told.chars().any(|c| c.is_control() && !"\n\t".contains(c)) {
+    if output.chars().any(|c| c.is_control() && !"\n\t".contains(c)) {
         return Some("what it says holds characters that a terminal obeys".to_owned());
     }
-    if told.len() > 100_000 {
+    if output.len() > 100_000 {
         return Some("it says too much".to_owned());
     }
-    (code > 1 && !told.contains(place)).then(|| format!("the refusal does not name `{place}`"))
+    (code > 1 && !output.contains(must_name)).then(|| format!("the refusal does not name `{must_name}`"))
 }
 
-/// What is wrong with the pixels of a picture that was rendered.
+/// Describes a pixel of the rendered picture that is not finite, if there is one.
 fn not_finite(picture: &Path) -> Option<String> {
     let image = imaging::read(picture).ok()?;
     let pixel = image.pixels().iter().find(|pixel| !pixel.is_finite())?;

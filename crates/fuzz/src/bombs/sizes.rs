@@ -1,4 +1,4 @@
-//! Sizes: 1e-38 to 1e38 in each transform, shape, camera and light.
+//! Bombs of extreme numbers: 1e-38 to 1e38 in every transform, shape, camera and light.
 
 use super::{Bomb, objects};
 
@@ -6,7 +6,7 @@ const CLASS: &str = "sizes";
 
 const SIZES: [&str; 5] = ["1e-38", "1e-20", "1e18", "1e30", "1e38"];
 
-/// Objects with `@` in the place of a size.
+/// Objects with `@` in place of a number.
 const OBJECTS: [&str; 12] = [
     r#"{"shape": {"sphere": {"radius": @}}}"#,
     r#"{"shape": {"cylinder": {"radius": @}}}"#,
@@ -22,7 +22,7 @@ const OBJECTS: [&str; 12] = [
     r#"{"shape": {"mesh": {"positions": [[0, 0, 0], [@, 0, 0], [0, @, 0]], "triangles": [[0, 1, 2]]}}}"#,
 ];
 
-/// Scenes with `@` in the place of a size.
+/// Scenes with `@` in place of a number.
 const SCENES: [&str; 6] = [
     r#"{"version": 1, "background": @, "objects": [{"shape": "sphere"}]}"#,
     r#"{"version": 1, "camera": {"perspective": {"eye": [@, 0, 0]}}, "objects": [{"shape": "sphere"}]}"#,
@@ -39,7 +39,7 @@ pub fn bombs() -> Vec<Bomb> {
         for size in SIZES {
             let text = template.replace('@', size);
             let text = if is_object { objects(&text) } else { text };
-            found.push(Bomb::scene(CLASS, text.clone(), text, "bomb.json"));
+            found.push(Bomb::from_scene(CLASS, text.clone(), text, "bomb.json"));
         }
     }
     found

@@ -1,11 +1,11 @@
-//! Strings: names of a million bytes, what is no UTF-8, characters that a terminal would obey.
+//! Bombs of strings: names of a million bytes, invalid UTF-8, and terminal control characters.
 
 use super::{Bomb, Content, objects};
 
 const CLASS: &str = "strings";
 
-fn scene(name: &str, text: impl Into<Vec<u8>>, place: &str) -> Bomb {
-    Bomb::scene(CLASS, name, text, place)
+fn scene(name: &str, text: impl Into<Vec<u8>>, must_name: &str) -> Bomb {
+    Bomb::from_scene(CLASS, name, text, must_name)
 }
 
 fn material(name: &str) -> String {
@@ -37,20 +37,21 @@ fn long() -> Vec<Bomb> {
         scene("a number of a million digits", radius(&"1".repeat(1_000_000)), "radius"),
         scene("an expression of a million bytes without its `=`", expression, "radius"),
         scene("a comment of a million bytes", format!("// {long}\n{}", titled("a")), ""),
-        Bomb::line(CLASS, format!("render {} -o a.png", "y".repeat(100_000)), "error"),
-        Bomb::line(CLASS, format!("render good.json -o a.png --size {}", "y".repeat(100_000)), "--size"),
+        Bomb::from_command_line(CLASS, format!("render {} -o a.png", "y".repeat(100_000)), "error"),
+        Bomb::from_command_line(CLASS, format!("render good.json -o a.png --size {}", "y".repeat(100_000)), "--size"),
     ]
 }
 
-/// Characters that a terminal obeys, and bytes that are no characters.
+/// Terminal control characters, and bytes that are not UTF-8.
 fn odd() -> Vec<Bomb> {
     let no_text = [titled("a").as_bytes(), b"\xff\xfe\x00"].concat();
     let broken = |name: &str, bytes: &[u8]| {
         scene(&format!("a mesh {name} with characters for terminals"), mesh(name), name)
-            .with(name, Content::Bytes(bytes.to_vec()))
+            .with_file(name, Content::Bytes(bytes.to_vec()))
     };
-    let info =
-        |name: &str, bytes: Vec<u8>| Bomb::line(CLASS, format!("info {name}"), name).with(name, Content::Bytes(bytes));
+    let info = |name: &str, bytes: Vec<u8>| {
+        Bomb::from_command_line(CLASS, format!("info {name}"), name).with_file(name, Content::Bytes(bytes))
+    };
     let picture = [b"#?RADIANCE\nCommand=\x1b[31mred\x07\n\n-Y 1 +X 1\n".as_slice(), &[1; 4]].concat();
     vec![
         scene("a name of escapes", material("\\u001b[31m\\u0007\\u0000"), "material"),

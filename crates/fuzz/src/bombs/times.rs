@@ -1,11 +1,11 @@
-//! Times: keys, shutters, expressions, frames.
+//! Bombs of animation: keys, shutter times, expressions and frames.
 
 use super::{Bomb, objects};
 
 const CLASS: &str = "times";
 
-fn scene(name: &str, text: impl Into<Vec<u8>>, place: &str) -> Bomb {
-    Bomb::scene(CLASS, name, text, place)
+fn scene(name: &str, text: impl Into<Vec<u8>>, must_name: &str) -> Bomb {
+    Bomb::from_scene(CLASS, name, text, must_name)
 }
 
 fn animated(animation: &str, radius: &str) -> String {
@@ -26,7 +26,7 @@ pub fn bombs() -> Vec<Bomb> {
         r#"{{"version": 1, "variables": {{"v0": 1, {}}}, "objects": [{{"shape": "sphere"}}]}}"#,
         variables.join(",")
     );
-    let line = |line: &str, place: &str| Bomb::line(CLASS, line, place);
+    let line = |line: &str, must_name: &str| Bomb::from_command_line(CLASS, line, must_name);
     vec![
         scene("keys at the ends of time", keys("[[-1e308, 1], [1e308, 2]]"), "keys"),
         scene("keys at one time", keys("[[0, 1], [0, 2], [0, 3]]"), "keys"),

@@ -1,12 +1,13 @@
-//! Kills renders at random moments, again and again, and looks whether the pictures are the same to the bit.
+//! Kills renders at random times and checks that the finished pictures are bit for bit the same.
 //!
 //! ```text
 //! cargo run --release -p juggler-golden --bin kill-test -- [TRIALS] [SEED]
 //! ```
 //!
-//! Every trial renders a scene with a checkpoint, kills the program (SIGKILL) after a random time, starts the same
-//! command again, and so on until the picture is there. Its hash must be that of a render that nobody disturbed.
-//! The moments follow from the seed; where a kill strikes follows from the machine as well.
+//! Every trial renders a scene with a checkpoint, kills the program (SIGKILL) after a random time,
+//! and starts the same command again, until the picture is complete. Its hash must equal that of an
+//! undisturbed render. The times depend only on the seed; where a kill interrupts the program
+//! depends on the machine, too.
 
 use juggler::math::hash;
 use std::error::Error;
@@ -16,7 +17,7 @@ use std::time::{Duration, Instant};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// What is rendered: a second or so each.
+/// Command lines to render; each takes about a second.
 const CASES: [&str; 5] = [
     "juggler --size 320x180 --samples 64",
     "step-12b --size 200x120 --noise 0.02 --samples 512",
@@ -43,7 +44,7 @@ fn report(message: &str, code: ExitCode) -> ExitCode {
     code
 }
 
-/// Numbers that follow from the seed.
+/// Pseudorandom numbers from the seed.
 struct Random(u32);
 
 impl Random {
@@ -53,7 +54,7 @@ impl Random {
     }
 }
 
-/// Runs all trials; returns how many failed.
+/// Runs all trials; returns the number of failures.
 #[expect(clippy::print_stdout, reason = "a program")]
 fn run(trials: u32, seed: u32) -> Outcome<u32> {
     let program = build()?;
@@ -70,7 +71,7 @@ fn run(trials: u32, seed: u32) -> Outcome<u32> {
     for trial in 0..trials {
         let number = random.below(CASES.len() as u32) as usize;
         let (hash, time) = &expected[number];
-        let found = disturbed(&program, &folder, CASES[number], *time, &mut random)?;
+        let found = render_with_kills(&program, &folder, CASES[number], *time, &mut random)?;
         kills += found.kills;
         let fine = found.hash == *hash;
         failed += u32::from(!fine);
@@ -82,7 +83,7 @@ fn run(trials: u32, seed: u32) -> Outcome<u32> {
     Ok(failed)
 }
 
-/// The program, made with the same profile as this one.
+/// Builds the program with the same profile as this one; returns its path.
 fn build() -> Outcome<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -102,7 +103,7 @@ fn start_render(program: &Path, folder: &Path, case: &str, flags: &[&str]) -> Ou
     Ok(command.current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?)
 }
 
-/// The hash of a render that comes to its end.
+/// Waits for a render to finish; returns the hash of the picture.
 fn finish(child: Child) -> Outcome<String> {
     let output = child.wait_with_output()?;
     if !output.status.success() {
@@ -112,13 +113,19 @@ fn finish(child: Child) -> Outcome<String> {
     Ok(stats["film"]["hash"].as_str().unwrap_or_default().to_owned())
 }
 
-struct Disturbed {
+struct KilledRender {
     hash: String,
     kills: u32,
 }
 
-/// Renders with kills, each after a random share of the time that all of it takes.
-fn disturbed(program: &Path, folder: &Path, case: &str, time: Duration, random: &mut Random) -> Outcome<Disturbed> {
+/// Renders with kills, each after a random fraction of the time of an undisturbed render.
+fn render_with_kills(
+    program: &Path,
+    folder: &Path,
+    case: &str,
+    time: Duration,
+    random: &mut Random,
+) -> Outcome<KilledRender> {
     let _ = std::fs::remove_file(folder.join("kept.jfilm"));
     let _ = std::fs::remove_file(folder.join("kept.jfilm.previous"));
     let every = format!("{}", 0.005 + f64::from(random.below(100)) * 0.001);
@@ -132,9 +139,9 @@ fn disturbed(program: &Path, folder: &Path, case: &str, time: Duration, random: 
         while start.elapsed() < wait && child.try_wait()?.is_none() {
             std::thread::sleep(Duration::from_millis(1));
         }
-        // In the end it is left alone, so that a trial ends.
+        // Let the last start finish, so that the trial ends.
         if kills >= 12 || child.try_wait()?.is_some() {
-            return Ok(Disturbed { hash: finish(child)?, kills });
+            return Ok(KilledRender { hash: finish(child)?, kills });
         }
         child.kill()?;
         child.wait()?;

@@ -1,11 +1,11 @@
-//! Nothing that decides a pixel may be computed otherwise on another machine: no function of the platform's own, no
-//! fused multiplication but where its rounding cannot show.
+//! Checks that arithmetic which affects pixels is the same on every machine: no mathematical
+//! function of the platform, and no fused multiply-add unless its rounding cannot matter.
 
 use juggler_golden::rust_files;
 use std::fs;
 use std::path::Path;
 
-/// Crates whose numbers decide pixels.
+/// Crates whose arithmetic affects pixels.
 const CRATES: [&str; 16] = [
     "math",
     "bvh",
@@ -25,16 +25,18 @@ const CRATES: [&str; 16] = [
     "denoise",
 ];
 
-/// What the standard library takes from the platform, or leaves open; `juggler_math::fun` has all of it.
+/// Functions that the standard library takes from the platform or leaves unspecified;
+/// `juggler_math::portable` has all of them.
 const PLATFORM: [&str; 22] = [
     "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
     "ln", "ln_1p", "log2", "log10", "powf", "powi", "cbrt", "hypot",
 ];
 
-/// Tests that only refuse, padded for the rounding of multiplication, fused or not: what passes is tested anew, exactly.
+/// Files with conservative tests, padded for the rounding of fused and unfused multiplication:
+/// candidates are tested again, exactly.
 const FUSED: [&str; 2] = ["bvh/src/node.rs", "bvh/src/triangles/common_origin.rs"];
 
-/// What comes before the tests of a file, without comments.
+/// Code of a file before its tests, without comments.
 fn code(path: &Path) -> String {
     let is_test = ["tests.rs", "testing.rs"].iter().any(|name| path.ends_with(name))
         || path.iter().any(|part| ["tests", "contract", "testing", "benches"].iter().any(|t| part == *t));
@@ -46,11 +48,11 @@ fn code(path: &Path) -> String {
     code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
-/// The methods called in a file that its numbers must not depend on.
+/// Platform functions that the code calls, and `mul_add` unless `fused`.
 fn calls(code: &str, fused: bool) -> Vec<&'static str> {
     let called = |name: &&str| code.contains(&format!(".{name}(")) || code.contains(&format!("::{name}("));
     let ours = |name: &&str| {
-        let pure = ["fun", "libm"].iter().any(|module| code.contains(&format!("{module}::{name}(")));
+        let pure = ["portable", "libm"].iter().any(|module| code.contains(&format!("{module}::{name}(")));
         pure && !code.contains(&format!(".{name}("))
     };
     let platform = PLATFORM.iter().filter(|name| called(name) && !ours(name)).copied();
@@ -60,19 +62,19 @@ fn calls(code: &str, fused: bool) -> Vec<&'static str> {
 #[test]
 fn pixels_do_not_depend_on_the_platforms_functions() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut seen = 0;
+    let mut files = 0;
     for path in CRATES.iter().flat_map(|name| rust_files(&crates.join(name).join("src"))) {
         let name = path.strip_prefix(&crates).unwrap().display().to_string();
-        seen += 1;
+        files += 1;
         let found = calls(&code(&path), FUSED.contains(&name.as_str()));
-        assert!(found.is_empty(), "{name} calls {found:?}: take them from juggler_math::fun");
+        assert!(found.is_empty(), "{name} calls {found:?}: take them from juggler_math::portable");
     }
-    assert!(seen > 100, "the source was not found");
+    assert!(files > 100, "the source was not found");
 }
 
 #[test]
 fn the_check_can_fail() {
-    assert_eq!(calls("let y = x.sin() + fun::cos(x);", false), ["sin"]);
+    assert_eq!(calls("let y = x.sin() + portable::cos(x);", false), ["sin"]);
     assert_eq!(calls("f32::powf(x, 2.0); a.mul_add(b, c)", false), ["powf", "mul_add"]);
     assert_eq!(calls("a.mul_add(b, c)", true), [""; 0]);
 }

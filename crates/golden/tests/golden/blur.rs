@@ -1,12 +1,12 @@
-//! A blurred picture is the mean of the pictures of all instants while the shutter is open, whatever moves: shapes,
-//! limbs, groups, meshes, the light, the camera.
+//! A motion-blurred picture equals the mean of pictures at many times while the shutter is open,
+//! for moving shapes, limbs, groups, meshes, light and camera.
 
 use juggler::math::Rgb;
 use juggler::render::Control;
 use juggler::scene::Scene;
 use juggler::{Picture, Settings};
 
-/// Everything in it moves, on bent ways.
+/// A scene in which everything moves on curved paths.
 const SCENE: &str = r##"{"version": 1, "animation": {"frames": 10, "frames_per_second": 10},
     "variables": {"t": "frame / 10", "turn": "360 * t"},
     "paths": {"way": {"points": [[-2, 0.6, 1], [0, 1.4, 2], [2, 0.6, 1], [0, 0.4, -1]], "closed": true}},
@@ -54,9 +54,9 @@ fn a_blurred_picture_is_the_mean_of_its_instants() {
         let blurred = pixels(&blurred);
         let mut mean = vec![Rgb::BLACK; blurred.len()];
         for i in 0..INSTANTS {
-            let share = (f64::from(i) + 0.5) / f64::from(INSTANTS);
+            let fraction = (f64::from(i) + 0.5) / f64::from(INSTANTS);
             let few = Settings { samples: Some(8), seed: Some(u64::from(i)), ..Settings::default() };
-            let still = picture(4.0 + open + (close - open) * share, &few);
+            let still = picture(4.0 + open + (close - open) * fraction, &few);
             assert!(!still.world().moves());
             mean.iter_mut().zip(pixels(&still)).for_each(|(sum, pixel)| *sum += pixel / INSTANTS as f32);
         }

@@ -1,7 +1,9 @@
-//! Every built-in scene, small: the hash of its linear pixels is the same for any number of threads, and the one that
-//! stands in `hashes.txt`. The test runs unoptimised and optimised, on every platform, against the same file.
+//! Hashes of the linear pixels of every built-in scene, rendered small: the same for any number of
+//! threads, and those in `hashes.txt`. The test runs unoptimized and optimized, on every platform,
+//! against the same file.
 //!
-//! After a change that is meant to change pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden hashes::`.
+//! After an intended change of pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test
+//! golden hashes::`.
 
 use juggler::render::Control;
 use juggler::scene::{Scene, built_in_scenes};
@@ -10,19 +12,20 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Pixels in a row; a picture has its scene's shape.
+/// Width of a picture, in pixels; the scene determines the aspect ratio.
 const WIDTH: u32 = 64;
-/// Samples per pixel at most.
+/// Maximum number of samples per pixel.
 const MAX_SAMPLES: u32 = 4;
-/// Frames besides the first, of scenes that move so long.
+/// Frames to render besides the first, in scenes that are long enough.
 const FRAMES: [u32; 3] = [7, 15, 22];
-/// Numbers of threads that must agree.
+/// Numbers of threads whose pictures must agree.
 const THREADS: [usize; 3] = [1, 2, 3];
 
-/// Hashes by view: `scene`, `scene/camera` where there are several, `scene@frame` beyond the first.
+/// Hashes by view: `scene`, `scene/camera` if there are several cameras, `scene@frame` for later
+/// frames.
 type Hashes = BTreeMap<String, String>;
 
-/// A small picture of a scene by one of its cameras.
+/// A small picture of a scene from one of its cameras.
 fn picture(scene: &Scene, camera: Option<&str>) -> Picture {
     let render = &scene.description.render;
     let [width, height] = render.size.map(f64::from);
@@ -41,7 +44,7 @@ fn hash(picture: &Picture, pool: &ThreadPool) -> String {
     pool.install(|| picture.render(Default::default(), &Control::default(), rows)).unwrap().hash
 }
 
-/// Adds a scene's views.
+/// Renders the views of a scene and adds their hashes.
 fn add(hashes: &mut Hashes, name: &str, pools: &[ThreadPool]) {
     let scene = Scene::built_in(name).unwrap();
     let length = scene.description.animation.frames;
@@ -67,7 +70,7 @@ fn to_text(hashes: &Hashes) -> String {
     hashes.iter().map(|(view, hash)| format!("{view} {hash}\n")).collect()
 }
 
-/// What the one has and the other has not, line by line.
+/// Differences of two texts, line by line.
 pub(crate) fn changes(old: &str, new: &str) -> String {
     let missing = |from: &str, to: &str, sign: &str| {
         let lines = from.lines().filter(|line| !to.lines().any(|other| other == *line));

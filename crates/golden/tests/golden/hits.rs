@@ -1,23 +1,24 @@
-//! Hashes of ray hits: every call of a [`TriangleBvh`] finds the same bits on every vector unit, and those that stand in
-//! `hits.txt`. Rays and meshes are those of the benchmarks: camera, shadow, ambient-occlusion and diffuse rays.
+//! Hashes of ray hits: every query of a [`TriangleBvh`] returns the same bits for every SIMD
+//! instruction set, those in `hits.txt`. Rays and meshes are those of the benchmarks: camera,
+//! shadow, ambient occlusion and diffuse rays.
 //!
-//! After a change that is meant to change hits: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden hits::`.
-//! The lines of the watertight test decide pixels; only a bug that is mended may change them.
+//! After an intended change of hits: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden
+//! hits::`. Lines of the watertight test affect pixels; only a bug fix may change them.
 
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit, TriangleTest, simd_levels};
 use juggler_raybench::kernel;
-use juggler_raybench::meshes::Recipe;
+use juggler_raybench::meshes::MeshSpec;
 use juggler_raybench::rays::{self, RaySet};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A closed blob, a room seen from inside, and a height field.
+/// A closed surface, an interior, and a height field.
 const MESHES: [&str; 3] = ["blob:40", "hall:2", "terrain:60"];
-/// Camera rays of each mesh; the other kinds have as many rays as hits.
+/// Number of camera rays per mesh; each of the other sets has one ray per hit.
 const RAYS: usize = 4096;
 const TESTS: [TriangleTest; 2] = [TriangleTest::Watertight, TriangleTest::Fast];
 
-/// A call of the tree for all rays of a set.
+/// A query for all rays of a set, folded into a hash.
 type Call = fn(&TriangleBvh, &RaySet, u64) -> u64;
 
 const CALLS: [(&str, Call); 8] = [
@@ -37,7 +38,7 @@ const CALLS: [(&str, Call); 8] = [
     ("any_packet", |tree, set, hash| any(set, hash, |occluded| tree.any_packet(&set.rays, occluded))),
 ];
 
-/// Hash of the hits, and of where each ray ends afterwards.
+/// Hash of the hits and of the rays' ends after the query.
 fn closest(set: &RaySet, hash: u64, trace: impl Fn(&mut [juggler_math::Ray], &mut [Option<TriangleHit>])) -> u64 {
     let (mut rays, mut hits) = (set.rays.clone(), vec![None; set.rays.len()]);
     trace(&mut rays, &mut hits);
@@ -51,7 +52,7 @@ fn any(set: &RaySet, hash: u64, trace: impl Fn(&mut [bool])) -> u64 {
     occluded.iter().fold(hash, |hash, occluded| with(hash, (*occluded).into()))
 }
 
-/// The hash of what was hashed before and a number (an odd factor and a rotation spread each bit).
+/// Combines a hash with a number, by an odd factor and a rotation that spread each bit.
 fn with(hash: u64, number: u64) -> u64 {
     (hash ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
 }
@@ -61,9 +62,9 @@ fn with_hit(hash: u64, hit: &Option<TriangleHit>) -> u64 {
     [t.to_bits(), u.to_bits(), v.to_bits(), *index].into_iter().fold(hash, |hash, word| with(hash, word.into()))
 }
 
-/// One line for each test and call of a mesh.
+/// Adds one line for each test and query of a mesh.
 fn add(lines: &mut String, name: &str) {
-    let mesh = Recipe::named(name).unwrap().make();
+    let mesh = MeshSpec::parse(name).unwrap().make();
     let tree = kernel::build(&mesh, Quality::Balanced).unwrap();
     let sets = rays::make(&mesh, &tree, RAYS);
     assert!(sets.iter().all(|set| set.rays.len() > 60), "{name}: few rays hit anything");

@@ -1,4 +1,4 @@
-//! Groups that are stored once and placed often: the same pictures as without, in a fraction of the memory.
+//! Instanced groups: the same pictures as without instancing, in a fraction of the memory.
 
 use juggler::camera::Perspective;
 use juggler::material::Phong;
@@ -13,7 +13,7 @@ fn picture(scene: &Scene, integrator: &str) -> Picture {
     Picture::new(scene, &settings).unwrap()
 }
 
-/// The hash of the linear pixels, and their mean.
+/// Hash of the linear pixels, and their mean.
 fn hash(picture: &Picture) -> (String, [f64; 3]) {
     let rows = |_: &[_]| Ok::<(), Error>(());
     let summary = picture.render(Default::default(), &Control::default(), rows).unwrap();
@@ -25,11 +25,12 @@ fn phong(red: f32, transparency: f32) -> Phong {
     Phong { diffuse, transparency: juggler::math::Rgb::splat(transparency).into(), ..Phong::default() }
 }
 
-/// A floor of 64 by 48 copies of these groups in turn, 64 balls each, moved by powers of two.
-fn balls(groups: &[&str], transparency: f32) -> Scene {
-    let ball = |i: u16| {
-        let ball = Object::new(Sphere { radius: 0.25 }).at(f32::from(i % 8) * 0.5, 0.0, f32::from(i / 8) * 0.5);
-        if i.is_multiple_of(3) { ball.material(phong(0.9, transparency)) } else { ball }
+/// A floor of 64 × 48 copies of the groups in turn, 64 spheres each, translated by exactly
+/// representable distances.
+fn sphere_floor(groups: &[&str], transparency: f32) -> Scene {
+    let sphere = |i: u16| {
+        let sphere = Object::new(Sphere { radius: 0.25 }).at(f32::from(i % 8) * 0.5, 0.0, f32::from(i / 8) * 0.5);
+        if i.is_multiple_of(3) { sphere.material(phong(0.9, transparency)) } else { sphere }
     };
     let camera = Perspective {
         eye: Vec3::new(128.0, 64.0, 64.0),
@@ -38,7 +39,7 @@ fn balls(groups: &[&str], transparency: f32) -> Scene {
     };
     let mut scene = Scene::new().size(64, 36).samples(1).camera("main", camera);
     for group in groups {
-        scene = scene.group(*group, (0..64).map(ball));
+        scene = scene.group(*group, (0..64).map(sphere));
     }
     for i in 0..3072_u16 {
         let group = Object::group(groups[usize::from(i) % groups.len()]);
@@ -48,14 +49,15 @@ fn balls(groups: &[&str], transparency: f32) -> Scene {
     scene
 }
 
-/// A group that makes many objects is shared, two groups that make half as many each are not. Seen from where all
-/// differences are exact, nothing is rounded that was not; light's rays start anywhere, and theirs are.
+/// A group with many copies is instanced, while two groups with half as many copies each are not.
+/// From this camera all differences are exact, so that instancing rounds nothing; shadow rays start
+/// anywhere, so theirs are rounded.
 #[test]
 fn shared_and_expanded_groups_make_the_same_picture() {
     for (integrator, transparency) in [("albedo", 0.0), ("depth", 0.0), ("classic", 0.0), ("classic", 0.5)] {
-        let scenes = [balls(&["a"], transparency), balls(&["a", "b"], transparency)];
+        let scenes = [sphere_floor(&["a"], transparency), sphere_floor(&["a", "b"], transparency)];
         let pictures = scenes.map(|scene| picture(&scene, integrator));
-        let geometry = pictures.each_ref().map(|picture| picture.world().geometry());
+        let geometry = pictures.each_ref().map(|picture| picture.world().geometry_stats());
         assert_eq!(geometry.map(|geometry| geometry.shapes), [3072 * 64; 2]);
         assert_eq!(geometry.map(|geometry| geometry.instances), [3072, 0]);
         assert!(geometry[0].geometry_bytes * 10 < geometry[1].geometry_bytes, "{geometry:?}");
@@ -80,7 +82,7 @@ fn hill() -> Mesh {
     MeshData { positions, triangles: (0..SIDE * SIDE).flat_map(square).collect(), ..MeshData::default() }.into()
 }
 
-/// A hundred copies of what `object` makes, ten by ten, in steps of `step`.
+/// A hundred objects made by `object`, ten by ten, at a distance of `step`.
 fn hundred(step: f32, object: impl Fn() -> Object) -> Vec<Object> {
     (0..100_u16).map(|i| object().at(f32::from(i % 10) * step, 0.0, f32::from(i / 10) * -step)).collect()
 }
@@ -92,7 +94,7 @@ fn more_than_a_billion_triangles_need_little_memory() {
     let scene = scene.group("country", hundred(10.0, || Object::group("hills").scaled(-1.0).scaled(-1.0)));
     let scene = hundred(100.0, || Object::group("country")).into_iter().fold(scene, Scene::add);
     let picture = picture(&scene, "classic");
-    let geometry = picture.world().geometry();
+    let geometry = picture.world().geometry_stats();
     assert_eq!((geometry.shapes, geometry.instances), (1_000_000, 100 + 10_000));
     assert_eq!((geometry.triangles, geometry.unique_triangles), (1_152_000_000, 115_200));
     assert!(geometry.geometry_bytes + geometry.bvh_bytes < 64 << 20, "{geometry:?}");
@@ -100,20 +102,20 @@ fn more_than_a_billion_triangles_need_little_memory() {
     assert!(mean.iter().all(|mean| *mean > 0.1), "{mean:?} {hash}");
 }
 
-/// Eighteen groups, each in the next and all worth sharing: the innermost levels are shared, the rest is expanded, for
-/// tracing goes only so deep.
+/// Eighteen nested groups, all worth instancing: the innermost levels are instanced and the others
+/// expanded, because the nesting depth is limited.
 #[test]
 fn levels_within_levels_have_an_end() {
-    let balls = || (0..15_u16).map(|i| Object::new(Sphere { radius: 0.3 }).at(f32::from(i), 0.0, 0.0));
-    let mut scene = Scene::new().size(16, 9).samples(1).group("g0", balls().chain(balls()));
+    let spheres = || (0..15_u16).map(|i| Object::new(Sphere { radius: 0.3 }).at(f32::from(i), 0.0, 0.0));
+    let mut scene = Scene::new().size(16, 9).samples(1).group("g0", spheres().chain(spheres()));
     for i in 1..18 {
         let inner = Object::group(format!("g{}", i - 1)).at(0.0, 0.0, -1.0);
-        scene = scene.group(format!("g{i}"), balls().chain([inner]));
+        scene = scene.group(format!("g{i}"), spheres().chain([inner]));
     }
     scene = scene.group("many", hundred(40.0, || Object::group("g17")));
     let scene = hundred(400.0, || Object::group("many")).into_iter().fold(scene, Scene::add);
     let picture = picture(&scene, "classic");
-    let geometry = picture.world().geometry();
+    let geometry = picture.world().geometry_stats();
     assert_eq!(geometry.shapes, 10_000 * (30 + 17 * 15));
     assert!(geometry.instances > 10_000 && geometry.instances < 10_000 * 16, "{geometry:?}");
     assert!(hash(&picture).1.iter().all(|mean| *mean > 0.05));

@@ -1,4 +1,5 @@
-//! Tests of the whole: picture hashes, scales, motion blur, noise limits, and the rules of the source tree.
+//! End-to-end tests: picture hashes, scales, motion blur, noise limits, and the rules of the source
+//! tree.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,17 +1,19 @@
-//! One scene, one hash: whatever threads, order of tiles, shards, vector unit, or build. Debug and release builds, and
-//! builds for other processors, run this against the same file of hashes.
+//! One scene, one hash: for every number of threads, order of tiles, number of shards, SIMD
+//! instruction set and build. Debug and release builds, and builds for other processors, run this
+//! test against the same file of hashes.
 //!
-//! `JUGGLER_MATRIX=wide cargo test --release -p juggler-golden --test golden matrix::` takes larger pictures and all scenes.
-//! After a change that is meant to change pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden matrix::`.
+//! `JUGGLER_MATRIX=wide cargo test --release -p juggler-golden --test golden matrix::` renders
+//! larger pictures of all scenes. After an intended change of pictures: `JUGGLER_BLESS=1 cargo test
+//! -p juggler-golden --test golden matrix::`.
 
 use juggler::camera::film::Film;
-use juggler::film::share::Work;
-use juggler::film::{Merge, PartError, Share, Wanted, write};
+use juggler::film::shard::Work;
+use juggler::film::{Merge, MergeGoal, PartialRenderError, ShardDescription, write};
 use juggler::imaging::Options;
 use juggler::render::{Control, Scheduler};
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::world::simd_levels;
-use juggler::{Error, Limit, Origin, Picture, Settings};
+use juggler::{Error, Limit, Picture, RenderOrigin, Settings};
 use juggler_math::testing::skipped;
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
@@ -22,23 +24,24 @@ const THREADS: [usize; 4] = [1, 2, 3, 8];
 const ORDERS: [Scheduler; 3] = [Scheduler::WorkStealing, Scheduler::RowQueue, Scheduler::StaticRows];
 const SHARDS: [u32; 3] = [1, 2, 5];
 
-/// Frames of scenes with the shutter open.
+/// Scenes with motion blur: name, built-in scene, frame, shutter interval in frames.
 const MOVING: [(&str, &str, f64, [f64; 2]); 2] =
     [("juggler-in-motion", "juggler", 7.0, [0.0, 1.0]), ("juggler-from-before", "juggler", 12.5, [-0.25, 0.25])];
 
-/// How much is rendered.
-struct Extent {
+/// Size of the test.
+struct TestSize {
     width: u32,
     samples: u32,
-    /// The slowest scenes of the narrow run are left out: `hashes.rs` has them.
+    /// Whether a scene is rendered. The narrow run omits the slowest scenes, which `hashes.rs`
+    /// covers.
     scenes: fn(&str) -> bool,
 }
 
-const NARROW: Extent =
-    Extent { width: 24, samples: 20, scenes: |name| !["marbles", "blossom", "evening-cradle"].contains(&name) };
-const WIDE: Extent = Extent { width: 96, samples: 52, scenes: |_| true };
+const NARROW: TestSize =
+    TestSize { width: 24, samples: 20, scenes: |name| !["marbles", "blossom", "evening-cradle"].contains(&name) };
+const WIDE: TestSize = TestSize { width: 96, samples: 52, scenes: |_| true };
 
-fn picture(name: &str, extent: &Extent, limit: Limit) -> Picture {
+fn picture(name: &str, test_size: &TestSize, limit: Limit) -> Picture {
     let moving = MOVING.iter().find(|moving| moving.0 == name);
     let scene = match moving {
         Some((_, name, frame, _)) => Scene::built_in(name).unwrap().at_frame(*frame).unwrap(),
@@ -46,10 +49,10 @@ fn picture(name: &str, extent: &Extent, limit: Limit) -> Picture {
     };
     let shutter = moving.map(|moving| moving.3);
     let [width, height] = scene.description.render.size.map(f64::from);
-    let height = (f64::from(extent.width) * height / width).round().max(1.0) as u32;
+    let height = (f64::from(test_size.width) * height / width).round().max(1.0) as u32;
     let settings = Settings {
-        size: Some([extent.width, height]),
-        samples: Some(extent.samples),
+        size: Some([test_size.width, height]),
+        samples: Some(test_size.samples),
         shutter,
         limit,
         ..Settings::default()
@@ -59,20 +62,20 @@ fn picture(name: &str, extent: &Extent, limit: Limit) -> Picture {
     picture
 }
 
-/// Row by row.
+/// Renders row by row; returns the hash.
 fn streamed(picture: &Picture, order: Scheduler) -> String {
     picture.render(order, &Control::default(), |_| Ok::<(), Error>(())).unwrap().hash
 }
 
-/// Shards in files, merged.
+/// Renders shards to files and merges them; returns the hash.
 fn sharded(picture: &Picture, count: u32, folder: &Path) -> String {
     let header = picture.header(Options::default());
     let files: Vec<_> = (0..count)
         .map(|index| {
-            let share = Share { index, count, ..Share::whole(picture.samples()) };
-            let mut description = picture.description(&Origin::default(), &header, share);
-            let units = Work::of(&description).share(index, count);
-            let film = Film::of(picture.layout(), units.into_iter().map(|unit| (unit.tile, unit.samples)));
+            let shard = ShardDescription { index, count, ..ShardDescription::whole(picture.samples()) };
+            let mut description = picture.description(&RenderOrigin::default(), &header, shard);
+            let units = Work::from_description(&description).shard(index, count);
+            let film = Film::from_tiles(picture.tiling(), units.into_iter().map(|unit| (unit.tile, unit.samples)));
             picture.expose(&film, &Control::default()).unwrap();
             description.finished = picture.is_finished(&film);
             let file = folder.join(format!("{index}.jfilm"));
@@ -80,10 +83,10 @@ fn sharded(picture: &Picture, count: u32, folder: &Path) -> String {
             file
         })
         .collect();
-    Merge::open(&files, Wanted::Whole).unwrap().rows(|_| Ok::<(), PartError>(())).unwrap().hash
+    Merge::open(&files, MergeGoal::Whole).unwrap().rows(|_| Ok::<(), PartialRenderError>(())).unwrap().hash
 }
 
-/// How a picture is rendered: streamed in some order, or in shards.
+/// Rendering method: streamed in some order, or in shards.
 #[derive(Clone, Copy, Debug)]
 enum Method {
     Streamed(Scheduler),
@@ -94,20 +97,20 @@ fn methods() -> impl Iterator<Item = Method> {
     ORDERS.into_iter().map(Method::Streamed).chain(SHARDS.into_iter().map(Method::Shards))
 }
 
-/// Whether a combination of the n-th vector unit, number of threads and method is rendered.
-/// Optimized builds render all combinations. Unoptimized builds are far slower: they render each
-/// pair of a vector unit and a method once and rotate the number of threads, so that each vector
-/// unit also meets every number of threads.
+/// Whether to render the combination of an instruction set, a number of threads and a method, by
+/// their indices. Optimized builds render all combinations. Unoptimized builds are far slower: they
+/// render each pair of an instruction set and a method once and rotate the number of threads, so
+/// that each instruction set is tested with every number of threads.
 fn is_rendered(level: usize, threads: usize, method: usize) -> bool {
     !cfg!(debug_assertions) || threads == (level + method) % THREADS.len()
 }
 
-/// The scene's one hash, by all methods.
-fn hash(name: &str, extent: &Extent) -> String {
+/// Renders a scene by all methods; returns their common hash.
+fn hash(name: &str, test_size: &TestSize) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut expected = None;
     for (l, level) in simd_levels().into_iter().enumerate() {
-        let picture = picture(name, extent, Limit::Samples).with_simd_level(level);
+        let picture = picture(name, test_size, Limit::Samples).with_simd_level(level);
         for (t, threads) in THREADS.into_iter().enumerate() {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             for (_, method) in methods().enumerate().filter(|(m, _)| is_rendered(l, t, *m)) {
@@ -123,8 +126,8 @@ fn hash(name: &str, extent: &Extent) -> String {
     expected.unwrap()
 }
 
-/// Names the vector units that the kernels know and this machine lacks.
-fn report_missing_vector_units() {
+/// Reports the instruction sets that have kernels but are missing on this machine.
+fn report_missing_simd_levels() {
     let known: &[&str] = if cfg!(target_arch = "x86_64") { &["Sse2", "Sse4_2", "Avx2", "Avx512"] } else { &[] };
     let present = format!("{:?}", simd_levels());
     for unit in known.iter().filter(|unit| !present.contains(**unit)) {
@@ -132,9 +135,9 @@ fn report_missing_vector_units() {
     }
 }
 
-/// Calls a function for each name, on as many threads as the machine has: most pictures are too small for several threads of
-/// their own. The results are in the order of the names.
-fn beside_each_other<T: Send>(names: &[&str], call: impl Fn(&str) -> T + Sync) -> Vec<T> {
+/// Calls a function for each name, on as many threads as the machine has, since most pictures are
+/// too small for several threads. The results are in the order of the names.
+fn map_parallel<T: Send>(names: &[&str], call: impl Fn(&str) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let work = || {
         let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
@@ -151,13 +154,13 @@ fn beside_each_other<T: Send>(names: &[&str], call: impl Fn(&str) -> T + Sync) -
 
 #[test]
 fn one_scene_one_hash() {
-    report_missing_vector_units();
+    report_missing_simd_levels();
     let wide = std::env::var_os("JUGGLER_MATRIX").is_some_and(|value| value == "wide");
-    let extent = if wide { &WIDE } else { &NARROW };
-    let still = built_in_scenes().iter().map(|scene| scene.name).filter(|name| (extent.scenes)(name));
+    let test_size = if wide { &WIDE } else { &NARROW };
+    let still = built_in_scenes().iter().map(|scene| scene.name).filter(|name| (test_size.scenes)(name));
     let names: Vec<&str> = still.chain(MOVING.iter().map(|moving| moving.0)).collect();
     assert!(names.len() >= 20);
-    let found = beside_each_other(&names, |name| format!("{name} {}\n", hash(name, extent))).concat();
+    let found = map_parallel(&names, |name| format!("{name} {}\n", hash(name, test_size))).concat();
     if wide {
         return;
     }
@@ -172,8 +175,8 @@ fn one_scene_one_hash() {
 fn noise_gives_one_hash_too() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["step-12b", "depth-of-field", "cornell-cube"] {
-        let extent = Extent { width: 48, samples: 256, ..NARROW };
-        let picture = picture(name, &extent, Limit::Noise(0.01));
+        let test_size = TestSize { width: 48, samples: 256, ..NARROW };
+        let picture = picture(name, &test_size, Limit::Noise(0.01));
         let hashes: Vec<String> = THREADS
             .iter()
             .flat_map(|threads| {

@@ -1,9 +1,10 @@
-//! `--noise` keeps its word: the true error, against a picture of 64 times the samples and another seed, is what was
-//! asked for. Errors are relative, as `Tile::relative_variance` estimates them, and looked at where noise ended the
-//! picture: elsewhere the least number of samples is better than was asked for.
+//! Accuracy of `--noise`: the true error, against a reference with 64 times the samples and another
+//! seed, matches the requested one. Errors are relative, as `Tile::relative_variance` estimates
+//! them, and measured where noise ended the tile: elsewhere the minimum number of samples gives a
+//! smaller error than requested.
 //!
-//! `JUGGLER_NOISE=all cargo test --release -p juggler-golden --test golden -- --nocapture noise::` prints the figures of more
-//! scenes, larger; the usual run is against 16 times the samples.
+//! `JUGGLER_NOISE=all cargo test --release -p juggler-golden --test golden -- --nocapture noise::`
+//! prints the figures of more and larger scenes; the usual run compares with 16 times the samples.
 
 use juggler::camera::film::Film;
 use juggler::math::Rgb;
@@ -11,14 +12,15 @@ use juggler::render::Control;
 use juggler::scene::Scene;
 use juggler::{Limit, Picture, Settings};
 
-/// Samples from which noise is told.
-const LEAST: u32 = 64;
-/// How far the ratios of true to requested error may be from the expected ones: seeds are fixed, so only a change of the
-/// samples or of the rule that ends tiles moves them.
+/// Minimum number of samples before noise is estimated.
+const MIN_SAMPLES: u32 = 64;
+/// Tolerance of the ratios of true to requested error: seeds are fixed, so only a change of the
+/// samples or of the stopping rule moves them.
 const TOLERANCE: f64 = 0.05;
 
-/// A scene, the relative error that is requested, and the expected ratios of the true error to it: the root mean square over
-/// all tiles that noise ended, and the worst tile. Well distributed samples are better than their variance says.
+/// A scene, the requested relative error, and the expected ratios of the true error to it: the root
+/// mean square over all tiles that noise ended, and the worst tile. Well distributed samples have a
+/// smaller error than their variance implies.
 struct Case {
     scene: &'static str,
     level: f32,
@@ -30,20 +32,20 @@ const fn case(scene: &'static str, level: f32, rms: f64, worst: f64) -> Case {
     Case { scene, level, rms, worst }
 }
 
-/// What is compared, and with what.
-struct Extent {
+/// Size of the test.
+struct TestSize {
     size: [u32; 2],
-    /// Times the samples.
+    /// Samples of the reference, as a multiple of those of the picture.
     reference: u32,
     cases: &'static [Case],
 }
 
-const USUAL: Extent = Extent {
+const USUAL: TestSize = TestSize {
     size: [64, 48],
     reference: 16,
     cases: &[case("cornell-cube", 0.003, 0.74, 0.88), case("step-12b", 0.02, 1.12, 1.24)],
 };
-const ALL: Extent = Extent {
+const ALL: TestSize = TestSize {
     size: [96, 64],
     reference: 64,
     cases: &[
@@ -56,7 +58,7 @@ const ALL: Extent = Extent {
     ],
 };
 
-fn exposed(name: &str, size: [u32; 2], samples: u32, seed: u64, limit: Limit) -> Film {
+fn render_film(name: &str, size: [u32; 2], samples: u32, seed: u64, limit: Limit) -> Film {
     let settings =
         Settings { size: Some(size), samples: Some(samples), seed: Some(seed), limit, ..Settings::default() };
     let picture = Picture::new(&Scene::built_in(name).unwrap(), &settings).unwrap();
@@ -76,14 +78,15 @@ fn error(pixels: &[Rgb], reference: &[Rgb]) -> f64 {
     pixels.iter().zip(reference).map(square).sum::<f64>() / pixels.len() as f64
 }
 
-/// How far from the level the error is, over the tiles that noise ended, and of the worst of them.
-fn compare(name: &str, level: f32, extent: &Extent) -> (f64, f64) {
-    let film = exposed(name, extent.size, 4096, 0, Limit::Noise(level));
+/// Ratio of the true error to the requested one: over the tiles that noise ended, and in the worst
+/// of them.
+fn error_ratios(name: &str, level: f32, test_size: &TestSize) -> (f64, f64) {
+    let film = render_film(name, test_size.size, 4096, 0, Limit::Noise(level));
     let counts = film.counts();
-    let ended: Vec<usize> = (0..film.len()).filter(|place| counts[*place] > LEAST).collect();
+    let ended: Vec<usize> = (0..film.len()).filter(|place| counts[*place] > MIN_SAMPLES).collect();
     assert!(ended.len() > 3, "{name}: noise ended {} tiles", ended.len());
     let mean = ended.iter().map(|place| counts[*place]).sum::<u32>() / ended.len() as u32;
-    let reference = exposed(name, extent.size, mean * extent.reference, 99, Limit::Samples);
+    let reference = render_film(name, test_size.size, mean * test_size.reference, 99, Limit::Samples);
     let means = |film: &Film, place: usize| film.tile(place).unwrap().means();
     let errors: Vec<f64> =
         ended.iter().map(|place| error(&means(&film, *place), &means(&reference, *place)).sqrt()).collect();
@@ -100,11 +103,11 @@ fn compare(name: &str, level: f32, extent: &Extent) -> (f64, f64) {
 }
 
 #[test]
-fn the_true_error_is_the_one_that_was_asked_for() {
+fn the_true_error_is_the_requested_one() {
     let all = std::env::var_os("JUGGLER_NOISE").is_some_and(|value| value == "all");
-    let extent = if all { &ALL } else { &USUAL };
-    for Case { scene, level, rms, worst } in extent.cases {
-        let found = compare(scene, *level, extent);
+    let test_size = if all { &ALL } else { &USUAL };
+    for Case { scene, level, rms, worst } in test_size.cases {
+        let found = error_ratios(scene, *level, test_size);
         for (what, found, expected) in [("all tiles", found.0, rms), ("the worst tile", found.1, worst)] {
             let fits = (found - expected).abs() <= TOLERANCE;
             assert!(fits, "{scene}: the true error of {what} is {found} times the requested one, not {expected}");
@@ -112,20 +115,21 @@ fn the_true_error_is_the_one_that_was_asked_for() {
     }
 }
 
-/// Tiles stop when their samples seem to agree, which those do early that have not met what is rare and bright: their mean over many seeds
-/// is too dark by that. It must not be by more than the error that was asked for.
+/// Tiles stop once their samples seem to agree, which is too early if they have missed rare bright
+/// paths: the mean over many seeds is biased towards dark. The bias must be smaller than the
+/// requested error.
 #[test]
-fn the_mean_of_many_seeds_is_within_the_error_that_was_asked_for() {
+fn the_mean_of_many_seeds_is_within_the_requested_error() {
     const SEEDS: u64 = 12;
     let (size, level) = ([48, 32], 0.03);
     let name = "step-12b";
-    let reference = exposed(name, size, 4096, 99, Limit::Samples);
-    let films: Vec<Film> = (0..SEEDS).map(|seed| exposed(name, size, 4096, seed, Limit::Noise(level))).collect();
+    let reference = render_film(name, size, 4096, 99, Limit::Samples);
+    let films: Vec<Film> = (0..SEEDS).map(|seed| render_film(name, size, 4096, seed, Limit::Noise(level))).collect();
     let mean_of = |film: &Film, place: usize| {
         let means = film.tile(place).unwrap().means();
         means.iter().map(|pixel| f64::from(pixel.r + pixel.g + pixel.b)).sum::<f64>() / means.len() as f64 / 3.0
     };
-    let ended = films.iter().flat_map(Film::counts).filter(|count| (LEAST + 1..4096).contains(count)).count();
+    let ended = films.iter().flat_map(Film::counts).filter(|count| (MIN_SAMPLES + 1..4096).contains(count)).count();
     assert!(ended > 20, "noise ended {ended} tiles");
     for place in 0..reference.len() {
         let exact = mean_of(&reference, place);

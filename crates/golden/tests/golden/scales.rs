@@ -1,7 +1,7 @@
-//! A picture does not depend on the unit of length: scenes a ten-thousandth and a million times as large look the
-//! same, and so do models at the size that they come in.
+//! Pictures do not depend on the unit of length: scenes scaled by 1e-4 and 1e6, and models at their
+//! original size, look the same.
 //!
-//! With `JUGGLER_PICTURES=folder` the pictures are also written there, to be looked at.
+//! With `JUGGLER_PICTURES=folder` the test also writes the pictures there.
 
 use crate::model::Model;
 use juggler::math::{Image, Ray, Vec3};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 const SIZE: [u32; 2] = [120, 80];
 
-/// Lengths in units of a scene.
+/// Converts lengths to scene units.
 fn lengths<const N: usize>(unit: f64, values: [f64; N]) -> Value {
     json!(values.map(|value| value * unit).as_slice())
 }
@@ -26,8 +26,8 @@ fn render(scene: &Value, name: &str) -> Image {
     juggler::render(&scene, &Settings::default()).unwrap()
 }
 
-/// The share of pixels in which two pictures differ by more than a thousandth of white.
-fn differing(a: &Image, b: &Image) -> f64 {
+/// Fraction of pixels in which two pictures differ by more than a thousandth of white.
+fn differing_fraction(a: &Image, b: &Image) -> f64 {
     let differ = |(a, b): (&juggler::math::Rgb, &juggler::math::Rgb)| {
         a.to_array().into_iter().zip(b.to_array()).any(|(a, b)| (a - b).abs() > 1e-3 || a.is_nan() != b.is_nan())
     };
@@ -35,8 +35,9 @@ fn differing(a: &Image, b: &Image) -> f64 {
     count as f64 / a.pixels().len() as f64
 }
 
-/// Every kind of solid on a checkered ground, with a mirror, glass, soft and hard shadows, occlusion and a wall that
-/// a light sits on. `unit`: its length; `scaled`: shapes of unit size under a scale, instead of large shapes.
+/// A scene of every kind of solid on a checkered ground, with a mirror, glass, soft and hard
+/// shadows, occlusion, and a light on a wall. `unit` is the unit of length; `scaled` uses shapes of
+/// unit size with a scaling transform instead of large shapes.
 fn still_life(unit: f64, scaled: bool) -> Value {
     json!({
         "version": 1,
@@ -89,7 +90,7 @@ fn objects(unit: f64, scaled: bool) -> Vec<Value> {
     ]
 }
 
-/// Multiplies all lengths of a shape; numbers of corners are whole.
+/// Multiplies all lengths of a shape; vertex indices stay.
 fn scale(shape: &mut Value, unit: f64) {
     match shape {
         Value::Array(values) => values.iter_mut().for_each(|value| scale(value, unit)),
@@ -106,14 +107,17 @@ fn a_scene_looks_the_same_in_any_unit() {
     for scaled in [false, true] {
         let expected = render(&still_life(1.0, scaled), &format!("still-life-1-{scaled}"));
         for unit in [1e-4, 1e6] {
-            let share =
-                differing(&render(&still_life(unit, scaled), &format!("still-life-{unit:e}-{scaled}")), &expected);
-            assert!(share <= 0.004, "unit {unit}, scaled {scaled}: {share} of all pixels differ");
+            let fraction = differing_fraction(
+                &render(&still_life(unit, scaled), &format!("still-life-{unit:e}-{scaled}")),
+                &expected,
+            );
+            assert!(fraction <= 0.004, "unit {unit}, scaled {scaled}: {fraction} of all pixels differ");
         }
     }
 }
 
-/// A model on the ground under a light that casts shadows, seen from the front right above.
+/// A scene of a model on the ground under a light that casts shadows, viewed from the front, right
+/// and above.
 fn portrait(model: &Model) -> Value {
     let (low, high) = model.corners();
     let (size, center) = (f64::from((high - low).max_element()), (low + high) * 0.5);
@@ -136,8 +140,9 @@ fn portrait(model: &Model) -> Value {
     })
 }
 
-/// The share of shadow rays that are stopped within a thousandth of the model's size, which only creases may do.
-fn stopped_at_once(model: &Model) -> f64 {
+/// Fraction of shadow rays that are blocked within a thousandth of the model's size, which only
+/// creases may cause.
+fn self_shadowed_fraction(model: &Model) -> f64 {
     let scene = Scene::from_json(portrait(model).to_string(), "portrait").unwrap();
     let picture = Picture::new(&scene, &Settings::default()).unwrap();
     let (low, high) = model.corners();
@@ -157,9 +162,9 @@ fn stopped_at_once(model: &Model) -> f64 {
             let to = light - surface.point;
             if to.dot(surface.normal) * -ray.direction.dot(surface.normal) > 0.0 {
                 count += 1;
-                let mut shadow = surface.spawn_to(to.normalize(), to.length(), 0.0);
-                let met = picture.world().closest(&mut shadow);
-                stopped += u32::from(met.is_some() && met.hit.t < 1e-3 * size);
+                let mut shadow = surface.spawn_ray_to(to.normalize(), to.length(), 0.0);
+                let blocker = picture.world().closest(&mut shadow);
+                stopped += u32::from(blocker.is_some() && blocker.hit.t < 1e-3 * size);
             }
         }
     }
@@ -167,7 +172,7 @@ fn stopped_at_once(model: &Model) -> f64 {
     f64::from(stopped) / f64::from(count)
 }
 
-/// An avocado of 6 cm and a fox of 155 units, as they come.
+/// An avocado of 6 cm and a fox of 155 units, at their original size.
 #[test]
 fn models_show_no_acne_at_the_size_they_come_in() {
     for (name, longest) in [("Avocado/glTF/Avocado.gltf", 0.0629), ("Fox/glTF-Binary/Fox.glb", 154.7)] {
@@ -179,9 +184,9 @@ fn models_show_no_acne_at_the_size_they_come_in() {
         let expected = render(&portrait(&native.scaled(1.0 / size)), &format!("{short}-unit"));
         for factor in [1.0, 1e-4 / size, 1e6 / size] {
             let model = native.scaled(factor);
-            let share = differing(&render(&portrait(&model), &format!("{short}-{factor:e}")), &expected);
-            assert!(share <= 0.004, "{name} times {factor}: {share} of all pixels differ");
-            let stopped = stopped_at_once(&model);
+            let fraction = differing_fraction(&render(&portrait(&model), &format!("{short}-{factor:e}")), &expected);
+            assert!(fraction <= 0.004, "{name} times {factor}: {fraction} of all pixels differ");
+            let stopped = self_shadowed_fraction(&model);
             assert!(stopped < 2e-3, "{name} times {factor}: {stopped} of all shadow rays end where they start");
         }
     }

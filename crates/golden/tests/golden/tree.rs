@@ -1,24 +1,25 @@
-//! The tree keeps its own rules: short files, and only licences that anybody may use.
+//! Rules of the source tree: short files, `unsafe` in few places, and free licenses.
 
 use juggler_golden::rust_files;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Lines a source file may have, tests included.
+/// Maximum number of lines of a source file, tests included.
 const MAX_LINES: usize = 400;
 
-/// Bytes that a committed file may have.
+/// Maximum size of a committed file, in bytes.
 const MAX_BYTES: u64 = 1_500_000;
 
-/// The only files with `unsafe` in them, below `crates`.
+/// The only files that contain `unsafe`, relative to `crates`.
 const UNSAFE: &[&str] =
     &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs", "bvh/src/stack.rs", "oidn/src/ffi.rs"];
 
-/// What `cargo run` without further words runs: the README's first command.
+/// Package and program that a plain `cargo run` runs, which is the README's first command.
 const PROGRAM: [&str; 2] = ["juggler-cli", "juggler"];
 
-/// Licences that the project's users can live with (SPDX; an expression needs one fit alternative).
-const LICENCES: &[&str] = &[
+/// Licenses that the project's users can accept (SPDX; of an expression with alternatives one
+/// suffices).
+const LICENSES: &[&str] = &[
     "MIT",
     "Apache-2.0",
     "BSD-2-Clause",
@@ -33,9 +34,10 @@ const LICENCES: &[&str] = &[
     "MIT-0",
     "IJG",
     "Apache-2.0 WITH LLVM-exception",
-    // As free as the BSD licences; of a fuzzer that a dependency names and nothing builds.
+    // As permissive as the BSD licenses; used by a fuzzer that a dependency names and no build
+    // includes.
     "NCSA",
-    // Of typefaces: they may be part of any program, but not be sold alone.
+    // For typefaces: they may be part of any program, but not be sold alone.
     "OFL-1.1",
     "Ubuntu-font-1.0",
 ];
@@ -64,14 +66,14 @@ fn no_committed_file_is_large() {
     let names: Vec<&str> = names.split_terminator('\0').collect();
     assert!(names.len() > 50, "git lists no files: {}", String::from_utf8_lossy(&list.stderr));
     for name in names {
-        // A file that is deleted and not yet committed has no size.
+        // A file that is deleted but not yet committed has no size.
         let bytes = std::fs::metadata(root().join(name)).map_or(0, |file| file.len());
         assert!(bytes <= MAX_BYTES, "{name}: {bytes} bytes, over {MAX_BYTES}");
     }
 }
 
 #[test]
-fn unsafe_stands_only_where_it_was_agreed_on() {
+fn unsafe_is_only_in_the_listed_files() {
     let crates = root().join("crates");
     let own = crates.join("golden/tests/golden/tree.rs");
     let lifted = |path: &Path| path != own && std::fs::read_to_string(path).unwrap().contains("unsafe_code");
@@ -94,8 +96,8 @@ fn unsafe_stands_only_where_it_was_agreed_on() {
     assert!(workspace.contains("[workspace.lints.rust]\nunsafe_code = \"forbid\"\n"));
 }
 
-/// Files that open others by themselves: the one that every reader opens its input with, what reads from the system or what
-/// the program itself wrote, and what tests and measures.
+/// Files that open other files directly: the module by which every reader opens its input, those
+/// that read from the system or what the program itself wrote, tests and measurements.
 const OPENERS: &[&str] = &[
     "bvh/benches/traverse.rs",
     "cli/src/command/render/folder.rs",
@@ -108,7 +110,8 @@ const OPENERS: &[&str] = &[
     "juggler/benches/edits.rs",
 ];
 
-/// Whoever opens a named pipe waits for another program, forever: readers open their input by `imaging::regular::open`.
+/// Opening a named pipe blocks until another program writes to it, so readers open their input by
+/// `imaging::regular::open`.
 #[test]
 fn input_is_opened_in_one_place() {
     let crates = root().join("crates");
@@ -126,7 +129,7 @@ fn input_is_opened_in_one_place() {
 }
 
 #[test]
-fn every_dependency_has_a_licence_that_fits() {
+fn every_dependency_has_an_accepted_license() {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--locked"])
         .current_dir(root())
@@ -138,24 +141,24 @@ fn every_dependency_has_a_licence_that_fits() {
     assert!(packages.len() > 20);
     let unfit: Vec<String> = packages
         .iter()
-        .filter(|package| !fits(package["license"].as_str().unwrap_or_default()))
+        .filter(|package| !is_accepted(package["license"].as_str().unwrap_or_default()))
         .map(|package| format!("{} {}: {}", package["name"], package["version"], package["license"]))
         .collect();
-    assert!(unfit.is_empty(), "licences that are not on the list:\n{}", unfit.join("\n"));
+    assert!(unfit.is_empty(), "licenses that are not on the list:\n{}", unfit.join("\n"));
 }
 
 #[test]
 fn cargo_run_runs_the_program() {
     let manifests = std::fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
-    let told = manifests.filter_map(|folder| {
+    let declared = manifests.filter_map(|folder| {
         let text = std::fs::read_to_string(folder.join("Cargo.toml")).ok()?;
         let value = |key: &str| {
             text.lines().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix("= ").map(str::to_owned))
         };
         value("default-run").map(|run| [value("name").unwrap_or_default(), run].map(|word| word.replace('"', "")))
     });
-    let told: Vec<[String; 2]> = told.collect();
-    assert_eq!(told, [PROGRAM.map(str::to_owned)], "one default-run, for `cargo run` takes no other");
+    let declared: Vec<[String; 2]> = declared.collect();
+    assert_eq!(declared, [PROGRAM.map(str::to_owned)], "one default-run, for `cargo run` takes no other");
 }
 
 /// A package that the release profile does not list is hardly optimized.
@@ -170,21 +173,21 @@ fn the_release_profile_lists_every_package() {
     }
 }
 
-/// Whether an SPDX expression can be met: of alternatives one, of requirements all.
-fn fits(expression: &str) -> bool {
+/// Whether a license expression is acceptable: one of its alternatives, or all of its requirements.
+fn is_accepted(expression: &str) -> bool {
     let expression = expression.replace('/', " OR ");
     split(&expression, " OR ").iter().any(|all| {
         split(all, " AND ").iter().all(|one| {
             let one = one.trim();
             match one.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')) {
-                Some(inner) => fits(inner),
-                None => LICENCES.contains(&one),
+                Some(inner) => is_accepted(inner),
+                None => LICENSES.contains(&one),
             }
         })
     })
 }
 
-/// Splits at a word that stands outside of parentheses.
+/// Splits at a word outside of parentheses.
 fn split<'a>(text: &'a str, word: &str) -> Vec<&'a str> {
     let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0);
     for (at, character) in text.char_indices() {
@@ -203,8 +206,8 @@ fn split<'a>(text: &'a str, word: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn the_licence_check_can_fail() {
-    assert!(fits("MIT OR GPL-3.0-only") && fits("MIT/Apache-2.0") && fits("MIT AND ISC"));
-    assert!(fits("(MIT OR Apache-2.0) AND Unicode-3.0") && !fits("(MIT OR Apache-2.0) AND GPL-3.0-only"));
-    assert!(!fits("GPL-3.0-only") && !fits("MIT AND AGPL-3.0-only") && !fits(""));
+fn the_license_check_can_fail() {
+    assert!(is_accepted("MIT OR GPL-3.0-only") && is_accepted("MIT/Apache-2.0") && is_accepted("MIT AND ISC"));
+    assert!(is_accepted("(MIT OR Apache-2.0) AND Unicode-3.0") && !is_accepted("(MIT OR Apache-2.0) AND GPL-3.0-only"));
+    assert!(!is_accepted("GPL-3.0-only") && !is_accepted("MIT AND AGPL-3.0-only") && !is_accepted(""));
 }

@@ -1,8 +1,8 @@
-//! APNG: a PNG whose further frames are in chunks of their own (W3C, Portable Network Graphics, third edition, 11.3.4),
-//! so that what shows only PNG shows the first frame. Nothing is lost.
+//! APNG: PNG with further frames in separate chunks (W3C, Portable Network Graphics, third edition,
+//! 11.3.4), lossless. Viewers without APNG support show the first frame.
 
-use super::changes::{Frames, Part};
-use super::pace::duration;
+use super::changes::{ChangedRect, Frames};
+use super::frame_time::duration;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::output::Destination;
@@ -15,22 +15,23 @@ use std::io::Write;
 pub(super) struct Writer {
     encoder: png::Writer<Box<dyn Write + Send>>,
     frames: Frames,
-    place: String,
+    file: String,
 }
 
 impl Writer {
     pub fn new(destination: Destination, header: &AnimationHeader) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
-        let encoder = encoder(destination, header).map_err(|error| failed(&place, error))?;
+        let file = destination.name().to_owned();
+        let encoder = encoder(destination, header).map_err(|error| failed(&file, error))?;
         let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255));
-        Ok(Self { encoder, frames, place })
+        Ok(Self { encoder, frames, file })
     }
 
-    fn frame(&mut self, part: Part, bytes: &[u8]) -> Result<(), EncodingError> {
-        // The corner first: the part must fit wherever it is meanwhile.
+    fn frame(&mut self, rect: ChangedRect, bytes: &[u8]) -> Result<(), EncodingError> {
+        // Reset the position first, since the encoder checks that the rectangle fits after each
+        // call.
         self.encoder.set_frame_position(0, 0)?;
-        self.encoder.set_frame_dimension(part.width, part.height)?;
-        self.encoder.set_frame_position(part.x, part.y)?;
+        self.encoder.set_frame_dimension(rect.width, rect.height)?;
+        self.encoder.set_frame_position(rect.x, rect.y)?;
         self.encoder.write_image_data(bytes)
     }
 }
@@ -45,7 +46,7 @@ fn encoder(
     encoder.set_compression(png::Compression::Balanced);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_animated(header.frames, u32::from(header.plays))?;
-    // Both have sixteen bits.
+    // APNG stores numerator and denominator in 16 bits each.
     let (numerator, denominator) = duration(header.frames_per_second, u32::from(u16::MAX));
     encoder.set_frame_delay(numerator as u16, denominator as u16)?;
     encoder.write_header()
@@ -53,19 +54,19 @@ fn encoder(
 
 impl FrameWriter for Writer {
     fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
-        let (part, bytes) = self.frames.next(pixels);
-        self.frame(part, &bytes).map_err(|error| failed(&self.place, error))
+        let (rect, bytes) = self.frames.next(pixels);
+        self.frame(rect, &bytes).map_err(|error| failed(&self.file, error))
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        let Self { encoder, place, .. } = *self;
-        encoder.finish().map_err(|error| failed(&place, error))
+        let Self { encoder, file, .. } = *self;
+        encoder.finish().map_err(|error| failed(&file, error))
     }
 }
 
-fn failed(place: &str, error: EncodingError) -> ImageError {
+fn failed(file: &str, error: EncodingError) -> ImageError {
     match error {
-        EncodingError::IoError(source) => ImageError::Write { place: place.to_owned(), source },
-        other => refused(place, format!("cannot be encoded as APNG: {other}")),
+        EncodingError::IoError(source) => ImageError::Write { file: file.to_owned(), source },
+        other => refused(file, format!("encoding as APNG failed: {other}")),
     }
 }

@@ -1,12 +1,12 @@
-//! GIF89a: at most 256 colours a frame, chosen for each frame by a network that learns them (Dekker, Kohonen neural
-//! networks for optimal colour quantization, 1994); what lies between is dithered in an ordered pattern (Bayer 1973), which
-//! stands still where the picture does.
+//! GIF89a with a palette of at most 256 colors per frame, chosen by a neural network (Dekker,
+//! Kohonen neural networks for optimal colour quantization, 1994). Ordered dithering (Bayer 1973)
+//! keeps static parts of the movie free of flicker.
 
-use super::changes::{Frames, Part};
-use super::pace::Clock;
+use super::changes::{ChangedRect, Frames};
+use super::frame_time::Clock;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
-use crate::look::threshold;
+use crate::look::bayer_offset;
 use crate::output::Destination;
 use crate::tone::Quantizer;
 use color_quant::NeuQuant;
@@ -16,93 +16,94 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
 
-/// Colours of a frame.
+/// Maximum number of palette colors of a frame.
 const COLORS: usize = 256;
-/// Levels that the dither pattern spans: about what colours of a rich picture are apart.
+/// Amplitude of the dither pattern in 8-bit levels, about the distance between adjacent palette
+/// colors.
 const SPAN: i32 = 12;
-/// Pixels that the colours of a frame are learned from.
-const LEARNED: usize = 200_000;
+/// Approximate number of pixels that the network learns from.
+const TRAINING_PIXELS: usize = 200_000;
 
 /// Streams frames into a GIF.
 pub(super) struct Writer {
     encoder: gif::Encoder<Box<dyn Write + Send>>,
     frames: Frames,
-    place: String,
-    /// Hundredths of a second.
+    file: String,
+    /// Clock with ticks of 1/100 s.
     clock: Clock,
 }
 
 impl Writer {
     pub fn new(destination: Destination, header: &AnimationHeader) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
-        // Sides were checked.
+        let file = destination.name().to_owned();
+        // `AnimationFormat::check` has limited the sides to 16 bits.
         let (width, height) = (header.width as u16, header.height as u16);
         let begun = gif::Encoder::new(destination.into_stream(), width, height, &[]).and_then(|mut encoder| {
             match header.plays {
                 0 => encoder.set_repeat(Repeat::Infinite)?,
-                // The number is that of repetitions after the first time.
+                // GIF counts the repetitions after the first playback.
                 1 => {}
                 plays => encoder.set_repeat(Repeat::Finite(plays - 1))?,
             }
             Ok(encoder)
         });
-        let encoder = begun.map_err(|error| failed(&place, error))?;
+        let encoder = begun.map_err(|error| failed(&file, error))?;
         let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255));
-        Ok(Self { encoder, frames, place, clock: Clock::new(100.0, header.frames_per_second) })
+        Ok(Self { encoder, frames, file, clock: Clock::new(100.0, header.frames_per_second) })
     }
 }
 
 impl FrameWriter for Writer {
     fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
-        let (part, bytes) = self.frames.next(pixels);
-        let (palette, indices) = few(&bytes).unwrap_or_else(|| learned(&part, &bytes));
+        let (rect, bytes) = self.frames.next(pixels);
+        let (palette, indices) = exact_palette(&bytes).unwrap_or_else(|| learned_palette(&rect, &bytes));
         let frame = Frame {
             delay: self.clock.tick().min(u64::from(u16::MAX)) as u16,
-            left: part.x as u16,
-            top: part.y as u16,
-            width: part.width as u16,
-            height: part.height as u16,
+            left: rect.x as u16,
+            top: rect.y as u16,
+            width: rect.width as u16,
+            height: rect.height as u16,
             palette: Some(palette),
             buffer: Cow::Owned(indices),
             ..Frame::default()
         };
-        self.encoder.write_frame(&frame).map_err(|error| failed(&self.place, error))
+        self.encoder.write_frame(&frame).map_err(|error| failed(&self.file, error))
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        let Self { encoder, place, .. } = *self;
-        let mut bytes = encoder.into_inner().map_err(|error| failed(&place, error))?;
-        bytes.flush().map_err(|source| ImageError::Write { place, source })
+        let Self { encoder, file, .. } = *self;
+        let mut bytes = encoder.into_inner().map_err(|error| failed(&file, error))?;
+        bytes.flush().map_err(|source| ImageError::Write { file, source })
     }
 }
 
-/// Palette and indices of a picture that has no more colours than fit.
-fn few(bytes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
+/// Palette and indices of an image with at most 256 colors; `None` if it has more.
+fn exact_palette(bytes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
     let pixels = bytes.as_chunks::<3>().0;
-    let mut places = BTreeMap::new();
+    let mut entries = BTreeMap::new();
     for pixel in pixels {
-        let next = places.len();
-        if *places.entry(*pixel).or_insert(next) >= COLORS {
+        let next = entries.len();
+        if *entries.entry(*pixel).or_insert(next) >= COLORS {
             return None;
         }
     }
-    let mut palette = vec![[0; 3]; places.len()];
-    places.iter().for_each(|(color, place)| palette[*place] = *color);
-    let indices = pixels.iter().filter_map(|pixel| places.get(pixel)).map(|place| *place as u8).collect();
+    let mut palette = vec![[0; 3]; entries.len()];
+    entries.iter().for_each(|(color, index)| palette[*index] = *color);
+    let indices = pixels.iter().filter_map(|pixel| entries.get(pixel)).map(|index| *index as u8).collect();
     Some((palette.concat(), indices))
 }
 
-/// The palette that a picture's colours teach, and the indices of its dithered pixels.
-fn learned(part: &Part, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
+/// Learned palette and indices of the dithered pixels.
+fn learned_palette(rect: &ChangedRect, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let pixels = bytes.as_chunks::<3>().0;
     let opaque: Vec<u8> = pixels.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
-    let every = (pixels.len() / LEARNED).clamp(1, 10) as i32;
+    let every = (pixels.len() / TRAINING_PIXELS).clamp(1, 10) as i32;
     let network = NeuQuant::new(every, COLORS, &opaque);
-    let (columns, mut indices) = (part.width as usize, Vec::with_capacity(pixels.len()));
-    // Neighbours mostly have one colour.
+    let (columns, mut indices) = (rect.width as usize, Vec::with_capacity(pixels.len()));
+    // Reuse the previous index, since adjacent pixels often have the same color.
     let mut last = ([0; 3], network.index_of(&[0, 0, 0, 255]) as u8);
     for (i, pixel) in pixels.iter().enumerate() {
-        let shift = threshold(part.x as usize + i % columns, part.y as usize + i / columns, SPAN);
+        let shift = bayer_offset(rect.x as usize + i % columns, rect.y as usize + i / columns, SPAN);
         let color = pixel.map(|level| (i32::from(level) + shift).clamp(0, 255) as u8);
         if color != last.0 {
             last = (color, network.index_of(&[color[0], color[1], color[2], 255]) as u8);
@@ -112,9 +113,9 @@ fn learned(part: &Part, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
     (network.color_map_rgb(), indices)
 }
 
-fn failed(place: &str, error: EncodingError) -> ImageError {
+fn failed(file: &str, error: EncodingError) -> ImageError {
     match error {
-        EncodingError::Io(source) => ImageError::Write { place: place.to_owned(), source },
-        other => refused(place, format!("cannot be encoded as GIF: {other}")),
+        EncodingError::Io(source) => ImageError::Write { file: file.to_owned(), source },
+        other => refused(file, format!("encoding as GIF failed: {other}")),
     }
 }

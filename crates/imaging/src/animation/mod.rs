@@ -1,15 +1,15 @@
-//! Moving pictures in one file: frames in order, each written as soon as it is there.
+//! Movie files: frames are encoded in order, each as soon as it is rendered.
 
 mod apng;
 mod changes;
 mod check;
+mod frame_time;
 mod gif;
 #[cfg(feature = "av1")]
 mod mp4;
-mod pace;
 mod webp;
 
-pub use check::PACES;
+pub use check::FRAME_RATES;
 
 use crate::output::{self, Destination};
 use crate::tone::Tone;
@@ -18,25 +18,25 @@ use juggler_math::Rgb;
 use std::fmt;
 use std::path::Path;
 
-/// Quality where nobody chooses it: see docs/benchmarks.md for what it costs and gives.
+/// Default quality of lossy formats; docs/benchmarks.md compares sizes and errors.
 pub const DEFAULT_QUALITY: u8 = 80;
 
-/// A file format for moving pictures.
+/// Movie file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnimationFormat {
-    /// PNG with further frames, 8 bits, lossless.
+    /// Animated PNG, 8 bits per channel, lossless.
     Apng,
-    /// GIF: 256 colours a frame, times in hundredths of a second.
+    /// GIF, 256 colors per frame, times in 1/100 s.
     Gif,
-    /// MP4 with AV1: small, for video players and pages; something is lost.
+    /// MP4 with AV1 video, lossy: the smallest files, for video players and browsers.
     #[cfg(feature = "av1")]
     Mp4,
-    /// WebP with several frames, 8 bits, lossless, times in thousandths of a second.
+    /// Animated WebP, 8 bits per channel, lossless, times in 1/1000 s.
     Webp,
 }
 
 impl AnimationFormat {
-    /// All of them.
+    /// All movie formats.
     pub const ALL: &[Self] = &[
         Self::Apng,
         Self::Gif,
@@ -45,14 +45,14 @@ impl AnimationFormat {
         Self::Webp,
     ];
 
-    /// By the file's ending, whatever its case.
+    /// Format for the path's file extension, ignoring case.
     pub fn from_path(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL.iter().copied().find(|format| format.ending() == ending)
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        Self::ALL.iter().copied().find(|format| format.extension() == extension)
     }
 
-    /// The usual ending, without a dot.
-    pub fn ending(self) -> &'static str {
+    /// File extension without the dot.
+    pub fn extension(self) -> &'static str {
         match self {
             Self::Apng => "apng",
             Self::Gif => "gif",
@@ -62,9 +62,9 @@ impl AnimationFormat {
         }
     }
 
-    /// All endings, for messages.
-    pub fn endings() -> String {
-        Self::ALL.iter().map(|format| format!(".{}", format.ending())).collect::<Vec<_>>().join(" ")
+    /// All file extensions, for messages.
+    pub fn extensions() -> String {
+        Self::ALL.iter().map(|format| format!(".{}", format.extension())).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -80,42 +80,43 @@ impl fmt::Display for AnimationFormat {
     }
 }
 
-/// What a file of moving pictures says besides its frames.
+/// Properties of a movie file besides its frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnimationHeader {
-    /// Pixels in a row.
+    /// Frame width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Frame height in pixels.
     pub height: u32,
-    /// From linear light to levels.
+    /// Tone mapping from linear RGB to 8-bit levels.
     pub tone: Tone,
-    /// How many frames there will be, at least 1.
+    /// Number of frames, at least 1.
     pub frames: u32,
-    /// Frames a second, above 0.
+    /// Frames per second, above 0.
     pub frames_per_second: f64,
-    /// How often it is shown; 0: over and over. MP4 leaves that to who shows it.
+    /// How often the movie plays; 0 loops forever. MP4 ignores it.
     pub plays: u16,
-    /// From small, 1, to good, 100; where nothing is lost, it says nothing.
+    /// Quality from 1 (smallest file) to 100 (best); lossless formats ignore it.
     pub quality: u8,
 }
 
-/// Takes frames in order.
+/// Encoder that takes frames in order.
 pub trait FrameWriter: Send {
-    /// The next frame: all pixels in linear light, row by row from the top.
+    /// Encodes the next frame, given all pixels in linear RGB, row by row from the top.
     fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError>;
 
-    /// Completes the file, after the last frame. Without this call there is no valid file.
+    /// Completes the file after the last frame; without this call the file is invalid.
     fn finish(self: Box<Self>) -> Result<(), ImageError>;
 }
 
-/// A writer for a format. Wrong sizes and paces are refused here, before anything is written.
+/// Creates a writer for a format. Invalid sizes, frame rates and qualities are rejected before
+/// anything is written.
 pub fn animation_writer(
     format: AnimationFormat,
     destination: Destination,
     header: &AnimationHeader,
 ) -> Result<Box<dyn FrameWriter>, ImageError> {
-    let place = destination.name().to_owned();
-    format.check(&place, header)?;
+    let file = destination.name().to_owned();
+    format.check(&file, header)?;
     let inner: Box<dyn FrameWriter> = match format {
         AnimationFormat::Apng => Box::new(apng::Writer::new(destination, header)?),
         AnimationFormat::Gif => Box::new(gif::Writer::new(destination, header)?),
@@ -124,57 +125,58 @@ pub fn animation_writer(
         AnimationFormat::Webp => Box::new(webp::Writer::new(destination, header)?),
     };
     let pixels = u64::from(header.width) * u64::from(header.height);
-    Ok(Box::new(Counted { inner, place, pixels, left: header.frames }))
+    Ok(Box::new(FrameCountCheck { inner, file, pixels, left: header.frames }))
 }
 
-/// A writer to a file, which takes its place when finished and not before.
+/// Creates a writer to a file; the file appears at `path` only once it is finished.
 pub fn create_animation(
     path: &Path,
     format: AnimationFormat,
     header: &AnimationHeader,
 ) -> Result<Box<dyn FrameWriter>, ImageError> {
     let (destination, file) = output::whole_file(path)?;
-    let place = destination.name().to_owned();
+    let name = destination.name().to_owned();
     let frames = animation_writer(format, destination, header)?;
-    Ok(Box::new(WholeFile { frames, file, place }))
+    Ok(Box::new(WholeFile { frames, file, name }))
 }
 
-fn refused(place: &str, message: impl Into<String>) -> ImageError {
-    ImageError::Animation { place: place.to_owned(), message: message.into() }
+fn refused(file: &str, message: impl Into<String>) -> ImageError {
+    ImageError::Animation { file: file.to_owned(), message: message.into() }
 }
 
-/// Sees to it that the formats' writers get whole frames, and neither too many nor too few.
-struct Counted {
+/// Checks that the encoder gets complete frames, as many as the header announces.
+struct FrameCountCheck {
     inner: Box<dyn FrameWriter>,
-    place: String,
-    /// Of a frame.
+    file: String,
+    /// Pixels of a frame.
     pixels: u64,
     left: u32,
 }
 
-impl FrameWriter for Counted {
+impl FrameWriter for FrameCountCheck {
     fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
         let given = pixels.len() as u64;
         if given != self.pixels {
-            return Err(refused(&self.place, format!("a frame has {} pixels, not {given}", self.pixels)));
+            return Err(refused(&self.file, format!("a frame has {} pixels, not {given}", self.pixels)));
         }
-        self.left = self.left.checked_sub(1).ok_or_else(|| refused(&self.place, "all its frames are there already"))?;
+        self.left =
+            self.left.checked_sub(1).ok_or_else(|| refused(&self.file, "all of its frames have been written"))?;
         self.inner.write_frame(pixels)
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
         if self.left > 0 {
-            return Err(refused(&self.place, format!("{} of its frames are missing", self.left)));
+            return Err(refused(&self.file, format!("{} of its frames are missing", self.left)));
         }
         self.inner.finish()
     }
 }
 
-/// Puts the file in its place once it is complete.
+/// Moves the completed file to its destination.
 struct WholeFile {
     frames: Box<dyn FrameWriter>,
     file: Option<atomic::AtomicFile>,
-    place: String,
+    name: String,
 }
 
 impl FrameWriter for WholeFile {
@@ -184,7 +186,7 @@ impl FrameWriter for WholeFile {
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
         self.frames.finish()?;
-        let place = self.place;
-        self.file.map_or(Ok(()), |file| file.commit().map_err(|source| ImageError::Write { place, source }))
+        let name = self.name;
+        self.file.map_or(Ok(()), |file| file.commit().map_err(|source| ImageError::Write { file: name, source }))
     }
 }

@@ -1,12 +1,13 @@
-//! OpenEXR: one part of scanlines, channels B, G, R as floats or halves, plain or packed; values
-//! are scene-referred and no tone curve applies; primaries other than those of sRGB are named. It is written as a file of layers
-//! that has one. (OpenEXR file layout, openexr.com.)
+//! OpenEXR with one scanline part and channels B, G, R as 32-bit or 16-bit floats, optionally
+//! compressed (OpenEXR file layout, openexr.com). Values are scene-referred, so no tone curve
+//! applies; primaries other than sRGB's are stored in the header. Writing delegates to the layered
+//! writer.
 
-use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source, Texts};
+use super::{Header, Inspected, Metadata, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::ImageError;
 use crate::layered::{self, LayerHeader, LayerRows, LayeredHeader};
 use crate::output::Destination;
-use crate::raster::{Encoding, Layout, Raster, Samples};
+use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Chromaticities, Matrix};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
@@ -15,14 +16,14 @@ use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read};
 
-/// Streams blocks of rows into an EXR: one layer, without a name of its own.
+/// Streams rows into a single unnamed layer.
 pub(super) struct Writer(layered::exr::Writer);
 
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
+        let file = destination.name().to_owned();
         let picture = LayeredHeader::new(header, vec![LayerHeader::beauty(header.options.exr_depth)]);
-        layered::exr::Writer::new(destination.into_seekable(), place, &picture).map(Self)
+        layered::exr::Writer::new(destination.into_seekable(), file, &picture).map(Self)
     }
 }
 
@@ -38,34 +39,34 @@ impl RowWriter for Writer {
     }
 }
 
-/// What a decoder's error says, in words that name the file.
+/// Translates a decoder error into a message that names the file.
 pub(crate) fn unreadable(source: Source, error: ExrError) -> ImageError {
     match error {
         ExrError::Io(error) => source.failed(error),
         ExrError::Invalid(what) if ["reference to missing bytes", "not enough data"].contains(&&*what) => {
-            source.malformed(ENDS)
+            source.malformed(UNEXPECTED_END)
         }
         ExrError::Invalid(what) => source.malformed(format!("its data is invalid: {what}")),
-        ExrError::NotSupported(what) => source.malformed(format!("it uses what is not read: {what}")),
-        ExrError::Aborted => source.malformed("reading was broken off"),
+        ExrError::NotSupported(what) => source.malformed(format!("it uses an unsupported feature: {what}")),
+        ExrError::Aborted => source.malformed("reading was aborted"),
     }
 }
 
-/// The heads of all layers, whose sizes the file can hold.
-pub(crate) fn heads(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<ExrHeader>, ImageError> {
+/// Reads the headers of all parts and checks their sizes against the file's length.
+pub(crate) fn read_headers(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<ExrHeader>, ImageError> {
     let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(|e| unreadable(source, e))?;
     for header in &meta.headers {
         let Vec2(width, height) = header.layer_size;
-        source.size(width as u64, height as u64, densest(header))?;
+        source.size(width as u64, height as u64, max_pixels_per_byte(header))?;
     }
     bytes.rewind().map_err(|e| source.failed(e))?;
     Ok(meta.headers.into_iter().collect())
 }
 
-/// Most pixels that a byte can hold. Deflate makes at most 1032 bytes of one, of which PXR24 makes a third more; DWA keeps little
-/// more than two numbers of 64 pixels, and these deflated.
-fn densest(header: &ExrHeader) -> u64 {
-    let most_bytes: u64 = match header.compression {
+/// Maximum number of pixels per byte of the file. Deflate expands by a factor of 1032 at most,
+/// which PXR24 raises by a third; DWA stores little more than two deflated numbers per 64 pixels.
+fn max_pixels_per_byte(header: &ExrHeader) -> u64 {
+    let max_bytes: u64 = match header.compression {
         Compression::DWAA(_) | Compression::DWAB(_) => 64 * 1032,
         Compression::Uncompressed => 1,
         _ => 1376,
@@ -74,60 +75,60 @@ fn densest(header: &ExrHeader) -> u64 {
         let Vec2(x, y) = channel.sampling;
         8 * channel.sample_type.bytes_per_sample() / (x * y).clamp(1, 64)
     });
-    (8 * most_bytes / (eighths.sum::<usize>() as u64).max(1)).max(1)
+    (8 * max_bytes / (eighths.sum::<usize>() as u64).max(1)).max(1)
 }
 
-/// What [`raster`] will bring: of the first layer with R, G and B, or with Y alone, and with A if it has one.
-pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
-    let heads = heads(source, bytes)?;
+/// Layout of [`raster`]: the first part with R, G and B, else the first with Y, plus A if present.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
+    let headers = read_headers(source, bytes)?;
     let has = |header: &ExrHeader, names: &[&str]| {
         names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name))
     };
-    let found = |names: &[&str]| heads.iter().find(|header| !header.deep && has(header, names));
+    let found = |names: &[&str]| headers.iter().find(|header| !header.deep && has(header, names));
     let (colors, header) = match (found(&["R", "G", "B"]), found(&["Y"])) {
         (Some(header), _) => (3, header),
         (None, Some(header)) => (1, header),
         (None, None) => return Err(source.malformed("it has no layer with channels R, G and B, or Y")),
     };
     let Vec2(width, height) = header.layer_size;
-    let size = source.size(width as u64, height as u64, densest(header))?;
+    let size = source.size(width as u64, height as u64, max_pixels_per_byte(header))?;
     Ok(source.layout(size, colors + u8::from(has(header, &["A"])), 4))
 }
 
-/// The layer that [`layout`] finds, in its data window.
+/// Samples of the part that [`layout`] selects, within its data window.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let layout = layout(source, bytes)?;
     let channels = usize::from(layout.channels);
-    let room = move |size: Vec2<usize>| (size.0, vec![0_f32; size.0 * size.1 * channels]);
+    let allocate = move |size: Vec2<usize>| (size.0, vec![0_f32; size.0 * size.1 * channels]);
     let put = move |(width, samples): &mut (usize, Vec<f32>), position: Vec2<usize>, pixel: &[f32]| {
         let start = (position.1 * *width + position.0) * channels;
-        if let Some(place) = samples.get_mut(start..start + channels) {
-            place.copy_from_slice(&pixel[..channels]);
+        if let Some(target) = samples.get_mut(start..start + channels) {
+            target.copy_from_slice(&pixel[..channels]);
         }
     };
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
     let samples = if channels >= 3 {
         let reader = reader.rgba_channels(
-            move |size, _| room(size),
+            move |size, _| allocate(size),
             move |image, position, (r, g, b, a): (f32, f32, f32, f32)| put(image, position, &[r, g, b, a]),
         );
         let reader = reader.first_valid_layer().all_attributes().non_parallel();
         reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
     } else {
         let reader = reader.specific_channels().required("Y").optional("A", 1.0_f32).collect_pixels(
-            move |size, _| room(size),
+            move |size, _| allocate(size),
             move |image, position, (y, a): (f32, f32)| put(image, position, &[y, a]),
         );
         let reader = reader.first_valid_layer().all_attributes().non_parallel();
         reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
     };
-    let samples = Samples::Floats(samples.map_err(|e| unreadable(source, e))?);
-    Ok(Raster { layout, samples, encoding: Encoding::Linear })
+    let samples = RasterSamples::Floats(samples.map_err(|e| unreadable(source, e))?);
+    Ok(Raster { layout, samples, transfer_function: TransferFunction::Linear })
 }
 
-/// The first layer with R, G and B of an EXR, in its data window, in the primaries of sRGB whatever those of the file.
+/// Reads the first part with R, G and B within its data window and converts it to sRGB primaries.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    heads(source, bytes)?;
+    read_headers(source, bytes)?;
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
     let reader = reader.rgb_channels(
         |size, _| (size.0, vec![[0f32; 3]; size.0 * size.1]),
@@ -143,34 +144,34 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, pixels)
 }
 
-/// What turns the file's primaries into those of sRGB, where it names others.
+/// Matrix from the file's primaries to sRGB's; `None` if they are equal.
 fn to_srgb(named: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
     let [red, green, blue, white] =
         [named.red, named.green, named.blue, named.white].map(|Vec2(x, y)| [f64::from(x), f64::from(y)]);
     Chromaticities { red, green, blue, white }.to_srgb()
 }
 
-/// Size, and attributes that are texts, in the file's order.
+/// Image size and all string attributes, in file order.
 pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
-    heads(source, bytes)?;
-    let (window, texts) = attributes(bytes).map_err(|e| source.failed(e))?;
+    read_headers(source, bytes)?;
+    let (window, metadata) = attributes(bytes).map_err(|e| source.failed(e))?;
     let [left, top, right, bottom] = window;
     let [width, height] = [(left, right), (top, bottom)].map(|(first, last)| u64::try_from(last - first + 1));
     let (Ok(width), Ok(height)) = (width, height) else {
-        return Err(source.malformed("its data window is inside out"));
+        return Err(source.malformed("its data window has a negative size"));
     };
-    Ok((source.size(width, height, u64::MAX)?, texts))
+    Ok((source.size(width, height, u64::MAX)?, metadata))
 }
 
-/// The data window's left, top, right and bottom, and all texts.
-fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Texts)> {
-    let (mut window, mut texts) = ([0, 0, -1, -1], Vec::new());
+/// Data window as left, top, right, bottom, and all string attributes.
+fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Metadata)> {
+    let (mut window, mut metadata) = ([0, 0, -1, -1], Vec::new());
     let mut eight = [0; 8];
     bytes.read_exact(&mut eight)?;
     for _ in 0..10_000 {
         let name = name(bytes)?;
         if name.is_empty() {
-            return Ok((window, texts));
+            return Ok((window, metadata));
         }
         let kind = self::name(bytes)?;
         let mut size = [0; 4];
@@ -181,7 +182,7 @@ fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Texts)> {
             return Err(io::ErrorKind::UnexpectedEof.into());
         }
         if kind == "string" {
-            texts.push((name, String::from_utf8_lossy(&value).into_owned()));
+            metadata.push((name, String::from_utf8_lossy(&value).into_owned()));
         } else if name == "dataWindow" {
             for (edge, four) in window.iter_mut().zip(value.chunks_exact(4)) {
                 *edge = four.iter().rev().fold(0_i32, |number, byte| number << 8 | i32::from(*byte)).into();
@@ -191,12 +192,12 @@ fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Texts)> {
     Err(io::Error::new(io::ErrorKind::InvalidData, "it has too many attributes"))
 }
 
-/// A name of at most 255 bytes and the zero after it.
+/// Reads a null-terminated name of at most 255 bytes.
 fn name(bytes: &mut dyn ReadSeek) -> io::Result<String> {
     let mut name = Vec::new();
     (&mut *bytes).take(256).read_until(0, &mut name)?;
     match name.pop() {
         Some(0) => Ok(String::from_utf8_lossy(&name).into_owned()),
-        _ => Err(io::Error::new(io::ErrorKind::InvalidData, "a name has no end")),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidData, "a name is not terminated")),
     }
 }

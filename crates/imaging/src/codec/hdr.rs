@@ -1,29 +1,30 @@
-//! Radiance pictures (Ward, Real Pixels, Graphics Gems II, 1991): three mantissas of 8 bits with a shared
-//! exponent, rows packed by runs. Mantissas are rounded, not cut off, and read back without half a step added,
-//! as most programs do: the relative error is at most 1/256 of the largest channel.
+//! Radiance HDR (Ward, Real Pixels, Graphics Gems II, 1991): three 8-bit mantissas with a shared
+//! exponent, rows with run-length encoding. Mantissas are rounded to nearest when written and read
+//! without a half-step offset, as most programs do; the error is at most 1/256 of the largest
+//! channel.
 
-use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source, shown};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source, UNEXPECTED_END, quoted};
 use crate::ImageError;
 use crate::output::Destination;
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read, Write};
 
-/// Widths that the packed form can hold.
-const PACKED: std::ops::Range<usize> = 8..32_768;
-/// Most pixels that a byte can hold: a run of 127 takes 2 bytes in each of 4 channels.
-const DENSEST: u64 = 16;
+/// Image widths for which rows can be run-length encoded.
+const RLE_WIDTHS: std::ops::Range<usize> = 8..32_768;
+/// Maximum number of pixels per byte: a run of 127 pixels takes 2 bytes in each of 4 channels.
+const MAX_PIXELS_PER_BYTE: u64 = 16;
 
-/// Streams rows into a Radiance picture.
+/// Streams rows into a Radiance HDR file.
 pub(super) struct Writer {
     bytes: Box<dyn Write + Send>,
-    place: String,
+    file: String,
     width: usize,
     row: Vec<u8>,
 }
 
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
+        let file = destination.name().to_owned();
         let mut text = String::from("#?RADIANCE\n");
         for (key, value) in &header.metadata {
             let one_line = |s: &str| s.replace(['\n', '\r'], " ");
@@ -32,9 +33,9 @@ impl Writer {
         text += &format!("FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", header.height, header.width);
         let mut bytes = destination.into_stream();
         if let Err(source) = bytes.write_all(text.as_bytes()) {
-            return Err(ImageError::Write { place, source });
+            return Err(ImageError::Write { file, source });
         }
-        Ok(Self { bytes, place, width: header.width as usize, row: Vec::new() })
+        Ok(Self { bytes, file, width: header.width as usize, row: Vec::new() })
     }
 }
 
@@ -44,18 +45,18 @@ impl RowWriter for Writer {
             self.row.clear();
             pack_row(row, &mut self.row);
             let written = self.bytes.write_all(&self.row);
-            written.map_err(|source| ImageError::Write { place: self.place.clone(), source })?;
+            written.map_err(|source| ImageError::Write { file: self.file.clone(), source })?;
         }
         Ok(())
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
-        self.bytes.flush().map_err(|source| ImageError::Write { place: self.place, source })
+        self.bytes.flush().map_err(|source| ImageError::Write { file: self.file, source })
     }
 }
 
 fn pack_row(row: &[Rgb], bytes: &mut Vec<u8>) {
-    if !PACKED.contains(&row.len()) {
+    if !RLE_WIDTHS.contains(&row.len()) {
         bytes.extend(row.iter().flat_map(|&p| to_rgbe(p)));
         return;
     }
@@ -67,7 +68,7 @@ fn pack_row(row: &[Rgb], bytes: &mut Vec<u8>) {
     }
 }
 
-/// Runs of 4 and more as (128 + length, byte), all else as (length, bytes).
+/// Encodes runs of at least 4 equal bytes as (128 + length, byte), other bytes as (length, bytes).
 fn pack_plane(plane: &[u8], bytes: &mut Vec<u8>) {
     let mut rest = plane;
     while !rest.is_empty() {
@@ -85,7 +86,7 @@ fn pack_plane(plane: &[u8], bytes: &mut Vec<u8>) {
     }
 }
 
-/// Negative and NaN channels count as 0; the largest value is just below 2^127.
+/// Encodes a color as RGBE. Negative and NaN channels become 0; values are clamped below 2^127.
 fn to_rgbe(color: Rgb) -> [u8; 4] {
     let color = color.map(|v| if v > 0.0 { v.min(1.7e38) } else { 0.0 });
     let largest = color.max_channel();
@@ -116,12 +117,12 @@ fn power_of_two(n: i32) -> f32 {
     f32::from_bits(((n + 127) as u32) << 23)
 }
 
-/// A Radiance picture in RGB, rows from the top; packed or flat.
+/// Reads an image, with or without run-length encoding.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let lines = head(source, bytes)?;
+    let lines = read_header(source, bytes)?;
     let (width, height) = size(source, &lines)?;
     if let Some(format) = lines.iter().find_map(|l| l.strip_prefix("FORMAT=")).filter(|f| *f != "32-bit_rle_rgbe") {
-        return Err(source.malformed(format!("its pixels are {}, only 32-bit_rle_rgbe is read", shown(format))));
+        return Err(source.malformed(format!("its pixels are {}, only 32-bit_rle_rgbe is supported", quoted(format))));
     }
     let exposures = lines.iter().filter_map(|l| l.strip_prefix("EXPOSURE=")).filter_map(|v| v.trim().parse().ok());
     let exposure: f32 = exposures.filter(|&v: &f32| v > 0.0 && v.is_finite()).product();
@@ -134,29 +135,33 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, pixels)
 }
 
-/// What the last line says.
+/// Parses the resolution line.
 fn size(source: Source, lines: &[String]) -> Result<(u32, u32), ImageError> {
     let last = lines.last().map(String::as_str).unwrap_or_default();
     let words: Vec<&str> = last.split_ascii_whitespace().collect();
     let (width, height) = match words.as_slice() {
         ["-Y", height, "+X", width] => (width.parse(), height.parse()),
-        _ => return Err(source.malformed(format!("its size says {}, only `-Y height +X width` is read", shown(last)))),
+        _ => {
+            return Err(
+                source.malformed(format!("its size says {}, only `-Y height +X width` is supported", quoted(last)))
+            );
+        }
     };
     let (Ok(width), Ok(height)) = (width, height) else {
-        return Err(source.malformed(format!("its size says {}", shown(last))));
+        return Err(source.malformed(format!("its size says {}", quoted(last))));
     };
-    source.size(width, height, DENSEST)
+    source.size(width, height, MAX_PIXELS_PER_BYTE)
 }
 
-/// The lines up to and with the size; the empty one is left out.
-fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<String>, ImageError> {
+/// Reads the header's lines including the resolution line, without the empty line.
+fn read_header(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<String>, ImageError> {
     let mut lines: Vec<String> = Vec::new();
     let mut ended = false;
     while lines.len() < 1000 {
         let mut line = Vec::new();
         bytes.take(100_000).read_until(b'\n', &mut line).map_err(|e| source.failed(e))?;
         if line.pop() != Some(b'\n') {
-            return Err(source.malformed("its head has no end"));
+            return Err(source.malformed("its header has no end"));
         }
         let line = String::from_utf8_lossy(&line).into_owned();
         match (line.is_empty(), ended) {
@@ -168,23 +173,23 @@ fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<String>, ImageEr
             (false, false) => lines.push(line),
         }
     }
-    Err(source.malformed("its head has no end"))
+    Err(source.malformed("its header has no end"))
 }
 
-/// One row as r, g, b, e for each pixel.
+/// Reads one row as RGBE pixels.
 fn read_row(source: Source, bytes: &mut dyn ReadSeek, width: usize, row: &mut Vec<u8>) -> Result<(), ImageError> {
     let mut start = [0; 4];
     bytes.read_exact(&mut start).map_err(|e| source.failed(e))?;
     row.clear();
-    let packed = PACKED.contains(&width) && start[..2] == [2, 2] && start[2] < 128;
+    let packed = RLE_WIDTHS.contains(&width) && start[..2] == [2, 2] && start[2] < 128;
     if !packed {
         row.extend(start);
-        let wanted = (width - 1) * 4;
-        let got = (&mut *bytes).take(wanted as u64).read_to_end(row).map_err(|e| source.failed(e))?;
-        return if got == wanted { Ok(()) } else { Err(source.malformed(ENDS)) };
+        let expected = (width - 1) * 4;
+        let got = (&mut *bytes).take(expected as u64).read_to_end(row).map_err(|e| source.failed(e))?;
+        return if got == expected { Ok(()) } else { Err(source.malformed(UNEXPECTED_END)) };
     }
     if usize::from(start[2]) << 8 | usize::from(start[3]) != width {
-        return Err(source.malformed("a row has another width"));
+        return Err(source.malformed("a row has the wrong width"));
     }
     row.resize(width * 4, 0);
     for channel in 0..4 {
@@ -217,9 +222,9 @@ fn unpack_plane(bytes: &mut dyn BufRead, width: usize, mut put: impl FnMut(u8) -
     Ok(())
 }
 
-/// Size, and the `key=value` lines but those of the format itself.
+/// Image size and `key=value` lines, except those that describe the encoding.
 pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
-    let lines = head(source, bytes)?;
+    let lines = read_header(source, bytes)?;
     let size = size(source, &lines)?;
     let pairs = lines.iter().filter_map(|l| l.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned())));
     Ok((size, pairs.filter(|(key, _)| key != "FORMAT" && key != "EXPOSURE").collect()))

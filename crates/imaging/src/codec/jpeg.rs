@@ -1,11 +1,11 @@
-//! JPEG (ITU-T T.81), 8 bits, without chroma subsampling above quality 90. The encoder pulls rows, so the picture
-//! in 8 bits is held until the end.
+//! JPEG (ITU-T T.81), 8 bits, without chroma subsampling above quality 90. The encoder needs the
+//! whole image, so 8-bit pixels are buffered.
 
-use super::{ENDS, Header, ReadSeek, RowWriter, Source};
+use super::{Header, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::output::Destination;
-use crate::raster::{Encoding, Raster, Samples};
-use crate::tone::Levels;
-use crate::{Format, ImageError};
+use crate::raster::{Raster, RasterSamples, TransferFunction};
+use crate::tone::LevelEncoder;
+use crate::{ImageError, ImageFormat};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
 use juggler_math::{Image, Rgb};
 use std::io::{Cursor, Read, Write};
@@ -15,15 +15,15 @@ use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 
-/// Where the size is looked for: profiles and previews may stand before it.
+/// Bytes searched for the image size, since profiles and thumbnails may precede it.
 const HEAD_BYTES: u64 = 16 << 20;
-/// Most pixels that a byte can hold: a block of 64 takes at least one bit.
-const DENSEST: u64 = 512;
+/// Maximum number of pixels per byte: a block of 64 pixels takes at least one bit.
+const MAX_PIXELS_PER_BYTE: u64 = 512;
 
-/// Gathers rows and encodes them at the end.
+/// Buffers rows and encodes them at the end.
 pub(super) struct Writer {
     destination: Destination,
-    levels: Levels,
+    levels: LevelEncoder,
     size: (u32, u32),
     quality: u8,
     bytes: Vec<u8>,
@@ -33,7 +33,7 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Self {
         Self {
             destination,
-            levels: Levels::bytes(&header.tone, header.width),
+            levels: LevelEncoder::bytes(&header.tone, header.width),
             size: (header.width, header.height),
             quality: header.options.jpeg_quality.clamp(1, 100),
             bytes: Vec::with_capacity(header.pixels() as usize * 3),
@@ -48,48 +48,52 @@ impl RowWriter for Writer {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        let place = self.destination.name().to_owned();
+        let file = self.destination.name().to_owned();
         let mut bytes = self.destination.into_stream();
         let mut encoder = Encoder::new(&mut bytes, self.quality);
         encoder.set_sampling_factor(if self.quality > 90 { SamplingFactor::F_1_1 } else { SamplingFactor::F_2_2 });
-        // Sides were checked to fit.
+        // `check_dimensions` has limited the sides to 16 bits.
         let (width, height) = (self.size.0 as u16, self.size.1 as u16);
         let encoded = encoder.encode(&self.bytes, width, height, ColorType::Rgb);
         let encoded = encoded.and_then(|()| bytes.flush().map_err(EncodingError::IoError));
         encoded.map_err(|error| match error {
-            EncodingError::IoError(source) => ImageError::Write { place, source },
-            other => ImageError::Encode { place, format: Format::Jpeg, message: other.to_string() },
+            EncodingError::IoError(source) => ImageError::Write { file, source },
+            other => ImageError::Encode { file, format: ImageFormat::Jpeg, message: other.to_string() },
         })
     }
 }
 
-/// Any baseline or progressive JPEG, taken as sRGB.
+/// Reads a baseline or progressive JPEG and decodes it as sRGB.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let ((width, height), bytes) = samples(source, bytes)?;
     source.image(width, height, super::pixels_from_srgb(&bytes))
 }
 
-/// The same as its samples, three a pixel.
+/// Reads the 8-bit RGB samples.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let (size, bytes) = samples(source, bytes)?;
-    Ok(Raster { layout: source.layout(size, 3, 1), samples: Samples::Bytes(bytes), encoding: Encoding::Srgb })
+    Ok(Raster {
+        layout: source.layout(size, 3, 1),
+        samples: RasterSamples::Bytes(bytes),
+        transfer_function: TransferFunction::Srgb,
+    })
 }
 
 fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<((u32, u32), Vec<u8>), ImageError> {
     let mut file = Vec::new();
-    let most_bytes = source.limits.most_pixels.saturating_mul(4).saturating_add(1 << 24);
-    bytes.take(most_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
+    let max_bytes = source.limits.max_pixels.saturating_mul(4).saturating_add(1 << 24);
+    bytes.take(max_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
     if !is_complete(&file) {
-        return Err(source.malformed(ENDS));
+        return Err(source.malformed(UNEXPECTED_END));
     }
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options());
     let size = decoded_size(source, &mut decoder)?;
-    let bytes = decoder.decode().map_err(|e| source.malformed(in_words(&e)))?;
+    let bytes = decoder.decode().map_err(|e| source.malformed(describe(&e)))?;
     Ok((size, bytes))
 }
 
 fn options() -> DecoderOptions {
-    let side = Format::Jpeg.longest_side() as usize;
+    let side = ImageFormat::Jpeg.longest_side() as usize;
     DecoderOptions::new_safe()
         .set_max_width(side)
         .set_max_height(side)
@@ -98,35 +102,35 @@ fn options() -> DecoderOptions {
 }
 
 fn decoded_size<T: ZByteReaderTrait>(source: Source, decoder: &mut JpegDecoder<T>) -> Result<(u32, u32), ImageError> {
-    decoder.decode_headers().map_err(|e| source.malformed(in_words(&e)))?;
+    decoder.decode_headers().map_err(|e| source.malformed(describe(&e)))?;
     let info = decoder.info().ok_or_else(|| source.malformed("it has no size"))?;
-    source.size(u64::from(info.width), u64::from(info.height), DENSEST)
+    source.size(u64::from(info.width), u64::from(info.height), MAX_PIXELS_PER_BYTE)
 }
 
-/// Width and height, which stand in the first bytes.
+/// Image size from the file's first bytes.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
     let mut start = Vec::new();
     bytes.take(HEAD_BYTES).read_to_end(&mut start).map_err(|e| source.failed(e))?;
     decoded_size(source, &mut JpegDecoder::new_with_options(Cursor::new(&start), options()))
 }
 
-/// What is wrong, without the decoder's own words.
-fn in_words(error: &DecodeErrors) -> &'static str {
+/// Describes a decoder error in plain words.
+fn describe(error: &DecodeErrors) -> &'static str {
     match error {
-        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => ENDS,
+        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => UNEXPECTED_END,
         DecodeErrors::HuffmanDecode(_) => "a Huffman table or code is damaged",
         DecodeErrors::DqtError(_) => "its quantization tables are damaged",
-        DecodeErrors::SosError(_) => "the head of a scan is damaged",
-        DecodeErrors::SofError(_) => "the head of its frame is damaged",
+        DecodeErrors::SosError(_) => "the header of a scan is damaged",
+        DecodeErrors::SofError(_) => "the header of its frame is damaged",
         DecodeErrors::MCUError(_) => "its pixels are damaged",
         DecodeErrors::ZeroError => "its width or height is 0",
-        DecodeErrors::Unsupported(_) => "only baseline and progressive JPEGs are read",
+        DecodeErrors::Unsupported(_) => "only baseline and progressive JPEGs are supported",
         _ => "its structure is damaged",
     }
 }
 
-/// Whether an end follows the last scan: the decoder itself fills up what is missing with grey. Neither marker
-/// can stand in packed pixels.
+/// Whether an end-of-image marker follows the last scan; the decoder would pad missing data with
+/// gray. Entropy-coded data cannot contain either marker.
 fn is_complete(file: &[u8]) -> bool {
     let last = |marker: u8| file.windows(2).rposition(|pair| pair == [0xff, marker]);
     last(0xd9) > last(0xda)

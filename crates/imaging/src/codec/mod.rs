@@ -1,4 +1,4 @@
-//! Formats of picture files, each with its writer (a stream of rows) and its reader (a whole image).
+//! Image file formats, each with a streaming writer and a reader.
 
 pub(crate) mod exr;
 mod hdr;
@@ -7,58 +7,59 @@ mod pfm;
 mod png;
 mod webp;
 
-use crate::look::{self, Look};
+use crate::look::{self, DisplayLook};
 use crate::output::Destination;
-use crate::raster::{Encoding, Layout, Raster, Samples};
+use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Curve, Srgb, Tone};
-use crate::{Format, ImageError, Limits, Viewpoint};
+use crate::{ImageError, ImageFormat, Limits, Viewpoint};
 use juggler_math::message::excerpt;
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Seek};
 
-/// Takes a picture row by row, from the top.
+/// Encoder that takes rows from top to bottom.
 pub trait RowWriter: Send {
-    /// One or more whole rows of linear light.
+    /// Encodes one or more whole rows of linear RGB.
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError>;
 
-    /// Completes the file, after the last row. Without this call there is no valid file.
+    /// Completes the file after the last row; without this call the file is invalid.
     fn finish(self: Box<Self>) -> Result<(), ImageError>;
 }
 
-/// What a picture file says besides its pixels, and how it says it.
+/// Properties of an image file besides its pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// From linear light to levels, for the formats that have levels.
+    /// Tone mapping from linear RGB to levels, for formats with integer samples.
     pub tone: Tone,
-    /// Choices that some formats leave.
+    /// Options of particular formats.
     pub options: Options,
-    /// Texts by key, in order: the program, the fingerprint, the seed. PNG, EXR and HDR keep them.
+    /// Metadata as pairs of key and text, in order, such as program, fingerprint and seed. PNG, EXR
+    /// and HDR store them.
     pub metadata: Vec<(String, String)>,
-    /// From where it was taken, if anybody knows. EXR keeps it.
+    /// Camera matrices, if known; EXR stores them.
     pub viewpoint: Option<Viewpoint>,
 }
 
 impl Header {
-    /// A picture of that size, all else by default.
+    /// A header for this image size with default settings.
     pub fn new(width: u32, height: u32) -> Self {
         let (tone, options) = (Tone::default(), Options::default());
         Self { width, height, tone, options, metadata: Vec::new(), viewpoint: None }
     }
 
-    /// Whether the format can say which primaries these are: asked before anything is rendered.
-    pub fn check_primaries(&self, format: Format) -> Result<(), ImageError> {
+    /// Checks that the format can store the tone's primaries; called before rendering.
+    pub fn check_primaries(&self, format: ImageFormat) -> Result<(), ImageError> {
         let primaries = self.tone.primaries;
         let takes = match format {
-            Format::Exr => true,
-            Format::Png => primaries.code_point().is_some(),
-            Format::Jpeg | Format::Webp | Format::Hdr | Format::Pfm => primaries.is_srgb(),
+            ImageFormat::Exr => true,
+            ImageFormat::Png => primaries.code_point().is_some(),
+            ImageFormat::Jpeg | ImageFormat::Webp | ImageFormat::Hdr | ImageFormat::Pfm => primaries.is_srgb(),
         };
-        // A look's levels are those of screens of its time.
-        let takes = takes && (primaries.is_srgb() || self.options.look == Look::Plain);
+        // Display looks quantize for the sRGB displays of their time.
+        let takes = takes && (primaries.is_srgb() || self.options.look == DisplayLook::Plain);
         if takes { Ok(()) } else { Err(ImageError::Primaries { format, primaries }) }
     }
 
@@ -67,19 +68,19 @@ impl Header {
     }
 }
 
-/// Choices that some formats leave.
+/// Options of particular formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Whether a PNG has 16 bits a channel instead of 8.
+    /// Whether PNG files have 16 bits per channel instead of 8.
     pub png_16_bit: bool,
-    /// Quality of a JPEG, 1 to 100.
+    /// JPEG quality, 1 to 100.
     pub jpeg_quality: u8,
-    /// Precision of an EXR.
+    /// Sample type of EXR files.
     pub exr_depth: SampleDepth,
-    /// Packing of an EXR; nothing is lost by any.
+    /// Compression of EXR files, always lossless.
     pub exr_compression: ExrCompression,
-    /// What is done with the levels, where there are levels.
-    pub look: Look,
+    /// Display look applied to integer samples.
+    pub look: DisplayLook,
 }
 
 impl Default for Options {
@@ -89,63 +90,69 @@ impl Default for Options {
             jpeg_quality: 95,
             exr_depth: SampleDepth::Float,
             exr_compression: ExrCompression::Rle,
-            look: Look::Plain,
+            look: DisplayLook::Plain,
         }
     }
 }
 
-/// Precision of a channel in an EXR file.
+/// Sample type of an EXR channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleDepth {
-    /// 32 bits: every value as it is.
+    /// 32-bit float.
     Float,
-    /// 16 bits: 11 bits of precision, up to 65,504.
+    /// 16-bit float: 11 significant bits, up to 65,504.
     Half,
 }
 
-/// Packing of an EXR file.
+/// Lossless compression of an EXR file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExrCompression {
-    /// As large as the numbers are.
+    /// Uncompressed.
     None,
-    /// Runs: fast, good for flat areas (empty backgrounds, features for denoisers) and little else.
+    /// Run-length encoding: fast; effective only in flat areas such as empty backgrounds and AOVs
+    /// for denoisers.
     Rle,
-    /// Deflate: twenty times slower, worth it for halves and pictures without noise.
+    /// Deflate: twenty times slower; worthwhile for half floats and images without noise.
     Zip,
 }
 
-/// A writer for a format. Wrong sizes are refused here, before anything is written.
-pub fn writer(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+/// Creates a writer for a format. Invalid sizes and primaries are rejected before anything is
+/// written.
+pub fn writer(
+    format: ImageFormat,
+    destination: Destination,
+    header: &Header,
+) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
     header.check_primaries(format)?;
-    let inner = if format.has_looks() {
-        look::Writer::before(header, |header| encoder(format, destination, header))?
+    let inner = if format.supports_display_looks() {
+        look::Writer::wrap(header, |header| encoder(format, destination, header))?
     } else {
         encoder(format, destination, header)?
     };
-    Ok(Box::new(Counted { inner, width: u64::from(header.width), left: header.pixels() }))
+    Ok(Box::new(RowCountCheck { inner, width: u64::from(header.width), left: header.pixels() }))
 }
 
-fn encoder(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+fn encoder(format: ImageFormat, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     Ok(match format {
-        Format::Png => Box::new(png::Writer::new(destination, header)?),
-        Format::Jpeg => Box::new(jpeg::Writer::new(destination, header)),
-        Format::Exr => Box::new(exr::Writer::new(destination, header)?),
-        Format::Hdr => Box::new(hdr::Writer::new(destination, header)?),
-        Format::Webp => Box::new(webp::Writer::new(destination, header)),
-        Format::Pfm => Box::new(pfm::Writer::new(destination, header)?),
+        ImageFormat::Png => Box::new(png::Writer::new(destination, header)?),
+        ImageFormat::Jpeg => Box::new(jpeg::Writer::new(destination, header)),
+        ImageFormat::Exr => Box::new(exr::Writer::new(destination, header)?),
+        ImageFormat::Hdr => Box::new(hdr::Writer::new(destination, header)?),
+        ImageFormat::Webp => Box::new(webp::Writer::new(destination, header)),
+        ImageFormat::Pfm => Box::new(pfm::Writer::new(destination, header)?),
     })
 }
 
-/// Sees to it that the formats' writers get whole rows, and neither too many nor too few.
-struct Counted {
+/// Checks that the encoder gets whole rows, as many as the header announces.
+struct RowCountCheck {
     inner: Box<dyn RowWriter>,
     width: u64,
-    /// Pixels still to come.
+    /// Pixels still missing.
     left: u64,
 }
 
-impl RowWriter for Counted {
+impl RowWriter for RowCountCheck {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
         let given = rows.len() as u64;
         if given > self.left || !given.is_multiple_of(self.width) {
@@ -163,180 +170,180 @@ impl RowWriter for Counted {
     }
 }
 
-/// A piece of a file's text as it may stand in a message: short, and only if all of it can be read.
-fn shown(text: &str) -> String {
+/// Quotes a text from a file for a message: shortened, and only if it is printable.
+fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     if text.chars().any(|c| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
-        return "bytes that are no text".to_owned();
+        return "bytes that are not text".to_owned();
     }
     format!("`{}`", excerpt(text, LONGEST))
 }
 
-/// What a reader reads from.
+/// Input of a reader.
 pub(crate) trait ReadSeek: BufRead + Seek {}
 impl<T: BufRead + Seek> ReadSeek for T {}
 
-/// A file being read: where it is (for messages), what it should be, and the limits.
+/// A file being read, with its name for messages, format and limits.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
-    pub place: &'a str,
-    pub format: Format,
+    pub file: &'a str,
+    pub format: ImageFormat,
     pub limits: &'a Limits,
-    /// Bytes of the file.
+    /// Length of the file in bytes.
     pub length: u64,
 }
 
-/// What is said of data that should go on and does not.
-pub(crate) const ENDS: &str = "its data ends too early";
+/// Message for unexpected end of data.
+pub(crate) const UNEXPECTED_END: &str = "unexpected end of data";
 
 impl Source<'_> {
     pub(crate) fn malformed(self, message: impl Into<String>) -> ImageError {
-        ImageError::Malformed { place: self.place.into(), format: self.format, message: message.into(), at: None }
+        ImageError::Malformed { file: self.file.into(), format: self.format, message: message.into(), at: None }
     }
 
     pub(crate) fn truncated(self) -> ImageError {
-        ImageError::Truncated { place: self.place.into(), at: self.length }
+        ImageError::Truncated { file: self.file.into(), at: self.length }
     }
 
-    /// A system's failure; the end of the file is one of the file itself.
+    /// Translates an I/O error; an unexpected end is a fault of the file.
     pub(crate) fn failed(self, source: io::Error) -> ImageError {
         match source.kind() {
-            io::ErrorKind::UnexpectedEof => self.malformed(ENDS),
+            io::ErrorKind::UnexpectedEof => self.malformed(UNEXPECTED_END),
             io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
                 self.malformed(source.to_string())
             }
-            _ => ImageError::Read { place: self.place.into(), source },
+            _ => ImageError::Read { file: self.file.into(), source },
         }
     }
 
-    /// Checks width and height before any pixel is decoded: there are pixels, not too many, and no more than the bytes
-    /// of the file can hold if each holds `densest`.
-    pub(crate) fn size(self, width: u64, height: u64, densest: u64) -> Result<(u32, u32), ImageError> {
-        let place = || self.place.to_owned();
-        let (Limits { most_pixels, longest_side }, bytes) = (*self.limits, self.length);
+    /// Validates an image size before pixels are decoded: it must be positive, within the limits,
+    /// and plausible for the file's length at `max_pixels_per_byte` pixels per byte.
+    pub(crate) fn size(self, width: u64, height: u64, max_pixels_per_byte: u64) -> Result<(u32, u32), ImageError> {
+        let file = || self.file.to_owned();
+        let (Limits { max_pixels, longest_side }, bytes) = (*self.limits, self.length);
         let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
-            return Err(ImageError::TooLong { place: place(), width, height, longest_side });
+            return Err(ImageError::TooLong { file: file(), width, height, longest_side });
         };
         if columns == 0 || rows == 0 {
             return Err(self.malformed(format!("its size is {width} × {height}")));
         }
-        // Two factors of 32 bits do not overflow 64.
+        // The product of two 32-bit numbers fits 64 bits.
         let pixels = width * height;
-        if pixels > bytes.saturating_mul(densest) {
-            return Err(ImageError::Claim { place: place(), format: self.format, width, height, bytes });
+        if pixels > bytes.saturating_mul(max_pixels_per_byte) {
+            return Err(ImageError::ImplausibleSize { file: file(), format: self.format, width, height, bytes });
         }
         if columns.max(rows) > longest_side {
-            return Err(ImageError::TooLong { place: place(), width, height, longest_side });
+            return Err(ImageError::TooLong { file: file(), width, height, longest_side });
         }
-        if pixels > most_pixels {
-            return Err(ImageError::TooLarge { place: place(), width, height, most_pixels });
+        if pixels > max_pixels {
+            return Err(ImageError::TooLarge { file: file(), width, height, max_pixels });
         }
         Ok((columns, rows))
     }
 
-    /// Adds to an error where in the file reading stopped.
-    fn located<T>(self, bytes: &mut dyn ReadSeek, result: Result<T, ImageError>) -> Result<T, ImageError> {
-        let Err(ImageError::Malformed { place, format, message, at: None }) = result else { return result };
-        // A JPEG is read as a whole before it is decoded.
-        let at = bytes.stream_position().ok().filter(|_| self.format != Format::Jpeg);
+    /// Adds the file offset where decoding stopped to an error.
+    fn with_offset<T>(self, bytes: &mut dyn ReadSeek, result: Result<T, ImageError>) -> Result<T, ImageError> {
+        let Err(ImageError::Malformed { file, format, message, at: None }) = result else { return result };
+        // JPEG files are read completely before decoding.
+        let at = bytes.stream_position().ok().filter(|_| self.format != ImageFormat::Jpeg);
         Err(match at {
-            at if message == ENDS && at.is_none_or(|at| at >= self.length) => self.truncated(),
-            at => ImageError::Malformed { place, format, message, at },
+            at if message == UNEXPECTED_END && at.is_none_or(|at| at >= self.length) => self.truncated(),
+            at => ImageError::Malformed { file, format, message, at },
         })
     }
 
-    fn layout(self, (width, height): (u32, u32), channels: u8, sample_bytes: u8) -> Layout {
-        Layout { format: self.format, width, height, channels, sample_bytes }
+    fn layout(self, (width, height): (u32, u32), channels: u8, sample_bytes: u8) -> RasterLayout {
+        RasterLayout { format: self.format, width, height, channels, sample_bytes }
     }
 
     fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
-        Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed(ENDS))
+        Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed(UNEXPECTED_END))
     }
 }
 
-/// Reads a picture from its first byte on.
+/// Reads an image as linear RGB.
 pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let image = match source.format {
-        Format::Png => png::read(source, bytes),
-        Format::Jpeg => jpeg::read(source, bytes),
-        Format::Exr => exr::read(source, bytes),
-        Format::Hdr => hdr::read(source, bytes),
-        Format::Webp => webp::read(source, bytes),
-        Format::Pfm => pfm::read(source, bytes),
+        ImageFormat::Png => png::read(source, bytes),
+        ImageFormat::Jpeg => jpeg::read(source, bytes),
+        ImageFormat::Exr => exr::read(source, bytes),
+        ImageFormat::Hdr => hdr::read(source, bytes),
+        ImageFormat::Webp => webp::read(source, bytes),
+        ImageFormat::Pfm => pfm::read(source, bytes),
     };
-    source.located(bytes, image)
+    source.with_offset(bytes, image)
 }
 
-/// Reads a picture's samples as they are.
+/// Reads an image's samples without conversion.
 pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let raster = match source.format {
-        Format::Png => png::raster(source, bytes),
-        Format::Jpeg => jpeg::raster(source, bytes),
-        Format::Exr => exr::raster(source, bytes),
-        Format::Webp => webp::raster(source, bytes),
-        Format::Hdr | Format::Pfm => {
+        ImageFormat::Png => png::raster(source, bytes),
+        ImageFormat::Jpeg => jpeg::raster(source, bytes),
+        ImageFormat::Exr => exr::raster(source, bytes),
+        ImageFormat::Webp => webp::raster(source, bytes),
+        ImageFormat::Hdr | ImageFormat::Pfm => {
             let image = read(source, bytes)?;
             let samples = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
             let layout = source.layout((image.width(), image.height()), 3, 4);
-            Ok(Raster { layout, samples: Samples::Floats(samples), encoding: Encoding::Linear })
+            Ok(Raster { layout, samples: RasterSamples::Floats(samples), transfer_function: TransferFunction::Linear })
         }
     };
-    source.located(bytes, raster)
+    source.with_offset(bytes, raster)
 }
 
-/// Reads what [`raster`] will bring.
-pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+/// Reads the layout of [`raster`] from the header.
+pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     let layout = match source.format {
-        Format::Png => png::layout(source, bytes),
-        Format::Webp => webp::layout(source, bytes),
-        Format::Exr => exr::layout(source, bytes),
-        Format::Jpeg => jpeg::size(source, bytes).map(|size| source.layout(size, 3, 1)),
-        Format::Hdr => hdr::inspect(source, bytes).map(|(size, _)| source.layout(size, 3, 4)),
-        Format::Pfm => pfm::size(source, bytes).map(|size| source.layout(size, 3, 4)),
+        ImageFormat::Png => png::layout(source, bytes),
+        ImageFormat::Webp => webp::layout(source, bytes),
+        ImageFormat::Exr => exr::layout(source, bytes),
+        ImageFormat::Jpeg => jpeg::size(source, bytes).map(|size| source.layout(size, 3, 1)),
+        ImageFormat::Hdr => hdr::inspect(source, bytes).map(|(size, _)| source.layout(size, 3, 4)),
+        ImageFormat::Pfm => pfm::size(source, bytes).map(|size| source.layout(size, 3, 4)),
     };
-    source.located(bytes, layout)
+    source.with_offset(bytes, layout)
 }
 
-/// What a picture file says before its pixels.
+/// Properties of an image file, read from its header.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Facts {
-    /// The format, by the first bytes.
-    pub format: Format,
-    /// Pixels in a row.
+pub struct ImageInfo {
+    /// Format, detected by the first bytes.
+    pub format: ImageFormat,
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Texts by key, in order; none in formats that we write none to.
+    /// Metadata as pairs of key and text, in order; empty for formats without metadata.
     pub metadata: Vec<(String, String)>,
 }
 
-/// Reads a picture's size and texts, and no pixels.
-pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Facts, ImageError> {
+/// Reads image size and metadata without decoding pixels.
+pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<ImageInfo, ImageError> {
     let plain = |size| (size, Vec::new());
     let inspected = match source.format {
-        Format::Png => png::inspect(source, bytes),
-        Format::Exr => exr::inspect(source, bytes),
-        Format::Hdr => hdr::inspect(source, bytes),
-        Format::Jpeg => jpeg::size(source, bytes).map(plain),
-        Format::Webp => webp::size(source, bytes).map(plain),
-        Format::Pfm => pfm::size(source, bytes).map(plain),
+        ImageFormat::Png => png::inspect(source, bytes),
+        ImageFormat::Exr => exr::inspect(source, bytes),
+        ImageFormat::Hdr => hdr::inspect(source, bytes),
+        ImageFormat::Jpeg => jpeg::size(source, bytes).map(plain),
+        ImageFormat::Webp => webp::size(source, bytes).map(plain),
+        ImageFormat::Pfm => pfm::size(source, bytes).map(plain),
     };
-    let ((width, height), metadata) = source.located(bytes, inspected)?;
-    Ok(Facts { format: source.format, width, height, metadata })
+    let ((width, height), metadata) = source.with_offset(bytes, inspected)?;
+    Ok(ImageInfo { format: source.format, width, height, metadata })
 }
 
-/// Texts by key, in order.
-type Texts = Vec<(String, String)>;
-/// Width and height, and texts.
-type Inspected = ((u32, u32), Texts);
+/// Metadata as pairs of key and text, in order.
+type Metadata = Vec<(String, String)>;
+/// Width and height, and metadata.
+type Inspected = ((u32, u32), Metadata);
 
-/// Linear light of the 256 levels of sRGB: by the curve that wrote them, so that equal levels are equal light
-/// whatever the format.
+/// Linear values of the 256 sRGB levels, by the curve that the writers use, so that all formats
+/// decode equal levels to equal values.
 fn srgb_levels() -> [f32; 256] {
     std::array::from_fn(|k| Srgb {}.decode(k as f64 / 255.0) as f32)
 }
 
-/// Linear pixels of bytes in sRGB, three a pixel.
+/// Converts 8-bit sRGB pixels to linear RGB.
 fn pixels_from_srgb(bytes: &[u8]) -> Vec<Rgb> {
     let levels = srgb_levels();
     let linear = |b: u8| levels[usize::from(b)];

@@ -1,34 +1,34 @@
-//! Portable Float Map: a text header, then floats, rows from the bottom up. (Debevec; a negative scale says
-//! little-endian.)
+//! Portable Float Map (Debevec): a text header, then 32-bit floats, rows from bottom to top. A
+//! negative scale marks little-endian data.
 
-use super::{Header, ReadSeek, RowWriter, Source, shown};
+use super::{Header, ReadSeek, RowWriter, Source, quoted};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, SeekFrom};
 
-/// Puts rows where they belong: the file is upside down, the rows come from the top.
+/// Seeks to the place of each row, since the file stores rows from bottom to top.
 pub(super) struct Writer {
     bytes: Box<dyn WriteSeek>,
-    place: String,
-    /// Length of the text before the pixels.
+    file: String,
+    /// Length of the header in bytes.
     start: u64,
     width: usize,
-    /// Rows still to come.
+    /// Rows still missing.
     left: u64,
     row: Vec<u8>,
 }
 
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
+        let file = destination.name().to_owned();
         let mut bytes = destination.into_seekable();
         let text = format!("PF\n{} {}\n-1.0\n", header.width, header.height);
         if let Err(source) = bytes.write_all(text.as_bytes()) {
-            return Err(ImageError::Write { place, source });
+            return Err(ImageError::Write { file, source });
         }
         let (start, left) = (text.len() as u64, u64::from(header.height));
-        Ok(Self { bytes, place, start, width: header.width as usize, left, row: Vec::new() })
+        Ok(Self { bytes, file, start, width: header.width as usize, left, row: Vec::new() })
     }
 
     fn write(&mut self, rows: &[Rgb]) -> io::Result<()> {
@@ -46,29 +46,29 @@ impl Writer {
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        self.write(rows).map_err(|source| ImageError::Write { place: self.place.clone(), source })
+        self.write(rows).map_err(|source| ImageError::Write { file: self.file.clone(), source })
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
-        self.bytes.flush().map_err(|source| ImageError::Write { place: self.place, source })
+        self.bytes.flush().map_err(|source| ImageError::Write { file: self.file, source })
     }
 }
 
-/// A colour or grey PFM; the scale's size is left out, as most readers do.
+/// Reads a color or gray PFM. The magnitude of the scale is ignored, as most readers do.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let head = head(source, bytes)?;
-    let (width, height) = head.size(source)?;
-    let channels = if head.grey { 1 } else { 3 };
+    let header = read_header(source, bytes)?;
+    let (width, height) = header.size(source)?;
+    let channels = if header.is_gray { 1 } else { 3 };
     let mut row = vec![0; width as usize * channels * 4];
     let mut rows: Vec<Vec<Rgb>> = Vec::new();
     for _ in 0..height {
         bytes.read_exact(&mut row).map_err(|e| source.failed(e))?;
         let sample = |b: &[u8]| {
             let four = [b[0], b[1], b[2], b[3]];
-            if head.little { f32::from_le_bytes(four) } else { f32::from_be_bytes(four) }
+            if header.is_little_endian { f32::from_le_bytes(four) } else { f32::from_be_bytes(four) }
         };
         let pixel = |p: &[u8]| {
-            if head.grey { Rgb::splat(sample(p)) } else { Rgb::new(sample(p), sample(&p[4..]), sample(&p[8..])) }
+            if header.is_gray { Rgb::splat(sample(p)) } else { Rgb::new(sample(p), sample(&p[4..]), sample(&p[8..])) }
         };
         rows.push(row.chunks_exact(channels * 4).map(pixel).collect());
     }
@@ -76,26 +76,27 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, rows.concat())
 }
 
-/// Width and height.
+/// Image size.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
-    head(source, bytes)?.size(source)
+    read_header(source, bytes)?.size(source)
 }
 
-struct Head {
-    grey: bool,
+struct PfmHeader {
+    is_gray: bool,
     width: u64,
     height: u64,
-    little: bool,
+    is_little_endian: bool,
 }
 
-impl Head {
+impl PfmHeader {
     fn size(&self, source: Source) -> Result<(u32, u32), ImageError> {
         source.size(self.width, self.height, 1)
     }
 }
 
-/// The text: magic, width, height, scale, parted by white space; one such byte ends it.
-fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Head, ImageError> {
+/// Reads the header: magic number, width, height and scale, separated by whitespace, then a single
+/// whitespace byte.
+fn read_header(source: Source, bytes: &mut dyn ReadSeek) -> Result<PfmHeader, ImageError> {
     let mut words = Vec::new();
     for _ in 0..4 {
         words.push(word(bytes).map_err(|e| source.failed(e))?);
@@ -103,13 +104,13 @@ fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Head, ImageError> {
     let (width, height, scale) = (words[1].parse(), words[2].parse(), words[3].parse::<f32>());
     match (width, height, scale) {
         (Ok(width), Ok(height), Ok(scale)) if scale.is_finite() && scale != 0.0 => {
-            Ok(Head { grey: words[0] == "Pf", width, height, little: scale < 0.0 })
+            Ok(PfmHeader { is_gray: words[0] == "Pf", width, height, is_little_endian: scale < 0.0 })
         }
-        _ => Err(source.malformed(format!("its head says {}", shown(&words.join(" "))))),
+        _ => Err(source.malformed(format!("its header says {}", quoted(&words.join(" "))))),
     }
 }
 
-/// The next word, at most 24 bytes, and the byte that ends it.
+/// Reads a word of at most 24 bytes and the whitespace byte after it.
 fn word(bytes: &mut dyn BufRead) -> io::Result<String> {
     let mut word = String::new();
     loop {
@@ -119,7 +120,7 @@ fn word(bytes: &mut dyn BufRead) -> io::Result<String> {
             b' ' | b'\n' | b'\r' | b'\t' if word.is_empty() => {}
             b' ' | b'\n' | b'\r' | b'\t' => return Ok(word),
             b if b.is_ascii_graphic() && word.len() < 24 => word.push(char::from(b)),
-            _ => return Err(io::Error::new(io::ErrorKind::InvalidData, "its head is not text")),
+            _ => return Err(io::Error::new(io::ErrorKind::InvalidData, "its header is not text")),
         }
     }
 }

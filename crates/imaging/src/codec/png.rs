@@ -1,58 +1,62 @@
-//! PNG: 8 or 16 bits a channel, streamed; tagged as sRGB, because that is the display that every tone curve aims
-//! at, or, of other primaries, by cICP with the curve of sRGB, and by cHRM and gAMA for programs that do not know it; texts in tEXt or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
+//! PNG with 8 or 16 bits per channel (W3C, Portable Network Graphics, third edition). Files are
+//! tagged as sRGB, the display that tone curves target; other primaries are stored in cICP with the
+//! sRGB transfer function, and in cHRM and gAMA for readers without cICP. Metadata goes to tEXt
+//! chunks, non-ASCII text to iTXt.
 
-use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::ImageError;
 use crate::output::Destination;
-use crate::raster::{Encoding, Layout, Raster, Samples};
-use crate::tone::{Chromaticities, Curve, Gamma, Levels, Matrix, Primaries, Srgb};
+use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
+use crate::tone::{Chromaticities, Curve, Gamma, LevelEncoder, Matrix, Primaries, Srgb};
 use juggler_math::{Image, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
 use std::io::{self, BufRead, Seek, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The curve of sRGB in a cICP chunk (ITU-T H.273, table 3).
+/// Code point of the sRGB transfer function in cICP (ITU-T H.273, table 3).
 const SRGB_CURVE: u8 = 13;
 
 /// Streams rows into a PNG.
 pub(super) struct Writer {
     stream: StreamWriter<'static, Sink>,
     sink: Sink,
-    levels: Levels,
+    levels: LevelEncoder,
     bytes: Vec<u8>,
-    place: String,
+    file: String,
 }
 
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
-        let words = header.options.png_16_bit;
+        let file = destination.name().to_owned();
+        let is_16_bit = header.options.png_16_bit;
         let sink = Sink::new(destination);
-        let stream = stream(sink.clone(), header).map_err(|e| failed(&place, e))?;
-        let levels = if words { Levels::words(&header.tone) } else { Levels::bytes(&header.tone, header.width) };
-        Ok(Self { stream, sink, levels, bytes: Vec::new(), place })
+        let stream = stream(sink.clone(), header).map_err(|e| failed(&file, e))?;
+        let levels =
+            if is_16_bit { LevelEncoder::words(&header.tone) } else { LevelEncoder::bytes(&header.tone, header.width) };
+        Ok(Self { stream, sink, levels, bytes: Vec::new(), file })
     }
 }
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        // Rows come in any number: a fixed piece at a time keeps the buffer small.
+        // Quantize in pieces of fixed size, so that the buffer stays small.
         for piece in rows.chunks(1 << 12) {
             self.bytes.clear();
             self.levels.append(piece, &mut self.bytes);
-            self.stream.write_all(&self.bytes).map_err(|e| failed(&self.place, EncodingError::IoError(e)))?;
+            self.stream.write_all(&self.bytes).map_err(|e| failed(&self.file, EncodingError::IoError(e)))?;
         }
         Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        let Self { stream, sink, place, .. } = *self;
-        stream.finish().map_err(|e| failed(&place, e))?;
-        sink.finish().map_err(|e| failed(&place, EncodingError::IoError(e)))
+        let Self { stream, sink, file, .. } = *self;
+        stream.finish().map_err(|e| failed(&file, e))?;
+        sink.finish().map_err(|e| failed(&file, EncodingError::IoError(e)))
     }
 }
 
-/// The encoder writes its last chunk while it is dropped, and tells nobody when that fails: this remembers.
+/// Records write errors, since the encoder ignores errors of the last chunk, which it writes on
+/// drop.
 #[derive(Clone)]
 struct Sink(Arc<Mutex<Outlet>>);
 
@@ -71,7 +75,7 @@ impl Sink {
         act(&mut outlet.bytes).inspect_err(|error| outlet.failure = Some(error.kind().into()))
     }
 
-    /// After the encoder is gone: whether all was written.
+    /// Flushes the output and returns the first error, after the encoder was dropped.
     fn finish(self) -> io::Result<()> {
         self.with(|bytes| bytes.flush())?;
         let mut outlet = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,7 +93,7 @@ impl Write for Sink {
     }
 }
 
-/// The file up to its pixels.
+/// Writes everything before the pixels.
 fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, EncodingError> {
     let mut encoder = png::Encoder::new(sink, header.width, header.height);
     encoder.set_color(ColorType::Rgb);
@@ -99,9 +103,9 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
     if primaries.is_srgb() {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     } else {
-        // For programs that know no cICP: the nearest power to the curve of sRGB.
+        // Readers without cICP use the power curve closest to sRGB's, gamma 2.2.
         encoder.set_source_gamma(png::ScaledFloat::from_scaled(45_455));
-        encoder.set_source_chromaticities(chunk_of(&primaries.chromaticities()));
+        encoder.set_source_chromaticities(to_chrm(&primaries.chromaticities()));
     }
     for (key, text) in &header.metadata {
         if text.is_ascii() && key.is_ascii() {
@@ -117,63 +121,63 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
     writer.into_stream_writer()
 }
 
-fn chunk_of(c: &Chromaticities) -> png::SourceChromaticities {
+fn to_chrm(c: &Chromaticities) -> png::SourceChromaticities {
     let pair = |[x, y]: [f64; 2]| (x as f32, y as f32);
     png::SourceChromaticities::new(pair(c.white), pair(c.red), pair(c.green), pair(c.blue))
 }
 
-fn failed(place: &str, error: EncodingError) -> ImageError {
-    let place = place.to_owned();
+fn failed(file: &str, error: EncodingError) -> ImageError {
+    let file = file.to_owned();
     match error {
-        EncodingError::IoError(source) => ImageError::Write { place, source },
-        other => ImageError::Encode { place, format: crate::Format::Png, message: other.to_string() },
+        EncodingError::IoError(source) => ImageError::Write { file, source },
+        other => ImageError::Encode { file, format: crate::ImageFormat::Png, message: other.to_string() },
     }
 }
 
 fn unreadable(source: Source, error: DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(error) => source.failed(error),
-        DecodingError::Format(error) => source.malformed(in_words(&error.to_string())),
+        DecodingError::Format(error) => source.malformed(describe(&error.to_string())),
         DecodingError::Parameter(_) => source.malformed(DAMAGED),
-        DecodingError::LimitsExceeded => source.malformed("its texts or profiles are too large"),
+        DecodingError::LimitsExceeded => source.malformed("its text or color profile is too large"),
     }
 }
 
 const DAMAGED: &str = "its structure is damaged";
 
-/// What is wrong, by how the decoder's text begins.
-fn in_words(text: &str) -> &'static str {
+/// Describes a decoder error in plain words, by the beginning of its text.
+fn describe(text: &str) -> &'static str {
     let known = [
         ("CRC error", "the checksum of a chunk is wrong"),
         ("Corrupt deflate stream", "its compressed pixels are damaged"),
-        ("IDAT or fDAT", ENDS),
+        ("IDAT or fDAT", UNEXPECTED_END),
         ("IDAT or fdAT", "it holds no pixels"),
-        ("Chunk", "a chunk stands where it must not"),
+        ("Chunk", "a chunk is out of place"),
         ("Missing palette", "its palette is missing"),
         ("Not enough palette", "its palette is too short"),
         ("Invalid image dimensions", "its width or height is 0 or too large"),
-        ("Invalid color", "its head names a kind of color that PNG does not have"),
-        ("Invalid bit depth", "its head names a number of bits that PNG does not have"),
-        ("Transparency", "it has transparency for a kind of color that has none"),
+        ("Invalid color", "its header has an invalid color type"),
+        ("Invalid bit depth", "its header has an invalid bit depth"),
+        ("Transparency", "it has transparency for a color type without transparency"),
     ];
     known.into_iter().find(|(start, _)| text.starts_with(start)).map_or(DAMAGED, |(_, words)| words)
 }
 
-/// Most pixels that a byte can hold: deflate makes at most 1032 bytes of one.
-fn densest(info: &png::Info) -> u64 {
+/// Maximum number of pixels per byte: Deflate expands by a factor of 1032 at most.
+fn max_pixels_per_byte(info: &png::Info) -> u64 {
     8 * 1032 / (info.bits_per_pixel() as u64).max(1)
 }
 
-/// Any PNG as linear light: levels decoded by the curve that the file names, sRGB when it names none, in the primaries of sRGB
-/// whatever those of the file; alpha is left out.
+/// Reads an image as linear RGB with sRGB primaries. Levels are decoded by the file's transfer
+/// function (sRGB if it names none); alpha is ignored.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let mut decoder = png::Decoder::new(&mut *bytes);
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
-    let (width, height) = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
-    let curve: Box<dyn Curve> = match encoding(info) {
-        Encoding::Gamma(gamma) => Box::new(Gamma { gamma }),
+    let (width, height) = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
+    let curve: Box<dyn Curve> = match transfer_function(info) {
+        TransferFunction::Gamma(gamma) => Box::new(Gamma { gamma }),
         _ => Box::new(Srgb {}),
     };
     let (interlaced, matrix) = (info.interlaced, to_srgb(info));
@@ -195,7 +199,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, pixels)
 }
 
-/// What turns the file's primaries into those of sRGB, where it names others: by cICP, or else by cHRM.
+/// Matrix from the file's primaries (cICP, else cHRM) to sRGB's; `None` if they are equal.
 fn to_srgb(info: &png::Info) -> Option<Matrix> {
     if let Some(codes) = &info.coding_independent_code_points {
         let named = |p: &Primaries| p.code_point() == Some(codes.color_primaries);
@@ -210,62 +214,62 @@ fn to_srgb(info: &png::Info) -> Option<Matrix> {
     Chromaticities { red, green, blue, white }.to_srgb()
 }
 
-/// The curve that the file names, sRGB when it names none.
-fn encoding(info: &png::Info) -> Encoding {
+/// Transfer function of the file; sRGB if it names none.
+fn transfer_function(info: &png::Info) -> TransferFunction {
     let codes = info.coding_independent_code_points.as_ref().map(|codes| codes.transfer_function);
     match (info.srgb, info.gama_chunk) {
-        _ if codes == Some(SRGB_CURVE) => Encoding::Srgb,
-        (None, Some(gama)) if gama.into_value() > 0.0 => Encoding::Gamma(1.0 / f64::from(gama.into_value())),
-        _ => Encoding::Srgb,
+        _ if codes == Some(SRGB_CURVE) => TransferFunction::Srgb,
+        (None, Some(gama)) if gama.into_value() > 0.0 => TransferFunction::Gamma(1.0 / f64::from(gama.into_value())),
+        _ => TransferFunction::Srgb,
     }
 }
 
-/// What [`raster`] brings of a file whose head was read.
-fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Result<Layout, ImageError> {
+/// Layout of [`raster`] after the header was read.
+fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Result<RasterLayout, ImageError> {
     let info = reader.info();
-    let size = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
+    let size = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
     let (color, depth) = reader.output_color_type();
     Ok(source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 }))
 }
 
-/// Any PNG as its samples: palettes and few bits as bytes.
+/// Reads the samples; palettes and depths below 8 bits are expanded to bytes.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let mut decoder = png::Decoder::new(&mut *bytes);
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
-    let (layout, encoding) = (layout_of(source, &reader)?, encoding(reader.info()));
+    let (layout, transfer_function) = (layout_of(source, &reader)?, transfer_function(reader.info()));
     let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
     reader.next_frame(&mut bytes).map_err(|e| unreadable(source, e))?;
     let samples = if layout.sample_bytes == 2 {
-        Samples::Words(bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect())
+        RasterSamples::Words(bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect())
     } else {
-        Samples::Bytes(bytes)
+        RasterSamples::Bytes(bytes)
     };
-    Ok(Raster { layout, samples, encoding })
+    Ok(Raster { layout, samples, transfer_function })
 }
 
-/// What [`raster`] will bring.
-pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+/// Reads the layout of [`raster`] from the header.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     let mut decoder = png::Decoder::new(&mut *bytes);
     decoder.set_transformations(png::Transformations::EXPAND);
     layout_of(source, &decoder.read_info().map_err(|e| unreadable(source, e))?)
 }
 
-/// How samples become colours.
+/// Converts rows of samples to linear RGB.
 struct Row<'a> {
-    /// Samples a pixel: 1 and 2 are grey, 2 and 4 have alpha.
+    /// Samples per pixel: 1 gray, 2 gray and alpha, 3 RGB, 4 RGBA.
     samples: usize,
-    words: bool,
+    is_16_bit: bool,
     curve: &'a dyn Curve,
-    /// Linear light of each level; empty when the picture is too small to be worth it.
+    /// Table of linear values by level; empty for images too small to pay for it.
     levels: Vec<f32>,
 }
 
 impl<'a> Row<'a> {
     fn new(color: ColorType, depth: BitDepth, curve: &'a dyn Curve, pixels: u64) -> Self {
-        let words = depth == BitDepth::Sixteen;
-        let mut row = Self { samples: color.samples(), words, curve, levels: Vec::new() };
-        let count = if words { 65_536 } else { 256 };
+        let is_16_bit = depth == BitDepth::Sixteen;
+        let mut row = Self { samples: color.samples(), is_16_bit, curve, levels: Vec::new() };
+        let count = if is_16_bit { 65_536 } else { 256 };
         if pixels > count {
             row.levels = (0..count as usize).map(|level| row.linear(level)).collect();
         }
@@ -273,12 +277,12 @@ impl<'a> Row<'a> {
     }
 
     fn linear(&self, level: usize) -> f32 {
-        let top = if self.words { 65_535.0 } else { 255.0 };
+        let top = if self.is_16_bit { 65_535.0 } else { 255.0 };
         self.levels.get(level).copied().unwrap_or_else(|| self.curve.decode(level as f64 / top) as f32)
     }
 
     fn append(&self, bytes: &[u8], pixels: &mut Vec<Rgb>) {
-        let size = if self.words { 2 } else { 1 };
+        let size = if self.is_16_bit { 2 } else { 1 };
         let level = |bytes: &[u8]| bytes.iter().fold(0, |level, &b| level << 8 | usize::from(b));
         let linear = |bytes: &[u8]| self.linear(level(bytes));
         pixels.extend(bytes.chunks_exact(self.samples * size).map(|pixel| {
@@ -292,12 +296,12 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Size and texts, in order: tEXt before iTXt.
+/// Image size and metadata: tEXt chunks, then iTXt chunks.
 pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
     let reader = png::Decoder::new(&mut *bytes).read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
     let plain = info.uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
     let wide = info.utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap_or_default()));
-    let size = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
+    let size = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
     Ok((size, plain.chain(wide).collect()))
 }

@@ -1,22 +1,22 @@
-//! WebP, lossless (RFC 9649). The encoder takes a whole picture, so the picture in 8 bits is held.
+//! WebP, lossless (RFC 9649). The encoder needs the whole image, so 8-bit pixels are buffered.
 
-use super::{ENDS, Header, ReadSeek, RowWriter, Source};
+use super::{Header, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::output::Destination;
-use crate::raster::{Encoding, Layout, Raster, Samples};
-use crate::tone::Levels;
-use crate::{Format, ImageError};
+use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
+use crate::tone::LevelEncoder;
+use crate::{ImageError, ImageFormat};
 use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
 use juggler_math::{Image, Rgb};
 use std::io::{BufRead, Seek, Write};
 
-/// Most pixels that a byte may hold. The format itself has no limit, since one color takes no bits; this one lets a file of
-/// 1 KiB have the longest sides that there are.
-const DENSEST: u64 = 1 << 18;
+/// Maximum number of pixels per byte. The format itself has no limit, since a single color takes no
+/// bits; this one allows the longest sides for files of 1 KiB.
+const MAX_PIXELS_PER_BYTE: u64 = 1 << 18;
 
-/// Gathers rows and encodes them at the end.
+/// Buffers rows and encodes them at the end.
 pub(super) struct Writer {
     destination: Destination,
-    levels: Levels,
+    levels: LevelEncoder,
     size: (u32, u32),
     bytes: Vec<u8>,
 }
@@ -25,7 +25,7 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Self {
         Self {
             destination,
-            levels: Levels::bytes(&header.tone, header.width),
+            levels: LevelEncoder::bytes(&header.tone, header.width),
             size: (header.width, header.height),
             bytes: Vec::with_capacity(header.pixels() as usize * 3),
         }
@@ -39,19 +39,19 @@ impl RowWriter for Writer {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        let place = self.destination.name().to_owned();
+        let file = self.destination.name().to_owned();
         let mut bytes = self.destination.into_stream();
         let encoder = WebPEncoder::new(&mut bytes);
         let encoded = encoder.encode(&self.bytes, self.size.0, self.size.1, ColorType::Rgb8);
         let encoded = encoded.and_then(|()| bytes.flush().map_err(EncodingError::IoError));
         encoded.map_err(|error| match error {
-            EncodingError::IoError(source) => ImageError::Write { place, source },
-            other => ImageError::Encode { place, format: Format::Webp, message: other.to_string() },
+            EncodingError::IoError(source) => ImageError::Write { file, source },
+            other => ImageError::Encode { file, format: ImageFormat::Webp, message: other.to_string() },
         })
     }
 }
 
-/// Any still WebP, lossless or lossy, taken as sRGB; alpha is left out.
+/// Reads a still image, lossless or lossy, as sRGB; alpha is ignored.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let (layout, mut bytes) = samples(source, bytes)?;
     if layout.channels == 4 {
@@ -60,13 +60,13 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(layout.width, layout.height, super::pixels_from_srgb(&bytes))
 }
 
-/// Any still WebP as its samples.
+/// Reads the samples of a still image.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let (layout, bytes) = samples(source, bytes)?;
-    Ok(Raster { layout, samples: Samples::Bytes(bytes), encoding: Encoding::Srgb })
+    Ok(Raster { layout, samples: RasterSamples::Bytes(bytes), transfer_function: TransferFunction::Srgb })
 }
 
-fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Layout, Vec<u8>), ImageError> {
+fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(RasterLayout, Vec<u8>), ImageError> {
     let mut decoder = decoder(source, bytes)?;
     let layout = layout_of(source, &decoder)?;
     let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
@@ -75,7 +75,7 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Layout, Vec<u8>)
     Ok((layout, samples))
 }
 
-/// A decoder of a file that has as many bytes as its head says.
+/// Creates a decoder after checking the file's length against its RIFF header.
 fn decoder<'b>(source: Source, bytes: &'b mut dyn ReadSeek) -> Result<WebPDecoder<&'b mut dyn ReadSeek>, ImageError> {
     let mut head = [0; 8];
     bytes.read_exact(&mut head).and_then(|()| bytes.rewind()).map_err(|e| source.failed(e))?;
@@ -86,43 +86,43 @@ fn decoder<'b>(source: Source, bytes: &'b mut dyn ReadSeek) -> Result<WebPDecode
     WebPDecoder::new(bytes).map_err(|e| unreadable(source, e))
 }
 
-fn layout_of<R: BufRead + Seek>(source: Source, decoder: &WebPDecoder<R>) -> Result<Layout, ImageError> {
+fn layout_of<R: BufRead + Seek>(source: Source, decoder: &WebPDecoder<R>) -> Result<RasterLayout, ImageError> {
     let (width, height) = decoder.dimensions();
-    let size = source.size(u64::from(width), u64::from(height), DENSEST)?;
+    let size = source.size(u64::from(width), u64::from(height), MAX_PIXELS_PER_BYTE)?;
     Ok(source.layout(size, if decoder.has_alpha() { 4 } else { 3 }, 1))
 }
 
-/// What [`raster`] will bring.
-pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+/// Reads the layout of [`raster`] from the header.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     layout_of(source, &decoder(source, bytes)?)
 }
 
-/// Width and height.
+/// Image size.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
     let (width, height) = decoder(source, bytes)?.dimensions();
-    source.size(u64::from(width), u64::from(height), DENSEST)
+    source.size(u64::from(width), u64::from(height), MAX_PIXELS_PER_BYTE)
 }
 
 fn unreadable(source: Source, error: DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(error) => source.failed(error),
-        other => source.malformed(in_words(&other)),
+        other => source.malformed(describe(&other)),
     }
 }
 
-/// What is wrong, without the decoder's own words.
-fn in_words(error: &DecodingError) -> &'static str {
+/// Describes a decoder error in plain words.
+fn describe(error: &DecodingError) -> &'static str {
     match error {
         DecodingError::ChunkMissing => "a chunk is missing",
-        DecodingError::ChunkHeaderInvalid(_) | DecodingError::InvalidChunkSize => "the head of a chunk is damaged",
+        DecodingError::ChunkHeaderInvalid(_) | DecodingError::InvalidChunkSize => "the header of a chunk is damaged",
         DecodingError::HuffmanError => "a Huffman code is damaged",
         DecodingError::BitStreamError | DecodingError::TransformError => "its pixels are damaged",
-        DecodingError::NotEnoughInitData => ENDS,
+        DecodingError::NotEnoughInitData => UNEXPECTED_END,
         DecodingError::ImageTooLarge | DecodingError::MemoryLimitExceeded => "it is too large",
         DecodingError::InconsistentImageSizes | DecodingError::AlphaChunkSizeMismatch => {
             "its sizes contradict each other"
         }
-        DecodingError::UnsupportedFeature(_) => "it uses a feature of WebP that is not read",
+        DecodingError::UnsupportedFeature(_) => "it uses an unsupported feature of WebP",
         _ => "its structure is damaged",
     }
 }

@@ -1,37 +1,39 @@
-//! The colour pipeline of FLIP (2020, section 4.1): contrast sensitivity of the eye in an opponent space, then distances
-//! in CIE L*a*b* with the Hunt effect, as HyAB, compressed where colours differ very much.
+//! Color pipeline of FLIP (2020, section 4.1): contrast sensitivity filtering in an opponent space,
+//! then HyAB distances in Hunt-adjusted CIE L*a*b*, with large distances compressed.
 
-use super::filter::{Kernel, Plane, bell};
+use super::filter::{Kernel, Plane, gaussian};
 use crate::tone::Matrix;
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 
-/// Linear light to CIE XYZ, in the fractions of the authors' program.
+/// Linear sRGB to CIE XYZ, with the fractions of the authors' program.
 const XYZ: Matrix = Matrix([
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ]);
-/// Exponent of colour distances, and how much of what can be seen lies below the bend of their compression, and what becomes of it.
+/// Exponent q_c of color distances, and the knee of their compression: distances below p_c = 0.4 of
+/// the maximum map to 0 to p_t = 0.95.
 const EXPONENT: f32 = 0.7;
 const BEND: [f32; 2] = [0.4, 0.95];
 
-/// Amplitudes and widths, in squared degrees, of the contrast sensitivities (2020, table 1).
+/// Contrast sensitivity functions (2020, table 1): Gaussian widths b in squared degrees, for
+/// blue-yellow pairs of amplitude a and width b.
 const LIGHTNESS: f64 = 0.0047;
 const RED_GREEN: f64 = 0.0053;
 const BLUE_YELLOW: [[f64; 2]; 2] = [[34.1, 0.04], [13.5, 0.025]];
 
-/// A picture in luminance and the opponent chromas red-green and blue-yellow, linear (the paper's YCxCz, less its factors
-/// and offset, which filters do not see).
+/// Image in luminance and the opponent channels red-green and blue-yellow, all linear (the paper's
+/// YCxCz without its factors and offset, which do not affect the filters).
 pub(super) struct Opponent {
-    /// Y, white being 1.
+    /// Y of CIE XYZ, 1 for white.
     pub luminance: Plane,
     red_green: Plane,
     blue_yellow: Plane,
 }
 
 impl Opponent {
-    /// Of linear light from 0 to 1.
-    pub fn of(width: usize, pixels: impl Iterator<Item = Rgb>) -> Self {
+    /// Converts linear RGB from 0 to 1.
+    pub fn from_linear(width: usize, pixels: impl Iterator<Item = Rgb>) -> Self {
         let rows = relative_xyz();
         let plane = || Plane { width, values: Vec::with_capacity(pixels.size_hint().0) };
         let mut opponent = Self { luminance: plane(), red_green: plane(), blue_yellow: plane() };
@@ -45,25 +47,25 @@ impl Opponent {
     }
 }
 
-/// What the eye makes of a picture before it compares colours.
+/// Filters and color transforms for one viewing distance.
 pub(super) struct ColorFilters {
     lightness: Kernel,
     red_green: Kernel,
-    /// Two, with their shares.
+    /// Two Gaussians with their weights.
     blue_yellow: [(Kernel, f32); 2],
     to_light: [[f32; 3]; 3],
     to_xyz: [[f32; 3]; 3],
-    /// The distance between green and blue, the largest that counts.
-    farthest: f32,
+    /// Distance between green and blue, the maximum, after applying the exponent.
+    max_distance: f32,
 }
 
 impl ColorFilters {
     pub fn new(pixels_per_degree: f64) -> Self {
-        // Three standard deviations of the widest, in pixels.
+        // Kernel radius: three standard deviations of the widest Gaussian, in pixels.
         let deviation = |width: f64| (width / 2.0).sqrt() / std::f64::consts::PI * pixels_per_degree;
-        let radius = fun::floor_f64(3.0 * deviation(BLUE_YELLOW[0][1])) as i32 + 1;
-        let weight = |width: f64| move |t: f64| bell(t, deviation(width));
-        // The second dimension of a bell brings its sum once more.
+        let radius = portable::floor_f64(3.0 * deviation(BLUE_YELLOW[0][1])) as i32 + 1;
+        let weight = |width: f64| move |t: f64| gaussian(t, deviation(width));
+        // Weight of a Gaussian: its amplitude times its sum over both dimensions.
         let share = |[amplitude, width]: [f64; 2]| {
             let sum: f64 = (-radius..=radius).map(|t| weight(width)(f64::from(t))).sum();
             amplitude * (std::f64::consts::PI / width).sqrt() * sum * sum
@@ -73,24 +75,24 @@ impl ColorFilters {
         let mut filters = Self {
             lightness: kernel(LIGHTNESS),
             red_green: kernel(RED_GREEN),
-            blue_yellow: BLUE_YELLOW.map(|bell| (kernel(bell[1]), (share(bell) / total) as f32)),
+            blue_yellow: BLUE_YELLOW.map(|gaussian| (kernel(gaussian[1]), (share(gaussian) / total) as f32)),
             to_light: single(&relative().inverse()),
             to_xyz: relative_xyz(),
-            farthest: 0.0,
+            max_distance: 0.0,
         };
-        let seen = |light: [f32; 3]| lab(product(&filters.to_xyz, light));
-        filters.farthest = fun::powf(distance(seen([0.0, 1.0, 0.0]), seen([0.0, 0.0, 1.0])), EXPONENT);
+        let to_lab = |light: [f32; 3]| lab(product(&filters.to_xyz, light));
+        filters.max_distance = portable::powf(distance(to_lab([0.0, 1.0, 0.0]), to_lab([0.0, 0.0, 1.0])), EXPONENT);
         filters
     }
 
-    /// Differences of all pixels, 0 to 1.
+    /// Color differences of all pixels, 0 to 1.
     pub fn differences(&self, picture: &Opponent, reference: &Opponent) -> Vec<f32> {
-        let [picture, reference] = [picture, reference].map(|image| self.seen(image));
+        let [picture, reference] = [picture, reference].map(|image| self.filtered_lab(image));
         picture.into_iter().zip(reference).map(|(a, b)| self.compressed(distance(a, b))).collect()
     }
 
-    /// The picture as the eye blurs it, in L*a*b*.
-    fn seen(&self, image: &Opponent) -> Vec<[f32; 3]> {
+    /// Filters an image by contrast sensitivity and converts it to L*a*b*.
+    fn filtered_lab(&self, image: &Opponent) -> Vec<[f32; 3]> {
         let lightness = image.luminance.filtered(&self.lightness, &self.lightness);
         let red_green = image.red_green.filtered(&self.red_green, &self.red_green);
         let [wide, narrow] = self.blue_yellow.each_ref().map(|(kernel, _)| image.blue_yellow.filtered(kernel, kernel));
@@ -104,17 +106,17 @@ impl ColorFilters {
         opponents.map(one).collect()
     }
 
-    /// Section 4.1.3: small distances take most of the range.
+    /// Compresses large distances, so that small ones take most of the range (section 4.1.3).
     fn compressed(&self, distance: f32) -> f32 {
-        let (powered, bend) = (fun::powf(distance, EXPONENT), BEND[0] * self.farthest);
+        let (powered, bend) = (portable::powf(distance, EXPONENT), BEND[0] * self.max_distance);
         if powered < bend {
             return powered * BEND[1] / bend;
         }
-        BEND[1] + (powered - bend) / (self.farthest - bend) * (1.0 - BEND[1])
+        BEND[1] + (powered - bend) / (self.max_distance - bend) * (1.0 - BEND[1])
     }
 }
 
-/// CIE XYZ relative to white.
+/// Linear sRGB to CIE XYZ relative to white.
 fn relative() -> Matrix {
     let [x, y, z] = XYZ.apply([1.0; 3]);
     Matrix::diagonal([1.0 / x, 1.0 / y, 1.0 / z]).times(&XYZ)
@@ -132,11 +134,11 @@ fn product(rows: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
     rows.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// CIE L*a*b* of what is relative to white; colours of dark things count less (Hunt 1952).
+/// CIE L*a*b* of XYZ relative to white, with chroma reduced for dark colors (Hunt 1952).
 fn lab(xyz: [f32; 3]) -> [f32; 3] {
     const KNEE: f32 = 6.0 / 29.0;
     let bent = |v: f32| {
-        if v > KNEE * KNEE * KNEE { fun::powf(v, 1.0 / 3.0) } else { v / (3.0 * KNEE * KNEE) + 4.0 / 29.0 }
+        if v > KNEE * KNEE * KNEE { portable::powf(v, 1.0 / 3.0) } else { v / (3.0 * KNEE * KNEE) + 4.0 / 29.0 }
     };
     let [x, y, z] = xyz.map(bent);
     let lightness = 116.0 * y - 16.0;
@@ -144,7 +146,7 @@ fn lab(xyz: [f32; 3]) -> [f32; 3] {
     [lightness, hunt * 500.0 * (x - y), hunt * 200.0 * (y - z)]
 }
 
-/// HyAB (Abasi, Tehran and Fairchild 2020): good for large distances.
+/// HyAB color distance (Abasi, Tehran and Fairchild 2020), suited to large differences.
 fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let [l, u, v] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     l.abs() + (u * u + v * v).sqrt()
@@ -155,14 +157,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn known_colours_in_lab() {
+    fn known_colors_in_lab() {
         let rows = relative_xyz();
         let plain = |light: [f32; 3]| {
             let [l, a, b] = lab(product(&rows, light));
             let hunt = (0.01 * l).max(1e-9);
             [l, a / hunt, b / hunt]
         };
-        // sRGB's red and blue in CIE L*a*b* under D65.
+        // White, red and blue of sRGB in CIE L*a*b* under D65.
         for (light, expected) in [
             ([1.0, 1.0, 1.0], [100.0, 0.0, 0.0]),
             ([1.0, 0.0, 0.0], [53.24, 80.09, 67.20]),

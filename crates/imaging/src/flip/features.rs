@@ -1,13 +1,13 @@
-//! The feature pipeline of FLIP (2020, section 4.2): edges and points of the lightness, by the first and second derivatives of a
-//! bell as wide as what the eye tells as an edge.
+//! Feature pipeline of FLIP (2020, section 4.2): edges and points of the luminance, detected by
+//! first and second derivatives of a Gaussian whose width matches human edge detection.
 
-use super::filter::{Kernel, Plane, bell};
-use juggler_math::fun;
+use super::filter::{Kernel, Plane, gaussian};
+use juggler_math::portable;
 
-/// The detector's width in degrees.
+/// Width of the detectors in degrees.
 const WIDTH: f64 = 0.082;
 
-/// The detectors.
+/// Kernels of the edge and point detectors.
 pub(super) struct FeatureFilters {
     smooth: Kernel,
     edge: Kernel,
@@ -17,15 +17,16 @@ pub(super) struct FeatureFilters {
 impl FeatureFilters {
     pub fn new(pixels_per_degree: f64) -> Self {
         let deviation = 0.5 * WIDTH * pixels_per_degree;
-        let radius = fun::floor_f64(3.0 * deviation) as i32 + 1;
-        let kernel = |weight: &dyn Fn(f64) -> f64| Kernel::new(radius, |t| weight(t) * bell(t, deviation));
+        let radius = portable::floor_f64(3.0 * deviation) as i32 + 1;
+        let kernel = |weight: &dyn Fn(f64) -> f64| Kernel::new(radius, |t| weight(t) * gaussian(t, deviation));
         let squared = deviation * deviation;
         Self { smooth: kernel(&|_| 1.0), edge: kernel(&|t| -t), point: kernel(&|t| t * t / squared - 1.0) }
     }
 
-    /// Differences of all pixels, 0 to 1 (equation 16): of edges or of points, whichever is larger.
+    /// Feature differences of all pixels, 0 to 1 (equation 16): the larger of edge and point
+    /// difference.
     pub fn differences(&self, picture: &Plane, reference: &Plane) -> Vec<f32> {
-        let [picture, reference] = [picture, reference].map(|plane| self.found(plane));
+        let [picture, reference] = [picture, reference].map(|plane| self.strengths(plane));
         let difference = |(a, b): ([f32; 2], [f32; 2])| {
             let most = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
             (most * std::f32::consts::FRAC_1_SQRT_2).clamp(0.0, 1.0).sqrt()
@@ -33,8 +34,8 @@ impl FeatureFilters {
         picture.into_iter().zip(reference).map(difference).collect()
     }
 
-    /// How strong edges and points are at each pixel.
-    fn found(&self, plane: &Plane) -> Vec<[f32; 2]> {
+    /// Edge and point strength of each pixel.
+    fn strengths(&self, plane: &Plane) -> Vec<[f32; 2]> {
         let smooth = plane.rows(&self.smooth);
         let pair = |kernel: &Kernel| [plane.rows(kernel).columns(&self.smooth), smooth.columns(kernel)];
         let length = |[x, y]: &[Plane; 2]| -> Vec<f32> {
@@ -54,12 +55,12 @@ mod tests {
         let filters = FeatureFilters::new(67.0);
         let step = Plane { width: 40, values: (0..1600).map(|i| if i % 40 < 20 { 0.0 } else { 1.0 }).collect() };
         let flat = Plane { width: 40, values: vec![0.7; 1600] };
-        let found = filters.found(&step);
-        // Half of the weights see the one side, half the other.
+        let found = filters.strengths(&step);
+        // Half of the kernel's weight lies on either side of the edge.
         let row = &found[20 * 40..21 * 40];
         let strongest = row.iter().map(|v| v[0]).fold(0.0, f32::max);
         assert!(strongest > 0.9 && strongest <= 1.0 && row[0][0] < 1e-5 && row[39][0] < 1e-5, "{strongest}");
-        assert!(filters.found(&flat).iter().flatten().all(|v| *v < 1e-6));
+        assert!(filters.strengths(&flat).iter().flatten().all(|v| *v < 1e-6));
         assert!(filters.differences(&step, &step).iter().all(|v| *v == 0.0));
     }
 }

@@ -1,23 +1,23 @@
-//! Filters that go first along rows and then along columns. Beyond the border pixels repeat.
+//! Separable convolution; pixels beyond the border repeat the border's.
 
-use juggler_math::fun;
+use juggler_math::portable;
 
-/// A channel, row by row.
+/// One channel of an image, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Plane {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: usize,
-    /// The values.
+    /// Values of all pixels.
     pub values: Vec<f32>,
 }
 
-/// Weights around a pixel, an odd number of them.
+/// Odd number of convolution weights, centered on the pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kernel(Vec<f32>);
 
 impl Kernel {
-    /// From a function of the distance in pixels, both ways up to `radius`. The positive weights sum up to 1, and the
-    /// negative ones, if there are any, to -1.
+    /// Samples `weight` at distances from -`radius` to `radius` pixels. Positive weights are
+    /// normalized to sum to 1, negative weights to -1.
     pub fn new(radius: i32, weight: impl Fn(f64) -> f64) -> Self {
         let weights: Vec<f64> = (-radius..=radius).map(|at| weight(f64::from(at))).collect();
         let sum = |sign: f64| weights.iter().map(|w| (w * sign).max(0.0)).sum::<f64>();
@@ -34,7 +34,7 @@ impl Kernel {
         Self(weights.into_iter().map(|w| scaled(w) as f32).collect())
     }
 
-    /// The same without outer weights that no sum of singles would notice.
+    /// Removes outer weights too small to matter in single precision.
     pub fn trimmed(mut self) -> Self {
         while self.0.len() > 1 && self.0[0].abs().max(self.0[self.0.len() - 1].abs()) < 1e-8 {
             self.0.pop();
@@ -45,12 +45,12 @@ impl Kernel {
 }
 
 impl Plane {
-    /// Filtered along rows with one kernel, then along columns with another.
+    /// Convolves along rows, then along columns.
     pub fn filtered(&self, along_rows: &Kernel, along_columns: &Kernel) -> Self {
         self.rows(along_rows).columns(along_columns)
     }
 
-    /// Filtered along rows.
+    /// Convolves along rows.
     pub fn rows(&self, Kernel(weights): &Kernel) -> Self {
         let radius = weights.len() / 2;
         let mut values = vec![0.0; self.values.len()];
@@ -69,7 +69,7 @@ impl Plane {
         Self { width: self.width, values }
     }
 
-    /// Filtered along columns.
+    /// Convolves along columns.
     pub fn columns(&self, Kernel(weights): &Kernel) -> Self {
         let (radius, width) = (weights.len() / 2, self.width.max(1));
         let rows: Vec<&[f32]> = self.values.chunks_exact(width).collect();
@@ -84,9 +84,9 @@ impl Plane {
     }
 }
 
-/// e to the power of -t²/(2 s²).
-pub(super) fn bell(t: f64, deviation: f64) -> f64 {
-    fun::exp_f64(-t * t / (2.0 * deviation * deviation))
+/// Gaussian exp(-t² / (2 s²)), where s is the standard deviation.
+pub(super) fn gaussian(t: f64, deviation: f64) -> f64 {
+    portable::exp_f64(-t * t / (2.0 * deviation * deviation))
 }
 
 #[cfg(test)]
@@ -95,11 +95,11 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn filtering_equals_the_sum_over_all_neighbours() {
+    fn filtering_equals_the_sum_over_all_neighbors() {
         let (width, height) = (7, 5);
         let mut random = Random::new(4);
         let plane = Plane { width, values: (0..width * height).map(|_| random.range(-1.0, 1.0)).collect() };
-        let (a, b) = (Kernel::new(3, |t| bell(t, 1.5)), Kernel::new(2, |t| -t * bell(t, 1.0)));
+        let (a, b) = (Kernel::new(3, |t| gaussian(t, 1.5)), Kernel::new(2, |t| -t * gaussian(t, 1.0)));
         let found = plane.filtered(&a, &b);
         for (y, x) in (0..5_i32).flat_map(|y| (0..7_i32).map(move |x| (y, x))) {
             let mut sum = 0.0;
@@ -115,10 +115,10 @@ mod tests {
 
     #[test]
     fn kernels_are_normalized_by_sign() {
-        let Kernel(edge) = Kernel::new(4, |t| -t * bell(t, 2.0));
+        let Kernel(edge) = Kernel::new(4, |t| -t * gaussian(t, 2.0));
         let positive: f32 = edge.iter().filter(|w| **w > 0.0).sum();
         assert!((positive - 1.0).abs() < 1e-6 && edge.iter().sum::<f32>().abs() < 1e-6 && edge[4] == 0.0);
-        let Kernel(trimmed) = Kernel::new(30, |t| bell(t, 1.0)).trimmed();
+        let Kernel(trimmed) = Kernel::new(30, |t| gaussian(t, 1.0)).trimmed();
         assert!(trimmed.len() < 15 && (trimmed.iter().sum::<f32>() - 1.0).abs() < 1e-6);
     }
 }

@@ -1,42 +1,46 @@
-//! FLIP: how different two pictures look to somebody who flips between them, per pixel from 0 (the same) to 1.
+//! FLIP: perceived difference between two images shown in alternation, per pixel from 0 (equal) to
+//! 1.
 //!
-//! - LDR-FLIP (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, FLIP: a difference evaluator for
-//!   alternating images, 2020): colours as the eye blurs them, compared in a space where distances are as they are seen,
-//!   and edges and points that one picture has and the other has not.
-//! - HDR-FLIP (Andersson, Nilsson, Shirley and Akenine-Möller, Visualizing errors in rendered high dynamic range images, 2021):
-//!   the largest LDR-FLIP of each pixel over all exposures that show something of the reference, after a tone curve.
+//! - LDR-FLIP (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, FLIP: a
+//!   difference evaluator for alternating images, 2020): color differences after contrast
+//!   sensitivity filtering, measured in a perceptually uniform space, combined with differences of
+//!   edges and points.
+//! - HDR-FLIP (Andersson, Nilsson, Shirley and Akenine-Möller, Visualizing errors in rendered high
+//!   dynamic range images, 2021): maximum LDR-FLIP of each pixel over a range of exposures, after
+//!   tone mapping.
 
 mod color;
+mod color_map;
 mod features;
 mod filter;
 mod hdr;
-mod ramp;
 
-pub use ramp::colors;
+pub use color_map::color_map;
 
 use crate::{ImageError, compare::same_size};
 use color::{ColorFilters, Opponent};
 use features::FeatureFilters;
 use hdr::Exposures;
-use juggler_math::{Image, Rgb, fun};
+use juggler_math::{Image, Rgb, portable};
 
-/// Pixels in a degree of what the eye sees where nothing else is said: a screen of 3840 pixels on 0.7 m, seen from 0.7 m.
+/// Default pixels per degree of visual angle: a display of 0.7 m width with 3840 pixels, seen from
+/// 0.7 m.
 pub const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
-/// Numbers that a file of light may hold beyond all measure; what is above counts as this.
-const BRIGHTEST: f32 = 1e9;
+/// Upper clamp for radiance in files.
+const MAX_RADIANCE: f32 = 1e9;
 
-/// Which of both was measured.
+/// Dynamic range of the compared images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
-    /// Pictures as a screen shows them: light from 0 to 1.
+pub enum DynamicRange {
+    /// LDR-FLIP: display values, linear from 0 to 1.
     Ldr,
-    /// Light of a scene, by all exposures.
+    /// HDR-FLIP: scene-referred radiance, over several exposures.
     Hdr,
 }
 
-impl Range {
-    /// As the papers call it.
+impl DynamicRange {
+    /// Name as used in the papers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ldr => "LDR",
@@ -45,31 +49,41 @@ impl Range {
     }
 }
 
-/// How different two pictures look.
+/// Result of a FLIP comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flip {
-    /// Mean of all pixels, 0 to 1.
+    /// Mean over all pixels, 0 to 1.
     pub mean: f64,
-    /// Which of both it is.
-    pub range: Range,
-    /// Each pixel's difference, 0 to 1, row by row.
+    /// Variant that was used.
+    pub range: DynamicRange,
+    /// Difference of each pixel, 0 to 1, row by row.
     pub map: Vec<f32>,
 }
 
-/// Measures how different a picture looks from a reference. Light below 0 and what is no number counts as none; for
-/// [`Range::Ldr`] light above 1 counts as 1.
-pub fn flip(picture: &Image, reference: &Image, range: Range, pixels_per_degree: f32) -> Result<Flip, ImageError> {
+/// Computes FLIP between an image and a reference, both in linear RGB. Negative values and NaN
+/// count as 0; for [`DynamicRange::Ldr`], values above 1 count as 1. `pixels_per_degree` is clamped
+/// to 1 to 1000.
+///
+/// # Errors
+///
+/// [`ImageError::SizesDiffer`] if the sizes differ.
+pub fn flip(
+    picture: &Image,
+    reference: &Image,
+    range: DynamicRange,
+    pixels_per_degree: f32,
+) -> Result<Flip, ImageError> {
     same_size(picture, reference)?;
     let filters = Filters::new(pixels_per_degree);
     let map = match range {
-        Range::Ldr => {
+        DynamicRange::Ldr => {
             let [picture, reference] = [picture, reference].map(|image| opponent(image, |v| v.clamp(0.0, 1.0)));
             filters.differences(&picture, &reference)
         }
-        Range::Hdr => {
+        DynamicRange::Hdr => {
             let mut most = vec![0.0; reference.pixels().len()];
-            for exposure in Exposures::of(reference.pixels().iter().map(|pixel| known(*pixel))).steps() {
-                let gain = fun::exp2(exposure);
+            for exposure in Exposures::from_reference(reference.pixels().iter().map(|pixel| sanitize(*pixel))).steps() {
+                let gain = portable::exp2(exposure);
                 let [picture, reference] =
                     [picture, reference].map(|image| opponent(image, |v| hdr::tone_mapped(v * gain)));
                 let differences = filters.differences(&picture, &reference);
@@ -82,17 +96,16 @@ pub fn flip(picture: &Image, reference: &Image, range: Range, pixels_per_degree:
     Ok(Flip { mean, range, map })
 }
 
-/// Light that can be reckoned with.
-fn known(pixel: Rgb) -> Rgb {
-    // The least of a number and none is the number.
-    pixel.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, BRIGHTEST) })
+/// Clamps channels to finite, non-negative values.
+fn sanitize(pixel: Rgb) -> Rgb {
+    pixel.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, MAX_RADIANCE) })
 }
 
 fn opponent(image: &Image, display: impl Fn(f32) -> f32) -> Opponent {
-    Opponent::of(image.width() as usize, image.pixels().iter().map(|pixel| known(*pixel).map(&display)))
+    Opponent::from_linear(image.width() as usize, image.pixels().iter().map(|pixel| sanitize(*pixel).map(&display)))
 }
 
-/// All that depends on how large a pixel is seen.
+/// Filters for one viewing distance.
 struct Filters {
     color: ColorFilters,
     feature: FeatureFilters,
@@ -100,17 +113,17 @@ struct Filters {
 
 impl Filters {
     fn new(pixels_per_degree: f32) -> Self {
-        let known = if pixels_per_degree.is_nan() { PIXELS_PER_DEGREE } else { pixels_per_degree };
-        let pixels_per_degree = f64::from(known.clamp(1.0, 1000.0));
+        let resolution = if pixels_per_degree.is_nan() { PIXELS_PER_DEGREE } else { pixels_per_degree };
+        let pixels_per_degree = f64::from(resolution.clamp(1.0, 1000.0));
         Self { color: ColorFilters::new(pixels_per_degree), feature: FeatureFilters::new(pixels_per_degree) }
     }
 
-    /// LDR-FLIP of each pixel (2020, equation 17): features make a difference of colours larger.
+    /// LDR-FLIP of each pixel (2020, equation 17): feature differences amplify color differences.
     fn differences(&self, picture: &Opponent, reference: &Opponent) -> Vec<f32> {
         let mut colors = self.color.differences(picture, reference);
         let features = self.feature.differences(&picture.luminance, &reference.luminance);
         for (color, feature) in colors.iter_mut().zip(features) {
-            *color = if *color > 0.0 { fun::powf(*color, 1.0 - feature) } else { 0.0 };
+            *color = if *color > 0.0 { portable::powf(*color, 1.0 - feature) } else { 0.0 };
         }
         colors
     }

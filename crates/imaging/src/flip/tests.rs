@@ -1,8 +1,9 @@
-//! FLIP against the authors' own evaluator: eleven pairs of pictures made by formula, and what `flip-evaluator` 1.7 (PyPI)
-//! says of them. With `JUGGLER_FLIP_PICTURES=folder` the pairs are left there, for `tests/flip/agree.py`.
+//! FLIP against the authors' evaluator: eleven synthetic pairs of images with the results of
+//! `flip-evaluator` 1.7 (PyPI). With `JUGGLER_FLIP_PICTURES=folder` the pairs are written there,
+//! for `tests/flip/agree.py`.
 
 use super::*;
-use crate::{Format, Header, create, write_image};
+use crate::{Header, ImageFormat, create, write_image};
 use juggler_math::color::srgb_decode;
 use juggler_math::testing::Random;
 use std::path::Path;
@@ -12,8 +13,8 @@ const HEIGHT: u32 = 88;
 
 struct Pair {
     name: &'static str,
-    range: Range,
-    /// The mean by the authors' program.
+    range: DynamicRange,
+    /// Mean reported by the authors' evaluator.
     mean: f64,
     picture: Image,
     reference: Image,
@@ -24,7 +25,7 @@ fn image(pixel: impl FnMut([u32; 2]) -> Rgb) -> Image {
     Image::from_pixels(WIDTH, HEIGHT, places.map(pixel).collect()).unwrap()
 }
 
-/// A picture of levels of 8 bits.
+/// Image of 8-bit sRGB levels.
 fn levels(mut pixel: impl FnMut([u32; 2]) -> [f32; 3]) -> Image {
     image(|place| Rgb::from(pixel(place).map(|v| srgb_decode(v.round().clamp(0.0, 255.0) / 255.0))))
 }
@@ -67,13 +68,13 @@ fn spots([x, y]: [u32; 2], shift: u32, bright: f32) -> Rgb {
     Rgb::new(0.02 + 0.1 * v, 0.05, 0.1 - 0.05 * v) + Rgb::new(1.0, 0.8, 0.5) * (spot * bright)
 }
 
-fn pair(name: &'static str, range: Range, mean: f64, picture: Image, reference: Image) -> Pair {
+fn pair(name: &'static str, range: DynamicRange, mean: f64, picture: Image, reference: Image) -> Pair {
     Pair { name, range, mean, picture, reference }
 }
 
 fn ldr() -> Vec<Pair> {
     let mut random = Random::new(20);
-    let of = |name, mean, picture, reference| pair(name, Range::Ldr, mean, picture, reference);
+    let of = |name, mean, picture, reference| pair(name, DynamicRange::Ldr, mean, picture, reference);
     let plain = levels(|place| gradient(place, 0.0));
     let noise = levels(|_| [(); 3].map(|()| random.range(90.0, 160.0)));
     let specks = levels(|place| if random.below(150) == 0 { [255.0; 3] } else { gradient(place, 0.0) });
@@ -93,10 +94,10 @@ fn ldr() -> Vec<Pair> {
 
 fn hdr() -> Vec<Pair> {
     let mut random = Random::new(21);
-    let of = |name, mean, picture, reference| pair(name, Range::Hdr, mean, picture, reference);
+    let of = |name, mean, picture, reference| pair(name, DynamicRange::Hdr, mean, picture, reference);
     let smooth = |place: [u32; 2]| {
         let [u, v] = share(place);
-        Rgb::new(fun::exp2(13.0 * u - 6.5), 0.3 + v, 0.2 + 2.0 * u * v)
+        Rgb::new(portable::exp2(13.0 * u - 6.5), 0.3 + v, 0.2 + 2.0 * u * v)
     };
     let grain = image(|place| smooth(place) * random.range(0.5, 1.5));
     let fireflies = image(|place| if random.below(400) == 0 { Rgb::new(70.0, 60.0, 90.0) } else { smooth(place) });
@@ -128,22 +129,22 @@ fn the_authors_evaluator_says_the_same() {
 }
 
 fn keep(folder: &Path, pair: &Pair) {
-    let format = if pair.range == Range::Ldr { Format::Png } else { Format::Exr };
+    let format = if pair.range == DynamicRange::Ldr { ImageFormat::Png } else { ImageFormat::Exr };
     for (role, image) in [("picture", &pair.picture), ("reference", &pair.reference)] {
-        let path = folder.join(format!("{}.{role}.{}", pair.name, format.ending()));
+        let path = folder.join(format!("{}.{role}.{}", pair.name, format.extension()));
         write_image(create(&path, format, &Header::new(WIDTH, HEIGHT)).unwrap(), image).unwrap();
     }
 }
 
 #[test]
 fn the_same_is_no_difference_and_opposites_are_the_largest() {
-    for range in [Range::Ldr, Range::Hdr] {
+    for range in [DynamicRange::Ldr, DynamicRange::Hdr] {
         let picture = image(|place| spots(place, 0, 20.0));
         let found = flip(&picture, &picture, range, PIXELS_PER_DEGREE).unwrap();
         assert!(found.mean == 0.0 && found.map.iter().all(|v| *v == 0.0), "{range:?}");
     }
     let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|color| image(|_| Rgb::from(color)));
-    let found = flip(&green, &blue, Range::Ldr, PIXELS_PER_DEGREE).unwrap();
+    let found = flip(&green, &blue, DynamicRange::Ldr, PIXELS_PER_DEGREE).unwrap();
     assert!(found.map.iter().all(|v| (v - 1.0).abs() < 1e-4), "{}", found.mean);
 }
 
@@ -151,11 +152,11 @@ fn the_same_is_no_difference_and_opposites_are_the_largest() {
 fn maps_are_where_the_difference_is() {
     let plain = image(|_| Rgb::splat(0.3));
     let spot = image(|place| if place == [60, 40] { Rgb::splat(0.9) } else { Rgb::splat(0.3) });
-    let found = flip(&spot, &plain, Range::Ldr, PIXELS_PER_DEGREE).unwrap();
+    let found = flip(&spot, &plain, DynamicRange::Ldr, PIXELS_PER_DEGREE).unwrap();
     let at = |x: u32, y: u32| found.map[(y * WIDTH + x) as usize];
     assert!(at(60, 40) > 0.2 && at(60, 40) > at(62, 40) && at(62, 40) > at(66, 40) && at(0, 0) < 1e-3);
-    // From further away less is seen.
-    let far = flip(&spot, &plain, Range::Ldr, 200.0).unwrap();
+    // At a larger viewing distance the difference is less visible.
+    let far = flip(&spot, &plain, DynamicRange::Ldr, 200.0).unwrap();
     let most = |map: &[f32]| map.iter().copied().fold(0.0, f32::max);
     assert!(most(&far.map) < 0.7 * most(&found.map), "{} {}", most(&far.map), most(&found.map));
 }
@@ -164,7 +165,7 @@ fn maps_are_where_the_difference_is() {
 fn odd_numbers_and_sizes_do_no_harm() {
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30];
     let picture = image(|[x, _]| Rgb::splat(odd[x as usize % 5]));
-    for range in [Range::Ldr, Range::Hdr] {
+    for range in [DynamicRange::Ldr, DynamicRange::Hdr] {
         let found = flip(&picture, &image(|_| Rgb::splat(0.5)), range, PIXELS_PER_DEGREE).unwrap();
         assert!(found.map.iter().all(|v| (0.0..=1.0).contains(v)), "{range:?}");
         let black = flip(&picture, &image(|_| Rgb::BLACK), range, f32::NAN).unwrap();

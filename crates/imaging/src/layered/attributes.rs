@@ -1,33 +1,33 @@
-//! The head of an OpenEXR file: attributes, each a name, the name of its type and its value. They stand in a fixed order, since
-//! the bytes of equal pictures must be equal. (OpenEXR file layout, openexr.com.)
+//! OpenEXR headers: a list of attributes, each with name, type and value, in a fixed order, so that
+//! equal images are equal files. (OpenEXR file layout, openexr.com.)
 
 use crate::tone::Chromaticities;
 use crate::{ExrCompression, SampleDepth, Viewpoint};
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// The version, the flag for names of more than 31 bytes and that for several parts.
+/// Format version, and the flags for long names and for multi-part files.
 const VERSION: u32 = 2;
 const LONG_NAMES: u32 = 0x400;
 const MULTI_PART: u32 = 0x1000;
-/// The most bytes of a name without that flag, and with it.
+/// Maximum length of names in bytes, without and with the flag for long names.
 const SHORT: usize = 31;
 const LONG: usize = 255;
 
-/// Magic and version of a file with names of up to `longest` bytes.
+/// Magic number and version of a file with names of up to `longest` bytes.
 pub fn start(longest: usize, has_several_parts: bool) -> Vec<u8> {
     let long = if longest > SHORT { LONG_NAMES } else { 0 };
     let several = if has_several_parts { MULTI_PART } else { 0 };
     MAGIC.into_iter().chain((VERSION | long | several).to_le_bytes()).collect()
 }
 
-/// The attributes of one part.
+/// Attributes of one part.
 #[derive(Debug, Default)]
 pub struct Attributes {
     bytes: Vec<u8>,
 }
 
 impl Attributes {
-    /// Any attribute.
+    /// Appends an attribute.
     pub fn put(&mut self, name: &str, kind: &str, value: &[u8]) {
         self.bytes.extend(name.bytes().filter(|&b| b != 0).take(LONG).chain([0]));
         self.bytes.extend(kind.bytes().chain([0]));
@@ -35,7 +35,7 @@ impl Attributes {
         self.bytes.extend(value);
     }
 
-    /// What the channels are called, in the order of their names.
+    /// Appends the channel list; `names` are sorted.
     pub fn channels<'n>(&mut self, names: impl Iterator<Item = &'n str>, depth: SampleDepth) {
         let pixel_type = if depth == SampleDepth::Half { 1u32 } else { 2 };
         let mut channels = Vec::new();
@@ -47,13 +47,14 @@ impl Attributes {
         self.put("channels", "chlist", &channels);
     }
 
-    /// What red, green, blue and white are.
+    /// Appends the chromaticities of primaries and white point.
     pub fn chromaticities(&mut self, Chromaticities { red, green, blue, white }: Chromaticities) {
         let eight = [red, green, blue, white].into_iter().flatten();
         self.put("chromaticities", "chromaticities", &floats(eight.map(|v| v as f32)));
     }
 
-    /// Everything else that each part must say: packing, and scanlines of square pixels from the top.
+    /// Appends the other required attributes: compression, windows, scanlines from the top, square
+    /// pixels.
     pub fn frame(&mut self, width: u32, height: u32, compression: ExrCompression) {
         let code = match compression {
             ExrCompression::None => 0,
@@ -70,14 +71,14 @@ impl Attributes {
         self.put("screenWindowWidth", "float", &1f32.to_le_bytes());
     }
 
-    /// What a part of several must say, too.
+    /// Appends the attributes that multi-part files require.
     pub fn part(&mut self, name: &str, blocks: usize) {
         self.put("chunkCount", "int", &(blocks as u32).to_le_bytes());
         self.put("name", "string", name.as_bytes());
         self.put("type", "string", b"scanlineimage");
     }
 
-    /// From where it was taken.
+    /// Appends the camera matrices.
     pub fn viewpoint(&mut self, viewpoint: &Viewpoint) {
         let Viewpoint { world_to_camera, world_to_ndc } = viewpoint;
         for (name, matrix) in [("worldToCamera", world_to_camera), ("worldToNDC", world_to_ndc)] {
@@ -85,12 +86,12 @@ impl Attributes {
         }
     }
 
-    /// Texts by key; those without a key are left out.
+    /// Appends metadata as strings; pairs without a key are omitted.
     pub fn texts<'t>(&mut self, texts: impl Iterator<Item = &'t (String, String)>) {
         texts.filter(|(key, _)| !key.is_empty()).for_each(|(key, text)| self.put(key, "string", text.as_bytes()));
     }
 
-    /// All of it, and the zero after it.
+    /// Returns the header with its terminating zero.
     pub fn finish(mut self) -> Vec<u8> {
         self.bytes.push(0);
         self.bytes

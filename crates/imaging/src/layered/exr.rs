@@ -1,11 +1,11 @@
-//! OpenEXR with a part for each layer: scanlines, channels as floats or halves. Blocks are packed by the crate `exr`.
-//! (OpenEXR file layout, openexr.com.)
+//! Multi-part OpenEXR: one scanline part per layer, channels as 32-bit or 16-bit floats. The crate
+//! `exr` compresses the blocks. (OpenEXR file layout, openexr.com.)
 
 use super::attributes::{self, Attributes};
 use super::{LayerHeader, LayerRows, LayeredHeader};
 use crate::output::WriteSeek;
 use crate::tone::Matrix;
-use crate::{ExrCompression, Format, ImageError, SampleDepth};
+use crate::{ExrCompression, ImageError, ImageFormat, SampleDepth};
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
@@ -16,55 +16,55 @@ use exr::prelude::{Compression, f16};
 use juggler_math::Rgb;
 use std::io::{self, SeekFrom};
 
-/// Streams blocks of rows of all parts into an EXR.
+/// Streams rows of all layers into an EXR file.
 pub struct Writer {
     bytes: Box<dyn WriteSeek>,
-    place: String,
+    file: String,
     headers: Vec<ExrHeader>,
     parts: Vec<Part>,
     width: usize,
     height: usize,
     block_rows: usize,
-    /// Where the tables of offsets stand, and the file's end so far.
+    /// Offset of the chunk offset tables, and current end of the file.
     tables: u64,
     end: u64,
 }
 
-/// One part on its way.
+/// State of one part.
 struct Part {
     depth: SampleDepth,
-    /// To the file's primaries, where its channels are a colour.
+    /// Matrix to the file's primaries, for color layers.
     primaries: Option<Matrix>,
-    /// Which of the layer's channels come in the order of their names.
+    /// Channel indices sorted by channel name.
     order: Vec<usize>,
-    /// Rows of a block that is not full yet, channel by channel.
+    /// Buffered rows of the current block, per channel.
     pending: Vec<Vec<f32>>,
     offsets: Vec<u64>,
 }
 
 impl Writer {
-    pub fn new(mut bytes: Box<dyn WriteSeek>, place: String, header: &LayeredHeader) -> Result<Self, ImageError> {
+    pub fn new(mut bytes: Box<dyn WriteSeek>, file: String, header: &LayeredHeader) -> Result<Self, ImageError> {
         let (width, height) = (header.width as usize, header.height as usize);
-        let block_rows = packing(header.compression).scan_lines_per_block();
+        let block_rows = exr_compression(header.compression).scan_lines_per_block();
         let blocks = height.div_ceil(block_rows);
         let start = header_bytes(header, blocks);
         let tables = start.len() as u64;
         let end = tables + 8 * (blocks * header.layers.len()) as u64;
         let written = bytes.write_all(&start).and_then(|()| bytes.seek(SeekFrom::Start(end)));
         if let Err(source) = written {
-            return Err(ImageError::Write { place, source });
+            return Err(ImageError::Write { file, source });
         }
         let headers = header.layers.iter().map(|layer| description(layer, header)).collect();
         let part = |layer: &LayerHeader| {
-            let primaries = header.primaries.conversion().filter(|_| layer.is_color);
+            let primaries = header.primaries.matrix_from_srgb().filter(|_| layer.is_color);
             let (order, pending) = (by_name(layer), vec![Vec::new(); layer.channels.len()]);
             Part { depth: layer.depth, primaries, order, pending, offsets: Vec::with_capacity(blocks) }
         };
         let parts = header.layers.iter().map(part).collect();
-        Ok(Self { bytes, place, headers, parts, width, height, block_rows, tables, end })
+        Ok(Self { bytes, file, headers, parts, width, height, block_rows, tables, end })
     }
 
-    /// Writes what waits of a part.
+    /// Compresses and writes the buffered block of a part.
     fn write_block(&mut self, number: usize) -> Result<(), ImageError> {
         let Some(part) = self.parts.get_mut(number) else { return Ok(()) };
         let rows = part.pending.first().map_or(0, Vec::len) / self.width.max(1);
@@ -83,14 +83,14 @@ impl Writer {
     }
 
     fn failed(&self, source: io::Error) -> ImageError {
-        ImageError::Write { place: self.place.clone(), source }
+        ImageError::Write { file: self.file.clone(), source }
     }
 
     fn refused(&self, error: &ExrError) -> ImageError {
-        ImageError::Encode { place: self.place.clone(), format: Format::Exr, message: error.to_string() }
+        ImageError::Encode { file: self.file.clone(), format: ImageFormat::Exr, message: error.to_string() }
     }
 
-    /// Takes one row of all channels, and writes the blocks that it fills.
+    /// Takes one row of all channels and writes the blocks that it completes.
     fn write_row(&mut self, channels: &[&[f32]], row: usize) -> Result<(), ImageError> {
         let mut channels = channels.iter();
         let pixels = row * self.width..(row + 1) * self.width;
@@ -126,7 +126,7 @@ impl LayerRows for Writer {
 }
 
 impl Part {
-    /// Takes one row of its channels.
+    /// Buffers one row of the part's channels.
     fn take(&mut self, channels: &[&[f32]]) {
         let (Some(matrix), [red, green, blue]) = (&self.primaries, channels) else {
             return self.pending.iter_mut().zip(channels).for_each(|(pending, row)| pending.extend_from_slice(row));
@@ -137,7 +137,7 @@ impl Part {
         }
     }
 
-    /// A block's samples: row by row, in each channel after channel by name.
+    /// Samples of the buffered block: row by row, within a row channel by channel, sorted by name.
     fn planes(&self, width: usize) -> Vec<u8> {
         let rows = self.pending.first().map_or(0, Vec::len) / width.max(1);
         let mut data = Vec::new();
@@ -155,14 +155,14 @@ impl Part {
     }
 }
 
-/// Channels stand in the order of their names.
+/// Channel indices sorted by name, as OpenEXR requires.
 fn by_name(layer: &LayerHeader) -> Vec<usize> {
     let mut order: Vec<usize> = (0..layer.channels.len()).collect();
     order.sort_by(|a, b| layer.channels.get(*a).cmp(&layer.channels.get(*b)));
     order
 }
 
-fn packing(compression: ExrCompression) -> Compression {
+fn exr_compression(compression: ExrCompression) -> Compression {
     match compression {
         ExrCompression::None => Compression::Uncompressed,
         ExrCompression::Rle => Compression::RLE,
@@ -170,7 +170,7 @@ fn packing(compression: ExrCompression) -> Compression {
     }
 }
 
-/// What the packer needs to know of a part.
+/// Header for the block compressor.
 fn description(layer: &LayerHeader, header: &LayeredHeader) -> ExrHeader {
     let sample_type = match layer.depth {
         SampleDepth::Float => SampleType::F32,
@@ -180,17 +180,17 @@ fn description(layer: &LayerHeader, header: &LayeredHeader) -> ExrHeader {
     let channels = names.map(|name| ChannelDescription::new(name.as_str(), sample_type, false)).collect();
     let size = (header.width as usize, header.height as usize);
     let plain = ExrHeader::new(layer.name.as_str().into(), size, channels);
-    plain.with_encoding(packing(header.compression), BlockDescription::ScanLines, LineOrder::Increasing)
+    plain.with_encoding(exr_compression(header.compression), BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
-/// Magic, version and the headers of all parts.
+/// Magic number, version and headers of all parts.
 fn header_bytes(header: &LayeredHeader, blocks: usize) -> Vec<u8> {
     let several = header.layers.len() > 1;
     let texts = header.layers.iter().flat_map(|layer| &layer.metadata).chain(&header.metadata);
     let names = texts.map(|(key, _)| key).chain(header.layers.iter().flat_map(|layer| &layer.channels));
     let mut bytes = attributes::start(names.map(String::len).max().unwrap_or(0), several);
     for (number, layer) in header.layers.iter().enumerate() {
-        // Texts of the picture stand in its first part.
+        // The image's metadata goes to the first part.
         let common = if number == 0 { header.metadata.as_slice() } else { &[] };
         bytes.extend(part_bytes(header, layer, common, several.then_some(blocks)));
     }
@@ -200,7 +200,7 @@ fn header_bytes(header: &LayeredHeader, blocks: usize) -> Vec<u8> {
     bytes
 }
 
-/// The attributes of one part; `blocks` where there are several parts.
+/// Header of one part; `blocks` is the number of chunks in a multi-part file.
 fn part_bytes(
     header: &LayeredHeader,
     layer: &LayerHeader,
@@ -210,7 +210,8 @@ fn part_bytes(
     let mut attributes = Attributes::default();
     let names = by_name(layer).into_iter().filter_map(|channel| layer.channels.get(channel));
     attributes.channels(names.map(String::as_str), layer.depth);
-    // All parts of a file must say the same of it (OpenEXR, "shared attributes").
+    // Chromaticities are a shared attribute: all parts of a file must agree (OpenEXR, "shared
+    // attributes").
     if !header.primaries.is_srgb() && (layer.is_color || blocks.is_some()) {
         attributes.chromaticities(header.primaries.chromaticities());
     }

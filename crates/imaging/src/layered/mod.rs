@@ -1,6 +1,6 @@
-//! Files of many layers: one EXR with a part for each, or a file for each layer.
+//! Files with several layers (AOVs): a multi-part EXR, or one file per layer.
 //!
-//! Rows come for all layers together, so that a large picture needs no more memory than the film that it comes from.
+//! Rows of all layers are streamed together, so that memory does not depend on the image height.
 
 mod attributes;
 pub(crate) mod exr;
@@ -14,65 +14,67 @@ use std::path::{Path, PathBuf};
 
 pub use read::{LayerName, layer_names, read_layer};
 
-/// What stands for a layer's name in the name of a file.
+/// Placeholder for the layer name in file names.
 pub const PLACEHOLDER: &str = "{}";
 
-/// One layer.
+/// Name, channels and sample type of a layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerHeader {
-    /// What it is called.
+    /// Name of the layer.
     pub name: String,
-    /// What its channels are called in an EXR.
+    /// Channel names in an EXR file.
     pub channels: Vec<String>,
-    /// How exact an EXR keeps it.
+    /// Sample type in an EXR file.
     pub depth: SampleDepth,
-    /// Whether its three channels are red, green and blue in the primaries of sRGB, which an EXR turns into its own.
+    /// Whether the three channels are RGB with sRGB primaries, which EXR files convert to their
+    /// own.
     pub is_color: bool,
-    /// Texts by key, in order, for an EXR.
+    /// Metadata for an EXR file, as pairs of key and text.
     pub metadata: Vec<(String, String)>,
 }
 
 impl LayerHeader {
-    /// A layer whose channels carry its name: `normal.X`.
+    /// A layer whose channels are prefixed with its name, such as `normal.X`.
     pub fn new(name: &str, channels: &[&str]) -> Self {
         let channels = channels.iter().map(|channel| format!("{name}.{channel}")).collect();
         let (name, depth) = (name.to_owned(), SampleDepth::Float);
         Self { name, channels, depth, is_color: false, metadata: Vec::new() }
     }
 
-    /// A layer of colours.
+    /// An RGB layer.
     pub fn color(name: &str) -> Self {
         Self { is_color: true, ..Self::new(name, &["R", "G", "B"]) }
     }
 
-    /// The picture itself, whose channels are plain `R`, `G` and `B`.
+    /// The rendered image itself, with channels `R`, `G` and `B`.
     pub fn beauty(depth: SampleDepth) -> Self {
         let channels = ["R", "G", "B"].map(str::to_owned).to_vec();
         Self { name: "beauty".to_owned(), channels, depth, is_color: true, metadata: Vec::new() }
     }
 }
 
-/// A picture of many layers.
+/// Properties of an image with several layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayeredHeader {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// All layers.
+    /// Layers, in order.
     pub layers: Vec<LayerHeader>,
-    /// Packing of an EXR; nothing is lost by any.
+    /// Compression of EXR files, always lossless.
     pub compression: ExrCompression,
-    /// The primaries of an EXR's colours. An NPY, which cannot say so, keeps those of sRGB.
+    /// Primaries of color layers in EXR files; NPY files keep sRGB, since they cannot state
+    /// primaries.
     pub primaries: Primaries,
-    /// Texts of the picture as a whole.
+    /// Metadata of the whole image.
     pub metadata: Vec<(String, String)>,
-    /// From where it was taken, if anybody knows.
+    /// Camera matrices, if known.
     pub viewpoint: Option<Viewpoint>,
 }
 
 impl LayeredHeader {
-    /// With what `header` says of the picture.
+    /// Takes size, options and metadata from `header`.
     pub fn new(header: &Header, layers: Vec<LayerHeader>) -> Self {
         Self {
             width: header.width,
@@ -86,80 +88,84 @@ impl LayeredHeader {
     }
 }
 
-/// Writes rows of layers to their files, which take their places when all are finished.
+/// Streams layers to one or several files, which replace their destinations when all are complete.
 pub struct LayeredWriter {
-    files: Vec<Piece>,
+    files: Vec<LayerFile>,
     width: usize,
 }
 
-/// One file, and which of all channels go there.
-struct Piece {
+/// One file and the range of channels that it stores.
+struct LayerFile {
     writer: Box<dyn LayerRows>,
     channels: std::ops::Range<usize>,
     file: Option<AtomicFile>,
     name: String,
 }
 
-/// A file of some channels.
+/// Encoder of a layered file.
 pub(crate) trait LayerRows: Send {
-    /// Takes the next rows, channel by channel.
+    /// Encodes the next rows, given per channel.
     fn write_rows(&mut self, channels: &[&[f32]]) -> Result<(), ImageError>;
-    /// Writes what is left.
+    /// Writes the remaining data.
     fn finish(&mut self) -> Result<(), ImageError>;
 }
 
 impl LayeredWriter {
-    /// Begins `path`: an EXR of all layers; where its name holds [`PLACEHOLDER`], a file for each layer, EXR or NPY (an
-    /// array of rows × columns × channels for NumPy).
+    /// Creates a multi-part EXR at `path`. If the file name contains [`PLACEHOLDER`], creates one
+    /// file per layer instead, EXR or NPY (a NumPy array of shape height × width × channels).
+    ///
+    /// # Errors
+    ///
+    /// [`ImageError::Layers`] for other file extensions.
     pub fn create(path: &Path, header: &LayeredHeader) -> Result<Self, ImageError> {
         let name = path.to_string_lossy();
         let mut files = Vec::new();
         if !name.contains(PLACEHOLDER) {
             let all = header.layers.iter().map(|layer| layer.channels.len()).sum();
-            files.push(piece(path, header, 0..all)?);
+            files.push(layer_file(path, header, 0..all)?);
         } else {
             let mut start = 0;
             for layer in &header.layers {
                 let end = start + layer.channels.len();
                 let one = LayeredHeader { layers: vec![layer.clone()], ..header.clone() };
-                files.push(piece(&PathBuf::from(name.replace(PLACEHOLDER, &layer.name)), &one, start..end)?);
+                files.push(layer_file(&PathBuf::from(name.replace(PLACEHOLDER, &layer.name)), &one, start..end)?);
                 start = end;
             }
         }
         Ok(Self { files, width: header.width as usize })
     }
 
-    /// Writes the next rows of all channels of all layers, in order; each as many values as the others.
+    /// Writes the next rows of all channels of all layers, in order; all have the same length.
     pub fn write_rows(&mut self, channels: &[Vec<f32>]) -> Result<(), ImageError> {
         debug_assert!(channels.iter().all(|channel| channel.len().is_multiple_of(self.width.max(1))));
-        for piece in &mut self.files {
-            let rows = channels.get(piece.channels.clone()).unwrap_or_default();
-            piece.writer.write_rows(&rows.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
+        for layer_file in &mut self.files {
+            let rows = channels.get(layer_file.channels.clone()).unwrap_or_default();
+            layer_file.writer.write_rows(&rows.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
         }
         Ok(())
     }
 
-    /// Writes what is left, then puts every file in its place.
+    /// Completes all files, then moves each to its destination.
     pub fn finish(mut self) -> Result<(), ImageError> {
-        self.files.iter_mut().try_for_each(|piece| piece.writer.finish())?;
-        for Piece { writer, file, name, .. } in self.files {
+        self.files.iter_mut().try_for_each(|layer_file| layer_file.writer.finish())?;
+        for LayerFile { writer, file, name, .. } in self.files {
             drop(writer);
             let commit = file.map_or(Ok(()), AtomicFile::commit);
-            commit.map_err(|source| ImageError::Write { place: name, source })?;
+            commit.map_err(|source| ImageError::Write { file: name, source })?;
         }
         Ok(())
     }
 }
 
-fn piece(path: &Path, header: &LayeredHeader, channels: std::ops::Range<usize>) -> Result<Piece, ImageError> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    let is_npy = match ending.as_ref().and_then(|ending| ending.to_str()) {
+fn layer_file(path: &Path, header: &LayeredHeader, channels: std::ops::Range<usize>) -> Result<LayerFile, ImageError> {
+    let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+    let is_npy = match extension.as_ref().and_then(|extension| extension.to_str()) {
         Some("exr") => false,
         Some("npy") => true,
-        _ => return Err(ImageError::Layers { place: path.display().to_string() }),
+        _ => return Err(ImageError::Layers { file: path.display().to_string() }),
     };
     if is_npy && header.layers.len() > 1 {
-        return Err(ImageError::Layers { place: path.display().to_string() });
+        return Err(ImageError::Layers { file: path.display().to_string() });
     }
     let (destination, file) = whole_file(path)?;
     let name = destination.name().to_owned();
@@ -168,7 +174,7 @@ fn piece(path: &Path, header: &LayeredHeader, channels: std::ops::Range<usize>) 
         true => Box::new(npy::Writer::new(sink, name.clone(), header)?),
         false => Box::new(exr::Writer::new(sink, name.clone(), header)?),
     };
-    Ok(Piece { writer, channels, file, name })
+    Ok(LayerFile { writer, channels, file, name })
 }
 
 #[cfg(test)]

@@ -1,21 +1,21 @@
-//! NPY, the format of NumPy's arrays: version 1.0, little-endian floats, rows × columns × channels.
+//! NPY, NumPy's array format: version 1.0, little-endian `f32`, shape height × width × channels.
 
 use super::{LayerRows, LayeredHeader};
 use crate::ImageError;
 use crate::output::WriteSeek;
 use std::io;
 
-/// What the bytes before the array must be a multiple of.
+/// Alignment of the array data in bytes.
 const ALIGNMENT: usize = 64;
 
-/// Streams rows into an array.
+/// Streams rows into an NPY file.
 pub struct Writer {
     bytes: Box<dyn WriteSeek>,
-    place: String,
+    file: String,
 }
 
 impl Writer {
-    pub fn new(mut bytes: Box<dyn WriteSeek>, place: String, header: &LayeredHeader) -> Result<Self, ImageError> {
+    pub fn new(mut bytes: Box<dyn WriteSeek>, file: String, header: &LayeredHeader) -> Result<Self, ImageError> {
         let channels: usize = header.layers.iter().map(|layer| layer.channels.len()).sum();
         let (rows, columns) = (header.height, header.width);
         let mut head =
@@ -29,13 +29,13 @@ impl Writer {
             .and_then(|()| bytes.write_all(&(head.len() as u16).to_le_bytes()))
             .and_then(|()| bytes.write_all(head.as_bytes()));
         match written {
-            Ok(()) => Ok(Self { bytes, place }),
-            Err(source) => Err(ImageError::Write { place, source }),
+            Ok(()) => Ok(Self { bytes, file }),
+            Err(source) => Err(ImageError::Write { file, source }),
         }
     }
 
     fn failed(&self, source: io::Error) -> ImageError {
-        ImageError::Write { place: self.place.clone(), source }
+        ImageError::Write { file: self.file.clone(), source }
     }
 }
 

@@ -10,7 +10,7 @@ fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
     LayeredHeader { compression: ExrCompression::Zip, ..LayeredHeader::new(&header, layers) }
 }
 
-/// What a channel is called, and its values.
+/// Channel name and values.
 type Channel = (String, Vec<f32>);
 
 fn value(channel: usize, pixel: usize) -> f32 {
@@ -94,7 +94,7 @@ fn a_file_for_each_layer_and_arrays_for_numpy() {
 }
 
 #[test]
-fn colours_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
+fn colors_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let mut plain = header(&[("normal", &["X", "Y", "Z"])]);
@@ -118,7 +118,7 @@ fn colours_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
         let channels = image.layer_data[layer].channel_data.list.iter().rev();
         channels.map(|channel| channel.sample_data.values_as_f32().collect()).collect()
     };
-    let matrix = Primaries::Acescg.conversion().unwrap();
+    let matrix = Primaries::Acescg.matrix_from_srgb().unwrap();
     for layer in [0, 2] {
         let (from, to) = (values("plain.exr", layer), values("wide.exr", layer));
         for pixel in 0..185 {
@@ -129,7 +129,7 @@ fn colours_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
         }
     }
     assert_eq!(values("plain.exr", 1), values("wide.exr", 1));
-    // Alone, only colours have primaries; arrays cannot name theirs.
+    // In single-layer files only color layers state primaries; arrays cannot.
     assert!(read("normal.exr").attributes.chromaticities.is_none());
     assert!(read("albedo.exr").attributes.chromaticities.is_some());
     let array = std::fs::read(path("albedo.npy")).unwrap();

@@ -1,33 +1,33 @@
-//! Looks: what is done with the levels of a whole picture before they go to its file. They need the whole picture, so it is
-//! held: three bytes a pixel, and two more while it is changed.
+//! Display looks: emulation of old display modes on the levels of a whole image before it is
+//! encoded. The image is buffered with three bytes per pixel, plus two while it is converted.
 
 mod ham;
 mod palette;
 
-pub use ham::Screen;
+pub use ham::HamImage;
 
 use crate::codec::{Header, RowWriter};
 use crate::tone::{Curve, Quantizer, Srgb, Tone};
-use crate::{Format, ImageError};
+use crate::{ImageError, ImageFormat};
 use juggler_math::Rgb;
 
-/// What is done with a picture's levels.
+/// Display look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Look {
-    /// Nothing.
+pub enum DisplayLook {
+    /// No look.
     #[default]
     Plain,
-    /// The Amiga's 4,096 colours, see [`Screen`].
+    /// The Amiga's 4,096-color mode, see [`HamImage`].
     Ham,
-    /// The same, what lies between them dithered in a pattern that stands still in films.
+    /// The same with ordered dithering, whose pattern is static in movies.
     HamDithered,
 }
 
-impl Look {
-    /// Those that can be chosen.
+impl DisplayLook {
+    /// All selectable looks.
     pub const ALL: [Self; 2] = [Self::Ham, Self::HamDithered];
 
-    /// As people call it.
+    /// Name on command lines.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -36,32 +36,32 @@ impl Look {
         }
     }
 
-    /// Bytes of memory a pixel.
-    pub(crate) fn bytes_a_pixel(self) -> u64 {
+    /// Memory in bytes per pixel.
+    pub(crate) fn bytes_per_pixel(self) -> u64 {
         if self == Self::Plain { 0 } else { 6 }
     }
 }
 
-/// Gathers rows, and hands them on in their look at the end.
+/// Buffers rows and passes the converted image on at the end.
 pub(crate) struct Writer {
     inner: Box<dyn RowWriter>,
     quantizer: Quantizer,
-    look: Look,
+    look: DisplayLook,
     width: usize,
     bytes: Vec<u8>,
 }
 
 impl Writer {
-    /// In front of the writer that `begin` makes; the tone is applied here already.
-    pub fn before(
+    /// Wraps the encoder that `begin` creates; tone mapping takes place here instead.
+    pub fn wrap(
         header: &Header,
         begin: impl FnOnce(&Header) -> Result<Box<dyn RowWriter>, ImageError>,
     ) -> Result<Box<dyn RowWriter>, ImageError> {
         let look = header.options.look;
-        if look == Look::Plain {
+        if look == DisplayLook::Plain {
             return begin(header);
         }
-        // Levels already: nothing lies between them.
+        // The look produces exact levels, so dithering is pointless.
         let tone = Tone { dither: false, ..Tone::default() };
         let inner = begin(&Header { tone, ..header.clone() })?;
         let quantizer = Quantizer::new(&header.tone, 255);
@@ -76,11 +76,11 @@ impl RowWriter for Writer {
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
-        let screen = Screen::new(&self.bytes, self.width, self.look == Look::HamDithered);
+        let image = HamImage::new(&self.bytes, self.width, self.look == DisplayLook::HamDithered);
         self.bytes = Vec::new();
         let linear: [f32; 16] = std::array::from_fn(|level| Srgb {}.decode(level as f64 / 15.0) as f32);
         let light = |level: u8| linear[usize::from(level & 15)];
-        for row in screen.rows() {
+        for row in image.rows() {
             let row: Vec<Rgb> = row.map(|[r, g, b]| Rgb::new(light(r), light(g), light(b))).collect();
             self.inner.write_rows(&row)?;
         }
@@ -88,16 +88,16 @@ impl RowWriter for Writer {
     }
 }
 
-impl Format {
-    /// Whether a look shows in such a file: it is one of levels.
-    pub fn has_looks(self) -> bool {
+impl ImageFormat {
+    /// Whether display looks apply to the format: it stores levels.
+    pub fn supports_display_looks(self) -> bool {
         self.is_tone_mapped()
     }
 }
 
-/// What an ordered pattern (Bayer 1973) adds to the levels of a pixel, so that they lie `span` apart at most.
-pub(crate) fn threshold(x: usize, y: usize, span: i32) -> i32 {
-    // The bits of x ^ y and y, interleaved and reversed: Bayer's matrix of 8 × 8.
+/// Offset of the ordered dither pattern (Bayer 1973) at a pixel, between ±`span` / 2 levels.
+pub(crate) fn bayer_offset(x: usize, y: usize, span: i32) -> i32 {
+    // Bayer's 8 × 8 matrix: interleave and reverse the bits of x ^ y and y.
     let (a, b) = (x ^ y, y);
     let rank = (0..3).fold(0, |rank, bit| rank << 2 | (a >> bit & 1) << 1 | (b >> bit & 1));
     (rank as i32 * 2 - 63) * span / 126

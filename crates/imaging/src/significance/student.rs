@@ -1,41 +1,47 @@
-//! Student's t distribution: how likely a deviation is.
+//! Student's t distribution.
 
-use juggler_math::fun;
+use juggler_math::portable;
 
-/// Steps after which a continued fraction has long converged.
-const MOST_STEPS: u32 = 10_000;
-/// Relative change at which it has.
-const DONE: f64 = 1e-14;
-/// Stands for 0 in a denominator.
+/// Maximum number of steps of the continued fraction.
+const MAX_STEPS: u32 = 10_000;
+/// Relative change at which the continued fraction has converged.
+const TOLERANCE: f64 = 1e-14;
+/// Replaces zero denominators.
 const TINY: f64 = 1e-300;
 
-/// The chance of a value that lies as far from 0 as `t` or further, with so many degrees of freedom, 1 or more.
-pub fn two_sided(t: f64, freedom: f64) -> f64 {
-    beta_share(freedom / 2.0, 0.5, freedom / (freedom + t * t), t * t / (freedom + t * t))
+/// Two-sided p-value: probability that |T| is at least |`t`|, for `degrees_of_freedom` >= 1 degrees
+/// of freedom.
+pub fn two_sided(t: f64, degrees_of_freedom: f64) -> f64 {
+    incomplete_beta(
+        degrees_of_freedom / 2.0,
+        0.5,
+        degrees_of_freedom / (degrees_of_freedom + t * t),
+        t * t / (degrees_of_freedom + t * t),
+    )
 }
 
-/// The regularised incomplete beta function I_x(a, b); `rest` is 1 - x. By its continued fraction (Abramowitz and Stegun 1964,
-/// 26.5.8), where that converges fast, or that of the other side.
-fn beta_share(a: f64, b: f64, x: f64, rest: f64) -> f64 {
+/// Regularized incomplete beta function I_x(a, b), with `rest` = 1 - x, by the continued fraction
+/// of Abramowitz and Stegun (1964, 26.5.8) or its complement, whichever converges faster.
+fn incomplete_beta(a: f64, b: f64, x: f64, rest: f64) -> f64 {
     if x <= 0.0 || rest <= 0.0 {
         return if x <= 0.0 { 0.0 } else { 1.0 };
     }
-    let front = ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * fun::ln_f64(x) + b * fun::ln_f64(rest);
-    let front = fun::exp_f64(front);
+    let front = ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * portable::ln_f64(x) + b * portable::ln_f64(rest);
+    let front = portable::exp_f64(front);
     let share = if x < (a + 1.0) / (a + b + 2.0) {
-        front * fraction(a, b, x) / a
+        front * continued_fraction(a, b, x) / a
     } else {
-        1.0 - front * fraction(b, a, rest) / b
+        1.0 - front * continued_fraction(b, a, rest) / b
     };
     share.clamp(0.0, 1.0)
 }
 
-/// The continued fraction 1 / (1 + d1 / (1 + d2 / ...)), from its front (Lentz 1976).
-fn fraction(a: f64, b: f64, x: f64) -> f64 {
+/// Evaluates the continued fraction 1 / (1 + d1 / (1 + d2 / ...)) forward (Lentz 1976).
+fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
     let safe = |value: f64| if value.abs() < TINY { TINY } else { value };
     let (mut c, mut d) = (1.0, 1.0 / safe(1.0 - (a + b) * x / (a + 1.0)));
     let mut value = d;
-    for step in 1..MOST_STEPS {
+    for step in 1..MAX_STEPS {
         let m = f64::from(step);
         let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
         let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
@@ -45,14 +51,14 @@ fn fraction(a: f64, b: f64, x: f64) -> f64 {
             c = safe(1.0 + term / c);
             value *= c * d;
         }
-        if (value / before - 1.0).abs() < DONE {
+        if (value / before - 1.0).abs() < TOLERANCE {
             break;
         }
     }
     value
 }
 
-/// ln Γ(x) for x > 0: Stirling's series, from 10 on, where its error is below 1e-14.
+/// ln Γ(x) for x > 0: recurrence up to x >= 10, then Stirling's series with an error below 1e-14.
 fn ln_gamma(mut x: f64) -> f64 {
     let mut product = 1.0;
     while x < 10.0 {
@@ -62,7 +68,8 @@ fn ln_gamma(mut x: f64) -> f64 {
     let square = 1.0 / (x * x);
     let series =
         1.0 / 12.0 - square * (1.0 / 360.0 - square * (1.0 / 1260.0 - square * (1.0 / 1680.0 - square / 1188.0)));
-    (x - 0.5) * fun::ln_f64(x) - x + 0.5 * fun::ln_f64(std::f64::consts::TAU) + series / x - fun::ln_f64(product)
+    (x - 0.5) * portable::ln_f64(x) - x + 0.5 * portable::ln_f64(std::f64::consts::TAU) + series / x
+        - portable::ln_f64(product)
 }
 
 #[cfg(test)]
@@ -71,7 +78,7 @@ mod tests {
 
     #[test]
     fn tables_and_closed_forms() {
-        // Student's table of two-sided 5 %, 1 % and 0.1 %.
+        // Table of two-sided quantiles at 5 %, 1 % and 0.1 %.
         let table = [
             (12.706_204_736, 1.0, 0.05),
             (4.302_652_730, 2.0, 0.05),
@@ -81,12 +88,12 @@ mod tests {
             (1.959_963_985, 1e6, 0.05),
             (4.891_638_476, 1e6, 1e-6),
         ];
-        for (t, freedom, p) in table {
-            let found = two_sided(t, freedom);
-            assert!((found / p - 1.0).abs() < 2e-4, "{t} {freedom}: {found} instead of {p}");
-            assert_eq!(found, two_sided(-t, freedom));
+        for (t, degrees_of_freedom, p) in table {
+            let found = two_sided(t, degrees_of_freedom);
+            assert!((found / p - 1.0).abs() < 2e-4, "{t} {degrees_of_freedom}: {found} instead of {p}");
+            assert_eq!(found, two_sided(-t, degrees_of_freedom));
         }
-        // Cauchy's: 1 - 2 atan(t) / π. Of two degrees: 1 - t / √(2 + t²).
+        // One degree of freedom (Cauchy): 1 - 2 atan(t) / π. Two degrees: 1 - t / √(2 + t²).
         for t in [0.01f64, 0.5, 1.0, 3.0, 40.0] {
             assert!((two_sided(t, 1.0) - (1.0 - 2.0 * t.atan() / std::f64::consts::PI)).abs() < 1e-12);
             assert!((two_sided(t, 2.0) - (1.0 - t / (2.0 + t * t).sqrt())).abs() < 1e-12);

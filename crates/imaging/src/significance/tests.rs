@@ -3,21 +3,21 @@ use juggler_math::testing::Random;
 
 const BLOCKS: u32 = 4;
 
-/// What one sample of a pixel brings.
+/// Distribution of a sample, given its mean.
 type Law = fn(&mut Random, f32) -> f32;
 
 fn even(random: &mut Random, mean: f32) -> f32 {
     2.0 * mean * random.f32()
 }
 
-/// One sample of 40 has it all.
+/// One sample of 40 carries all the energy, like a firefly.
 fn rare(random: &mut Random, mean: f32) -> f32 {
     if random.f32() < 0.025 { 40.0 * mean } else { 0.0 }
 }
 
-/// Pixels of 64 samples each, in blocks as a film has them.
-fn estimate(random: &mut Random, size: [u32; 2], law: Law, mean: impl Fn(u32, u32) -> f32) -> Estimate {
-    let mut made = Estimate { width: size[0], height: size[1], mean: vec![], variance: vec![], blocks: vec![] };
+/// Image with 64 samples per pixel in blocks of 16, like a film's.
+fn estimate(random: &mut Random, size: [u32; 2], law: Law, mean: impl Fn(u32, u32) -> f32) -> NoisyImage {
+    let mut made = NoisyImage { width: size[0], height: size[1], mean: vec![], variance: vec![], blocks: vec![] };
     for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
         let mut block = || (0..16).map(|_| law(random, mean(x, y))).sum::<f32>() / 16.0;
         let means: Vec<f32> = (0..BLOCKS).map(|_| block()).collect();
@@ -35,11 +35,11 @@ fn scene(x: u32, y: u32) -> f32 {
     if y < 20 { 0.0 } else { 0.2 + ((x / 7 + y / 5) % 4) as f32 }
 }
 
-fn p(a: &Estimate, b: &Estimate) -> f64 {
+fn p(a: &NoisyImage, b: &NoisyImage) -> f64 {
     significance(a, b).unwrap().p
 }
 
-/// The chances of pairs of pictures that are the same.
+/// P-values of pairs of images with equal means.
 fn chances(law: Law, count: usize, size: [u32; 2]) -> Vec<f64> {
     let mut random = Random::new(41);
     let mut pair = || (estimate(&mut random, size, law, scene), estimate(&mut random, size, law, scene));
@@ -49,7 +49,7 @@ fn chances(law: Law, count: usize, size: [u32; 2]) -> Vec<f64> {
 #[test]
 fn chances_of_equals_are_even_and_false_alarms_as_rare_as_promised() {
     let even = chances(even, 150, [64, 48]);
-    // A little on the safe side: blocks of all sizes hang together.
+    // The test is slightly conservative, since blocks of different sizes are correlated.
     let mean = even.iter().sum::<f64>() / even.len() as f64;
     assert!((0.45..0.7).contains(&mean), "{mean}");
     let below = |chances: &[f64], level: f64| chances.iter().filter(|p| **p <= level).count();
@@ -96,7 +96,7 @@ fn one_pixel_alone_never_decides() {
 
 #[test]
 fn what_has_no_noise_is_the_same_or_not() {
-    let flat = |value: f32| Estimate {
+    let flat = |value: f32| NoisyImage {
         width: 40,
         height: 20,
         mean: vec![Rgb::splat(value); 800],
@@ -106,18 +106,21 @@ fn what_has_no_noise_is_the_same_or_not() {
     assert_eq!(p(&flat(1.0), &flat(1.0)), 1.0);
     assert!(p(&flat(1.0), &flat(1.0f32.next_up())) > 0.1, "rounding");
     assert!(p(&flat(1.0), &flat(1.01)) < 1e-6);
-    assert_eq!(significance(&flat(1.0), &Estimate { width: 20, height: 40, ..flat(1.0) }), Err(Untested::Sizes));
-    let few = Estimate { blocks: vec![1; 800], ..flat(1.0) };
-    assert_eq!(significance(&flat(1.0), &few), Err(Untested::TooFew));
-    let odd = Estimate { mean: vec![Rgb::splat(f32::NAN); 800], ..flat(1.0) };
-    assert_eq!(significance(&odd, &flat(1.0)), Err(Untested::NotFinite));
-    let none = Estimate { width: 0, height: 0, mean: vec![], variance: vec![], blocks: vec![] };
+    assert_eq!(
+        significance(&flat(1.0), &NoisyImage { width: 20, height: 40, ..flat(1.0) }),
+        Err(SignificanceError::Sizes)
+    );
+    let few = NoisyImage { blocks: vec![1; 800], ..flat(1.0) };
+    assert_eq!(significance(&flat(1.0), &few), Err(SignificanceError::TooFew));
+    let odd = NoisyImage { mean: vec![Rgb::splat(f32::NAN); 800], ..flat(1.0) };
+    assert_eq!(significance(&odd, &flat(1.0)), Err(SignificanceError::NotFinite));
+    let none = NoisyImage { width: 0, height: 0, mean: vec![], variance: vec![], blocks: vec![] };
     assert_eq!(p(&none, &none), 1.0);
 }
 
 #[test]
 fn degrees_of_freedom_of_few_blocks() {
     for (blocks, expected) in [(0, 0.0), (1, 0.0), (2, 1.0), (4, 2.0), (8, 2.6849), (1 << 20, 3.5)] {
-        assert!((freedom(blocks) - expected).abs() < 1e-4, "{blocks}: {}", freedom(blocks));
+        assert!((degrees_of_freedom(blocks) - expected).abs() < 1e-4, "{blocks}: {}", degrees_of_freedom(blocks));
     }
 }

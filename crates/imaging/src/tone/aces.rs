@@ -1,17 +1,19 @@
-//! A fit to the Academy's reference rendering and output transform for sRGB (ACES 1.0: RRT and ODT), by Stephen Hill (in
-//! Matt Pettineo's BakingLab, ACES.hlsl, 2017): into a space near AP1 that holds the RRT's desaturation, a rational
-//! curve per channel, and back. In JSON: `{"aces": {}}`.
+//! Fit by Stephen Hill (Matt Pettineo's BakingLab, ACES.hlsl, 2017) to the reference rendering
+//! transform and sRGB output transform of ACES 1.0 (RRT and ODT): a matrix to a space near AP1 that
+//! includes the RRT's desaturation, a rational curve per channel, and a matrix back. In JSON:
+//! `{"aces": {}}`.
 //!
-//! Deviation: what comes out below 0 or above 1 is brought back along a line of constant luminance and hue instead of being
-//! clipped per channel.
+//! Deviation: values outside 0 to 1 are brought into gamut at constant luminance and hue instead of
+//! being clipped per channel.
 
 use super::ToneMapper;
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The look of films by the Academy's ACES 1.0, as fitted by Stephen Hill: rich in contrast; bright colours go to white. The
-/// exposure is that of the transform: middle grey 0.18 comes out darker than it went in.
+/// Filmic tone curve of ACES 1.0, as fitted by Stephen Hill. High contrast; bright colors
+/// desaturate towards white. The curve keeps the exposure of ACES: middle gray 0.18 becomes 0.106,
+/// so raise `exposure_stops` if the image looks too dark.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Aces {}
@@ -33,7 +35,7 @@ impl ToneMapper for Aces {
     }
 }
 
-/// The fit to both curves together; far above 1 it stays at its limit.
+/// Rational fit to RRT and ODT combined; large inputs converge to its limit.
 fn fit(v: f32) -> f32 {
     let v = v.clamp(0.0, 1e6);
     (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951) + 0.238_081)
@@ -44,7 +46,7 @@ mod tests {
     use super::*;
     use juggler_math::testing::Random;
 
-    /// The published formula, in double precision.
+    /// Published formula in double precision.
     fn reference(light: [f64; 3]) -> [f64; 3] {
         let times = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum::<f64>());
         let input = [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]];
@@ -57,7 +59,7 @@ mod tests {
     fn it_is_the_published_formula() {
         let mut random = Random::new(8);
         for _ in 0..5_000 {
-            let light = random.rgb() * juggler_math::fun::exp2(random.range(-8.0, 6.0));
+            let light = random.rgb() * juggler_math::portable::exp2(random.range(-8.0, 6.0));
             let (found, expected) = (Aces {}.map(light), reference(light.to_array().map(f64::from)));
             for (a, b) in found.to_array().into_iter().zip(expected) {
                 assert!((f64::from(a) - b).abs() < 2e-6, "{light:?}: {found:?} is not {expected:?}");
@@ -67,14 +69,15 @@ mod tests {
 
     #[test]
     fn greys_stay_grey_and_rise_to_white() {
-        let grey = |v: f32| Aces {}.map(Rgb::splat(v));
+        let gray = |v: f32| Aces {}.map(Rgb::splat(v));
         for i in 0..100 {
-            let Rgb { r, g, b } = grey(i as f32 * 0.1);
+            let Rgb { r, g, b } = gray(i as f32 * 0.1);
             assert!((r - g).abs() < 1e-4 && (g - b).abs() < 1e-4);
-            assert!(g < grey((i + 1) as f32 * 0.1).g);
+            assert!(g < gray((i + 1) as f32 * 0.1).g);
         }
-        // The fit's value at middle grey, by hand: 0.18 (0.2045786) - 0.000090537 over 0.18 (0.610022) + 0.238081.
-        assert!((grey(0.18).g - 0.105_63).abs() < 1e-4, "{:?}", grey(0.18));
-        assert!(grey(1e30).is_finite() && (grey(1e30).g - 1.0165).abs() < 1e-3);
+        // Value at middle gray, by hand:
+        // (0.18 * 0.2045786 - 0.000090537) / (0.18 * 0.610022 + 0.238081).
+        assert!((gray(0.18).g - 0.105_63).abs() < 1e-4, "{:?}", gray(0.18));
+        assert!(gray(1e30).is_finite() && (gray(1e30).g - 1.0165).abs() < 1e-3);
     }
 }

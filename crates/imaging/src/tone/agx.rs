@@ -1,60 +1,63 @@
-//! AgX (Troy Sobotka, AgX-S2O3, 2022), as it became known through Blender 4, Filament and three.js: in the primaries of BT.2020
-//! colours are drawn together (the inset, so that bright ones lose their colour gracefully), 16.5 stops around middle grey
-//! are taken by their logarithm through a sigmoid per channel, and drawn apart again. In JSON: `{"agx": {"look": "punchy"}}`.
+//! AgX (Troy Sobotka, AgX-S2O3, 2022), as adopted by Blender 4, Filament and three.js: in BT.2020
+//! primaries, an inset matrix desaturates colors so that bright ones fade gracefully, a sigmoid
+//! maps the logarithm of 16.5 stops around middle gray per channel, and an outset matrix restores
+//! saturation. In JSON: `{"agx": {"look": "punchy"}}`.
 //!
-//! - Inset and outset are the matrices of Filament and three.js. The sigmoid is Sobotka's own closed form (slope 2 at the pivot
-//!   of 10 / 16.5 and 0.5; powers 3 in the shadows and 3.25 in the lights), where most programs take a polynomial
-//!   fitted to it (Benjamin Wrensch, Minimal AgX implementation, 2023): it truly begins at 0 and ends at 1.
-//! - The looks are those of Wrensch: slope, power and saturation (ASC CDL) after the sigmoid.
-//! - Deviation: what comes out beyond the display is brought back along a line of constant luminance and hue instead of being
-//!   clipped per channel.
+//! - Inset and outset are the matrices of Filament and three.js. The sigmoid is Sobotka's closed
+//!   form (slope 2 at the pivot (10 / 16.5, 0.5); powers 3 in shadows and 3.25 in highlights),
+//!   which maps 0 to 0 and 1 to 1; most programs use a polynomial fit instead (Benjamin Wrensch,
+//!   Minimal AgX implementation, 2023).
+//! - The looks are Wrensch's: slope, power and saturation (ASC CDL) after the sigmoid.
+//! - Deviation: values outside the display's gamut are brought into it at constant luminance and
+//!   hue instead of being clipped per channel.
 
 use super::ToneMapper;
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Log2 of the darkest and the brightest light: 10 stops below and 6.5 above middle grey of 0.18.
+/// Log2 of the darkest and brightest radiance: 10 stops below and 6.5 stops above middle gray 0.18.
 const DARKEST: f32 = -12.473_931;
 const BRIGHTEST: f32 = 4.026_069;
-/// Where middle grey lies among them, and what it becomes.
+/// Pivot of the sigmoid: position of middle gray, and its output.
 const PIVOT: [f32; 2] = [10.0 / 16.5, 0.5];
-/// The sigmoid's slope there.
+/// Slope of the sigmoid at the pivot.
 const SLOPE: f32 = 2.0;
-/// How sharply it bends in shadows and lights, and the scales that follow: it goes through 0 at 0 and through 1 at 1.
+/// Powers of the sigmoid in shadows and highlights, and the scales for which it maps 0 to 0 and 1
+/// to 1.
 const POWERS: [f32; 2] = [3.0, 3.25];
 const SCALES: [f32; 2] = [0.512_277_4, 0.541_464_2];
-/// The display that the curve is made for: its exponent.
+/// Display gamma that the curve is designed for.
 const DISPLAY: f32 = 2.2;
 
-/// AgX: a picture like film's. Bright colours go softly to white, none becomes garish; sixteen stops fit. The range is meant for
-/// scenes in which middle grey is 0.18.
+/// AgX: filmic tone curve over 16.5 stops, from 10 below to 6.5 above middle gray 0.18. Bright
+/// saturated colors fade smoothly to white. Suited to scenes of high contrast.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Agx {
-    /// How strong it is.
+    /// Color grade after the curve; `base` applies none.
     pub look: AgxLook,
 }
 
-/// What is done with AgX's colours.
+/// Color grade of AgX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AgxLook {
-    /// Nothing: flat, a base to grade.
+    /// No grade: low contrast, a basis for color grading.
     #[default]
     Base,
-    /// More contrast and colour.
+    /// More contrast and saturation.
     Punchy,
-    /// Warm and bright.
+    /// Warm tint and brighter mid-tones.
     Golden,
 }
 
 impl ToneMapper for Agx {
     fn map(&self, light: Rgb) -> Rgb {
-        let drawn_together = inset(to_rec2020(light));
-        let encoded = drawn_together.map(|v| (fun::log2(v.max(1e-10)) - DARKEST) / (BRIGHTEST - DARKEST));
+        let desaturated = inset(to_rec2020(light));
+        let encoded = desaturated.map(|v| (portable::log2(v.max(1e-10)) - DARKEST) / (BRIGHTEST - DARKEST));
         let contrast = self.look.grade(encoded.map(sigmoid));
-        from_rec2020(outset(contrast).map(|v| fun::powf(v.max(0.0), DISPLAY)))
+        from_rec2020(outset(contrast).map(|v| portable::powf(v.max(0.0), DISPLAY)))
     }
 }
 
@@ -65,19 +68,19 @@ impl AgxLook {
             Self::Punchy => (Rgb::WHITE, 1.35, 1.4),
             Self::Golden => (Rgb::new(1.0, 0.9, 0.5), 0.8, 0.8),
         };
-        let graded = (color * slope).map(|v| fun::powf(v, power));
+        let graded = (color * slope).map(|v| portable::powf(v, power));
         Rgb::splat(graded.luminance()).lerp(graded, saturation)
     }
 }
 
-/// The curve over the logarithm, 0 to 1.
+/// Sigmoid over the normalized logarithm, 0 to 1.
 fn sigmoid(x: f32) -> f32 {
     let x = x.clamp(0.0, 1.0);
     let [from, to] = PIVOT;
     let (side, sign) = if x < from { (0, -1.0) } else { (1, 1.0) };
     let scale = SCALES[side];
     let term = SLOPE * (x - from) * sign / scale;
-    let bent = term / fun::powf(1.0 + fun::powf(term, POWERS[side]), 1.0 / POWERS[side]);
+    let bent = term / portable::powf(1.0 + portable::powf(term, POWERS[side]), 1.0 / POWERS[side]);
     (to + sign * scale * bent).clamp(0.0, 1.0)
 }
 
@@ -97,7 +100,7 @@ fn outset(Rgb { r, g, b }: Rgb) -> Rgb {
     )
 }
 
-/// ITU-R BT.2087-0, with more digits.
+/// Linear sRGB to BT.2020 (ITU-R BT.2087-0, with more digits).
 fn to_rec2020(Rgb { r, g, b }: Rgb) -> Rgb {
     Rgb::new(
         0.627_403_9 * r + 0.329_283 * g + 0.043_313_07 * b,
@@ -120,12 +123,12 @@ mod tests {
     use crate::tone::primaries::Primaries;
     use juggler_math::testing::Random;
 
-    /// The published steps in double precision, `curve` being the sigmoid.
+    /// Published formula in double precision with the given sigmoid.
     fn reference(light: [f64; 3], look: AgxLook, curve: fn(f64) -> f64) -> [f64; 3] {
         let times = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum::<f64>());
-        // Columns, as shaders write them.
+        // Transposes the matrices, which shaders list by columns.
         let columns = |m: [[f64; 3]; 3]| [0, 1, 2].map(|row| [m[0][row], m[1][row], m[2][row]]);
-        let there = Primaries::Rec2020.conversion().unwrap();
+        let there = Primaries::Rec2020.matrix_from_srgb().unwrap();
         let inset = columns([
             [0.856627153315983, 0.137318972929847, 0.11189821299995],
             [0.0951212405381588, 0.761241990602591, 0.0767994186031903],
@@ -150,7 +153,7 @@ mod tests {
         there.inverse().apply(times(outset, v).map(|v| v.max(0.0).powf(2.2)))
     }
 
-    /// Sobotka's equations, term by term.
+    /// Sobotka's closed form of the sigmoid.
     fn closed_form(x: f64) -> f64 {
         let (px, py, slope) = (10.0 / 16.5, 0.5, 2.0);
         let (power, sign) = if x < px { (3.0, -1.0) } else { (3.25, 1.0) };
@@ -160,7 +163,7 @@ mod tests {
         scale * term / (1.0 + term.powf(power)).powf(1.0 / power) + py
     }
 
-    /// Wrensch's polynomial.
+    /// Wrensch's polynomial fit to the sigmoid.
     fn polynomial(x: f64) -> f64 {
         15.5 * x.powi(6) - 40.14 * x.powi(5) + 31.96 * x.powi(4) - 6.868 * x.powi(3) + 0.4298 * x * x + 0.1191 * x
             - 0.00232
@@ -184,7 +187,7 @@ mod tests {
         for look in [AgxLook::Base, AgxLook::Punchy, AgxLook::Golden] {
             let mut off = 0.0;
             for _ in 0..2_000 {
-                let light = random.rgb() * fun::exp2(random.range(-9.0, 7.0));
+                let light = random.rgb() * portable::exp2(random.range(-9.0, 7.0));
                 let found = Agx { look }.map(light).to_array().map(f64::from);
                 let exact = reference(light.to_array().map(f64::from), look, closed_form);
                 let usual = reference(light.to_array().map(f64::from), look, polynomial);
@@ -201,10 +204,10 @@ mod tests {
     #[test]
     fn middle_grey_is_half_and_greys_stay_grey() {
         let Rgb { r, g, b } = Agx::default().map(Rgb::splat(0.18));
-        assert!((fun::powf(g, 1.0 / 2.2) - 0.5).abs() < 1e-4 && (r - g).abs() < 1e-4 && (g - b).abs() < 1e-4);
-        let greys: Vec<f32> =
-            (0..170).map(|i| Agx::default().map(Rgb::splat(fun::exp2(i as f32 * 0.1 - 12.5))).g).collect();
-        assert!(greys.windows(2).all(|pair| pair[0] < pair[1] + 1e-7));
-        assert!((greys[169] - 1.0).abs() < 1e-3 && Agx::default().map(Rgb::new(1e30, -1.0, 0.0)).is_finite());
+        assert!((portable::powf(g, 1.0 / 2.2) - 0.5).abs() < 1e-4 && (r - g).abs() < 1e-4 && (g - b).abs() < 1e-4);
+        let grays: Vec<f32> =
+            (0..170).map(|i| Agx::default().map(Rgb::splat(portable::exp2(i as f32 * 0.1 - 12.5))).g).collect();
+        assert!(grays.windows(2).all(|pair| pair[0] < pair[1] + 1e-7));
+        assert!((grays[169] - 1.0).abs() < 1e-3 && Agx::default().map(Rgb::new(1e30, -1.0, 0.0)).is_finite());
     }
 }

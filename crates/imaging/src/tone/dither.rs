@@ -1,26 +1,26 @@
-//! Dither: what lies between two levels of 8 bits becomes the one or the other by the pixel's place, in the right
-//! proportion, so that gradients show no steps. An ordered pattern without a table: the additive recurrence R2 (Martin Roberts, The
-//! unreasonable effectiveness of quasirandom sequences, 2018), whose neighbours differ as those of blue noise do, folded
-//! into a triangle so that it has no jump. All channels of a pixel go the same way: greys stay grey.
+//! Dithering of 8-bit levels, so that gradients show no banding. The threshold pattern is computed,
+//! not tabulated: the additive recurrence R2 (Martin Roberts, The unreasonable effectiveness of
+//! quasirandom sequences, 2018), whose neighbors differ as in blue noise, folded into a triangle
+//! wave to avoid jumps. All channels of a pixel share a threshold, so gray stays gray.
 //!
-//! A value is rounded to a 256th of a level first and then up or down by thresholds 0 to 255, so that it moves by less
-//! than a level and what is a level, within 1/512 of one, stays that level everywhere.
+//! Values are first rounded to 1/256 of a level, then up or down by thresholds 0 to 255. The result
+//! differs by less than one level, and values within 1/512 of a level always yield that level.
 
 use super::{Quantizer, Tone};
 use juggler_math::Rgb;
 
-/// Steps of a level.
+/// Steps per level.
 const STEPS: u16 = 256;
-/// 1/p and 1/p² in units of 2^-32, p being the plastic number, p³ = p + 1.
+/// 1/p and 1/p² in units of 2^-32, where p is the plastic number, p³ = p + 1.
 const ALPHA: [u32; 2] = [3_242_174_889, 2_447_445_414];
 
-/// Levels of a still picture's pixels, from the top left row by row.
-pub(crate) struct Levels {
+/// Quantizes the pixels of a still image in row order.
+pub(crate) struct LevelEncoder {
     quantizer: Quantizer,
     depth: Depth,
     width: u64,
-    /// Pixels so far.
-    place: u64,
+    /// Number of pixels processed.
+    pixels_done: u64,
 }
 
 enum Depth {
@@ -29,36 +29,36 @@ enum Depth {
     Dithered,
 }
 
-impl Levels {
-    /// Bytes, of pictures of this width.
+impl LevelEncoder {
+    /// 8-bit levels for images of this width.
     pub fn bytes(tone: &Tone, width: u32) -> Self {
         let (top, depth) = if tone.dither { (255 * STEPS, Depth::Dithered) } else { (255, Depth::Bytes) };
-        Self { quantizer: Quantizer::new(tone, top), depth, width: u64::from(width.max(1)), place: 0 }
+        Self { quantizer: Quantizer::new(tone, top), depth, width: u64::from(width.max(1)), pixels_done: 0 }
     }
 
-    /// Levels of 16 bits, high byte first; they need no dither.
+    /// 16-bit levels, big-endian, without dithering.
     pub fn words(tone: &Tone) -> Self {
-        Self { quantizer: Quantizer::new(tone, u16::MAX), depth: Depth::Words, width: 1, place: 0 }
+        Self { quantizer: Quantizer::new(tone, u16::MAX), depth: Depth::Words, width: 1, pixels_done: 0 }
     }
 
-    /// The next pixels, three levels each.
+    /// Quantizes the next pixels to three levels each.
     pub fn append(&mut self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
         match self.depth {
             Depth::Words => self.quantizer.append_words(pixels, bytes),
             Depth::Bytes => self.quantizer.append_bytes(pixels, bytes),
             Depth::Dithered => {
                 bytes.reserve(pixels.len() * 3);
-                for (place, pixel) in (self.place..).zip(pixels) {
-                    let up = threshold((place % self.width) as u32, (place / self.width) as u32);
+                for (number, pixel) in (self.pixels_done..).zip(pixels) {
+                    let up = threshold((number % self.width) as u32, (number / self.width) as u32);
                     bytes.extend(self.quantizer.levels(*pixel).map(|fine| ((fine + up) / STEPS) as u8));
                 }
             }
         }
-        self.place += pixels.len() as u64;
+        self.pixels_done += pixels.len() as u64;
     }
 }
 
-/// How many steps of a level, 0 to 255, are added at a pixel before the rest is cut off.
+/// Threshold of a pixel, 0 to 255 steps, added before rounding down.
 fn threshold(x: u32, y: u32) -> u16 {
     let at = x.wrapping_mul(ALPHA[0]).wrapping_add(y.wrapping_mul(ALPHA[1]));
     let folded = if at >> 31 == 0 { at } else { !at };
@@ -71,7 +71,7 @@ mod tests {
     use crate::tone::{AnyCurve, Linear};
 
     fn bytes(tone: &Tone, width: u32, pixels: &[Rgb], piece: usize) -> Vec<u8> {
-        let (mut levels, mut bytes) = (Levels::bytes(tone, width), Vec::new());
+        let (mut levels, mut bytes) = (LevelEncoder::bytes(tone, width), Vec::new());
         pixels.chunks(piece).for_each(|piece| levels.append(piece, &mut bytes));
         bytes
     }
@@ -90,8 +90,8 @@ mod tests {
 
     #[test]
     fn the_mean_is_the_value() {
-        // 64 × 64 pixels of one value between two levels, for many values; blue noise is far closer than white noise, whose
-        // standard deviation is 0.5 / 64.
+        // The mean over 64 × 64 pixels equals the value far more closely than with white noise,
+        // whose standard deviation is 0.5 / 64.
         for i in 0..=64 {
             let value = 100.0 + f64::from(i) / 64.0;
             let flat = vec![Rgb::splat((value / 255.0) as f32); 64 * 64];
@@ -103,7 +103,8 @@ mod tests {
 
     #[test]
     fn small_places_have_the_right_mean_too() {
-        // Each 8 × 8 pixels of a gradient, as an eye takes them together; rounding is wrong by up to half a level.
+        // Means over 8 × 8 pixels of a gradient, as the eye averages them; rounding errs by up to
+        // half a level.
         let (width, height) = (256_u32, 64_u32);
         let value = |x: u32| 20.0 + 3.0 * f64::from(x) / f64::from(width);
         let pixels: Vec<Rgb> = (0..width * height).map(|i| Rgb::splat((value(i % width) / 255.0) as f32)).collect();
@@ -119,7 +120,7 @@ mod tests {
     fn what_is_a_level_stays_that_level() {
         for tone in [Tone::default(), linear()] {
             let decode = |k: u32| tone.curve.channel_curve().decode(f64::from(k) / 255.0) as f32;
-            // A little beside it too, as sums of equal samples may be.
+            // Also slightly off the level, as sums of equal samples may be.
             for nudge in [0.999_997_f32, 1.0, 1.000_003] {
                 let pixels: Vec<Rgb> = (0..256 * 64).map(|i| Rgb::splat(decode(i % 256) * nudge)).collect();
                 for (i, byte) in bytes(&tone, 256, &pixels, 256).iter().enumerate() {
@@ -140,7 +141,7 @@ mod tests {
         }
         let plain = bytes(&Tone { dither: false, ..Tone::default() }, 50, &pixels, 2000);
         assert_ne!(plain, whole);
-        // Never further than to the next level.
+        // Dithering changes a level by one at most.
         assert!(plain.iter().zip(&whole).all(|(a, b)| a.abs_diff(*b) <= 1));
     }
 }

@@ -1,15 +1,16 @@
-//! A pure power: value^(1/gamma). In JSON: `{"gamma": {"gamma": 2.2}}`.
+//! Pure power curve, value^(1/gamma). In JSON: `{"gamma": {"gamma": 2.2}}`.
 
 use super::Curve;
-use juggler_math::fun::pow_f64;
+use juggler_math::portable::pow_f64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A pure power curve, `value^(1/gamma)`.
+/// Pure power curve, `value^(1/gamma)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Gamma {
-    /// The display's exponent, above 0.
+    /// Exponent of the display, above 0. The default 2.2 is close to sRGB; larger values brighten
+    /// mid-tones.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub gamma: f64,
 }

@@ -1,11 +1,11 @@
-//! No curve: linear values are the levels. In JSON: `{"linear": {}}`.
+//! No curve: display values equal linear values. In JSON: `{"linear": {}}`.
 
 use super::Curve;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// No curve: linear values go straight to levels, as programs of the 1980s did; on today's displays that is dark
-/// and rich in contrast.
+/// No curve: linear values become levels directly, as in programs of the 1980s. On sRGB displays
+/// the image looks dark and high in contrast.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Linear {}

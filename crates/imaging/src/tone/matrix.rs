@@ -1,30 +1,30 @@
-//! Matrices between colour spaces.
+//! Matrices between color spaces.
 
 use juggler_math::Rgb;
 
-/// Three rows of three.
+/// 3 × 3 matrix, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Matrix(pub [[f64; 3]; 3]);
 
 impl Matrix {
-    /// Nothing but factors.
+    /// Diagonal matrix.
     pub fn diagonal([x, y, z]: [f64; 3]) -> Self {
         Self([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]])
     }
 
-    /// What comes first stands at the right.
+    /// Matrix product `self` · `first`, which applies `first` first.
     pub fn times(&self, first: &Self) -> Self {
         let columns = first.transposed().0.map(|column| self.apply(column));
         Self(columns).transposed()
     }
 
-    /// Rows become columns.
+    /// Transposed matrix.
     pub fn transposed(&self) -> Self {
         let [a, b, c] = self.0;
         Self([[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]])
     }
 
-    /// By cofactors. Of a matrix without an inverse the numbers are not finite.
+    /// Inverse by cofactors; not finite if the matrix is singular.
     pub fn inverse(&self) -> Self {
         let [a, b, c] = self.0;
         let cross = |p: [f64; 3], q: [f64; 3]| {
@@ -35,23 +35,23 @@ impl Matrix {
         Self(columns.map(|column| column.map(|v| v / determinant))).transposed()
     }
 
-    /// The matrix times a column.
+    /// Product with a column vector.
     pub fn apply(&self, column: [f64; 3]) -> [f64; 3] {
         self.0.map(|row| dot(row, column))
     }
 
-    /// The same of a colour.
+    /// Product with a color.
     pub fn color(&self, color: Rgb) -> Rgb {
         Rgb::from(self.apply(color.to_array().map(f64::from)).map(|v| v as f32))
     }
 
-    /// Whether all of it is numbers.
+    /// Whether all elements are finite.
     pub fn is_finite(&self) -> bool {
         self.0.iter().flatten().all(|v| v.is_finite())
     }
 }
 
-/// Sum of the products.
+/// Dot product.
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,13 +1,12 @@
-//! Tone: from linear light to the levels of a display. Exposure first, then white balance, then a curve: one for each channel
-//! (`linear`, `srgb`, `gamma`: looks of which files tell nothing, as the Amiga's pictures had one), or one that crosses channels
-//! (`reinhard`, `aces`, `agx`, `pbr_neutral`), after which the display's own curve follows, that of sRGB. In between come the file's
-//! primaries. What a curve per channel gives beyond 0 and 1 is clipped per channel; behind one that crosses them it is brought
-//! back towards the grey of its own luminance.
+//! Tone mapping from linear RGB to display levels: exposure, white balance, curve, primaries. A
+//! curve either acts on each channel (`linear`, `srgb`, `gamma`), with clipping to 0 to 1, or maps
+//! whole colors (`reinhard`, `aces`, `agx`, `pbr_neutral`), followed by gamut mapping at constant
+//! luminance and the sRGB transfer function.
 //! In JSON: `{"curve": {"srgb": {}}, "exposure_stops": 0}`.
 
 mod aces;
 mod agx;
-mod development;
+mod color_pipeline;
 mod dither;
 mod gamma;
 mod gamut;
@@ -31,38 +30,38 @@ pub use reinhard::Reinhard;
 pub use srgb::Srgb;
 pub use white_balance::WhiteBalance;
 
-pub(crate) use dither::Levels;
+pub(crate) use dither::LevelEncoder;
 pub(crate) use matrix::Matrix;
 
-use development::Development;
-use juggler_math::{Rgb, fun};
+use color_pipeline::ColorPipeline;
+use juggler_math::{Rgb, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A curve from linear light to display values, the same for each channel, that never falls.
+/// Monotonic curve from linear to display values, the same for each channel.
 pub trait Curve: Send + Sync {
-    /// Linear light (any number; what is negative or NaN counts as 0) → display value 0 to 1.
+    /// Display value, 0 to 1, of a linear value; negative values and NaN count as 0.
     fn encode(&self, linear: f64) -> f64;
-    /// Display value 0 to 1 → linear light.
+    /// Linear value of a display value, 0 to 1.
     fn decode(&self, encoded: f64) -> f64;
 }
 
-/// A curve that needs all channels of a colour.
+/// Tone mapper of whole colors.
 pub trait ToneMapper: Send + Sync {
-    /// Linear light of the scene, exposed (finite, also below 0) → linear light of a display, 0 to 1 but for colours that it cannot
-    /// show; both in the primaries of sRGB.
+    /// Maps exposed scene-linear RGB (finite, possibly negative) to display-linear RGB, both with
+    /// sRGB primaries. The result is within 0 to 1 except for colors outside the display's gamut.
     fn map(&self, light: Rgb) -> Rgb;
 }
 
-/// What a curve is.
-pub enum Response<'a> {
-    /// The same for each channel.
-    Channels(&'a dyn Curve),
-    /// Of a colour as a whole; the display's own curve follows, that of sRGB.
-    Colors(&'a dyn ToneMapper),
+/// Kind of a tone curve.
+pub enum CurveKind<'a> {
+    /// Curve of each channel.
+    PerChannel(&'a dyn Curve),
+    /// Tone mapper of whole colors, followed by the sRGB curve.
+    WholeColor(&'a dyn ToneMapper),
 }
 
-/// Every curve. In JSON: `{"srgb": {}}`.
+/// Tone curve. In JSON: `{"srgb": {}}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AnyCurve {
@@ -83,24 +82,24 @@ pub enum AnyCurve {
 }
 
 impl AnyCurve {
-    /// The curve behind the name.
-    pub fn response(&self) -> Response<'_> {
+    /// The curve or tone mapper of this kind.
+    pub fn kind(&self) -> CurveKind<'_> {
         match self {
-            Self::Srgb(curve) => Response::Channels(curve),
-            Self::Gamma(curve) => Response::Channels(curve),
-            Self::Linear(curve) => Response::Channels(curve),
-            Self::Reinhard(mapper) => Response::Colors(mapper),
-            Self::Aces(mapper) => Response::Colors(mapper),
-            Self::Agx(mapper) => Response::Colors(mapper),
-            Self::PbrNeutral(mapper) => Response::Colors(mapper),
+            Self::Srgb(curve) => CurveKind::PerChannel(curve),
+            Self::Gamma(curve) => CurveKind::PerChannel(curve),
+            Self::Linear(curve) => CurveKind::PerChannel(curve),
+            Self::Reinhard(mapper) => CurveKind::WholeColor(mapper),
+            Self::Aces(mapper) => CurveKind::WholeColor(mapper),
+            Self::Agx(mapper) => CurveKind::WholeColor(mapper),
+            Self::PbrNeutral(mapper) => CurveKind::WholeColor(mapper),
         }
     }
 
-    /// The last step, which is one for each channel: the curve itself, or that of the display.
+    /// Final per-channel curve: the curve itself, or sRGB after a tone mapper.
     pub fn channel_curve(&self) -> &dyn Curve {
-        match self.response() {
-            Response::Channels(curve) => curve,
-            Response::Colors(_) => &Srgb {},
+        match self.kind() {
+            CurveKind::PerChannel(curve) => curve,
+            CurveKind::WholeColor(_) => &Srgb {},
         }
     }
 }
@@ -111,25 +110,29 @@ impl Default for AnyCurve {
     }
 }
 
-/// How linear light becomes the levels of a picture file. Formats that keep linear light (EXR, HDR, PFM)
-/// ignore it, but for the primaries of an EXR.
+/// Tone mapping from linear RGB to the levels of an image file. EXR, HDR and PFM files store linear
+/// values and ignore these settings, except for the primaries of EXR.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Tone {
-    /// The curve.
+    /// Tone curve. The default `srgb` clips values above 1; `reinhard`, `aces`, `agx` and
+    /// `pbr_neutral` compress highlights instead.
     pub curve: AnyCurve,
-    /// Photographic stops: each doubles the light before the curve; negative ones halve it.
+    /// Exposure in photographic stops, -64 to 64, applied before the curve: 1 doubles the radiance,
+    /// -1 halves it.
     #[schemars(range(min = -64, max = 64))]
     pub exposure_stops: f32,
-    /// Which light is to look white. Without it, light stays as it is: that of 6,504 K is white.
+    /// Light that appears white. By default colors are unchanged, so that D65 (6,504 K) appears
+    /// white.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub white_balance: Option<WhiteBalance>,
-    /// The primaries of the file: PNG takes `display_p3` and `rec2020`, EXR these and `acescg`; others are sRGB.
+    /// Primaries of the file. PNG supports `display_p3` and `rec2020`, EXR these and `acescg`; the
+    /// other formats support sRGB only.
     #[serde(skip_serializing_if = "Primaries::is_srgb")]
     #[schemars(extend("default" = "srgb"))]
     pub primaries: Primaries,
-    /// Whether pictures of 8 bits are dithered, so that gradients show no steps. What is exactly a level stays that
-    /// level. Films, looks and screens are not dithered.
+    /// Dithers 8-bit images, so that gradients show no banding; exact levels are preserved. Movies,
+    /// images with a display look and interactive previews are never dithered.
     #[serde(skip_serializing_if = "is_true")]
     #[schemars(extend("default" = true))]
     pub dither: bool,
@@ -146,25 +149,26 @@ fn is_true(value: &bool) -> bool {
 }
 
 impl Tone {
-    /// A curve, and nothing else that is unusual.
+    /// The given curve with default settings.
     pub const fn new(curve: AnyCurve) -> Self {
         Self { curve, exposure_stops: 0.0, white_balance: None, primaries: Primaries::Srgb, dither: true }
     }
 
-    /// The factor on linear light.
+    /// Exposure as a factor.
     pub fn gain(&self) -> f32 {
-        fun::exp2(self.exposure_stops)
+        portable::exp2(self.exposure_stops)
     }
 
-    /// The formula: each channel's level, 0 to `top`, nearest to the curve's value. [`Quantizer`] gives the same, faster.
+    /// Reference formula: levels from 0 to `top`, rounded to nearest. [`Quantizer`] computes the
+    /// same faster.
     pub fn levels(&self, pixel: Rgb, top: u16) -> [u16; 3] {
-        let light = Development::new(self).map_or_else(|| pixel * self.gain(), |development| development.light(pixel));
+        let light = ColorPipeline::new(self).map_or_else(|| pixel * self.gain(), |pipeline| pipeline.apply(pixel));
         light.to_array().map(|v| level(self.curve.channel_curve(), v, top))
     }
 }
 
 fn level(curve: &dyn Curve, linear: f32, top: u16) -> u16 {
-    // The cast takes NaN and what is negative to 0.
+    // The cast takes NaN and negative values to 0.
     ((curve.encode(f64::from(linear)) * f64::from(top) + 0.5) as u16).min(top)
 }
 
@@ -190,7 +194,7 @@ mod tests {
         );
         assert!(!rich.dither && rich.white_balance == Some(WhiteBalance { kelvin: 3200.0, tint: 0.0 }));
         assert_eq!(read(&serde_json::to_string(&rich).unwrap()), rich);
-        // What is not said is not written: parts and pictures of earlier versions stay the same.
+        // Defaults are not serialized, so that files match those of earlier versions.
         assert_eq!(serde_json::to_string(&Tone::default()).unwrap(), r#"{"curve":{"srgb":{}},"exposure_stops":0.0}"#);
         let schema = serde_json::to_string(&schemars::schema_for!(Tone)).unwrap();
         assert!(schema.contains("\"exclusiveMinimum\":0") && schema.contains("\"srgb\""), "{schema}");
@@ -199,7 +203,7 @@ mod tests {
     #[test]
     fn known_levels() {
         let level = |curve, linear| Tone::new(curve).levels(Rgb::splat(linear), 255)[1];
-        // 18 % grey in sRGB is level 118; half light is 188.
+        // 18 % gray is level 118 in sRGB; linear 0.5 is level 188.
         assert_eq!((level(AnyCurve::default(), 0.18), level(AnyCurve::default(), 0.5)), (118, 188));
         assert_eq!(level(AnyCurve::Gamma(Gamma { gamma: 2.2 }), 0.5), 186);
         assert_eq!(level(AnyCurve::Linear(Linear {}), 0.5), 128);
@@ -278,22 +282,22 @@ mod tests {
     fn another_white_makes_its_grey_neutral_and_others_not() {
         let light = WhiteBalance { kelvin: 2856.0, tint: 0.0 };
         let bulb = light.matrix().inverse().color(Rgb::splat(0.4));
-        let seen = |white_balance| Tone { white_balance, ..Tone::default() }.levels(bulb, 65_535);
-        let [r, g, b] = seen(Some(light));
+        let levels_with = |white_balance| Tone { white_balance, ..Tone::default() }.levels(bulb, 65_535);
+        let [r, g, b] = levels_with(Some(light));
         assert!(r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1, "{r} {g} {b}");
-        let [r, g, b] = seen(None);
+        let [r, g, b] = levels_with(None);
         assert!(r > g + 5000 && g > b + 5000, "{r} {g} {b}");
     }
 
     #[test]
-    fn wide_primaries_show_the_same_colours_by_other_numbers() {
+    fn wide_primaries_show_the_same_colors_by_other_numbers() {
         for curve in
             every_curve().into_iter().filter(|curve| !matches!(curve, AnyCurve::Gamma(_) | AnyCurve::Linear(_)))
         {
             let tone = Tone { primaries: Primaries::Rec2020, ..Tone::new(curve) };
             let pixel = Rgb::new(0.2, 0.05, 0.1);
             let decode = |level: u16| tone.channel(f64::from(level) / 65_535.0);
-            let back = Primaries::Rec2020.conversion().unwrap().inverse();
+            let back = Primaries::Rec2020.matrix_from_srgb().unwrap().inverse();
             let wide = back.apply(tone.levels(pixel, 65_535).map(decode));
             let plain = Tone { primaries: Primaries::Srgb, ..tone.clone() }.levels(pixel, 65_535).map(decode);
             assert!(wide.iter().zip(plain).all(|(a, b)| (a - b).abs() < 1e-4), "{tone:?} {wide:?} {plain:?}");

@@ -1,24 +1,26 @@
-//! Khronos PBR Neutral (Khronos PBR Neutral Tone Mapper, specification 1.0, 2024): base colours of products are shown as they
-//! are; only lights above 0.8 are compressed and go towards white. In JSON: `{"pbr_neutral": {}}`.
+//! Khronos PBR Neutral (Khronos PBR Neutral Tone Mapper, specification 1.0, 2024): reproduces base
+//! colors; only highlights above 0.8 are compressed and desaturated.
+//! In JSON: `{"pbr_neutral": {}}`.
 
 use super::ToneMapper;
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where compression begins: 0.8 less the 4 % that a dielectric mirrors.
+/// Start of compression: 0.8 minus the 4 % Fresnel reflectance of a dielectric.
 const START: f32 = 0.8 - 0.04;
-/// How quickly lights lose their colour.
+/// Rate of desaturation of highlights.
 const DESATURATION: f32 = 0.15;
 
-/// Khronos PBR Neutral: colours as they are, for products and comparisons; only lights above 0.8 are compressed.
+/// Khronos PBR Neutral: reproduces base colors faithfully, for product renderings and comparisons.
+/// Only values above 0.8 are compressed and desaturate towards white.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct PbrNeutral {}
 
 impl ToneMapper for PbrNeutral {
     fn map(&self, light: Rgb) -> Rgb {
-        // The specification knows no light below 0.
+        // The specification does not define negative values.
         let light = light.map(|v| v.max(0.0));
         let least = light.r.min(light.g).min(light.b);
         let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
@@ -29,8 +31,8 @@ impl ToneMapper for PbrNeutral {
         }
         let room = 1.0 - START;
         let compressed = 1.0 - room * room / (peak + room - START);
-        let grey = 1.0 - 1.0 / (DESATURATION * (peak - compressed) + 1.0);
-        (color * (compressed / peak)).lerp(Rgb::splat(compressed), grey)
+        let gray = 1.0 - 1.0 / (DESATURATION * (peak - compressed) + 1.0);
+        (color * (compressed / peak)).lerp(Rgb::splat(compressed), gray)
     }
 }
 
@@ -39,7 +41,7 @@ mod tests {
     use super::*;
     use juggler_math::testing::Random;
 
-    /// The specification's pseudocode, in double precision.
+    /// Pseudocode of the specification in double precision.
     fn reference(light: [f64; 3]) -> [f64; 3] {
         let (f90, kd, ks) = (0.04, 0.15, 0.8 - 0.04);
         let x = light[0].min(light[1]).min(light[2]);
@@ -58,7 +60,7 @@ mod tests {
     fn it_is_the_specifications_formula() {
         let mut random = Random::new(9);
         for _ in 0..5_000 {
-            let light = random.rgb() * juggler_math::fun::exp2(random.range(-6.0, 7.0));
+            let light = random.rgb() * juggler_math::portable::exp2(random.range(-6.0, 7.0));
             let (found, expected) = (PbrNeutral {}.map(light), reference(light.to_array().map(f64::from)));
             for (a, b) in found.to_array().into_iter().zip(expected) {
                 assert!((f64::from(a) - b).abs() < 2e-6, "{light:?}: {found:?} is not {expected:?}");
@@ -67,11 +69,11 @@ mod tests {
     }
 
     #[test]
-    fn base_colours_keep_their_numbers_under_white_light_with_a_white_mirror() {
-        // What a dielectric of base colour c shows under white light: c and the mirrored 4 %.
+    fn base_colors_keep_their_numbers_under_white_light_with_a_white_mirror() {
+        // A dielectric of base color c under white light shows c plus 4 % specular reflection.
         for base in [Rgb::new(0.1, 0.5, 0.75), Rgb::new(0.7, 0.06, 0.05)] {
-            let seen = PbrNeutral {}.map(base + Rgb::splat(0.04));
-            assert!((seen.r - base.r).abs() < 1e-6 && (seen.b - base.b).abs() < 1e-6, "{seen:?}");
+            let mapped = PbrNeutral {}.map(base + Rgb::splat(0.04));
+            assert!((mapped.r - base.r).abs() < 1e-6 && (mapped.b - base.b).abs() < 1e-6, "{mapped:?}");
         }
         assert!(PbrNeutral {}.map(Rgb::new(-1.0, 1e30, 2.0)).is_finite());
     }

@@ -1,32 +1,32 @@
-//! What the numbers of a file's pixels stand for: the chromaticities (CIE 1931 x, y) of red, green, blue and white.
-//! Matrices are derived from them (SMPTE RP 177:1993); from one white to another colours are adapted by the Bradford
+//! RGB primaries as chromaticities (CIE 1931 x, y) of red, green, blue and white, and the matrices
+//! derived from them (SMPTE RP 177:1993). Different white points are adapted by the Bradford
 //! transform (Lam 1985; ICC.1:2022, annex E). In JSON: `"display_p3"`.
 
 use super::Matrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The primaries that a file is written in. Light is computed in those of sRGB; colours outside them are kept as numbers
-/// below 0.
+/// Color primaries of an image file. Rendering uses sRGB primaries; colors outside the sRGB gamut
+/// are kept as negative values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Primaries {
-    /// Those of sRGB and ITU-R BT.709: what a file means that says nothing.
+    /// sRGB and ITU-R BT.709, assumed if a file states nothing.
     #[default]
     Srgb,
-    /// Display P3: today's phones, tablets and better monitors. PNG and EXR.
+    /// Display P3, the gamut of current phones, tablets and better monitors. PNG and EXR only.
     DisplayP3,
-    /// ITU-R BT.2020: ultra-high definition. PNG and EXR.
+    /// ITU-R BT.2020, for ultra-high definition and HDR video. PNG and EXR only.
     Rec2020,
-    /// ACEScg, AP1 of the Academy (S-2014-004): for compositing. EXR only.
+    /// ACEScg (AP1, S-2014-004), for compositing. EXR only.
     Acescg,
 }
 
 impl Primaries {
-    /// All of them.
+    /// All primaries.
     pub const ALL: [Self; 4] = [Self::Srgb, Self::DisplayP3, Self::Rec2020, Self::Acescg];
 
-    /// As scene files and command lines call them.
+    /// Name in scene files and on command lines.
     pub fn name(self) -> &'static str {
         match self {
             Self::Srgb => "srgb",
@@ -36,12 +36,12 @@ impl Primaries {
         }
     }
 
-    /// Whether they are the usual ones, of which files say nothing.
+    /// Whether these are sRGB's primaries, which files need not state.
     pub fn is_srgb(&self) -> bool {
         *self == Self::Srgb
     }
 
-    /// Where red, green, blue and white lie.
+    /// Chromaticities of primaries and white point.
     pub fn chromaticities(self) -> Chromaticities {
         const D65: [f64; 2] = [0.3127, 0.3290];
         let (red, green, blue, white) = match self {
@@ -53,7 +53,7 @@ impl Primaries {
         Chromaticities { red, green, blue, white }
     }
 
-    /// The number of these primaries in a PNG's cICP chunk (ITU-T H.273, table 2), where there is one.
+    /// Code point in a PNG's cICP chunk (ITU-T H.273, table 2), if there is one.
     pub(crate) fn code_point(self) -> Option<u8> {
         match self {
             Self::Srgb => Some(1),
@@ -63,13 +63,13 @@ impl Primaries {
         }
     }
 
-    /// From linear light in the primaries of sRGB to linear light in these; `None` where nothing changes.
-    pub(crate) fn conversion(self) -> Option<Matrix> {
+    /// Matrix from linear sRGB to these primaries; `None` for sRGB itself.
+    pub(crate) fn matrix_from_srgb(self) -> Option<Matrix> {
         (!self.is_srgb()).then(|| Self::Srgb.chromaticities().to(&self.chromaticities()))
     }
 }
 
-/// Where red, green, blue and white lie: CIE 1931 x, y.
+/// Chromaticities (CIE 1931 x, y) of primaries and white point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chromaticities {
     /// Red.
@@ -78,19 +78,20 @@ pub struct Chromaticities {
     pub green: [f64; 2],
     /// Blue.
     pub blue: [f64; 2],
-    /// White: equal numbers.
+    /// White point: the color of equal RGB values.
     pub white: [f64; 2],
 }
 
 impl Chromaticities {
-    /// From linear numbers to CIE XYZ, white having luminance 1. Its middle row tells the primaries' luminances.
+    /// Matrix from linear RGB to CIE XYZ with white at luminance 1. Its middle row holds the
+    /// luminances of the primaries.
     pub(crate) fn to_xyz(self) -> Matrix {
         let primaries = Matrix([self.red, self.green, self.blue].map(xyz)).transposed();
         let amounts = primaries.inverse().apply(xyz(self.white));
         primaries.times(&Matrix::diagonal(amounts))
     }
 
-    /// From linear numbers in these to linear numbers in others, white to white.
+    /// Matrix from these primaries to others, with adaptation of the white point.
     pub(crate) fn to(self, other: &Self) -> Matrix {
         let straight = |middle: Matrix| other.to_xyz().inverse().times(&middle).times(&self.to_xyz());
         if self.white == other.white {
@@ -99,10 +100,11 @@ impl Chromaticities {
         straight(adaptation(self.white, other.white))
     }
 
-    /// How to read what a file holds that says these: into the primaries of sRGB. `None` where nothing is to be done, be
-    /// it that a file's numbers are rounded or make no sense.
+    /// Matrix from a file's primaries to sRGB; `None` if they equal sRGB's up to rounding or are
+    /// invalid.
     pub(crate) fn to_srgb(self) -> Option<Matrix> {
-        /// PNG keeps five digits, others floats: nobody's primaries lie closer than that to those of sRGB.
+        /// Tolerance for files that round chromaticities; no other common primaries are this close
+        /// to sRGB.
         const NEAR: f64 = 2e-3;
         let all = |c: Self| [c.red, c.green, c.blue, c.white];
         let srgb = Primaries::Srgb.chromaticities();
@@ -117,7 +119,7 @@ pub(super) fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// From XYZ under one white to XYZ under another (Bradford).
+/// Bradford adaptation from one white point to another, in CIE XYZ.
 pub(super) fn adaptation(from: [f64; 2], to: [f64; 2]) -> Matrix {
     const CONES: Matrix = Matrix([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
     let [from, to] = [from, to].map(|white| CONES.apply(xyz(white)));
@@ -141,10 +143,10 @@ mod tests {
         let srgb = Primaries::Srgb.chromaticities().to_xyz();
         close(&srgb, [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], 6e-5);
         // ITU-R BT.2087-0, section 2.
-        let rec2020 = Primaries::Rec2020.conversion().unwrap();
+        let rec2020 = Primaries::Rec2020.matrix_from_srgb().unwrap();
         close(&rec2020, [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]], 6e-5);
         // CSS Color Module Level 4, section 18: linear sRGB to linear Display P3, by way of XYZ.
-        let p3 = Primaries::DisplayP3.conversion().unwrap();
+        let p3 = Primaries::DisplayP3.matrix_from_srgb().unwrap();
         close(&p3, [[0.8225, 0.1775, 0.0], [0.0332, 0.9668, 0.0], [0.0171, 0.0724, 0.9105]], 6e-5);
         // The Academy's AP1 to XYZ (S-2014-004, table 2).
         let acescg = Primaries::Acescg.chromaticities().to_xyz();
@@ -177,7 +179,8 @@ mod tests {
 
     #[test]
     fn bradford_from_a_to_d65_is_the_published_one() {
-        // Lindbloom, Chromatic Adaptation, the table of Bradford: A (1.09850, 1, 0.35585) to D65 (0.95047, 1, 1.08883).
+        // Lindbloom, Chromatic Adaptation, table for Bradford: A (1.09850, 1, 0.35585) to D65
+        // (0.95047, 1, 1.08883).
         let of = |xyz: [f64; 3]| [xyz[0], xyz[1]].map(|v| v / xyz.iter().sum::<f64>());
         let found = adaptation(of([1.09850, 1.0, 0.35585]), of([0.95047, 1.0, 1.08883]));
         let expected = [

@@ -1,28 +1,30 @@
-//! The tone formula as a table. A curve never falls, so each level has a smallest input: those thresholds,
-//! found once to the last bit, give exactly the formula's levels without evaluating a power per channel.
-//! Where to look among them says a second table, indexed by an input's exponent and first mantissa bits.
-//! What crosses channels comes before the table.
+//! Table-driven tone mapping. Curves are monotonic, so each level has a smallest input. These
+//! thresholds, exact to the last bit, yield the formula's levels without a power function per
+//! channel. A second table, indexed by exponent and leading mantissa bits of the input, limits the
+//! search among thresholds. Operations that mix channels come before the table.
 
-use super::{Development, Tone, level};
+use super::{ColorPipeline, Tone, level};
 use juggler_math::Rgb;
 
-/// Bits dropped from an f32 to index the second table: what stays is the exponent and 8 bits of mantissa.
+/// Low bits of an `f32` dropped for the second table's index, which keeps exponent and 8 mantissa
+/// bits.
 const SHIFT: u32 = 15;
 
-/// Turns linear light into levels, with the results of [`Tone::levels`].
+/// Converts linear RGB to levels, with the results of [`Tone::levels`].
 #[derive(Clone, Debug)]
 pub struct Quantizer {
     gain: f32,
-    /// What comes before the curve where channels do not go their own ways.
-    development: Option<Development>,
-    /// `thresholds[k]`: the smallest positive input of level k + 1; NaN when there is none, as for k = top.
+    /// Operations before the curve, if the settings mix channels.
+    pipeline: Option<ColorPipeline>,
+    /// `thresholds[k]`: smallest positive input of level k + 1; NaN if there is none, as for k =
+    /// `top`.
     thresholds: Vec<f32>,
     /// `start[i]`: level of the smallest input in cell i.
     start: Vec<u16>,
 }
 
 impl Quantizer {
-    /// For levels 0 to `top`.
+    /// Tables for levels 0 to `top`.
     pub fn new(tone: &Tone, top: u16) -> Self {
         let curve = tone.curve.channel_curve();
         let mut last = 1;
@@ -44,24 +46,24 @@ impl Quantizer {
             reached as u16
         });
         let start = start.collect();
-        Self { gain: tone.gain(), development: Development::new(tone), thresholds, start }
+        Self { gain: tone.gain(), pipeline: ColorPipeline::new(tone), thresholds, start }
     }
 
-    /// The levels of a pixel; 0 for NaN.
+    /// Levels of a pixel; NaN becomes 0.
     pub fn levels(&self, pixel: Rgb) -> [u16; 3] {
-        match &self.development {
+        match &self.pipeline {
             None => pixel.to_array().map(|v| self.level(v * self.gain)),
-            Some(development) => development.light(pixel).to_array().map(|v| self.level(v)),
+            Some(pipeline) => pipeline.apply(pixel).to_array().map(|v| self.level(v)),
         }
     }
 
-    /// The level of one channel.
+    /// Level of one channel.
     fn level(&self, exposed: f32) -> u16 {
         if exposed > 0.0 {
             let cell = (exposed.to_bits() >> SHIFT) as usize;
             let (low, high) = (self.start[cell], self.start[cell + 1]);
             if high - low <= 1 {
-                // The usual case of 256 levels, without a branch that cannot be predicted.
+                // Usual case with 256 levels: a comparison without an unpredictable branch.
                 return low + u16::from(self.thresholds[low as usize] <= exposed);
             }
             let within = &self.thresholds[low as usize..high as usize];
@@ -70,7 +72,7 @@ impl Quantizer {
         0
     }
 
-    /// Appends 8-bit levels (for a quantizer of top level 255), three a pixel.
+    /// Appends three 8-bit levels per pixel, for a quantizer with top level 255.
     pub fn append_bytes(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
         let start = bytes.len();
         bytes.resize(start + pixels.len() * 3, 0);
@@ -79,7 +81,7 @@ impl Quantizer {
         }
     }
 
-    /// Appends 16-bit levels, high byte first, three a pixel.
+    /// Appends three big-endian 16-bit levels per pixel.
     pub fn append_words(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
         let start = bytes.len();
         bytes.resize(start + pixels.len() * 6, 0);
@@ -90,14 +92,14 @@ impl Quantizer {
     }
 }
 
-/// The smallest number from `low` up to one above infinity's bits that `holds` (once it holds, it does for
-/// all above), found from a guess by growing steps and then by halves.
+/// Smallest value from `low` to one above infinity's bits for which the monotonic predicate
+/// `holds`: widens exponentially from `guess`, then bisects.
 fn first_bits(low: u32, guess: u32, holds: impl Fn(u32) -> bool) -> u32 {
     let end = f32::INFINITY.to_bits() + 1;
     let holds = |bits: u32| bits >= end || holds(bits);
     let (mut below, mut above) = (low, guess.clamp(low, end));
     let mut step = 1;
-    // Now find `below` that does not hold and `above` that does.
+    // Bracket the answer: `below` does not hold, `above` does.
     while !holds(above) {
         below = above + 1;
         above = above.saturating_add(step).min(end);
@@ -138,7 +140,7 @@ mod tests {
         curves.iter().flat_map(|c| [tone(c, 0.0), tone(c, -2.7)]).collect()
     }
 
-    fn grey(quantizer: &Quantizer, x: f32) -> u16 {
+    fn gray(quantizer: &Quantizer, x: f32) -> u16 {
         quantizer.levels(Rgb::splat(x))[0]
     }
 
@@ -155,7 +157,7 @@ mod tests {
             let any_bits = (0..5_000).map(|_| f32::from_bits(random.bits())).collect::<Vec<_>>();
             let usual = (0..5_000).map(|_| random.range(-0.1, 1.2)).collect::<Vec<_>>();
             for x in special.into_iter().chain(any_bits).chain(usual) {
-                assert_eq!(grey(&quantizer, x), formula(tone, x, top), "{tone:?} {top} {x:e}");
+                assert_eq!(gray(&quantizer, x), formula(tone, x, top), "{tone:?} {top} {x:e}");
             }
         }
     }
@@ -180,7 +182,7 @@ mod tests {
             let quantizer = Quantizer::new(tone, 255);
             for &t in &quantizer.thresholds {
                 for x in [t.next_down(), t, t.next_up()] {
-                    assert_eq!(grey(&quantizer, x), formula(tone, x, 255), "{tone:?} {x:e}");
+                    assert_eq!(gray(&quantizer, x), formula(tone, x, 255), "{tone:?} {x:e}");
                 }
             }
         }
@@ -193,7 +195,7 @@ mod tests {
             let curve = AnyCurve::default();
             for k in 0..=top {
                 let linear = curve.channel_curve().decode(f64::from(k) / f64::from(top)) as f32;
-                assert_eq!(grey(&quantizer, linear), k);
+                assert_eq!(gray(&quantizer, linear), k);
             }
         }
     }
@@ -202,7 +204,7 @@ mod tests {
     fn absurd_gammas_do_not_hang() {
         for gamma in [1e-30, 1e30, -1.0, 0.0, f64::NAN] {
             let quantizer = Quantizer::new(&Tone::new(AnyCurve::Gamma(Gamma { gamma })), 255);
-            assert_eq!(grey(&quantizer, f32::NAN), 0);
+            assert_eq!(gray(&quantizer, f32::NAN), 0);
         }
     }
 }

@@ -1,18 +1,20 @@
-//! Reinhard's curve with a white point, on luminance: L' = L (1 + L / white²) / (1 + L) (Reinhard, Stark, Shirley and Ferwerda,
-//! Photographic tone reproduction for digital images, 2002, equation 4). All channels are scaled alike, so that hue and
-//! saturation stay; what then lies outside the display goes towards grey. In JSON: `{"reinhard": {"white": 4}}`.
+//! Reinhard's curve on luminance with a white point: L' = L (1 + L / white²) / (1 + L) (Reinhard,
+//! Stark, Shirley and Ferwerda, Photographic tone reproduction for digital images, 2002, equation
+//! 4). All channels are scaled alike, which preserves hue and saturation; colors outside the
+//! display's gamut move towards gray. In JSON: `{"reinhard": {"white": 4}}`.
 
 use super::ToneMapper;
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Reinhard's curve on luminance: shadows stay nearly as they are, lights are compressed up to a white point. Colours keep
-/// their hue and saturation as far as the display can show them.
+/// Reinhard's curve on luminance: keeps shadows nearly linear and compresses highlights up to a
+/// white point. Hue and saturation are preserved as far as the display's gamut allows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Reinhard {
-    /// The smallest luminance that becomes white, after exposure.
+    /// Luminance that maps to white, after exposure; above 0. Larger values keep more detail in
+    /// highlights, smaller ones more contrast.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub white: f32,
 }

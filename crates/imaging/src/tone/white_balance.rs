@@ -1,48 +1,51 @@
-//! White balance: which light is to look white. Colours are adapted from it to the white of sRGB by the Bradford
-//! transform, so that what is grey under it becomes grey. In JSON: `{"kelvin": 3200, "tint": 0}`.
+//! White balance: Bradford adaptation from the chosen illuminant to sRGB's white point, so that
+//! gray objects under this illuminant look gray. In JSON: `{"kelvin": 3200, "tint": 0}`.
 //!
-//! The light lies on the CIE daylight locus from 5,000 K on (CIE 15:2018, equations 4.4 to 4.6), on the locus of black
-//! bodies up to 4,000 K (Kang et al., Design of advanced color temperature control system for HDTV applications, 2002, as a
-//! fit by x and y), in between on the straight line between the two, so that no step is to be seen.
+//! The illuminant lies on the CIE daylight locus from 5,000 K (CIE 15:2018, equations 4.4 to 4.6),
+//! on the Planckian locus up to 4,000 K (Kang et al., Design of advanced color temperature control
+//! system for HDTV applications, 2002, a fit in x and y), and is interpolated between the two in
+//! between, so that there is no step.
 
 use super::Matrix;
 use super::primaries::{Primaries, adaptation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Up to here a light is that of a black body, from there on daylight, in kelvin.
+/// Temperatures in kelvin below which the illuminant is a black body, and above which it is
+/// daylight.
 const BLACK_BODY: f64 = 4000.0;
 const DAYLIGHT: f64 = 5000.0;
 
-/// Which light is to look white.
+/// Light source that appears white.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct WhiteBalance {
-    /// Correlated colour temperature of the light, in kelvin: 2,850 is a light bulb, 6,504 the white of screens. A lower number
-    /// makes the picture bluer.
+    /// Correlated color temperature of the light in kelvin, 1667 to 25000; 2850 is an incandescent
+    /// bulb, the default 6504 is D65. Lower values make the image bluer.
     #[schemars(range(min = 1667, max = 25000))]
     pub kelvin: f64,
-    /// How far the light lies from the line of black bodies and daylight, in thousandths of Duv (ANSI C78.377): a light above
-    /// 0 is greener, and the picture becomes more magenta.
+    /// Distance of the light from the Planckian or daylight locus in thousandths of Duv (ANSI
+    /// C78.377), -50 to 50. Positive values stand for greenish light and make the image more
+    /// magenta.
     #[schemars(range(min = -50, max = 50))]
     pub tint: f64,
 }
 
 impl Default for WhiteBalance {
-    /// Daylight of 6,504 K, which is the white of sRGB but for rounding.
+    /// Daylight of 6,504 K, sRGB's white point up to rounding.
     fn default() -> Self {
         Self { kelvin: 6504.0, tint: 0.0 }
     }
 }
 
 impl WhiteBalance {
-    /// CIE 1931 x, y of the light.
+    /// Chromaticity of the light, CIE 1931 x, y.
     pub fn chromaticity(&self) -> [f64; 2] {
         let on_line = uv(locus(self.kelvin));
         if self.tint == 0.0 {
             return locus(self.kelvin);
         }
-        // Duv counts at right angles to the line, upwards where it leads from the red of low temperatures to the left.
+        // Duv is measured perpendicular to the locus, positive towards green.
         let [warmer, cooler] = [0.999, 1.001].map(|factor| uv(locus(self.kelvin * factor)));
         let along = [cooler[0] - warmer[0], cooler[1] - warmer[1]];
         let length = (along[0] * along[0] + along[1] * along[1]).sqrt().max(1e-12);
@@ -50,14 +53,14 @@ impl WhiteBalance {
         xy([on_line[0] + along[1] / length * duv, on_line[1] - along[0] / length * duv])
     }
 
-    /// What linear light in the primaries of sRGB is multiplied by.
+    /// Matrix that applies the white balance to linear sRGB.
     pub(crate) fn matrix(&self) -> Matrix {
         let srgb = Primaries::Srgb.chromaticities();
         srgb.to_xyz().inverse().times(&adaptation(self.chromaticity(), srgb.white)).times(&srgb.to_xyz())
     }
 }
 
-/// CIE 1931 x, y of the line at a temperature.
+/// Chromaticity of the locus at a temperature, CIE 1931 x, y.
 fn locus(kelvin: f64) -> [f64; 2] {
     let kelvin = if kelvin.is_nan() { WhiteBalance::default().kelvin } else { kelvin.clamp(1667.0, 25_000.0) };
     if kelvin <= BLACK_BODY {
@@ -71,7 +74,7 @@ fn locus(kelvin: f64) -> [f64; 2] {
     xy([a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t])
 }
 
-/// Black bodies from 1,667 to 25,000 K (Kang et al. 2002, equations 7 and 8).
+/// Planckian locus from 1,667 to 25,000 K (Kang et al. 2002, equations 7 and 8).
 fn black_body(kelvin: f64) -> [f64; 2] {
     let m = 1000.0 / kelvin;
     let x = if kelvin <= 4000.0 {
@@ -89,7 +92,7 @@ fn black_body(kelvin: f64) -> [f64; 2] {
     [x, y]
 }
 
-/// Daylight from 4,000 to 25,000 K (CIE 15:2018).
+/// Daylight locus from 4,000 to 25,000 K (CIE 15:2018).
 fn daylight(kelvin: f64) -> [f64; 2] {
     let m = 1000.0 / kelvin;
     let x = if kelvin <= 7000.0 {
@@ -100,13 +103,13 @@ fn daylight(kelvin: f64) -> [f64; 2] {
     [x, (-3.000 * x + 2.870) * x - 0.275]
 }
 
-/// CIE 1960 u, v of x, y.
+/// CIE 1960 u, v from CIE 1931 x, y.
 fn uv([x, y]: [f64; 2]) -> [f64; 2] {
     let scale = -2.0 * x + 12.0 * y + 3.0;
     [4.0 * x / scale, 6.0 * y / scale]
 }
 
-/// CIE 1931 x, y of u, v.
+/// CIE 1931 x, y from CIE 1960 u, v.
 fn xy([u, v]: [f64; 2]) -> [f64; 2] {
     let scale = 2.0 * u - 8.0 * v + 4.0;
     [3.0 * u / scale, 2.0 * v / scale]
@@ -123,7 +126,8 @@ mod tests {
 
     #[test]
     fn known_lights_lie_where_the_cie_says() {
-        // CIE 15:2018, table T.3: D50, D55, D65, D75 at 5003, 5503, 6504 and 7504 K; illuminant A at 2856 K.
+        // CIE 15:2018, table T.3: D50, D55, D65, D75 at 5003, 5503, 6504 and 7504 K; illuminant A
+        // at 2856 K.
         for (kelvin, x, y) in [
             (5003.0, 0.3457, 0.3585),
             (5503.0, 0.3324, 0.3474),
@@ -137,15 +141,16 @@ mod tests {
         }
     }
 
-    /// Planck's law with the colour matching functions as sums of Gaussians (Wyman, Sloan and Shirley 2013).
+    /// Planck's law integrated with Gaussian fits of the color matching functions (Wyman, Sloan and
+    /// Shirley 2013).
     fn planck(kelvin: f64) -> [f64; 2] {
         let lobe = |x: f64, scale: f64, at: f64, below: f64, above: f64| {
             let t = (x - at) * if x < at { below } else { above };
             scale * (-0.5 * t * t).exp()
         };
         let mut sum = [0.0; 3];
-        for nanometres in 360..=830 {
-            let l = f64::from(nanometres);
+        for nanometers in 360..=830 {
+            let l = f64::from(nanometers);
             let power = l.powi(-5) / ((1.438_776_9e7 / (l * kelvin)).exp() - 1.0);
             let x = lobe(l, 1.056, 599.8, 0.0264, 0.0323) + lobe(l, 0.362, 442.0, 0.0624, 0.0374)
                 - lobe(l, 0.065, 501.1, 0.0490, 0.0382);
@@ -162,7 +167,7 @@ mod tests {
         for kelvin in [1700.0, 2000.0, 2400.0, 2856.0, 3200.0, 4000.0] {
             let (found, expected) = (light(kelvin), planck(kelvin));
             let error = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
-            // The fits of the matching functions are no better in the red.
+            // The fits of the matching functions have errors of this order in the red.
             assert!(error < 5e-3, "{kelvin} K: {found:?} is not {expected:?}");
         }
     }
@@ -183,9 +188,9 @@ mod tests {
         let srgb = Primaries::Srgb.chromaticities();
         for (kelvin, tint) in [(2856.0, 0.0), (3200.0, 8.0), (4500.0, -12.0), (6504.0, 0.0), (12_000.0, 20.0)] {
             let balance = WhiteBalance { kelvin, tint };
-            let grey = srgb.to_xyz().inverse().apply(xyz(balance.chromaticity()).map(|v| v * 0.18));
-            let seen = balance.matrix().apply(grey);
-            assert!(seen.iter().all(|v| (v - 0.18).abs() < 1e-9), "{kelvin} {tint} {seen:?}");
+            let gray = srgb.to_xyz().inverse().apply(xyz(balance.chromaticity()).map(|v| v * 0.18));
+            let adapted = balance.matrix().apply(gray);
+            assert!(adapted.iter().all(|v| (v - 0.18).abs() < 1e-9), "{kelvin} {tint} {adapted:?}");
         }
     }
 
@@ -197,7 +202,7 @@ mod tests {
                 let off = uv(WhiteBalance { kelvin, tint }.chromaticity());
                 let (du, dv) = (off[0] - on_line[0], off[1] - on_line[1]);
                 assert!(((du * du + dv * dv).sqrt() * 1000.0 - f64::abs(tint)).abs() < 1e-6);
-                // Above the line is green: larger v.
+                // Above the locus is green: larger v.
                 assert_eq!(dv > 0.0, tint > 0.0, "{kelvin} {tint}");
             }
         }

@@ -1,4 +1,4 @@
-//! What other decoders make of the files: frames, times, colours.
+//! Movie files read by other decoders: frames, times, colors.
 
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
 use crate::common::Shared;
@@ -15,7 +15,7 @@ fn header(frames: u32, frames_per_second: f64, plays: u16) -> AnimationHeader {
     AnimationHeader { width: SIZE[0], height: SIZE[1], tone, frames, frames_per_second, plays, quality: 90 }
 }
 
-/// A smooth sky with a square that moves.
+/// A smooth sky with a moving square.
 fn frame(number: u32) -> Vec<Rgb> {
     let pixel = |i: u32| {
         let (x, y) = (i % SIZE[0], i / SIZE[0]);
@@ -33,14 +33,14 @@ fn write(format: AnimationFormat, header: &AnimationHeader) -> Vec<u8> {
     file.bytes()
 }
 
-/// The bytes of a frame as a PNG would have them.
+/// 8-bit levels of a frame, as in a PNG.
 fn levels(number: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     Quantizer::new(&header(1, 1.0, 0).tone, 255).append_bytes(&frame(number), &mut bytes);
     bytes
 }
 
-/// Puts part of a frame on the canvas.
+/// Copies a rectangle of pixels onto the canvas.
 fn lay(canvas: &mut [u8], [x, y, width]: [u32; 3], part: &[u8]) {
     for (row, line) in part.chunks_exact(width as usize * 3).enumerate() {
         let start = ((y as usize + row) * SIZE[0] as usize + x as usize) * 3;
@@ -79,8 +79,8 @@ fn webp_keeps_every_level_and_the_pace() {
     for number in 0..5 {
         let delay = decoder.read_frame(&mut canvas).unwrap();
         assert_eq!(delay, if number % 3 == 1 { 41 } else { 42 }, "frame {number}");
-        let seen = canvas.chunks_exact(canvas.len() / (SIZE[0] * SIZE[1]) as usize);
-        assert!(seen.flat_map(|pixel| &pixel[..3]).eq(&levels(number)), "frame {number}");
+        let pixels = canvas.chunks_exact(canvas.len() / (SIZE[0] * SIZE[1]) as usize);
+        assert!(pixels.flat_map(|pixel| &pixel[..3]).eq(&levels(number)), "frame {number}");
     }
     let forever = write(AnimationFormat::Webp, &header(2, 24.0, 0));
     let decoder = image_webp::WebPDecoder::new(Cursor::new(&forever)).unwrap();
@@ -88,7 +88,7 @@ fn webp_keeps_every_level_and_the_pace() {
 }
 
 #[test]
-fn gif_is_close_in_colour_and_exact_in_length() {
+fn gif_is_close_in_color_and_exact_in_length() {
     for (rate, plays, repeat) in [(30.0, 0, gif::Repeat::Infinite), (24.0, 3, gif::Repeat::Finite(2))] {
         let file = write(AnimationFormat::Gif, &header(9, rate, plays));
         let mut options = gif::DecodeOptions::new();
@@ -110,7 +110,7 @@ fn gif_is_close_in_colour_and_exact_in_length() {
 }
 
 #[test]
-fn few_colours_are_kept_as_they_are() {
+fn few_colors_are_kept_as_they_are() {
     let file = Shared::default();
     let header = AnimationHeader { width: 4, height: 2, ..header(1, 10.0, 0) };
     let mut writer = animation_writer(AnimationFormat::Gif, Destination::seekable("m", file.clone()), &header).unwrap();
@@ -124,8 +124,8 @@ fn few_colours_are_kept_as_they_are() {
     let frame = reader.read_next_frame().unwrap().unwrap();
     let mut expected = Vec::new();
     Quantizer::new(&header.tone, 255).append_bytes(&[colors, colors].concat(), &mut expected);
-    let seen: Vec<u8> = frame.buffer.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
-    assert_eq!(seen, expected);
+    let pixels: Vec<u8> = frame.buffer.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    assert_eq!(pixels, expected);
 }
 
 #[test]
@@ -155,9 +155,9 @@ fn what_cannot_be_written_is_said_before() {
     assert!(refuse(gif, &AnimationHeader { width: 70_000, ..header(1, 10.0, 0) }).contains("1 to 65535"));
     assert!(refuse(gif, &header(0, 10.0, 0)).contains("no frames"));
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e4] {
-        assert!(refuse(AnimationFormat::Apng, &header(1, rate, 0)).contains("frames a second"), "{rate}");
+        assert!(refuse(AnimationFormat::Apng, &header(1, rate, 0)).contains("frames per second"), "{rate}");
     }
-    assert!(refuse(gif, &header(1, 120.0, 0)).contains("0.01 to 100 can"));
+    assert!(refuse(gif, &header(1, 120.0, 0)).contains("only 0.01 to 100"));
     assert!(
         refuse(AnimationFormat::Webp, &AnimationHeader { width: 16_384, ..header(1, 10.0, 0) }).contains("1 to 16383")
     );
@@ -181,7 +181,7 @@ fn what_cannot_be_written_is_said_before() {
 fn a_file_is_there_when_it_is_finished() {
     let folder = tempfile::tempdir().unwrap();
     for format in AnimationFormat::ALL.iter().copied() {
-        let path = folder.path().join(format!("film.{}", format.ending()));
+        let path = folder.path().join(format!("film.{}", format.extension()));
         assert_eq!(AnimationFormat::from_path(&path), Some(format));
         let mut writer = create_animation(&path, format, &header(1, 10.0, 0)).unwrap();
         writer.write_frame(&frame(0)).unwrap();

@@ -1,23 +1,23 @@
-//! Damaged files: an error that names the file, never a panic, never more memory than the limit.
+//! Damaged files: an error that names the file, no panic, memory within the limit.
 
 use crate::common::{encode, header, picture};
-use juggler_imaging::{Format, Header, ImageError, Limits, Options, decode, inspect, read};
+use juggler_imaging::{Header, ImageError, ImageFormat, Limits, Options, decode, inspect, read};
 use juggler_math::testing::Random;
 use std::io::Cursor;
 use std::path::Path;
 
-const LIMITS: Limits = Limits { most_pixels: 10_000, longest_side: 1_000 };
+const LIMITS: Limits = Limits { max_pixels: 10_000, longest_side: 1_000 };
 
-fn files() -> Vec<(Format, Vec<u8>)> {
+fn files() -> Vec<(ImageFormat, Vec<u8>)> {
     let image = picture(19, 18, 3.0);
     let mut header = Header { metadata: vec![("Software".into(), "Juggler".into())], ..header(&image) };
-    let mut files: Vec<_> = Format::ALL.map(|f| (f, encode(f, &image, &header))).into();
+    let mut files: Vec<_> = ImageFormat::ALL.map(|f| (f, encode(f, &image, &header))).into();
     header.options = Options { png_16_bit: true, ..Options::default() };
-    files.push((Format::Png, encode(Format::Png, &image, &header)));
+    files.push((ImageFormat::Png, encode(ImageFormat::Png, &image, &header)));
     files
 }
 
-/// Reads pixels and texts; whatever comes of it, it comes back.
+/// Decodes the file; it must return, with any result.
 fn try_all(bytes: &[u8]) -> Result<juggler_math::Image, ImageError> {
     decode("a file", Cursor::new(bytes), &LIMITS)
 }
@@ -25,7 +25,7 @@ fn try_all(bytes: &[u8]) -> Result<juggler_math::Image, ImageError> {
 #[test]
 fn files_cut_at_every_byte_are_errors() {
     for (format, bytes) in files() {
-        // What follows the pixels (checksums, end marks) may be missing without harm.
+        // Data after the pixels (checksums, end markers) are not required.
         let pixels_end = bytes.len().saturating_sub(40);
         for length in 0..bytes.len() {
             let result = try_all(&bytes[..length]);
@@ -37,7 +37,7 @@ fn files_cut_at_every_byte_are_errors() {
     }
 }
 
-/// What is wrong is said in words, without the texts that decoders have for programmers.
+/// Messages are plain sentences without internals of the decoders.
 fn assert_plain(message: &str) {
     for foreign in ["{", "::", "\"", "Some(", "0x", "ChunkType", "UTF-8", "DecodeError", "os error"] {
         assert!(!message.contains(foreign), "{message}");
@@ -51,7 +51,7 @@ fn mutated_files_never_panic() {
         for _ in 0..1500 {
             let mut bytes = original.clone();
             for _ in 0..=random.below(4) {
-                // Heads matter most.
+                // Damage headers more often, since they matter most.
                 let reach = if random.below(2) == 0 { bytes.len().min(400) } else { bytes.len() };
                 let at = random.below(reach);
                 bytes[at] = [0, 255, 127, 128, random.bits() as u8][random.below(5)];
@@ -85,9 +85,9 @@ fn metadata_of_mutated_and_cut_files_never_panics() {
 #[test]
 fn sizes_beyond_the_limit_are_named() {
     let image = picture(150, 100, 1.0);
-    for format in Format::ALL {
+    for format in ImageFormat::ALL {
         let error = try_all(&encode(format, &image, &header(&image))).unwrap_err();
-        assert!(matches!(error, ImageError::TooLarge { width: 150, height: 100, most_pixels: 10_000, .. }), "{error}");
+        assert!(matches!(error, ImageError::TooLarge { width: 150, height: 100, max_pixels: 10_000, .. }), "{error}");
     }
 }
 

@@ -1,4 +1,5 @@
-//! What an MP4 says of itself, box by box: no decoder of AV1 is asked here (`tests/films/test.sh` asks ffmpeg and a browser).
+//! Structure of MP4 files, box by box; `tests/films/test.sh` decodes them with ffmpeg and a
+//! browser.
 #![cfg(feature = "av1")]
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
 use crate::common::Shared;
@@ -9,7 +10,7 @@ fn header(width: u32, height: u32, frames: u32, frames_per_second: f64) -> Anima
     AnimationHeader { width, height, tone: Tone::default(), frames, frames_per_second, plays: 0, quality: 50 }
 }
 
-/// A slope of light that moves.
+/// A moving gradient.
 fn frame(header: &AnimationHeader, number: u32) -> Vec<Rgb> {
     let pixels = (0..header.height).flat_map(|y| (0..header.width).map(move |x| (x + 2 * number, y)));
     pixels.map(|(x, y)| Rgb::new((x % 29) as f32 / 29.0, 0.3, y as f32 / 40.0)).collect()
@@ -24,7 +25,7 @@ fn film(header: &AnimationHeader) -> Vec<u8> {
     file.bytes()
 }
 
-/// Kinds and contents of the boxes that follow each other.
+/// Types and contents of consecutive boxes.
 fn boxes(mut bytes: &[u8]) -> Vec<(String, &[u8])> {
     let mut found = Vec::new();
     while !bytes.is_empty() {
@@ -38,12 +39,12 @@ fn boxes(mut bytes: &[u8]) -> Vec<(String, &[u8])> {
     found
 }
 
-/// The content of a box within boxes.
+/// Content of a nested box.
 fn within<'b>(bytes: &'b [u8], path: &str) -> &'b [u8] {
     path.split('/').fold(bytes, |bytes, kind| boxes(bytes).into_iter().find(|(found, _)| found == kind).unwrap().1)
 }
 
-/// The numbers of a box with version and flags.
+/// 32-bit numbers of a full box.
 fn words(bytes: &[u8]) -> Vec<u32> {
     bytes[4..].chunks_exact(4).map(|word| u32::from_be_bytes(word.try_into().unwrap())).collect()
 }
@@ -62,7 +63,7 @@ fn the_table_says_what_is_there() {
     assert_eq!(words(within(&file, "moov/mvhd"))[2..4], [per_second, total]);
     let table = |kind: &str| words(within(&file, &format!("{TABLE}/{kind}")));
     assert_eq!(table("stts"), [1, 7, per_second / 3]);
-    // Two seconds, six frames, from key to key.
+    // Six frames, two seconds, from one key frame to the next.
     assert_eq!(table("stss"), [2, 1, 7]);
     assert_eq!(table("stsc"), [1, 1, 7, 1]);
     let sizes = table("stsz");
@@ -80,7 +81,7 @@ fn every_sample_is_one_frame_of_the_stream() {
     assert_eq!((&content[24..26], &content[26..28]), (&[0, 48][..], &[0, 32][..]));
     let [configuration, colors] = ["av1C", "colr"].map(|kind| within(&content[78..], kind));
     assert_eq!(colors, b"nclx\0\x01\0\x0d\0\x01\0");
-    // Marker and version, profile and level, 4:2:0 level with the left column; then the head of the stream.
+    // Marker and version, profile and level, 4:2:0 with the left column; then the sequence header.
     assert_eq!(configuration[..4], [0x81, 0, 0b1101, 0]);
     assert_eq!(configuration[4] >> 3, 1, "a sequence header");
     let sizes = words(within(&file, &format!("{TABLE}/stsz")))[2..].to_vec();
@@ -88,7 +89,8 @@ fn every_sample_is_one_frame_of_the_stream() {
     for (number, size) in sizes.into_iter().enumerate() {
         let (sample, rest) = samples.split_at(size as usize);
         let first = sample[0] >> 3 & 15;
-        // Frames at 0 and 2 seconds begin with a sequence header; no other divides.
+        // Frames at 0 and 2 seconds begin with a sequence header; none begins with a temporal
+        // delimiter.
         assert_eq!(first == 1, number % 2 == 0, "{number}: unit {first}");
         assert_ne!(first, 2, "no delimiters");
         samples = rest;

@@ -1,7 +1,7 @@
-//! What tones do to files: dither, primaries.
+//! Effects of tone settings on files: dithering, primaries.
 use crate::common::{encode, encode_by, header, picture, read};
 use juggler_imaging::tone::{Agx, Linear};
-use juggler_imaging::{AnyCurve, Format, Header, ImageError, Look, Options, Primaries, Tone, compare};
+use juggler_imaging::{AnyCurve, DisplayLook, Header, ImageError, ImageFormat, Options, Primaries, Tone, compare};
 use juggler_math::color::srgb_decode;
 use juggler_math::{Image, Rgb};
 
@@ -11,7 +11,7 @@ fn with(image: &Image, tone: Tone) -> Header {
     Header { tone, ..header(image) }
 }
 
-/// The levels of a PNG's green.
+/// Green levels of a PNG.
 fn greens(bytes: &[u8]) -> Vec<u8> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     let mut levels = vec![0; reader.output_buffer_size().unwrap()];
@@ -26,7 +26,7 @@ fn a_gradient_has_the_means_of_its_values_and_no_steps() {
     let image = Image::from_pixels(256, 64, pixels).unwrap();
     let tone = Tone::new(AnyCurve::Linear(Linear {}));
     let error = |dither| {
-        let levels = greens(&encode(Format::Png, &image, &with(&image, Tone { dither, ..tone.clone() })));
+        let levels = greens(&encode(ImageFormat::Png, &image, &with(&image, Tone { dither, ..tone.clone() })));
         let column =
             |x: u32| levels.iter().skip(x as usize).step_by(256).map(|level| f64::from(*level)).sum::<f64>() / 64.0;
         (0..256).map(|x| (column(x) - value(x)).abs()).fold(0.0, f64::max)
@@ -35,10 +35,10 @@ fn a_gradient_has_the_means_of_its_values_and_no_steps() {
 }
 
 #[test]
-fn flat_colours_stay_flat_in_every_format_of_levels() {
+fn flat_colors_stay_flat_in_every_format_of_levels() {
     let color = Rgb::from_hex("#336699").unwrap();
     let image = Image::filled(40, 30, color);
-    for format in [Format::Png, Format::Webp] {
+    for format in [ImageFormat::Png, ImageFormat::Webp] {
         let bytes = encode(format, &image, &header(&image));
         let level = |v: f32| (juggler_math::color::srgb_encode(v) * 255.0).round();
         assert!(read(&bytes).pixels().iter().all(|p| p.map(level).to_array() == [51.0, 102.0, 153.0]), "{format}");
@@ -48,7 +48,7 @@ fn flat_colours_stay_flat_in_every_format_of_levels() {
 #[test]
 fn dithered_rows_in_any_number_give_the_same_bytes() {
     let image = picture(70, 50, 1.0);
-    for format in [Format::Png, Format::Webp, Format::Jpeg] {
+    for format in [ImageFormat::Png, ImageFormat::Webp, ImageFormat::Jpeg] {
         let whole = encode(format, &image, &header(&image));
         for rows in [1, 7, 49] {
             assert!(encode_by(format, &image, &header(&image), rows, true) == whole, "{format} {rows}");
@@ -63,12 +63,12 @@ fn looks_and_16_bits_are_not_dithered() {
     let image = picture(70, 50, 1.0);
     for options in [
         Options { png_16_bit: true, ..Options::default() },
-        Options { look: Look::Ham, ..Options::default() },
-        Options { look: Look::HamDithered, ..Options::default() },
+        Options { look: DisplayLook::Ham, ..Options::default() },
+        Options { look: DisplayLook::HamDithered, ..Options::default() },
     ] {
         let [a, b] = [true, false].map(|dither| {
             let tone = Tone { dither, ..Tone::default() };
-            encode(Format::Png, &image, &Header { options, ..with(&image, tone) })
+            encode(ImageFormat::Png, &image, &Header { options, ..with(&image, tone) })
         });
         assert!(a == b, "{options:?}");
     }
@@ -80,7 +80,7 @@ fn wide_pngs_say_so_and_are_read_back_as_the_same_light() {
     let image = Image::from_pixels(40, 30, pixels.collect()).unwrap();
     let options = Options { png_16_bit: true, ..Options::default() };
     for (primaries, code) in [(Primaries::DisplayP3, 12), (Primaries::Rec2020, 9)] {
-        let bytes = encode(Format::Png, &image, &Header { options, ..with(&image, Tone { primaries, ..WIDE }) });
+        let bytes = encode(ImageFormat::Png, &image, &Header { options, ..with(&image, Tone { primaries, ..WIDE }) });
         let info = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap().info().clone();
         let codes = info.coding_independent_code_points.unwrap();
         assert_eq!((codes.color_primaries, codes.transfer_function, codes.matrix_coefficients), (code, 13, 0));
@@ -113,19 +113,19 @@ fn a_png_that_only_says_chromaticities_is_read_by_them() {
 #[test]
 fn wide_exrs_hold_other_numbers_and_the_same_light() {
     let image = picture(33, 17, 100.0);
-    let plain = encode(Format::Exr, &image, &header(&image));
+    let plain = encode(ImageFormat::Exr, &image, &header(&image));
     for primaries in [Primaries::DisplayP3, Primaries::Rec2020, Primaries::Acescg] {
-        let bytes = encode(Format::Exr, &image, &with(&image, Tone { primaries, ..WIDE }));
+        let bytes = encode(ImageFormat::Exr, &image, &with(&image, Tone { primaries, ..WIDE }));
         assert!(
             bytes.windows(14).any(|name| name == b"chromaticities")
                 && !plain.windows(14).any(|n| n == b"chromaticities")
         );
         let found = compare(&read(&bytes), &image).unwrap();
         assert!(found.largest < 1e-4 && found.largest > 0.0, "{primaries:?} {found:?}");
-        // White is white in all of them, so the numbers of a grey are the same.
-        let grey = Image::filled(3, 2, Rgb::splat(0.25));
+        // White is the same in all primaries, so gray values are unchanged.
+        let gray = Image::filled(3, 2, Rgb::splat(0.25));
         let tone = Tone { primaries, ..WIDE };
-        assert!(compare(&read(&encode(Format::Exr, &grey, &with(&grey, tone))), &grey).unwrap().largest < 1e-6);
+        assert!(compare(&read(&encode(ImageFormat::Exr, &gray, &with(&gray, tone))), &gray).unwrap().largest < 1e-6);
     }
 }
 
@@ -140,21 +140,21 @@ fn formats_that_cannot_say_it_refuse() {
             Ok(()) => false,
         }
     };
-    for format in [Format::Jpeg, Format::Webp, Format::Hdr, Format::Pfm] {
+    for format in [ImageFormat::Jpeg, ImageFormat::Webp, ImageFormat::Hdr, ImageFormat::Pfm] {
         assert!(refused(format, Primaries::DisplayP3, Options::default()), "{format}");
         assert!(!refused(format, Primaries::Srgb, Options::default()), "{format}");
     }
-    assert!(refused(Format::Png, Primaries::Acescg, Options::default()));
-    assert!(refused(Format::Png, Primaries::Rec2020, Options { look: Look::Ham, ..Options::default() }));
-    assert!(!refused(Format::Exr, Primaries::Acescg, Options::default()));
+    assert!(refused(ImageFormat::Png, Primaries::Acescg, Options::default()));
+    assert!(refused(ImageFormat::Png, Primaries::Rec2020, Options { look: DisplayLook::Ham, ..Options::default() }));
+    assert!(!refused(ImageFormat::Exr, Primaries::Acescg, Options::default()));
 }
 
 #[test]
 fn curves_that_cross_channels_reach_files() {
     let image = Image::filled(4, 4, Rgb::new(20.0, 0.1, 0.1));
     let tone = Tone::new(AnyCurve::Agx(Agx::default()));
-    let bytes = encode(Format::Png, &image, &with(&image, Tone { dither: false, ..tone.clone() }));
+    let bytes = encode(ImageFormat::Png, &image, &with(&image, Tone { dither: false, ..tone.clone() }));
     assert_eq!(greens(&bytes), [tone.levels(image.pixels()[0], 255)[1] as u8; 16]);
-    // A bright red has lost some of its colour.
+    // The curve desaturates bright red.
     assert!(tone.levels(image.pixels()[0], 255)[1] > 60);
 }

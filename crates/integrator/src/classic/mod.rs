@@ -1,7 +1,8 @@
-//! Recursive ray tracing as in 1980 and 1986: local light, mirrors and glass.
+//! Classic recursive ray tracing: local illumination, specular reflection and refraction.
 //!
-//! At each vertex: emission, ambient light (less what nearby geometry hides: one short ray), and for each
-//! light a shadow ray (Phong 1975); then a mirrored and a refracted ray, or bundles of them (Whitted 1980).
+//! Each vertex adds emission, ambient light (attenuated by one ambient occlusion ray) and for each
+//! light a shadow ray (Phong 1975), then traces a reflected and a refracted ray (Whitted 1980), or
+//! bundles of them.
 //!
 //! ```json
 //! {"classic": {"max_depth": 10, "min_weight": 0.004, "occlusion_distance": 100}}
@@ -9,28 +10,33 @@
 
 mod physical;
 
-use super::{Emit, Integrator, PathState, Sight};
-use juggler_bsdf::{Cone, Highlight, Phong, Scatter, cone, fresnel};
-use juggler_camera::layer::LightGroup;
+use super::{Integrator, PathState, SurfaceHit, VertexOutput};
+use juggler_bsdf::{Highlight, PhongParameters, RayCone, Scatter, cone, fresnel};
+use juggler_camera::aov::LightGroup;
 use juggler_camera::sampler::Sampler;
-use juggler_math::{Ray, Rgb, Vec2, Vec3, fun, warp};
+use juggler_math::{Ray, Rgb, Vec2, Vec3, portable, warp};
 use juggler_shape::surface::Surface;
-use juggler_world::{Lamp, Vertex, World};
+use juggler_world::{SceneLight, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Recursive ray tracing: local light, mirrors and glass.
+/// Classic recursive ray tracing: Phong illumination from lights, mirrors and glass, without
+/// indirect diffuse light. Fast, with little noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Classic {
-    /// How many mirrors and windows a ray may meet on its way; 0 for none.
+    /// Maximum number of reflections and refractions along a ray, 0 to 1,000. 0 shows local
+    /// illumination only; scenes with many mirrors or nested glass need more than the default of
+    /// 10.
     #[schemars(range(min = 0, max = 1000))]
     pub max_depth: u32,
-    /// Rays that count less than this in every channel are not followed.
+    /// Minimum weight of a reflected or refracted ray, in its brightest channel, 0 to 1. Rays below
+    /// it are not traced. The default, 1/256, is invisible in 8-bit pictures; larger values are
+    /// faster.
     #[schemars(range(min = 0, max = 1))]
     pub min_weight: f32,
-    /// How far ambient occlusion looks; geometry beyond it hides nothing. Without it no material is
-    /// occluded.
+    /// Maximum distance of ambient occlusion, in scene units, above 0: objects beyond it occlude
+    /// nothing. Without it no material's ambient light is occluded.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub occlusion_distance: Option<f32>,
 }
@@ -41,49 +47,53 @@ impl Default for Classic {
     }
 }
 
-/// A vertex as seen by the one who looks.
-struct Seen<'a> {
+/// A shading point: a vertex with its Phong material and the direction of view.
+struct ShadingPoint<'a> {
     surface: &'a Surface,
-    phong: &'a Phong,
-    /// Unit, towards where the ray came from.
+    phong: &'a PhongParameters,
+    /// Unit vector towards the origin of the ray.
     wo: Vec3,
     /// Unit shading normal on the viewer's side.
     normal: Vec3,
-    /// The ray arrived from outside.
+    /// Whether the ray arrived from outside.
     outside: bool,
     time: f32,
 }
 
 impl Integrator for Classic {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        let Some(phong) = world.phong(vertex) else { return self.physical(world, ray, path, vertex, emit) };
-        let seen = Seen::new(ray, &vertex.surface, &phong);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        let Some(phong) = world.phong(vertex) else { return self.physical(world, ray, path, vertex, output) };
+        let point = ShadingPoint::new(ray, &vertex.surface, &phong);
         let mut sampler = path.sampler;
-        if emit.records() {
-            let is_smooth = phong.diffuse.is_black();
-            let (normal, albedo) = (seen.normal, phong.diffuse);
-            let scatter = if is_smooth { Scatter::Specular } else { Scatter::Diffuse };
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
+        // Record AOVs of the surface.
+        if output.is_recording() {
+            let is_specular = phong.diffuse.is_black();
+            let (normal, albedo) = (point.normal, phong.diffuse);
+            let scatter = if is_specular { Scatter::Specular } else { Scatter::Diffuse };
+            output.record_hit(&SurfaceHit { world, ray, vertex, normal, albedo, is_specular, scatter });
         }
-        self.ambient(world, &seen, sampler, world.shape_group(vertex.object), emit);
+        // Add emission and ambient light.
+        self.ambient(world, &point, sampler, world.shape_group(vertex.shape), output);
         sampler.skip(1);
-        for (number, lamp) in world.lamps().iter().enumerate() {
-            light(lamp, number, &seen, &sampler, emit);
+        // Add direct illumination.
+        for (number, light) in world.lights().iter().enumerate() {
+            add_light(light, number, &point, &sampler, output);
             sampler.skip(1);
         }
+        // Trace reflected and refracted rays.
         if path.depth < self.max_depth {
-            self.follow(path, &seen, &sampler, emit);
+            self.trace_secondary_rays(path, &point, &sampler, output);
         }
     }
 
-    fn escape(&self, world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.miss(ray);
-        emit.add(world.background(ray), world.background_group());
+    fn escape(&self, world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
+        output.add(world.background_radiance(ray), world.background_group());
     }
 }
 
-impl<'a> Seen<'a> {
-    fn new(ray: &Ray, surface: &'a Surface, phong: &'a Phong) -> Self {
+impl<'a> ShadingPoint<'a> {
+    fn new(ray: &Ray, surface: &'a Surface, phong: &'a PhongParameters) -> Self {
         let wo = -ray.direction;
         let outside = surface.normal.dot(wo) >= 0.0;
         let normal = if outside { surface.shading_normal } else { -surface.shading_normal };
@@ -92,46 +102,64 @@ impl<'a> Seen<'a> {
 }
 
 impl Classic {
-    /// Emission and ambient light. The share that occlusion may take hangs on one ray over the hemisphere,
-    /// even over its solid angle.
-    fn ambient(&self, world: &World, seen: &Seen, mut sampler: Sampler, group: LightGroup, emit: &mut Emit) {
-        let ambient = seen.phong.ambient * world.ambient();
-        let Some(distance) = self.occlusion_distance.filter(|_| seen.phong.occlusion > 0.0) else {
-            emit.add(seen.phong.emission + ambient, group);
+    /// Adds emission and ambient light. One ray, uniform over the hemisphere, decides about the
+    /// fraction that is subject to occlusion.
+    fn ambient(
+        &self,
+        world: &World,
+        point: &ShadingPoint,
+        mut sampler: Sampler,
+        group: LightGroup,
+        output: &mut VertexOutput,
+    ) {
+        let ambient = point.phong.ambient * world.ambient();
+        let Some(distance) = self.occlusion_distance.filter(|_| point.phong.occlusion > 0.0) else {
+            output.add(point.phong.emission + ambient, group);
             return;
         };
-        emit.add(seen.phong.emission + ambient * (1.0 - seen.phong.occlusion), group);
+        output.add(point.phong.emission + ambient * (1.0 - point.phong.occlusion), group);
         let any = warp::uniform_sphere(sampler.next_2d());
-        let direction = if any.dot(seen.normal) < 0.0 { -any } else { any };
-        let ray = seen.surface.spawn(direction, seen.time).up_to(distance);
-        emit.if_visible(ray, ambient * seen.phong.occlusion, LightGroup::REST);
+        let direction = if any.dot(point.normal) < 0.0 { -any } else { any };
+        let ray = point.surface.spawn_ray(direction, point.time).with_t_max(distance);
+        output.add_shadow_ray(ray, ambient * point.phong.occlusion, LightGroup::REST);
     }
 
-    /// Mirror and transparency.
-    fn follow(&self, path: &PathState, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
-        let phong = seen.phong;
+    /// Traces reflected and refracted rays.
+    fn trace_secondary_rays(
+        &self,
+        path: &PathState,
+        point: &ShadingPoint,
+        sampler: &Sampler,
+        output: &mut VertexOutput,
+    ) {
+        let phong = point.phong;
         if phong.mirror.is_black() && phong.transparency.is_black() {
             return;
         }
-        let mirrored = fresnel::reflect(seen.wo, seen.normal);
-        let ratio = if seen.outside { 1.0 / phong.ior } else { phong.ior };
-        let refracted = fresnel::refract(seen.wo, seen.normal, ratio);
-        let share = if phong.fresnel { fresnel::dielectric(seen.wo.dot(seen.normal).abs(), 1.0 / ratio) } else { 1.0 };
-        let (mut mirror, through) = if phong.fresnel {
-            (phong.mirror * share, phong.transparency * (1.0 - share))
+        // Split the light by Fresnel's equations.
+        let reflected = fresnel::reflect(point.wo, point.normal);
+        let ratio = if point.outside { 1.0 / phong.ior } else { phong.ior };
+        let refracted = fresnel::refract(point.wo, point.normal, ratio);
+        let reflectance = if phong.fresnel {
+            fresnel::dielectric_reflectance(point.wo.dot(point.normal).abs(), 1.0 / ratio)
+        } else {
+            1.0
+        };
+        let (mut reflection, transmission) = if phong.fresnel {
+            (phong.mirror * reflectance, phong.transparency * (1.0 - reflectance))
         } else {
             (phong.mirror, phong.transparency)
         };
         if refracted.is_none() && !phong.fresnel {
-            // Total internal reflection: what would have gone through is mirrored too.
-            mirror += through;
+            // Total internal reflection: the mirror gets the transmitted part as well.
+            reflection += transmission;
         }
-        let bundle = Bundle { path, seen, min_weight: self.min_weight };
-        bundle.emit(mirrored, phong.glossy, mirror, sampler, 0, emit);
+        let bundle = Bundle { path, point, min_weight: self.min_weight };
+        bundle.trace(reflected, phong.glossy, reflection, sampler, 0, output);
         if let Some(refracted) = refracted {
             let mut sampler = *sampler;
             sampler.skip(1);
-            bundle.emit(refracted, phong.blurry, through, &sampler, phong.glossy.rays, emit);
+            bundle.trace(refracted, phong.blurry, transmission, &sampler, phong.glossy.rays, output);
         }
     }
 }
@@ -139,56 +167,64 @@ impl Classic {
 /// Rays that leave a vertex around one direction.
 struct Bundle<'a> {
     path: &'a PathState,
-    seen: &'a Seen<'a>,
+    point: &'a ShadingPoint<'a>,
     min_weight: f32,
 }
 
 impl Bundle<'_> {
-    fn emit(&self, axis: Vec3, cone: Cone, filter: Rgb, sampler: &Sampler, first_child: u32, emit: &mut Emit) {
-        if (self.path.weight * filter).max_channel() < self.min_weight || filter.is_black() {
+    fn trace(
+        &self,
+        axis: Vec3,
+        cone: RayCone,
+        filter: Rgb,
+        sampler: &Sampler,
+        first_child: u32,
+        output: &mut VertexOutput,
+    ) {
+        if (self.path.beta * filter).max_channel() < self.min_weight || filter.is_black() {
             return;
         }
-        let surface = self.seen.surface;
+        let surface = self.point.surface;
         let weight = filter / cone.rays as f32;
         for i in 0..cone.rays {
             let direction = if cone.half_angle_radians > 0.0 {
-                let u = sampler.part(i, cone.rays).next_2d();
+                let u = sampler.subsequence(i, cone.rays).next_2d();
                 cone::direction(axis, surface.normal, cone.half_angle_radians, u)
             } else {
                 axis
             };
-            emit.go_on(surface.spawn(direction, self.seen.time), weight, first_child + i);
+            output.trace_branch(surface.spawn_ray(direction, self.point.time), weight, first_child + i);
         }
     }
 }
 
-/// What one light brings, from one or more places on it.
-fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
-    let source = lamp.at(seen.time);
-    if !seen.phong.both_sides && source.is_below(seen.surface.point, seen.normal) {
+/// Adds a light's contribution, by one or more shadow rays.
+fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &Sampler, output: &mut VertexOutput) {
+    let state = light.at(point.time);
+    if !point.phong.both_sides && state.is_below(point.surface.point, point.normal) {
         return;
     }
-    let Lamp { samples, is_point, is_surface, .. } = lamp;
-    // Surfaces are measured in physical units.
-    let unit = if *is_surface { 1.0 / seen.phong.lamp_scale() } else { 1.0 };
-    let share = unit / *samples as f32;
+    let SceneLight { samples, is_delta, is_surface, .. } = light;
+    // Lights with a surface are in physical units.
+    let unit = if *is_surface { 1.0 / point.phong.light_scale() } else { 1.0 };
+    let weight = unit / *samples as f32;
     for i in 0..*samples {
-        let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
-        let Some(sample) = source.light.sample(seen.surface.point, u) else { continue };
-        let reflected = local(seen, sample.wi);
+        let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
+        let Some(sample) = state.light.sample(point.surface.point, u) else { continue };
+        let reflected = reflected_light(point, sample.wi);
         if reflected.is_black() {
             continue;
         }
-        let ray = seen.surface.spawn_to(sample.wi, sample.distance, seen.time);
-        emit.if_light_visible(number, ray, reflected * sample.radiance * share, lamp.group);
+        let ray = point.surface.spawn_ray_to(sample.wi, sample.distance, point.time);
+        output.add_light_shadow_ray(number, ray, reflected * sample.radiance * weight, light.group);
     }
 }
 
-/// Diffuse light and highlight for light from `wi`.
-fn local(seen: &Seen, wi: Vec3) -> Rgb {
-    let phong = seen.phong;
-    let facing = seen.normal.dot(wi);
-    let cosine = if phong.both_sides { facing.abs() } else { facing };
+/// Diffuse and specular reflection of light from `wi`.
+fn reflected_light(point: &ShadingPoint, wi: Vec3) -> Rgb {
+    let phong = point.phong;
+    let cos_theta = point.normal.dot(wi);
+    let cosine = if phong.both_sides { cos_theta.abs() } else { cos_theta };
     if cosine <= 0.0 {
         return Rgb::BLACK;
     }
@@ -196,18 +232,18 @@ fn local(seen: &Seen, wi: Vec3) -> Rgb {
     if phong.specular.is_black() {
         return diffuse;
     }
-    let towards = fresnel::reflect(wi, seen.normal).dot(seen.wo);
-    if towards <= 0.0 {
+    let cos_alpha = fresnel::reflect(wi, point.normal).dot(point.wo);
+    if cos_alpha <= 0.0 {
         return diffuse;
     }
-    let shine = fun::powf(towards, phong.shininess);
-    let shine = if phong.highlight == Highlight::PhongCosine { shine * cosine } else { shine };
-    diffuse + phong.specular * shine
+    let highlight = portable::powf(cos_alpha, phong.shininess);
+    let highlight = if phong.highlight == Highlight::PhongCosine { highlight * cosine } else { highlight };
+    diffuse + phong.specular * highlight
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Classic {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }

@@ -1,21 +1,22 @@
-//! Path tracing: light as it is (Kajiya, The Rendering Equation, 1986).
+//! Path tracing: unbiased global illumination (Kajiya, The Rendering Equation, 1986).
 //!
-//! At each vertex one light is asked (next-event estimation) and one direction is followed that the material chooses.
-//! What both ways could have found is weighted by the power heuristic (Veach 1997, section 9.2.2).
+//! Each vertex samples one light (next-event estimation) and one direction of the BSDF. Light
+//! samples and BSDF samples are combined by multiple importance sampling with the power heuristic
+//! (Veach 1997, section 9.2.2).
 //!
 //! ```json
 //! {"path": {"max_depth": 16, "roulette_depth": 4}}
 //! ```
 
-use super::{Clamp, Emit, Integrator, PathState};
-use caustic::Met;
-use juggler_material::Shade;
+use super::{Clamp, Integrator, PathState, VertexOutput};
+use caustic::HitEmitter;
+use juggler_material::Shading;
 use juggler_math::{Ray, Rgb, Vec2};
-use juggler_world::{Prospect, Receiver, Shadows, Vertex, World};
+use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, World};
 pub use sampling::Sampling;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use surface::Seen;
+use surface::ShadingPoint;
 
 mod caustic;
 mod sampling;
@@ -44,58 +45,70 @@ enum Dimension {
     CasterLight = 7,
 }
 
-/// Lights that are asked at the first vertex where there are several.
-const SEVERAL: u32 = 2;
+/// Default number of light samples at the first vertex, if the world has several emitters.
+const DEFAULT_LIGHT_SAMPLES: u32 = 2;
 
-/// Path tracing: light as it is, of every way that it may take.
+/// Path tracing: unbiased global illumination with soft shadows, interreflections, caustics and
+/// media.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Path {
-    /// Stretches of a path from the camera to a light, at most: 1 sees what shines, 2 what it lights.
+    /// Maximum number of path segments between camera and light, 1 to 10,000. 1 shows only
+    /// emitters, 2 adds direct lighting, larger values add indirect bounces. Scenes with much glass
+    /// need many; the default is 64.
     #[schemars(range(min = 1, max = 10_000))]
     pub max_depth: u32,
-    /// How often a path may be scattered by matte surfaces.
+    /// Maximum number of diffuse scattering events on a path, 0 to 10,000. Unlimited by default; 1
+    /// removes diffuse interreflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 10_000))]
     pub max_diffuse: Option<u32>,
-    /// How often a path may be scattered by rough mirrors and rough glass.
+    /// Maximum number of glossy scattering events on a path, by rough metal or rough glass, 0 to
+    /// 10,000. Unlimited by default; a low limit removes noise from repeated glossy reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 10_000))]
     pub max_glossy: Option<u32>,
-    /// How often a path may be mirrored or refracted by what is smooth.
+    /// Maximum number of specular reflections and refractions on a path, 0 to 10,000. Unlimited by
+    /// default.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 10_000))]
     pub max_specular: Option<u32>,
-    /// How often a path may be scattered by media.
+    /// Maximum number of scattering events in media, 0 to 10,000. Unlimited by default; dense,
+    /// bright media need many.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 10_000))]
     pub max_volume: Option<u32>,
-    /// Stretches after which paths that are worth little may end by chance (Russian roulette), which costs no
-    /// correctness; nothing for never.
+    /// Segment from which Russian roulette may terminate paths of low throughput, 1 to 10,000. The
+    /// result stays unbiased: smaller values save time and add noise. The default is 4; `null`
+    /// disables it.
     #[schemars(range(min = 1, max = 10_000))]
     pub roulette_depth: Option<u32>,
-    /// Lights that are asked at the first surface that is not smooth, where most of the noise comes from; nothing for two
-    /// where there are several lights, else one.
+    /// Number of light samples at the first vertex that is not specular, where most of the noise
+    /// arises; 1 to 64. By default 2 if the scene has several emitters, else 1. More of them reduce
+    /// the noise of direct lighting.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 64))]
     pub light_samples: Option<u32>,
-    /// Strategy for light that a ray can hit: `mis` combines light samples and BSDF samples and has
-    /// the least noise; `light` and `bsdf` use one of them alone, for comparisons.
+    /// Strategy for emitters that a ray can hit. `mis` combines light samples and BSDF samples and
+    /// has the least noise; `light` and `bsdf` use one of them alone, for comparisons.
     #[serde(skip_serializing_if = "Sampling::is_default")]
     pub sampling: Sampling,
-    /// The most that light on a way of up to two stretches may bring to a sample: its brightest channel is limited, its
-    /// hue stays. Nothing for no limit. What this takes away is reported.
+    /// Maximum contribution of emission and direct lighting, paths of one or two segments, to a
+    /// sample: the limit of the brightest color channel, in units of radiance. Hue is preserved.
+    /// Unlimited by default. Clamping darkens the picture; the render reports by how much.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-6, max = 1e30))]
     pub clamp_direct: Option<f32>,
-    /// The same for light on longer ways: fewer bright specks, and less light than there is.
+    /// Maximum contribution of indirect lighting, paths of three or more segments, as for
+    /// `clamp_direct`. Use it against fireflies that more samples do not remove. Unlimited by
+    /// default.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-6, max = 1e30))]
     pub clamp_indirect: Option<f32>,
 }
 
 impl Path {
-    /// What lights light, and nothing that other things reflect.
+    /// Direct lighting only: emission and one bounce from lights.
     pub(super) const DIRECT: Self = Self {
         max_depth: 2,
         max_diffuse: None,
@@ -109,20 +122,21 @@ impl Path {
         clamp_indirect: None,
     };
 
-    /// How many lights are asked at a vertex.
-    fn asked(&self, world: &World, path: &PathState) -> u16 {
-        let first = || self.light_samples.unwrap_or(if world.has_many_emitters() { SEVERAL } else { 1 });
-        if path.trail.scattered.is_first() { first().clamp(1, 64) as u16 } else { 1 }
+    /// Number of light samples at a vertex.
+    fn light_sample_count(&self, world: &World, path: &PathState) -> u16 {
+        let first = || self.light_samples.unwrap_or(if world.has_many_emitters() { DEFAULT_LIGHT_SAMPLES } else { 1 });
+        if path.history.events.is_only_specular() { first().clamp(1, 64) as u16 } else { 1 }
     }
 
-    /// The chance with which a path of this throughput goes on, when it does.
-    fn survival(&self, path: &PathState, throughput: Rgb) -> Option<f32> {
+    /// Applies Russian roulette: the survival probability of a path of this throughput, `None` if
+    /// the path ends.
+    fn roulette_survival(&self, path: &PathState, throughput: Rgb) -> Option<f32> {
         if self.roulette_depth.is_none_or(|depth| path.depth + 1 < depth) {
             return Some(1.0);
         }
-        // Filters may weight samples by less than nothing.
-        let chance = throughput.map(f32::abs).max_channel().min(1.0);
-        (path.sampler.at(Dimension::Roulette as u32).next_1d() < chance).then_some(chance)
+        // Throughput may be negative, because filter weights may be.
+        let probability = throughput.map(f32::abs).max_channel().min(1.0);
+        (path.sampler.skipped(Dimension::Roulette as u32).next_1d() < probability).then_some(probability)
     }
 }
 
@@ -133,59 +147,70 @@ impl Default for Path {
 }
 
 impl Integrator for Path {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        if self.flies(world, ray, ray.t_max, path, emit) {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        // Sample a collision in the medium before the surface.
+        if self.sample_medium(world, ray, ray.t_max, path, output) {
             return;
         }
+        // Skip interfaces that a medium of higher priority hides.
         let interior = world.interior(vertex);
-        if interior.is_some_and(|id| surface::is_covered(world, ray, path, vertex, id)) {
-            return surface::pass(world, ray, path, vertex, emit);
+        if interior.is_some_and(|id| surface::is_hidden(world, ray, path, vertex, id)) {
+            return surface::pass_through(world, ray, path, vertex, output);
         }
-        let around = surface::around(world, path, interior);
+        // Evaluate the material.
+        let exterior_ior = surface::exterior_ior(world, path, interior);
         let choice =
-            if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(Dimension::Choice as u32).next_2d() };
-        let mut shade = Shade::black();
-        world.fill_shade(vertex, -ray.direction, around, choice.x, &mut shade);
-        if shade.opacity < 1.0 && choice.y >= shade.opacity {
-            return surface::pass(world, ray, path, vertex, emit);
+            if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(Dimension::Choice as u32).next_2d() };
+        let mut shading = Shading::black();
+        world.shade_into(vertex, -ray.direction, exterior_ior, choice.x, &mut shading);
+        // Pass through by opacity.
+        if shading.opacity < 1.0 && choice.y >= shading.opacity {
+            return surface::pass_through(world, ray, path, vertex, output);
         }
-        emit.see_shaded(world, ray, vertex, &shade);
-        if !shade.emission.is_black() {
-            let light = || world.light_pdf(&path.trail.receiver(ray.time), vertex);
-            let bent = |to: &Receiver, way: &Ray| world.light_pdf(to, vertex) * caustic::tilt(way, ray, vertex);
-            let end = Met::Surface(vertex.surface.point);
-            let weight = self.met_weight(world, path, ray, light, end, bent);
-            emit.add(shade.emission * weight, world.shape_group(vertex.object));
+        // Record AOVs of the surface.
+        output.record_shading(world, ray, vertex, &shading);
+        // Add emission, weighted against light sampling.
+        if !shading.emission.is_black() {
+            let light = || world.light_pdf(&path.history.light_sample_context(ray.time), vertex);
+            let bent = |to: &LightSampleContext, center_ray: &Ray| {
+                world.light_pdf(to, vertex) * caustic::emitter_cosine_ratio(center_ray, ray, vertex)
+            };
+            let end = HitEmitter::Surface(vertex.surface.point);
+            let weight = self.emission_weight(world, path, ray, light, end, bent);
+            output.add(shading.emission * weight, world.shape_group(vertex.shape));
         }
         if path.depth + 1 >= self.max_depth {
             return;
         }
-        self.limit(&mut shade.bsdf, path);
-        let mut prospect = Prospect::empty();
-        let mut seen = Seen::new(ray, vertex, &shade, interior);
-        if !seen.shade.bsdf.is_specular() {
-            seen.look_for_casters(world, &mut prospect);
-            seen.ask_lights(self.asked(world, path), self.sampling, world, path, emit);
-            self.ask_by_ball(&seen, world, path, emit);
+        // Remove lobes whose limit is reached.
+        self.limit_lobes(&mut shading.bsdf, path);
+        let mut visible_casters = VisibleCasters::empty();
+        let mut point = ShadingPoint::new(ray, vertex, &shading, interior);
+        // Sample direct illumination, also through specular spheres.
+        if !point.shading.bsdf.is_specular() {
+            point.find_visible_casters(world, &mut visible_casters);
+            point.sample_lights(self.light_sample_count(world, path), self.sampling, world, path, output);
+            self.sample_caustics(&point, world, path, output);
         }
-        self.go_on(&seen, world, vertex.object, path, emit);
+        // Sample the BSDF and continue the path.
+        self.continue_path(&point, world, vertex.shape, path, output);
     }
 
-    fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
-        if !self.flies(world, ray, f32::INFINITY, path, emit) {
-            emit.miss(ray);
+    fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
+        if !self.sample_medium(world, ray, f32::INFINITY, path, output) {
+            output.record_miss(ray);
             let light = || world.background_pdf(ray.direction);
-            let weight = self.met_weight(world, path, ray, light, Met::Background, |_, _| light());
-            emit.add(world.background(ray) * weight, world.background_group());
+            let weight = self.emission_weight(world, path, ray, light, HitEmitter::Background, |_, _| light());
+            output.add(world.background_radiance(ray) * weight, world.background_group());
         }
     }
 
-    fn fades_patterns(&self) -> bool {
+    fn filters_textures(&self) -> bool {
         true
     }
 
-    fn shadows(&self) -> Shadows {
-        Shadows::Physical
+    fn shadows(&self) -> ShadowMode {
+        ShadowMode::Physical
     }
 
     fn clamp(&self) -> Option<Clamp> {
@@ -196,7 +221,7 @@ impl Integrator for Path {
 
 #[cfg(any(test, feature = "testing"))]
 impl Path {
-    /// For the contract tests.
+    /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         let clamped = Self { clamp_direct: Some(4.0), clamp_indirect: Some(0.5), ..Self::default() };
         vec![Self::default(), Self { max_depth: 3, max_diffuse: Some(1), ..Self::DIRECT }, clamped]

@@ -1,127 +1,135 @@
-//! Paths at surfaces: what a light brings, and where to go on.
+//! Path vertices on surfaces: light sampling and BSDF sampling.
 
-use super::super::{Chain, Counts, Emit, PathState, Trail};
+use super::super::{CausticState, PathHistory, PathState, ScatterCounts, VertexOutput};
 use super::{Dimension, Path, Sampling};
 use juggler_bsdf::{Bsdf, BsdfSample, Scatter};
-use juggler_material::Shade;
+use juggler_material::Shading;
 use juggler_material::medium::{InteriorId, Interiors};
 use juggler_math::{Ray, Rgb, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_world::{Lighting, MAX_PASSED, Origin, Prospect, Receiver, Vertex, World};
+use juggler_world::{EmitterId, EmitterSample, LightSampleContext, MAX_PASS_THROUGHS, Vertex, VisibleCasters, World};
 
-/// A vertex as seen by the one who looks.
-pub struct Seen<'a> {
+/// A shading point: a vertex with its evaluated material and the direction of view.
+pub struct ShadingPoint<'a> {
     pub surface: &'a Surface,
-    pub shade: &'a Shade,
-    /// Unit, towards where the ray came from, in the world and in the frame of the scattering function.
+    pub shading: &'a Shading,
+    /// Unit vector towards the origin of the ray, in world space and in the shading frame.
     wo: Vec3,
     pub local: Vec3,
     pub time: f32,
     interior: Option<InteriorId>,
-    /// Specular spheres visible from the vertex; `None` where the path samples no light through them.
-    pub prospect: Option<&'a Prospect>,
+    /// Specular spheres visible from the vertex; `None` where the path samples no light through
+    /// them.
+    pub visible_casters: Option<&'a VisibleCasters>,
 }
 
-/// Goes straight on as if nothing had been there.
-pub fn pass(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-    if path.trail.passed < MAX_PASSED {
-        let inside = crossed(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
-        emit.pass(ray);
-        let trail = Trail { passed: path.trail.passed + 1, inside, chain: Chain::NONE, ..path.trail };
-        emit.follow(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, trail, 0);
+/// Continues the path straight through the surface.
+pub fn pass_through(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+    if path.history.pass_throughs < MAX_PASS_THROUGHS {
+        let interiors = interiors_after(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
+        output.record_pass_through(ray);
+        let history = PathHistory {
+            pass_throughs: path.history.pass_throughs + 1,
+            interiors,
+            caustic: CausticState::NONE,
+            ..path.history
+        };
+        output.continue_path(vertex.surface.spawn_ray(ray.direction, ray.time), Rgb::WHITE, history, 0);
     }
 }
 
-/// The solids that a path is in once it has crossed the surface of one, inwards or outwards.
-fn crossed(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> Interiors {
-    let inside = path.trail.inside;
+/// Solids that contain the path after it crosses the interface of one, inwards or outwards.
+fn interiors_after(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> Interiors {
+    let inside = path.history.interiors;
     interior.map_or(inside, |id| inside.crossed(id, inwards))
 }
 
-/// Whether a surface is not there, because a solid of higher priority is.
-pub fn is_covered(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id: InteriorId) -> bool {
+/// Whether a medium of higher priority hides this interface (Schmidt and Budge 2002).
+pub fn is_hidden(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id: InteriorId) -> bool {
     let inwards = vertex.surface.normal.dot(ray.direction) < 0.0;
-    path.trail.inside.hide(id, inwards, world.interiors())
+    path.history.interiors.hides_interface(id, inwards, world.interiors())
 }
 
-/// Index of refraction around a solid that a path meets.
-pub fn around(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
-    let inside = path.trail.inside;
+/// Index of refraction of the medium around the solid that the path hit.
+pub fn exterior_ior(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
+    let inside = path.history.interiors;
     if inside.is_empty() {
         return 1.0;
     }
-    let others = interior.map_or(inside, |id| inside.left(id));
+    let others = interior.map_or(inside, |id| inside.exited(id));
     others.top(world.interiors()).map_or(1.0, |interior| interior.ior)
 }
 
-impl<'a> Seen<'a> {
+impl<'a> ShadingPoint<'a> {
     #[inline]
-    pub fn new(ray: &Ray, vertex: &'a Vertex, shade: &'a Shade, interior: Option<InteriorId>) -> Self {
+    pub fn new(ray: &Ray, vertex: &'a Vertex, shading: &'a Shading, interior: Option<InteriorId>) -> Self {
         let wo = -ray.direction;
-        let local = shade.frame.to_local(wo);
-        Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior, prospect: None }
+        let local = shading.frame.to_local(wo);
+        Self { surface: &vertex.surface, shading, wo, local, time: ray.time, interior, visible_casters: None }
     }
 
     /// Factor of a light sample's contribution: its multiple importance sampling weight over
     /// `light_pdf`. `bsdf_pdf` is the density of BSDF sampling for the same direction.
     #[inline]
-    pub fn light_sample_weight(&self, sampling: Sampling, light: &Lighting, light_pdf: f32, bsdf_pdf: f32) -> f32 {
-        let share = if light.can_be_met { sampling.light_weight(light_pdf, bsdf_pdf) } else { 1.0 };
-        let scale = if matches!(light.origin, Origin::Lamp(_)) { self.shade.lamp_scale } else { 1.0 };
-        share * scale / light_pdf
+    pub fn light_sample_weight(&self, sampling: Sampling, light: &EmitterSample, light_pdf: f32, bsdf_pdf: f32) -> f32 {
+        let mis_weight = if light.can_be_bsdf_sampled { sampling.light_weight(light_pdf, bsdf_pdf) } else { 1.0 };
+        let scale = if matches!(light.emitter, EmitterId::Light(_)) { self.shading.light_scale } else { 1.0 };
+        mis_weight * scale / light_pdf
     }
 
-    /// Finds the specular spheres that the vertex sees; `prospect` is empty before.
+    /// Finds the specular spheres visible from the vertex. `visible_casters` must be empty.
     #[inline]
-    pub fn look_for_casters(&mut self, world: &World, prospect: &'a mut Prospect) {
+    pub fn find_visible_casters(&mut self, world: &World, visible_casters: &'a mut VisibleCasters) {
         if world.has_casters() {
-            world.fill_prospect(&self.receiver(), prospect);
-            self.prospect = Some(prospect);
+            world.fill_visible_casters(&self.light_sample_context(), visible_casters);
+            self.visible_casters = Some(visible_casters);
         }
     }
 
-    /// As what light comes to.
-    fn receiver(&self) -> Receiver {
-        Receiver {
+    /// Context of light samples at the vertex.
+    fn light_sample_context(&self) -> LightSampleContext {
+        LightSampleContext {
             point: self.surface.point,
-            error: self.surface.error,
+            error: self.surface.position_error,
             normal: self.receiving_normal(),
             time: self.time,
         }
     }
 
-    /// What is scattered, and the density with which a path goes on in that direction.
+    /// Evaluates the BSDF times cosine, and the density of [`ShadingPoint::sample`], for a
+    /// direction.
     pub fn eval_pdf(&self, direction: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let (scattered, pdf) = self.shade.bsdf.eval_pdf(self.local, wi);
-        match self.prospect {
-            Some(prospect) => {
-                let share = self.guided(prospect);
-                (scattered, pdf * (1.0 - share) + share * prospect.pdf(direction))
+        let (scattered, pdf) = self.shading.bsdf.eval_pdf(self.local, wi);
+        match self.visible_casters {
+            Some(visible_casters) => {
+                let fraction = self.guided_fraction(visible_casters);
+                (scattered, pdf * (1.0 - fraction) + fraction * visible_casters.pdf(direction))
             }
             None => (scattered, pdf),
         }
     }
 
-    /// The share of directions that are those of balls. Light that may also go through has an index of refraction that only the
-    /// scattering function knows.
-    fn guided(&self, prospect: &Prospect) -> f32 {
-        if self.shade.transmissive { 0.0 } else { prospect.share() }
+    /// Fraction of BSDF samples replaced by directions towards specular spheres. It is 0 for
+    /// transmissive materials, since only the BSDF knows the index of refraction of a sample.
+    fn guided_fraction(&self, visible_casters: &VisibleCasters) -> f32 {
+        if self.shading.transmissive { 0.0 } else { visible_casters.guided_fraction() }
     }
 
-    /// A direction in which a path may go on.
+    /// Samples the direction of the next segment.
     fn sample(&self, path: &PathState) -> Option<(Vec3, BsdfSample)> {
-        let mut u = path.sampler.at(Dimension::Scatter as u32).next_2d();
-        let (frame, bsdf) = (&self.shade.frame, &self.shade.bsdf);
-        let choice = if bsdf.has_choice() { path.sampler.at(Dimension::Facet as u32).next_1d() } else { 0.0 };
-        let Some(prospect) = self.prospect else {
+        let mut u = path.sampler.skipped(Dimension::Scatter as u32).next_2d();
+        let (frame, bsdf) = (&self.shading.frame, &self.shading.bsdf);
+        let choice = if bsdf.uses_u_choice() { path.sampler.skipped(Dimension::Facet as u32).next_1d() } else { 0.0 };
+        let Some(visible_casters) = self.visible_casters else {
             let sample = bsdf.sample(self.local, u, choice)?;
             return Some((frame.to_world(sample.wi), sample));
         };
-        let share = self.guided(prospect);
-        let (is_guided, rest) = juggler_bsdf::choose(u.x, share);
+        let fraction = self.guided_fraction(visible_casters);
+        let (is_guided, rest) = juggler_bsdf::choose(u.x, fraction);
         u.x = rest;
+        // Sample a direction towards a specular sphere.
         if is_guided {
-            let direction = prospect.sample(u)?;
+            let direction = visible_casters.sample(u)?;
             let wi = frame.to_local(direction);
             let (scattered, pdf) = self.eval_pdf(direction, wi);
             let scatter = bsdf.scatter();
@@ -131,115 +139,168 @@ impl<'a> Seen<'a> {
         let sample = bsdf.sample(self.local, u, choice)?;
         let direction = frame.to_world(sample.wi);
         if sample.scatter == Scatter::Specular {
-            return Some((direction, BsdfSample { weight: sample.weight * (1.0 / (1.0 - share)), ..sample }));
+            return Some((direction, BsdfSample { weight: sample.weight * (1.0 / (1.0 - fraction)), ..sample }));
         }
-        let pdf = sample.pdf * (1.0 - share) + share * prospect.pdf(direction);
+        let pdf = sample.pdf * (1.0 - fraction) + fraction * visible_casters.pdf(direction);
         let weight = sample.weight * (sample.pdf / pdf);
         Some((direction, BsdfSample { weight, pdf, ..sample }))
     }
 
-    /// What some lights bring.
-    pub fn ask_lights(&self, count: u16, sampling: Sampling, world: &World, path: &PathState, emit: &mut Emit) {
-        let to = self.receiver();
-        let sampler = path.sampler.at(Dimension::Light as u32);
+    /// Samples `count` lights.
+    pub fn sample_lights(
+        &self,
+        count: u16,
+        sampling: Sampling,
+        world: &World,
+        path: &PathState,
+        output: &mut VertexOutput,
+    ) {
+        let to = self.light_sample_context();
+        let sampler = path.sampler.skipped(Dimension::Light as u32);
         for part in 0..u32::from(count) {
-            let u = sampler.part(part, u32::from(count)).next_2d();
+            let u = sampler.subsequence(part, u32::from(count)).next_2d();
             if let Some(light) = world.sample_light(&to, u) {
                 let pdf = light.pdf * f32::from(count);
-                self.ask_light(&Lighting { pdf, ..light }, sampling, world, path, emit);
+                self.add_light_sample(&EmitterSample { pdf, ..light }, sampling, world, path, output);
             }
         }
     }
 
-    /// What a light brings that is picked with its density.
-    fn ask_light(&self, light: &Lighting, sampling: Sampling, world: &World, path: &PathState, emit: &mut Emit) {
-        let wi = self.shade.frame.to_local(light.wi);
-        if !self.agree(light.wi, wi) {
+    /// Adds the contribution of a light sample, if its shadow ray is unoccluded.
+    fn add_light_sample(
+        &self,
+        light: &EmitterSample,
+        sampling: Sampling,
+        world: &World,
+        path: &PathState,
+        output: &mut VertexOutput,
+    ) {
+        let wi = self.shading.frame.to_local(light.wi);
+        if !self.same_hemisphere(light.wi, wi) {
             return;
         }
         let (scattered, pdf) = self.eval_pdf(light.wi, wi);
         if scattered.is_black() {
             return;
         }
-        let ray = self.surface.spawn_to(light.wi, light.distance, self.time);
-        let inside = self.inside(path, wi);
+        let ray = self.surface.spawn_ray_to(light.wi, light.distance, self.time);
+        let inside = self.interiors_towards(path, wi);
         let radiance = light.radiance * scattered * self.light_sample_weight(sampling, light, light.pdf, pdf);
-        emit.if_visible_inside(ray, radiance, world.light_group(light.origin), inside);
+        output.add_shadow_ray_inside(ray, radiance, world.light_group(light.emitter), inside);
     }
 
-    /// The solids that a path is in that goes on from here in the direction `wi`, which is local.
-    pub fn inside(&self, path: &PathState, wi: Vec3) -> Interiors {
+    /// Solids that contain a ray that continues in the direction `wi`, in the shading frame.
+    pub fn interiors_towards(&self, path: &PathState, wi: Vec3) -> Interiors {
         if wi.z * self.local.z < 0.0 {
-            crossed(path, self.surface.normal.dot(self.wo) > 0.0, self.interior)
+            interiors_after(path, self.surface.normal.dot(self.wo) > 0.0, self.interior)
         } else {
-            path.trail.inside
+            path.history.interiors
         }
     }
 
-    /// The normal on the side that light comes to; zero where it may come from both.
+    /// Shading normal on the illuminated side; zero if light may arrive from both.
     fn receiving_normal(&self) -> Vec3 {
-        if self.shade.transmissive { Vec3::ZERO } else { self.shade.frame.normal }
+        if self.shading.transmissive { Vec3::ZERO } else { self.shading.frame.normal }
     }
 
-    /// Whether the true surface has the direction `wi`, which is `local` in the frame, on the side on which the shading
-    /// normal has it.
-    pub fn agree(&self, wi: Vec3, local: Vec3) -> bool {
+    /// Whether the geometric and the shading normal have `wi` on the same side of the surface.
+    /// `local` is `wi` in the shading frame.
+    pub fn same_hemisphere(&self, wi: Vec3, local: Vec3) -> bool {
         let normal = self.surface.normal;
         (normal.dot(wi) * normal.dot(self.wo) < 0.0) == (local.z * self.local.z < 0.0)
     }
 
-    fn trail(&self, world: &World, object: u32, path: &PathState, sample: &BsdfSample, asked: u16) -> Trail {
-        let mut scattered = path.trail.scattered;
+    fn history(
+        &self,
+        world: &World,
+        shape: u32,
+        path: &PathState,
+        sample: &BsdfSample,
+        light_samples: u16,
+    ) -> PathHistory {
+        let mut events = path.history.events;
         let count = match sample.scatter {
-            Scatter::Diffuse => &mut scattered.diffuse,
-            Scatter::Glossy => &mut scattered.glossy,
-            Scatter::Specular => &mut scattered.specular,
+            Scatter::Diffuse => &mut events.diffuse,
+            Scatter::Glossy => &mut events.glossy,
+            Scatter::Specular => &mut events.specular,
         };
         *count = count.saturating_add(1);
-        let ior_scale = path.trail.ior_scale * sample.ior * sample.ior;
-        let (inside, passed) = (self.inside(path, sample.wi), 0);
-        let chain = self.chain(world, object, path, sample, inside);
+        let eta_scale = path.history.eta_scale * sample.ior * sample.ior;
+        let (interiors, pass_throughs) = (self.interiors_towards(path, sample.wi), 0);
+        let caustic = self.caustic_state(world, shape, path, sample, interiors);
         if sample.scatter == Scatter::Specular {
-            return Trail { pdf: f32::INFINITY, ior_scale, inside, passed, scattered, chain, ..path.trail };
+            return PathHistory {
+                pdf: f32::INFINITY,
+                eta_scale,
+                interiors,
+                pass_throughs,
+                events,
+                caustic,
+                ..path.history
+            };
         }
-        let Receiver { point: from, error, normal, .. } = self.receiver();
-        Trail { from, error, normal, pdf: sample.pdf, asked, ior_scale, inside, passed, scattered, chain }
+        let LightSampleContext { point: from, error, normal, .. } = self.light_sample_context();
+        PathHistory {
+            from,
+            error,
+            normal,
+            pdf: sample.pdf,
+            light_samples,
+            eta_scale,
+            interiors,
+            pass_throughs,
+            events,
+            caustic,
+        }
     }
 }
 
 impl Path {
-    /// Takes away the ways of scattering that a path has had as often as it may: for lights that are asked and for
-    /// directions that are followed alike, since both share the light between them.
+    /// Removes the lobes whose limit of scattering events the path has reached, for light sampling
+    /// and BSDF sampling alike, since multiple importance sampling combines them.
     #[inline]
-    pub fn limit(&self, bsdf: &mut Bsdf, path: &PathState) {
+    pub fn limit_lobes(&self, bsdf: &mut Bsdf, path: &PathState) {
         if self.max_diffuse.is_some() || self.max_glossy.is_some() || self.max_specular.is_some() {
-            self.mute(bsdf, path);
+            self.remove_lobes(bsdf, path);
         }
     }
 
-    fn mute(&self, bsdf: &mut Bsdf, path: &PathState) {
-        let Counts { diffuse, glossy, specular, .. } = path.trail.scattered;
-        let is_done = |count: u16, most: Option<u32>| most.is_some_and(|most| u32::from(count) >= most);
-        bsdf.mute(|scatter| match scatter {
+    fn remove_lobes(&self, bsdf: &mut Bsdf, path: &PathState) {
+        let ScatterCounts { diffuse, glossy, specular, .. } = path.history.events;
+        let is_done = |count: u16, limit: Option<u32>| limit.is_some_and(|limit| u32::from(count) >= limit);
+        bsdf.remove_scattering(|scatter| match scatter {
             Scatter::Diffuse => is_done(diffuse, self.max_diffuse),
             Scatter::Glossy => is_done(glossy, self.max_glossy),
             Scatter::Specular => is_done(specular, self.max_specular),
         });
     }
 
-    /// The direction that the material chooses.
-    pub fn go_on(&self, seen: &Seen, world: &World, object: u32, path: &PathState, emit: &mut Emit) {
-        let Some((wi, sample)) = seen.sample(path) else { return };
-        if !seen.agree(wi, sample.wi) {
+    /// Samples the BSDF and continues the path.
+    pub fn continue_path(
+        &self,
+        point: &ShadingPoint,
+        world: &World,
+        shape: u32,
+        path: &PathState,
+        output: &mut VertexOutput,
+    ) {
+        let Some((wi, sample)) = point.sample(path) else { return };
+        if !point.same_hemisphere(wi, sample.wi) {
             return;
         }
-        let trail = seen.trail(world, object, path, &sample, self.asked(world, path));
-        let throughput = emit.weight() * sample.weight * trail.ior_scale;
+        let history = point.history(world, shape, path, &sample, self.light_sample_count(world, path));
+        // Terminate by Russian roulette.
+        let throughput = output.beta() * sample.weight * history.eta_scale;
         if throughput.is_black() {
             return;
         }
-        if let Some(chance) = self.survival(path, throughput) {
-            emit.follow(seen.surface.spawn(wi, seen.time), sample.weight * (1.0 / chance), trail, 1);
+        if let Some(probability) = self.roulette_survival(path, throughput) {
+            output.continue_path(
+                point.surface.spawn_ray(wi, point.time),
+                sample.weight * (1.0 / probability),
+                history,
+                1,
+            );
         }
     }
 }

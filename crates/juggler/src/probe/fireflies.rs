@@ -1,76 +1,81 @@
-//! Fireflies: pixels that stand out because few of their samples are very bright, and by which paths these came.
+//! Detection of fireflies, pixels dominated by a few very bright samples, and of the paths that
+//! cause them.
 
-use super::outliers::{Field, Found, Outlier, error};
+use super::outliers::{LuminanceImage, Outlier, Outliers, error};
 use super::{Detail, Prober, luminance};
 use crate::Error;
-use juggler_camera::film::Summary;
+use juggler_camera::film::FilmSummary;
 use juggler_math::Rgb;
 use juggler_render::Control;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Pixels that are looked into, beside those that are told one by one: enough to tell which kinds of paths do it.
-const LOOKED_INTO: usize = 100;
+/// Minimum number of probed outliers, enough to group them by kind of path.
+const MIN_PROBED: usize = 100;
 
-/// What stands out in a picture, and why.
+/// Fireflies of an image and their causes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fireflies {
-    /// Width and height of the picture.
+    /// Width and height of the image, in pixels.
     pub size: [u32; 2],
-    /// How light was followed.
+    /// Name of the integrator.
     pub integrator: &'static str,
-    /// Samples of each pixel.
+    /// Number of samples per pixel.
     pub samples: u32,
-    /// How many pixels stand out by chance.
+    /// Number of outliers that noise explains.
     pub count: usize,
-    /// How many stand out by what they show: their samples agree. Nothing where that is not known, of fewer than 32 samples.
-    pub sure: Option<usize>,
-    /// What those that stand out by chance have beyond what is around them, of all the picture's light (luminance).
+    /// Number of outliers whose samples agree, such as small emitters; `None` for fewer than 32
+    /// samples.
+    #[serde(rename = "sure")]
+    pub certain: Option<usize>,
+    /// Excess luminance of the noisy outliers over their neighborhoods, as a fraction of the
+    /// image's.
     pub excess: f64,
-    /// Those that stand out most.
+    /// Strongest outliers.
     pub pixels: Vec<Firefly>,
-    /// How many pixels were looked into.
-    pub looked_into: usize,
-    /// By which kinds of paths light came to these, those with most excess light first.
-    pub kinds: Vec<Kind>,
-    /// What clamping removed, of all light; nothing where nothing is clamped.
+    /// Number of probed outliers.
+    #[serde(rename = "looked_into")]
+    pub probed: usize,
+    /// Kinds of paths that lit them, by decreasing excess.
+    pub kinds: Vec<PathGroup>,
+    /// Fraction of the light that clamping removed; `None` without clamping.
     pub clamped: Option<f64>,
 }
 
-/// A pixel that stands out.
+/// Outlier pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Firefly {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],
-    /// The pixel, linear RGB.
+    /// Radiance, linear RGB.
     pub value: [f32; 3],
-    /// Its luminance.
+    /// Luminance of the pixel.
     pub luminance: f64,
-    /// Median luminance of what is around it.
+    /// Median luminance of its neighborhood.
     pub median: f64,
-    /// By how many spreads of what is around it stands out.
+    /// Excess over the median, in robust standard deviations.
     pub score: f64,
-    /// Its brightest sample; nothing of integrators that follow no paths.
+    /// Index of the brightest sample; `None` for integrators without paths.
     pub sample: Option<u32>,
-    /// What that has of all light of the pixel.
+    /// Fraction of the pixel's light in that sample.
     pub share: Option<f64>,
-    /// How it came.
+    /// Path of that sample.
     pub path: Option<String>,
 }
 
-/// Paths that met places of the same kind.
+/// Group of paths with the same scattering events.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Kind {
-    /// What they did: `diffuse > specular transmission > what shines`.
+pub struct PathGroup {
+    /// Scattering events: `diffuse > specular transmission > what shines`.
     pub path: String,
-    /// How many pixels stand out by them.
+    /// Number of outliers that such paths cause.
     pub pixels: usize,
-    /// What these have beyond what is around them, of all such light in the picture.
+    /// Excess of these outliers, as a fraction of that of all noisy outliers.
     pub share: f64,
 }
 
 impl Prober<'_> {
-    /// Renders the picture, and tells what stands out in it: `count` pixels one by one.
+    /// Renders the image and finds its fireflies; `count` of them are listed.
     pub fn fireflies(&self, count: usize, control: &Control) -> Result<Fireflies, Error> {
         let picture = self.picture();
         let film = picture.film();
@@ -83,31 +88,35 @@ impl Prober<'_> {
             let own: Vec<Option<f64>> =
                 (0..tile.pixels().area() as usize).map(|place| error(&tile.statistics(place))).collect();
             tile.copy_to(&region, &mut pixels);
-            tile.pixels().copy(&own, &region, &mut errors);
+            tile.pixels().copy_into(&own, &region, &mut errors);
         }
         let summary = picture.develop(&film, |_| Ok::<(), Error>(()))?;
         let knows = errors.iter().any(Option::is_some);
         let values = pixels.iter().map(|pixel| f64::from(pixel.luminance())).collect();
-        let field = Field { width: width as usize, height: height as usize, values, errors };
-        let found = field.outliers();
-        let told = self.told(&field, &found, &pixels, count, control)?;
-        Ok(Fireflies { sure: knows.then_some(found.sure), ..self.summed(&field, &found, told, count, &summary) })
+        let image = LuminanceImage { width: width as usize, height: height as usize, values, errors };
+        let found = image.outliers();
+        let probed = self.probe_outliers(&image, &found, &pixels, count, control)?;
+        Ok(Fireflies {
+            certain: knows.then_some(found.certain),
+            ..self.summarize(&image, &found, probed, count, &summary)
+        })
     }
 
-    /// Looks into the pixels that stand out most: each with the kind of its path, and what it has too much.
-    fn told(
+    /// Probes the strongest outliers. Returns each with the kind of its brightest path and its
+    /// excess.
+    fn probe_outliers(
         &self,
-        field: &Field,
-        found: &Found,
+        image: &LuminanceImage,
+        found: &Outliers,
         pixels: &[Rgb],
         count: usize,
         control: &Control,
     ) -> Result<Vec<(Firefly, Option<String>, f64)>, Error> {
         let detail = Detail { depth: 0, branches: 0, brightest: 1 };
         let region = self.picture().region();
-        let mut told = Vec::new();
-        for Outlier { place, median, excess, score } in found.outliers.iter().take(count.max(LOOKED_INTO)).copied() {
-            let (x, y) = ((place % field.width.max(1)) as u32, (place / field.width.max(1)) as u32);
+        let mut probed = Vec::new();
+        for Outlier { place, median, excess, score } in found.outliers.iter().take(count.max(MIN_PROBED)).copied() {
+            let (x, y) = ((place % image.width.max(1)) as u32, (place / image.width.max(1)) as u32);
             let pixel = [region.x + x, region.y + y];
             let probe = self.pixel(pixel, &detail, control)?;
             let brightest = probe.light.and_then(|light| light.brightest.into_iter().next());
@@ -122,30 +131,30 @@ impl Prober<'_> {
                 share: brightest.as_ref().and_then(|brightest| brightest.share),
                 path: brightest.as_ref().map(|brightest| brightest.path.clone()),
             };
-            told.push((firefly, brightest.map(|brightest| brightest.kind), excess));
+            probed.push((firefly, brightest.map(|brightest| brightest.kind), excess));
         }
-        Ok(told)
+        Ok(probed)
     }
 
-    fn summed(
+    fn summarize(
         &self,
-        field: &Field,
-        found: &Found,
-        told: Vec<(Firefly, Option<String>, f64)>,
+        image: &LuminanceImage,
+        found: &Outliers,
+        probed: Vec<(Firefly, Option<String>, f64)>,
         count: usize,
-        summary: &Summary,
+        summary: &FilmSummary,
     ) -> Fireflies {
         let total: f64 = found.outliers.iter().map(|outlier| outlier.excess).sum();
-        let light: f64 = field.values.iter().filter(|value| value.is_finite()).sum();
+        let light: f64 = image.values.iter().filter(|value| value.is_finite()).sum();
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
         let mut kinds: BTreeMap<String, (usize, f64)> = BTreeMap::new();
-        for (_, kind, excess) in &told {
+        for (_, kind, excess) in &probed {
             let Some(kind) = kind else { continue };
             let sum = kinds.entry(kind.clone()).or_default();
             *sum = (sum.0 + 1, sum.1 + excess);
         }
-        let kind = |(path, (pixels, excess))| Kind { path, pixels, share: share(excess, total) };
-        let mut kinds: Vec<Kind> = kinds.into_iter().map(kind).collect();
+        let kind = |(path, (pixels, excess))| PathGroup { path, pixels, share: share(excess, total) };
+        let mut kinds: Vec<PathGroup> = kinds.into_iter().map(kind).collect();
         kinds.sort_by(|a, b| b.share.total_cmp(&a.share));
         let picture = self.picture();
         Fireflies {
@@ -153,12 +162,12 @@ impl Prober<'_> {
             integrator: picture.integrator().name(),
             samples: picture.samples(),
             count: found.outliers.len(),
-            sure: None,
+            certain: None,
             excess: share(total, light),
-            looked_into: told.len(),
-            pixels: told.into_iter().take(count).map(|(firefly, ..)| firefly).collect(),
+            probed: probed.len(),
+            pixels: probed.into_iter().take(count).map(|(firefly, ..)| firefly).collect(),
             kinds,
-            clamped: picture.is_clamped().then(|| summary.clamped_share()),
+            clamped: picture.is_clamped().then(|| summary.clamped_fraction()),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Why a pixel is as it is: its samples, traced again as the picture took them, with all that their paths did.
+//! Explanation of a pixel: its samples are traced again, bit-identical to the render, and their
+//! paths are recorded.
 //!
 //! ```
 //! use juggler::prelude::*;
@@ -13,45 +14,45 @@
 //! # Ok::<(), juggler::Error>(())
 //! ```
 
-mod chain;
 mod fireflies;
 mod names;
 mod outliers;
+mod path;
 mod shares;
 mod tree;
 
-pub use chain::{Contribution, Place, SampleProbe, Step};
-pub use fireflies::{Fireflies, Firefly, Kind};
-pub use shares::{Light, Share, Shares};
+pub use fireflies::{Fireflies, Firefly, PathGroup};
+pub use path::{Contribution, PathEvent, ProbeVertex, SampleProbe};
+pub use shares::{LightOrigins, Share, Shares};
 pub use tree::{Branch, Others};
 
 use crate::{Error, Picture};
-use chain::Brightest;
-use juggler_camera::film::Statistics;
+use juggler_camera::film::PixelStatistics;
 use juggler_integrator::AnyIntegrator;
 use juggler_math::{Rgb, Vec2};
-use juggler_render::{Control, Inspected, Job};
+use juggler_render::{Control, InspectedSample, Job};
 use juggler_scene::Scene;
-use juggler_world::{LightsApart, Vertex};
+use juggler_world::{SeparateLights, Vertex};
 use names::Namer;
+use path::Brightest;
 use serde::Serialize;
 use shares::Sums;
 use std::sync::Arc;
-use tree::Tree;
+use tree::PathTree;
 
-/// How often a ray goes on through holes.
-const MOST_HOLES: usize = 64;
-/// Less of a surface than this, and the middle of a pixel sees what is behind it.
-const THERE: f32 = 0.5;
+/// Maximum number of opacity masks that the pixel's center ray passes.
+const MAX_PASSED_SURFACES: usize = 64;
+/// Opacity from which the center ray hits a surface rather than passes it.
+const MIN_OPACITY: f32 = 0.5;
 
-/// How much is told.
+/// Level of detail of a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Detail {
-    /// Places in a row that the tree of paths tells apart.
+    /// Maximum number of vertices of the paths in the tree.
     pub depth: u32,
-    /// Branches of each place; the smaller ones are summed.
+    /// Maximum number of branches per vertex; smaller ones are merged.
     pub branches: usize,
-    /// Samples that are told one by one, the brightest first.
+    /// Number of samples to list, brightest first.
     pub brightest: usize,
 }
 
@@ -61,84 +62,86 @@ impl Default for Detail {
     }
 }
 
-/// What is known of one pixel.
+/// Explanation of one pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Probe {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],
-    /// Width and height of the picture.
+    /// Width and height of the image, in pixels.
     pub size: [u32; 2],
-    /// How light was followed.
+    /// Name of the integrator.
     pub integrator: &'static str,
-    /// Samples of the pixel.
+    /// Number of samples of the pixel.
     pub samples: u32,
-    /// How many of them were no finite numbers, and counted as black.
+    /// Number of samples that were not finite and count as black.
     pub not_finite: u32,
-    /// The pixel, linear RGB: that of the picture to the bit.
+    /// Radiance of the pixel, linear RGB, bit-identical to the rendered image.
     pub mean: [f32; 3],
-    /// Standard error of the mean; nothing of a single sample.
+    /// Standard error of the mean; `None` for a single sample.
     pub standard_error: Option<[f64; 3]>,
-    /// What clamping took off the pixel: the mean of the channels.
+    /// Radiance removed by clamping, the mean of the channels.
     pub clamped: f64,
-    /// What the middle of the pixel sees first, if anything.
-    pub seen: Option<Sight>,
-    /// Where its light comes from; nothing of integrators that follow no paths.
-    pub light: Option<Light>,
+    /// First surface at the center of the pixel.
+    #[serde(rename = "seen")]
+    pub first_hit: Option<FirstHit>,
+    /// Origins of the light; `None` for integrators without paths.
+    pub light: Option<LightOrigins>,
 }
 
-/// What a ray met.
+/// First intersection of a ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sight {
-    /// The entry of the scene's objects: its name, or `objects[3]`.
+pub struct FirstHit {
+    /// Entry of the scene's objects: its name, or `objects[3]`.
     pub object: String,
-    /// Where its shape is described, where that is not the entry itself: `groups.tree[2]`.
+    /// Path of the shape's description if it differs from the entry: `groups.tree[2]`.
     pub part: Option<String>,
-    /// The kind of the shape.
+    /// Kind of the shape.
     pub shape: Option<String>,
-    /// Its number among all shapes, instances one by one, from 1 on as layers count.
+    /// Index among all shapes, with instances counted separately, from 1 as in the AOV
+    /// `instance_id`.
     pub instance: u32,
-    /// The material's name, or where it is described.
+    /// Name of the material, or the path of its description.
     pub material: String,
-    /// Where it is, world space.
+    /// Position, in world space.
     pub point: [f32; 3],
-    /// Unit shading normal there.
+    /// Unit shading normal, in world space.
     pub normal: [f32; 3],
-    /// Distance from where the ray began, in scene units.
+    /// Distance from the ray's origin, in scene units.
     pub distance: f32,
-    /// Surface coordinates.
+    /// Texture coordinates.
     pub uv: [f32; 2],
 }
 
-/// Asks about pixels of one picture.
+/// Probe of the pixels of one picture.
 pub struct Prober<'s> {
     picture: Picture,
-    apart: LightsApart,
+    separate_lights: SeparateLights,
     scene: &'s Scene,
 }
 
 impl<'s> Prober<'s> {
-    /// Of a picture of that scene. The picture's world is copied where somebody else has it too.
+    /// Creates a probe for a picture of that scene. The picture's world is copied if it is shared.
     pub fn new(scene: &'s Scene, picture: Picture) -> Self {
-        let (picture, apart) = picture.with_lights_apart();
-        Self { picture, apart, scene }
+        let (picture, separate_lights) = picture.with_separate_lights();
+        Self { picture, separate_lights, scene }
     }
 
-    /// The picture.
+    /// Returns the picture.
     pub fn picture(&self) -> &Picture {
         &self.picture
     }
 
     fn namer(&self) -> Namer<'_> {
-        Namer::new(&self.scene.description, &self.picture, &self.apart)
+        Namer::new(&self.scene.description, &self.picture, &self.separate_lights)
     }
 
-    /// Whether samples are followed along paths that can be told.
+    /// Returns whether the integrator traces paths that can be recorded.
     fn follows_paths(&self) -> bool {
         let integrator = self.picture.integrator();
         matches!(integrator, AnyIntegrator::Path(_) | AnyIntegrator::Direct(_) | AnyIntegrator::Classic(_))
     }
 
-    /// An error where the pixel is not in the picture.
+    /// Checks that a pixel lies in the rendered region.
     fn check(&self, [x, y]: [u32; 2]) -> Result<(), Error> {
         let region = self.picture.region();
         let is_in = |at: u32, start: u32, length: u32| at.checked_sub(start).is_some_and(|from| from < length);
@@ -147,21 +150,22 @@ impl<'s> Prober<'s> {
         }
         let (last_x, last_y) = (region.x + region.width.max(1) - 1, region.y + region.height.max(1) - 1);
         Err(Error::Settings(format!(
-            "the pixel {x},{y} is not in the picture: X goes from {} to {last_x}, Y from {} to {last_y}",
+            "the pixel {x},{y} is outside the picture: X is {} to {last_x}, Y is {} to {last_y}",
             region.x, region.y
         )))
     }
 
-    /// Traces the samples of a pixel, column and row from the top left, and tells what they did.
+    /// Traces all samples of a pixel, given by column and row from the top left, and explains their
+    /// light. Fails if the pixel is outside the rendered region, or `control` is cancelled.
     pub fn pixel(&self, pixel: [u32; 2], detail: &Detail, control: &Control) -> Result<Probe, Error> {
         self.check(pixel)?;
         let (job, mut namer) = (self.picture.job(), self.namer());
-        let mut tree = Tree::new(detail.depth);
+        let mut tree = PathTree::new(detail.depth);
         let mut sums = Sums::default();
         let mut brightest = Brightest::new(detail.brightest);
-        let mut spread = Spread::default();
+        let mut sample_statistics = SampleStatistics::default();
         let (mean, statistics) = juggler_render::inspect(&job, pixel, control, |sample| {
-            spread.add(&sample);
+            sample_statistics.add(&sample);
             if self.follows_paths() {
                 sums.add(&namer, &sample);
                 tree.add(&mut namer, &sample);
@@ -170,10 +174,10 @@ impl<'s> Prober<'s> {
         })?;
         let light = self.follows_paths().then(|| {
             let scale = shares::Scale::new(job.samples, &sums);
-            let brightest = brightest.told(&mut namer, spread.total);
-            Light {
-                shares: sums.told(&namer, &scale),
-                paths: tree.told(&mut namer, &scale, detail.branches),
+            let brightest = brightest.report(&mut namer, sample_statistics.total);
+            LightOrigins {
+                shares: sums.report(&namer, &scale),
+                paths: tree.report(&mut namer, &scale, detail.branches),
                 brightest,
             }
         });
@@ -182,28 +186,28 @@ impl<'s> Prober<'s> {
             size: self.picture.compiled().settings.size,
             integrator: self.picture.integrator().name(),
             samples: job.samples,
-            not_finite: spread.not_finite,
+            not_finite: sample_statistics.not_finite,
             mean: mean.to_array(),
-            standard_error: spread.standard_error(&statistics),
-            clamped: spread.clamped / f64::from(job.samples.max(1)),
-            seen: seen(&job, pixel).map(|(vertex, distance)| sight(&mut namer, &vertex, distance)),
+            standard_error: sample_statistics.standard_error(&statistics),
+            clamped: sample_statistics.clamped / f64::from(job.samples.max(1)),
+            first_hit: center_hit(&job, pixel).map(|(vertex, distance)| first_hit(&mut namer, &vertex, distance)),
             light,
         })
     }
 }
 
 impl Picture {
-    /// The same picture of a world in which each light is a group of its own.
-    fn with_lights_apart(mut self) -> (Self, LightsApart) {
-        let (world, apart) = Arc::unwrap_or_clone(self.compiled.world).with_lights_apart();
+    /// Replaces the world by one in which each light has its own light group.
+    fn with_separate_lights(mut self) -> (Self, SeparateLights) {
+        let (world, separate_lights) = Arc::unwrap_or_clone(self.compiled.world).with_separate_lights();
         self.compiled.world = Arc::new(world);
-        (self, apart)
+        (self, separate_lights)
     }
 }
 
-/// How much samples differ.
+/// Sample statistics of a pixel.
 #[derive(Default)]
-struct Spread {
+struct SampleStatistics {
     count: u32,
     not_finite: u32,
     clamped: f64,
@@ -211,8 +215,8 @@ struct Spread {
     squares: [f64; 3],
 }
 
-impl Spread {
-    fn add(&mut self, sample: &Inspected) {
+impl SampleStatistics {
+    fn add(&mut self, sample: &InspectedSample) {
         self.count += 1;
         if !sample.radiance.is_finite() {
             self.not_finite += 1;
@@ -225,8 +229,9 @@ impl Spread {
         }
     }
 
-    /// By how much blocks of samples differ, as the film knows it; of fewer than two by how much samples do.
-    fn standard_error(&self, statistics: &Statistics) -> Option<[f64; 3]> {
+    /// Returns the standard error from the film's blocks, or from the samples for fewer than two
+    /// blocks.
+    fn standard_error(&self, statistics: &PixelStatistics) -> Option<[f64; 3]> {
         let count = f64::from(self.count);
         match (statistics.blocks, self.count) {
             (2.., _) => Some(statistics.variance.map(f64::sqrt)),
@@ -239,37 +244,38 @@ impl Spread {
     }
 }
 
-/// What the ray through the middle of a pixel, of the lens and of the time meets first, holes left out, and how far away it is.
-fn seen(job: &Job, pixel: [u32; 2]) -> Option<(Vertex, f32)> {
+/// Returns the first surface on the ray through the center of pixel, lens and shutter interval, and
+/// its distance. The ray passes surfaces of low opacity.
+fn center_hit(job: &Job, pixel: [u32; 2]) -> Option<(Vertex, f32)> {
     let film = Vec2::new(pixel[0] as f32, pixel[1] as f32) + 0.5;
-    let mut ray = job.camera.at(0.5).ray(film, Vec2::splat(0.5), 0.5);
+    let mut ray = job.camera.projection_at(0.5).ray(film, Vec2::splat(0.5), 0.5);
     if !(ray.origin.is_finite() && ray.direction.is_finite()) {
         return None;
     }
     let from = ray.origin;
-    for _ in 0..MOST_HOLES {
+    for _ in 0..MAX_PASSED_SURFACES {
         let hit = job.world.closest(&mut ray);
         if !hit.is_some() {
             return None;
         }
         let vertex = job.world.vertex(&ray, &hit);
-        if job.world.shade(&vertex, -ray.direction, 1.0, THERE).opacity >= THERE {
+        if job.world.shade(&vertex, -ray.direction, 1.0, MIN_OPACITY).opacity >= MIN_OPACITY {
             return Some((vertex, (vertex.surface.point - from).length()));
         }
-        ray = vertex.surface.spawn(ray.direction, ray.time);
+        ray = vertex.surface.spawn_ray(ray.direction, ray.time);
     }
     None
 }
 
-fn sight(namer: &mut Namer, vertex: &Vertex, distance: f32) -> Sight {
-    let part = namer.part(vertex.object);
-    let object = namer.object_of(vertex.object);
+fn first_hit(namer: &mut Namer, vertex: &Vertex, distance: f32) -> FirstHit {
+    let part = namer.part(vertex.shape);
+    let object = namer.object_of(vertex.shape);
     let path = part.as_ref().map(|part| part.path.clone());
-    Sight {
+    FirstHit {
         part: path.filter(|path| path.starts_with("groups") || path.contains("].")),
         shape: part.map(|part| part.kind),
-        instance: vertex.object.saturating_add(1),
-        material: namer.material(vertex.material.0, vertex.object),
+        instance: vertex.shape.saturating_add(1),
+        material: namer.material(vertex.material.0, vertex.shape),
         object,
         point: vertex.surface.point.to_array(),
         normal: vertex.surface.shading_normal.to_array(),
@@ -278,7 +284,7 @@ fn sight(namer: &mut Namer, vertex: &Vertex, distance: f32) -> Sight {
     }
 }
 
-/// Luminance of linear light.
+/// Returns the luminance of linear RGB.
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     let [kr, kg, kb] = [Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 1.0, 0.0), Rgb::new(0.0, 0.0, 1.0)];
     let weights = [kr, kg, kb].map(|primary| f64::from(primary.luminance()));

@@ -1,79 +1,89 @@
-//! What things are called: objects, materials, lights, and what paths did.
+//! Names of objects, materials, lights and scattering events.
 
 use crate::Picture;
-use juggler_camera::layer::LightGroup;
-use juggler_integrator::{AnyIntegrator, Event, Scattering};
-use juggler_render::{Inspected, LightGain, PathVertex};
+use juggler_camera::aov::LightGroup;
+use juggler_integrator::{AnyIntegrator, ScatterEvent, Scattering};
+use juggler_render::{InspectedSample, LightContribution, PathVertex};
 use juggler_scene::Names;
-use juggler_scene::compile::Part;
+use juggler_scene::compile::ShapePlace;
 use juggler_scene::description::Description;
-use juggler_world::{LightSource, LightsApart, Vertex, World};
+use juggler_world::{LightSource, SeparateLights, Vertex, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Where light comes from.
+/// Origin of a light contribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Origin {
-    /// A light of the scene, by its number in the world.
-    Lamp(u32),
-    /// An entry of the scene that shines.
+pub enum LightOrigin {
+    /// Light of the scene, by its index in the world.
+    Light(u32),
+    /// Emitting object, by its entry in the scene.
     Entry(u32),
-    /// What lies behind everything.
+    /// Background.
     Background,
-    /// Light from everywhere.
+    /// Constant ambient light.
     Ambient,
-    /// Lights that are not told apart.
+    /// Lights without a light group of their own.
     Others,
 }
 
-/// A thing that a path met: an entry of the scene, and a material with a shape that has it.
+/// Object and material that a path hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Thing {
-    /// The entry of the scene's objects.
+pub struct HitObject {
+    /// Index of the entry in the scene's objects.
     pub entry: u32,
-    /// The material.
+    /// Index of the material.
     pub material: u32,
 }
 
-/// Knows what things are called.
+/// Lookup of names.
 pub struct Namer<'p> {
     scene: &'p Description,
     world: &'p World,
     names: Arc<Names>,
-    apart: &'p LightsApart,
-    /// Places of the world's lamps among the scene's lights; nothing where the world has lamps of its own.
-    lamps: Vec<usize>,
-    /// Whether light from everywhere is counted in: classic pictures have it.
-    has_ambient: bool,
-    /// A shape of each material that has no name.
+    separate_lights: &'p SeparateLights,
+    /// Indices of the world's lights among the scene's lights; empty if the world has default
+    /// lights.
+    lights: Vec<usize>,
+    /// Whether ambient light contributes, as it does under the integrator `classic`.
+    counts_ambient: bool,
+    /// Shape of each unnamed material, by material index.
     shapes: BTreeMap<u32, u32>,
     materials: BTreeMap<u32, String>,
 }
 
 impl<'p> Namer<'p> {
-    pub fn new(scene: &'p Description, picture: &'p Picture, apart: &'p LightsApart) -> Self {
-        // Those from everywhere are no lamps of the world.
-        let shines = scene.lights.iter().enumerate().filter(|(_, light)| light.ambient().is_black());
-        let lamps: Vec<usize> = shines.map(|(place, _)| place).collect();
+    pub fn new(scene: &'p Description, picture: &'p Picture, separate_lights: &'p SeparateLights) -> Self {
+        // Ambient lights are not lights of the world.
+        let world_lights = scene.lights.iter().enumerate().filter(|(_, light)| light.ambient().is_black());
+        let lights: Vec<usize> = world_lights.map(|(place, _)| place).collect();
         let world = picture.world();
-        let lamps = if lamps.len() == world.lamps().len() { lamps } else { Vec::new() };
+        let lights = if lights.len() == world.lights().len() { lights } else { Vec::new() };
         let names = Arc::clone(&picture.compiled().names);
         let is_classic = matches!(picture.integrator(), AnyIntegrator::Classic(_));
-        let has_ambient = is_classic && !world.ambient().is_black();
-        Self { scene, world, names, apart, lamps, has_ambient, shapes: BTreeMap::new(), materials: BTreeMap::new() }
+        let counts_ambient = is_classic && !world.ambient().is_black();
+        Self {
+            scene,
+            world,
+            names,
+            separate_lights,
+            lights,
+            counts_ambient,
+            shapes: BTreeMap::new(),
+            materials: BTreeMap::new(),
+        }
     }
 
-    /// Where a shape is described, by its number.
-    pub fn part(&self, shape: u32) -> Option<Part> {
-        Part::of(self.scene, shape)
+    /// Returns the description of a shape, by its index.
+    pub fn part(&self, shape: u32) -> Option<ShapePlace> {
+        ShapePlace::find(self.scene, shape)
     }
 
-    /// The entry that a shape is of.
+    /// Returns the name of the object that a shape belongs to.
     pub fn object_of(&self, shape: u32) -> String {
         self.names.object(self.world.entry_of(shape))
     }
 
-    /// A material that some shape has.
+    /// Returns the name of a material; `shape` is one that has it.
     pub fn material(&mut self, material: u32, shape: u32) -> String {
         if let Some(name) = self.materials.get(&material) {
             return name.clone();
@@ -85,55 +95,57 @@ impl<'p> Namer<'p> {
         name
     }
 
-    /// What a path met at a place.
-    pub fn thing(&self, vertex: &PathVertex) -> Option<Thing> {
-        vertex.met.as_ref().map(|met| self.thing_of(met))
+    /// Returns the object that a path hit at a vertex.
+    pub fn hit_object(&self, vertex: &PathVertex) -> Option<HitObject> {
+        vertex.hit.as_ref().map(|hit| self.hit_object_of(hit))
     }
 
-    /// The thing that a surface is of.
-    pub fn thing_of(&self, met: &Vertex) -> Thing {
-        Thing { entry: self.world.entry_of(met.object), material: met.material.0 }
+    /// Returns the object of a surface.
+    pub fn hit_object_of(&self, hit: &Vertex) -> HitObject {
+        HitObject { entry: self.world.entry_of(hit.shape), material: hit.material.0 }
     }
 
-    /// The thing in whose medium a path was scattered: what it last went into.
-    pub fn medium(&self, sample: &Inspected, place: usize) -> Option<Thing> {
+    /// Returns the object whose medium scattered a path: the last one that it entered.
+    pub fn medium(&self, sample: &InspectedSample, place: usize) -> Option<HitObject> {
         let mut vertex = sample.vertices.get(place)?;
-        while let (Some(parent), Some(came)) = (vertex.parent, vertex.came) {
+        while let (Some(parent), Some(event)) = (vertex.parent, vertex.event) {
             let before = sample.vertices.get(parent as usize)?;
-            if came.transmitted && came.scattering != Scattering::Volume {
-                return self.thing(before);
+            if event.transmitted && event.scattering != Scattering::Volume {
+                return self.hit_object(before);
             }
             vertex = before;
         }
-        self.thing(sample.vertices.get(place)?)
+        self.hit_object(sample.vertices.get(place)?)
     }
 
-    /// Has a shape stand for its material's name.
-    pub fn note(&mut self, material: u32, shape: u32) {
+    /// Registers a shape that has a material.
+    pub fn register(&mut self, material: u32, shape: u32) {
         self.shapes.entry(material).or_insert(shape);
     }
 
-    /// `floor`, and its material where that says more.
-    pub fn thing_name(&mut self, thing: Thing) -> (String, String) {
-        let shape = self.shapes.get(&thing.material).copied().unwrap_or(u32::MAX);
-        (self.names.object(thing.entry), self.material(thing.material, shape))
+    /// Returns the names of object and material.
+    pub fn hit_object_names(&mut self, object: HitObject) -> (String, String) {
+        let shape = self.shapes.get(&object.material).copied().unwrap_or(u32::MAX);
+        (self.names.object(object.entry), self.material(object.material, shape))
     }
 
-    /// Where light that was added at a place comes from.
-    pub fn origin(&self, vertex: &PathVertex, gain: &LightGain) -> Origin {
-        match (self.apart.source(gain.group).0, &vertex.met) {
-            (LightSource::Lamp(number), _) => Origin::Lamp(number),
-            (LightSource::Entry(number), _) => Origin::Entry(number),
-            (LightSource::Background, _) => Origin::Background,
-            (LightSource::Rest, _) if self.has_ambient => Origin::Ambient,
-            (LightSource::Rest, Some(met)) if !gain.asked => Origin::Entry(self.world.entry_of(met.object)),
-            (LightSource::Rest, _) => Origin::Others,
+    /// Returns the origin of a contribution at a vertex.
+    pub fn origin(&self, vertex: &PathVertex, contribution: &LightContribution) -> LightOrigin {
+        match (self.separate_lights.source(contribution.group).0, &vertex.hit) {
+            (LightSource::Light(number), _) => LightOrigin::Light(number),
+            (LightSource::Entry(number), _) => LightOrigin::Entry(number),
+            (LightSource::Background, _) => LightOrigin::Background,
+            (LightSource::Other, _) if self.counts_ambient => LightOrigin::Ambient,
+            (LightSource::Other, Some(hit)) if !contribution.is_light_sample => {
+                LightOrigin::Entry(self.world.entry_of(hit.shape))
+            }
+            (LightSource::Other, _) => LightOrigin::Others,
         }
     }
 
-    /// The group of lights that light is of.
+    /// Returns the light group that the scene gives to a light.
     pub fn group(&self, group: LightGroup) -> LightGroup {
-        self.apart.source(group).1
+        self.separate_lights.source(group).1
     }
 
     pub fn group_name(&self, group: LightGroup) -> String {
@@ -141,38 +153,38 @@ impl<'p> Namer<'p> {
         name.map_or_else(|| format!("group {}", group.0), Clone::clone)
     }
 
-    pub fn origin_name(&self, origin: Origin) -> String {
+    pub fn origin_name(&self, origin: LightOrigin) -> String {
         match origin {
-            Origin::Lamp(number) => {
-                let lamp = self.world.lamps().get(number as usize);
-                let kind = lamp.map_or("light", |lamp| lamp.at(0.0).light.name());
-                match self.lamps.get(number as usize) {
+            LightOrigin::Light(number) => {
+                let light = self.world.lights().get(number as usize);
+                let kind = light.map_or("light", |light| light.at(0.0).light.name());
+                match self.lights.get(number as usize) {
                     Some(place) => format!("lights[{place}] ({kind})"),
                     None => format!("default light {number} ({kind})"),
                 }
             }
-            Origin::Entry(number) => self.names.object(number),
-            Origin::Background => "background".into(),
-            Origin::Ambient => "ambient light".into(),
-            Origin::Others => "other lights".into(),
+            LightOrigin::Entry(number) => self.names.object(number),
+            LightOrigin::Background => "background".into(),
+            LightOrigin::Ambient => "ambient light".into(),
+            LightOrigin::Others => "other lights".into(),
         }
     }
 
-    /// What kind of light it is, whichever.
-    pub fn origin_kind(&self, origin: Origin) -> String {
+    /// Returns the kind of a light, without its name.
+    pub fn origin_kind(&self, origin: LightOrigin) -> String {
         match origin {
-            Origin::Lamp(number) => {
-                let lamp = self.world.lamps().get(number as usize);
-                lamp.map_or_else(|| "light".into(), |lamp| format!("{} light", lamp.at(0.0).light.name()))
+            LightOrigin::Light(number) => {
+                let light = self.world.lights().get(number as usize);
+                light.map_or_else(|| "light".into(), |light| format!("{} light", light.at(0.0).light.name()))
             }
-            Origin::Entry(_) => "what shines".into(),
+            LightOrigin::Entry(_) => "emission".into(),
             other => self.origin_name(other),
         }
     }
 }
 
-/// What a path did.
-pub fn event_name(event: Event) -> &'static str {
+/// Returns the name of a scattering event.
+pub fn event_name(event: ScatterEvent) -> &'static str {
     match (event.scattering, event.transmitted) {
         (Scattering::Diffuse, false) => "diffuse",
         (Scattering::Diffuse, true) => "diffuse transmission",
@@ -181,6 +193,6 @@ pub fn event_name(event: Event) -> &'static str {
         (Scattering::Specular, false) => "specular reflection",
         (Scattering::Specular, true) => "specular transmission",
         (Scattering::Volume, _) => "volume",
-        (Scattering::Passed, _) => "hole",
+        (Scattering::PassThrough, _) => "pass-through",
     }
 }

@@ -1,73 +1,76 @@
-//! Pixels that stand out from what is around them, by more than noise that is known of explains.
+//! Detection of outlier pixels by more than the known noise explains.
 //!
-//! Around a pixel are those of 5 × 5 that are its neighbours: their median, and as their spread the median of the distances to it,
-//! times 1.4826, which is the standard deviation where they are normally distributed (Hampel 1974). Both do not mind what stands out
-//! among the neighbours themselves.
+//! The neighborhood is 5 x 5 pixels. Its center is the median, and its spread the median absolute
+//! deviation times 1.4826, which is the standard deviation of a normal distribution (Hampel 1974).
+//! Both are robust against outliers among the neighbors.
 
-use juggler_camera::film::Statistics;
+use juggler_camera::film::PixelStatistics;
 
-/// Pixels to each side that count as neighbours.
-const REACH: usize = 2;
-/// From the median distance to a standard deviation.
-const NORMAL: f64 = 1.4826;
-/// By how many spreads a pixel stands out.
-const SPREADS: f64 = 6.0;
-/// Shares of the median, and of the picture's mean, that count as spread at least: what nobody sees does not stand out.
+/// Radius of the neighborhood, in pixels.
+const RADIUS: usize = 2;
+/// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
+const MAD_TO_SIGMA: f64 = 1.4826;
+/// Threshold of the score, in robust standard deviations.
+const THRESHOLD: f64 = 6.0;
+/// Lower bounds of the spread, as fractions of the median and of the image's mean, which exclude
+/// invisible outliers.
 const LEAST_OF_MEDIAN: f64 = 0.05;
 const LEAST_OF_MEAN: f64 = 0.01;
-/// One of so many is among the brightest.
+/// One pixel of this many is excluded from the mean as one of the brightest.
 const BRIGHTEST: usize = 50;
-/// A pixel that is brighter than its neighbours by more than so many of its own standard errors is bright by what it shows: light that
-/// hangs on one sample of many has an error as large as itself.
-const SURE: f64 = 5.0;
+/// Number of its own standard errors from which the excess of a pixel is certain, so that it is no
+/// firefly: light from one sample of many has an error as large as itself.
+const CERTAIN_ERRORS: f64 = 5.0;
 
-/// Light of the pixels of a picture.
-pub struct Field {
+/// Luminance of an image's pixels.
+pub struct LuminanceImage {
     pub width: usize,
     pub height: usize,
     /// Luminance, row by row.
     pub values: Vec<f64>,
-    /// Standard error of each, where it is known.
+    /// Standard error of each pixel, where known.
     pub errors: Vec<Option<f64>>,
 }
 
-/// A pixel that stands out.
+/// Outlier pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outlier {
-    /// Its place in the field.
+    /// Index of the pixel.
     pub place: usize,
-    /// Median of what is around it.
+    /// Median of the neighborhood.
     pub median: f64,
-    /// What it has beyond that.
+    /// Excess over the median.
     pub excess: f64,
-    /// By how many spreads it stands out.
+    /// Excess, in robust standard deviations.
     pub score: f64,
 }
 
-/// What stands out.
+/// Outliers of an image.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Found {
-    /// By chance: those that stand out most first.
+pub struct Outliers {
+    /// Outliers that noise explains, by decreasing score.
     pub outliers: Vec<Outlier>,
-    /// How many are bright by what they show.
-    pub sure: usize,
+    /// Number of outliers beyond noise.
+    pub certain: usize,
 }
 
-/// Standard error of a pixel's luminance where its channels err together, the most that it can be.
-pub fn error(statistics: &Statistics) -> Option<f64> {
+/// Returns an upper bound of the standard error of a pixel's luminance, reached if the channels are
+/// fully correlated.
+pub fn error(statistics: &PixelStatistics) -> Option<f64> {
     (statistics.blocks >= 2).then(|| super::luminance(statistics.variance.map(|variance| variance.max(0.0).sqrt())))
 }
 
-impl Field {
-    /// All pixels that stand out.
-    pub fn outliers(&self) -> Found {
+impl LuminanceImage {
+    /// Finds all outliers.
+    pub fn outliers(&self) -> Outliers {
         let mean = self.usual_mean();
-        let mut found = Found::default();
+        let mut found = Outliers::default();
         for place in 0..self.values.len() {
             let Some(outlier) = self.outlier(place, mean) else { continue };
-            let is_sure = self.errors.get(place).copied().flatten().is_some_and(|error| outlier.excess > SURE * error);
-            if is_sure {
-                found.sure += 1;
+            let is_certain =
+                self.errors.get(place).copied().flatten().is_some_and(|error| outlier.excess > CERTAIN_ERRORS * error);
+            if is_certain {
+                found.certain += 1;
             } else {
                 found.outliers.push(outlier);
             }
@@ -76,7 +79,7 @@ impl Field {
         found
     }
 
-    /// Mean of all but the brightest, which outliers would decide.
+    /// Returns the mean without the brightest pixels, which outliers would dominate.
     fn usual_mean(&self) -> f64 {
         let mut finite: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
         finite.sort_by(f64::total_cmp);
@@ -86,26 +89,28 @@ impl Field {
 
     fn outlier(&self, place: usize, mean: f64) -> Option<Outlier> {
         let value = *self.values.get(place)?;
-        let mut around = self.around(place);
-        let median = median(&mut around)?;
-        let mut distances: Vec<f64> = around.iter().map(|other| (other - median).abs()).collect();
-        let spread = NORMAL * self::median(&mut distances)?;
-        let least = LEAST_OF_MEDIAN * median.abs() + LEAST_OF_MEAN * mean.abs();
+        // Compute median and robust spread of the neighborhood
+        let mut neighborhood = self.neighborhood(place);
+        let median = median(&mut neighborhood)?;
+        let mut distances: Vec<f64> = neighborhood.iter().map(|other| (other - median).abs()).collect();
+        let spread = MAD_TO_SIGMA * self::median(&mut distances)?;
+        // Bound the spread from below and score the excess
+        let floor = LEAST_OF_MEDIAN * median.abs() + LEAST_OF_MEAN * mean.abs();
         let excess = value - median;
-        let score = excess / (spread + least);
-        (score > SPREADS).then_some(Outlier { place, median, excess, score })
+        let score = excess / (spread + floor);
+        (score > THRESHOLD).then_some(Outlier { place, median, excess, score })
     }
 
-    fn around(&self, place: usize) -> Vec<f64> {
+    fn neighborhood(&self, place: usize) -> Vec<f64> {
         let (x, y) = (place % self.width.max(1), place / self.width.max(1));
-        let range = |at: usize, end: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(end);
+        let range = |at: usize, end: usize| at.saturating_sub(RADIUS)..(at + RADIUS + 1).min(end);
         let rows = range(y, self.height);
         let places = rows.flat_map(|row| range(x, self.width).map(move |column| row * self.width + column));
         places.filter(|other| *other != place).filter_map(|other| self.values.get(other).copied()).collect()
     }
 }
 
-/// The middle one; of an even number the mean of both.
+/// Returns the median; for an even count the mean of both middle values.
 fn median(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -118,10 +123,10 @@ mod tests {
     use super::*;
     use juggler_math::testing::Random;
 
-    fn field(value: impl Fn(usize, usize) -> f64) -> Field {
+    fn image(value: impl Fn(usize, usize) -> f64) -> LuminanceImage {
         let (width, height) = (40, 30);
         let values = (0..width * height).map(|place| value(place % width, place / width)).collect();
-        Field { width, height, values, errors: vec![None; width * height] }
+        LuminanceImage { width, height, values, errors: vec![None; width * height] }
     }
 
     #[test]
@@ -130,28 +135,28 @@ mod tests {
         let mut noise = || 1.0 + 0.2 * f64::from(random.vec2().element_sum() - 1.0);
         let noise: Vec<f64> = (0..1200).map(|_| noise()).collect();
         let edge = |x: usize| if x < 17 { 4.0 } else { 1.0 };
-        let mut field = field(|x, y| edge(x) * noise[y * 40 + x]);
-        assert_eq!(field.outliers(), Found::default());
+        let mut image = image(|x, y| edge(x) * noise[y * 40 + x]);
+        assert_eq!(image.outliers(), Outliers::default());
         for (place, value) in [(5 * 40 + 30, 9.0), (0, 40.0), (29 * 40 + 39, 1e-9), (12 * 40 + 31, 3e5)] {
-            field.values[place] = value;
+            image.values[place] = value;
         }
-        let found: Vec<usize> = field.outliers().outliers.iter().map(|outlier| outlier.place).collect();
+        let found: Vec<usize> = image.outliers().outliers.iter().map(|outlier| outlier.place).collect();
         assert_eq!(found, [12 * 40 + 31, 0, 5 * 40 + 30]);
-        // What is known for sure is left out.
-        field.errors[0] = Some(0.5);
-        field.errors[12 * 40 + 31] = Some(3e5);
-        let found = field.outliers();
-        assert_eq!((found.outliers.len(), found.sure), (2, 1));
+        // Pixels with an excess beyond noise are counted apart.
+        image.errors[0] = Some(0.5);
+        image.errors[12 * 40 + 31] = Some(3e5);
+        let found = image.outliers();
+        assert_eq!((found.outliers.len(), found.certain), (2, 1));
         assert!((found.outliers[0].excess - 3e5).abs() < 2.0);
     }
 
     #[test]
-    fn the_smallest_pictures_have_no_neighbours() {
-        let one = Field { width: 1, height: 1, values: vec![3.0], errors: vec![None] };
-        assert_eq!(one.outliers(), Found::default());
-        let line = field(|x, _| if (2..5).contains(&x) { 1e-12 } else { 0.0 });
-        assert_eq!(line.outliers().outliers.len(), 0, "a broad line is its own neighbour");
-        assert_eq!(field(|_, _| f64::NAN).outliers(), Found::default());
+    fn the_smallest_pictures_have_no_neighbors() {
+        let one = LuminanceImage { width: 1, height: 1, values: vec![3.0], errors: vec![None] };
+        assert_eq!(one.outliers(), Outliers::default());
+        let line = image(|x, _| if (2..5).contains(&x) { 1e-12 } else { 0.0 });
+        assert_eq!(line.outliers().outliers.len(), 0, "a broad line is its own neighbor");
+        assert_eq!(image(|_, _| f64::NAN).outliers(), Outliers::default());
         assert_eq!(median(&mut [3.0, 1.0, 2.0, 10.0]), Some(2.5));
     }
 }

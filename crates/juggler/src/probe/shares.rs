@@ -1,52 +1,54 @@
-//! Where a pixel's light comes from: by its way, its group of lights, its light, the length of its path.
+//! Decomposition of a pixel's light by path kind, light group, light and path length.
 
 use super::luminance;
-use super::names::{Namer, Origin};
+use super::names::{LightOrigin, Namer};
 use super::{Branch, SampleProbe};
-use juggler_camera::layer::LightGroup;
-use juggler_integrator::Way;
+use juggler_camera::aov::LightGroup;
+use juggler_integrator::PathKind;
 use juggler_math::Rgb;
-use juggler_render::Inspected;
+use juggler_render::InspectedSample;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Where a pixel's light comes from.
+/// Origins of a pixel's light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Light {
-    /// All of it, several times: by what it can be told apart.
+pub struct LightOrigins {
+    /// Decompositions of the light.
     #[serde(flatten)]
     pub shares: Shares,
-    /// The paths of all samples, merged by what they met.
+    /// Tree of the paths of all samples.
     pub paths: Branch,
-    /// The brightest samples, one by one.
+    /// Brightest samples.
     pub brightest: Vec<SampleProbe>,
 }
 
-/// All light of a pixel, several times, by what it can be told apart.
+/// Decompositions of a pixel's light; the shares of each list sum to the whole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shares {
-    /// What the camera sees shine, what lights light, and what comes by longer ways.
-    pub ways: Vec<Share>,
-    /// By group of lights, those with most light first.
+    /// By path kind: emission, direct and indirect lighting.
+    #[serde(rename = "ways")]
+    pub kinds: Vec<Share>,
+    /// By light group, brightest first.
     pub groups: Vec<Share>,
-    /// By light, those with most light first.
+    /// By light, brightest first.
     pub lights: Vec<Share>,
-    /// By the stretches of the path from the camera to the light.
-    pub stretches: Vec<Share>,
+    /// By number of path segments between camera and light.
+    #[serde(rename = "stretches")]
+    pub segments: Vec<Share>,
 }
 
-/// A part of a pixel's light.
+/// Part of a pixel's light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// Which.
+    /// Name of the path kind, light group or light, or number of segments.
     pub name: String,
-    /// What it adds to the pixel, linear RGB.
+    /// Contribution to the pixel, linear RGB.
     pub light: [f64; 3],
-    /// Of all light, by luminance.
+    /// Fraction of the pixel's light, by luminance.
     pub share: f64,
 }
 
-/// From sums over samples to what they add to the pixel.
+/// Conversion from sums over samples to contributions to the pixel.
 pub struct Scale {
     count: f64,
     all: f64,
@@ -70,52 +72,52 @@ impl Scale {
     }
 }
 
-/// Light of some samples, summed.
+/// Sums of light over samples.
 #[derive(Default)]
 pub struct Sums {
     total: [f64; 3],
-    ways: [[f64; 3]; 3],
+    kinds: [[f64; 3]; 3],
     groups: BTreeMap<u16, [f64; 3]>,
-    lights: BTreeMap<Origin, [f64; 3]>,
-    stretches: BTreeMap<u32, [f64; 3]>,
+    lights: BTreeMap<LightOrigin, [f64; 3]>,
+    segments: BTreeMap<u32, [f64; 3]>,
 }
 
-/// Adds light to a sum.
+/// Adds radiance to a sum.
 pub fn add(sum: &mut [f64; 3], light: Rgb) {
     sum.iter_mut().zip(light.to_array()).for_each(|(sum, light)| *sum += f64::from(light));
 }
 
 impl Sums {
-    /// Samples that are no finite numbers count as black, as the film has them.
-    pub fn add(&mut self, namer: &Namer, sample: &Inspected) {
+    /// Adds a sample. Radiance that is not finite counts as black, as in the film.
+    pub fn add(&mut self, namer: &Namer, sample: &InspectedSample) {
         if !sample.radiance.is_finite() {
             return;
         }
         for vertex in &sample.vertices {
-            for gain in &vertex.lights {
-                add(&mut self.total, gain.radiance);
-                add(&mut self.ways[gain.way as usize], gain.radiance);
-                add(self.groups.entry(namer.group(gain.group).0).or_default(), gain.radiance);
-                add(self.lights.entry(namer.origin(vertex, gain)).or_default(), gain.radiance);
-                add(self.stretches.entry(gain.stretches).or_default(), gain.radiance);
+            for contribution in &vertex.contributions {
+                add(&mut self.total, contribution.radiance);
+                add(&mut self.kinds[contribution.path_kind as usize], contribution.radiance);
+                add(self.groups.entry(namer.group(contribution.group).0).or_default(), contribution.radiance);
+                add(self.lights.entry(namer.origin(vertex, contribution)).or_default(), contribution.radiance);
+                add(self.segments.entry(contribution.segments).or_default(), contribution.radiance);
             }
         }
-        if !sample.untold.is_black() {
-            add(&mut self.total, sample.untold);
-            add(&mut self.ways[Way::Indirect as usize], sample.untold);
+        if !sample.unrecorded.is_black() {
+            add(&mut self.total, sample.unrecorded);
+            add(&mut self.kinds[PathKind::Indirect as usize], sample.unrecorded);
         }
     }
 
-    pub fn told(&self, namer: &Namer, scale: &Scale) -> Shares {
-        let ways = ["emission", "direct", "indirect"].into_iter().zip(self.ways);
+    pub fn report(&self, namer: &Namer, scale: &Scale) -> Shares {
+        let kinds = ["emission", "direct", "indirect"].into_iter().zip(self.kinds);
         let groups = self.groups.iter().map(|(group, sum)| (namer.group_name(LightGroup(*group)), *sum));
         let lights = self.lights.iter().map(|(origin, sum)| (namer.origin_name(*origin), *sum));
-        let stretches = self.stretches.iter().map(|(count, sum)| (count.to_string(), *sum));
+        let segments = self.segments.iter().map(|(count, sum)| (count.to_string(), *sum));
         let mut shares = Shares {
-            ways: ways.map(|(name, sum)| scale.named(name.into(), sum)).collect(),
+            kinds: kinds.map(|(name, sum)| scale.named(name.into(), sum)).collect(),
             groups: groups.map(|(name, sum)| scale.named(name, sum)).collect(),
             lights: lights.map(|(name, sum)| scale.named(name, sum)).collect(),
-            stretches: stretches.map(|(name, sum)| scale.named(name, sum)).collect(),
+            segments: segments.map(|(name, sum)| scale.named(name, sum)).collect(),
         };
         for list in [&mut shares.groups, &mut shares.lights] {
             list.sort_by(|a, b| b.share.total_cmp(&a.share));

@@ -1,57 +1,57 @@
-//! The paths of all samples of a pixel, merged by what they met.
+//! Tree of the paths of all samples of a pixel, merged by their vertices.
 
-use super::chain::{self, Step};
-use super::names::{Namer, Origin, Thing, event_name};
+use super::names::{HitObject, LightOrigin, Namer, event_name};
+use super::path::{self, PathEvent};
 use super::shares::{Scale, add};
-use juggler_integrator::Event;
+use juggler_integrator::ScatterEvent;
 use juggler_math::Rgb;
-use juggler_render::{Inspected, LightGain, PathVertex};
+use juggler_render::{InspectedSample, LightContribution, PathVertex};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Paths that met the same things on their way.
+/// Node of the tree: paths with the same vertices so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Branch {
-    /// What they met last, and what they did there; nothing at the camera, and of light.
+    /// Last object or medium with the scattering event there; `None` at the camera and at lights.
     #[serde(flatten)]
-    pub step: Option<Step>,
-    /// The light that they came to, where they end.
+    pub scattering: Option<PathEvent>,
+    /// Light at which these paths end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_from: Option<String>,
-    /// How many samples came so far.
+    /// Number of samples with such a path.
     pub samples: u32,
-    /// What of the pixel's light came along here, linear RGB.
+    /// Contribution to the pixel, linear RGB.
     pub light: [f64; 3],
-    /// Of all light, by luminance.
+    /// Fraction of the pixel's light, by luminance.
     pub share: f64,
-    /// Where they went on to, those with most light first.
+    /// Continuations, brightest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub branches: Vec<Branch>,
-    /// Smaller branches, and longer paths than are told.
+    /// Smaller branches, and paths longer than the depth of the tree.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub others: Option<Others>,
 }
 
-/// Branches that are not told one by one.
+/// Merged branches.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Others {
-    /// How many; 0 where paths are longer than is told.
+    /// Number of branches; 0 for paths longer than the depth of the tree.
     pub branches: usize,
-    /// What of the pixel's light came along them, linear RGB.
+    /// Contribution to the pixel, linear RGB.
     pub light: [f64; 3],
-    /// Of all light, by luminance.
+    /// Fraction of the pixel's light, by luminance.
     pub share: f64,
 }
 
-/// Where a path goes on to.
+/// Continuation of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
-    Place(Option<Thing>, Event),
-    Light(Origin),
+    Vertex(Option<HitObject>, ScatterEvent),
+    Light(LightOrigin),
 }
 
-/// All paths.
-pub struct Tree {
+/// Tree of paths.
+pub struct PathTree {
     nodes: Vec<Node>,
     depth: u32,
 }
@@ -61,27 +61,27 @@ struct Node {
     parent: usize,
     depth: u32,
     samples: u32,
-    /// The last sample that came here, counted from 1.
+    /// Last sample that was counted here, from 1.
     last: u32,
     light: [f64; 3],
     next: BTreeMap<Key, usize>,
 }
 
-impl Tree {
-    /// Of so many places in a row.
+impl PathTree {
+    /// Creates a tree of at most `depth` vertices per path.
     pub fn new(depth: u32) -> Self {
         Self { nodes: vec![Node::default()], depth }
     }
 
-    /// The place after another one; the same where paths are told no further.
+    /// Returns the child of a node; the node itself at the maximum depth.
     fn next(&mut self, from: usize, key: Key, sample: u32) -> usize {
         let new = self.nodes.len();
         let Some(node) = self.nodes.get_mut(from) else { return 0 };
-        let is_place = matches!(key, Key::Place(..));
-        if is_place && node.depth >= self.depth {
+        let is_vertex = matches!(key, Key::Vertex(..));
+        if is_vertex && node.depth >= self.depth {
             return from;
         }
-        let (depth, to) = (node.depth + u32::from(is_place), *node.next.entry(key).or_insert(new));
+        let (depth, to) = (node.depth + u32::from(is_vertex), *node.next.entry(key).or_insert(new));
         if to == new {
             self.nodes.push(Node { parent: from, depth, ..Node::default() });
         }
@@ -98,7 +98,7 @@ impl Tree {
         }
     }
 
-    /// Light that came along a branch came along all that it hangs on.
+    /// Adds radiance to a node and all its ancestors.
     fn light(&mut self, mut at: usize, light: Rgb) {
         while let Some(node) = self.nodes.get_mut(at) {
             add(&mut node.light, light);
@@ -109,51 +109,54 @@ impl Tree {
         }
     }
 
-    /// Takes in a sample.
-    pub fn add(&mut self, namer: &mut Namer, sample: &Inspected) {
+    /// Adds the paths of a sample.
+    pub fn add(&mut self, namer: &mut Namer, sample: &InspectedSample) {
         let number = sample.index + 1;
         self.count(0, number);
-        let goes_on: std::collections::BTreeSet<u32> = sample.vertices.iter().filter_map(|v| v.parent).collect();
+        let continued: std::collections::BTreeSet<u32> = sample.vertices.iter().filter_map(|v| v.parent).collect();
         let mut places: Vec<usize> = Vec::with_capacity(sample.vertices.len());
         for (place, vertex) in sample.vertices.iter().enumerate() {
-            if let Some(met) = &vertex.met {
-                namer.note(met.material.0, met.object);
+            if let Some(hit) = &vertex.hit {
+                namer.register(hit.material.0, hit.shape);
             }
             let before = vertex.parent.and_then(|parent| places.get(parent as usize).copied()).unwrap_or(0);
-            let key = chain::before(namer, sample, place).map(|(thing, event)| Key::Place(thing, event));
+            let key = path::event_to(namer, sample, place).map(|(object, event)| Key::Vertex(object, event));
             let at = key.map_or(before, |key| self.next(before, key, number));
             places.push(at);
             if sample.radiance.is_finite() {
-                vertex.lights.iter().for_each(|gain| self.gain(namer, sample, (place, vertex), gain, at));
+                vertex
+                    .contributions
+                    .iter()
+                    .for_each(|contribution| self.contribution(namer, sample, (place, vertex), contribution, at));
             }
-            if vertex.is_seen && vertex.lights.is_empty() && !goes_on.contains(&(place as u32)) {
-                self.next(at, Key::Place(namer.thing(vertex), vertex.lit), number);
+            if vertex.is_shaded && vertex.contributions.is_empty() && !continued.contains(&(place as u32)) {
+                self.next(at, Key::Vertex(namer.hit_object(vertex), vertex.light_sample_event), number);
             }
         }
         if sample.radiance.is_finite() {
-            self.light(0, sample.untold);
+            self.light(0, sample.unrecorded);
         }
     }
 
-    fn gain(
+    fn contribution(
         &mut self,
         namer: &Namer,
-        sample: &Inspected,
+        sample: &InspectedSample,
         (place, vertex): (usize, &PathVertex),
-        gain: &LightGain,
+        contribution: &LightContribution,
         from: usize,
     ) {
         let number = sample.index + 1;
         let mut at = from;
-        for (thing, event) in chain::to_light(namer, sample, place, gain) {
-            at = self.next(at, Key::Place(thing, event), number);
+        for (object, event) in path::events_to_light(namer, sample, place, contribution) {
+            at = self.next(at, Key::Vertex(object, event), number);
         }
-        at = self.next(at, Key::Light(namer.origin(vertex, gain)), number);
-        self.light(at, gain.radiance);
+        at = self.next(at, Key::Light(namer.origin(vertex, contribution)), number);
+        self.light(at, contribution.radiance);
     }
 
-    /// The tree with at most so many branches of each place.
-    pub fn told(&self, namer: &mut Namer, scale: &Scale, most: usize) -> Branch {
+    /// Returns the tree with at most `most` branches per node.
+    pub fn report(&self, namer: &mut Namer, scale: &Scale, most: usize) -> Branch {
         self.branch(0, None, namer, scale, most)
     }
 
@@ -171,7 +174,7 @@ impl Tree {
         let mut light = node.light;
         let mut take = |place: &usize| light.iter_mut().zip(of(place).light).for_each(|(sum, part)| *sum -= part);
         next.iter().for_each(|(_, place)| take(place));
-        // What is left over without a branch is rounding, unless paths go on further.
+        // The remainder is rounding, unless longer paths were cut off.
         let is_light = matches!(key, Some(Key::Light(_)));
         let has_more = !is_light && node.depth >= self.depth && scale.share(light).abs() > 1e-9;
         let others = (!rest.is_empty() || has_more).then(|| Others {
@@ -180,8 +183,8 @@ impl Tree {
             share: scale.share(light),
         });
         Branch {
-            step: match key {
-                Some(Key::Place(thing, event)) => Some(Step::new(namer, thing, event)),
+            scattering: match key {
+                Some(Key::Vertex(object, event)) => Some(PathEvent::new(namer, object, event)),
                 _ => None,
             },
             light_from: match key {
@@ -197,9 +200,9 @@ impl Tree {
     }
 }
 
-impl Step {
-    pub(super) fn new(namer: &mut Namer, thing: Option<Thing>, event: Event) -> Self {
-        let named = thing.map(|thing| namer.thing_name(thing));
+impl PathEvent {
+    pub(super) fn new(namer: &mut Namer, object: Option<HitObject>, event: ScatterEvent) -> Self {
+        let named = object.map(|object| namer.hit_object_names(object));
         let (object, material) = named.unwrap_or_else(|| ("medium".into(), String::new()));
         Self { object, material, event: event_name(event) }
     }

@@ -1,9 +1,9 @@
-//! Area lights in pictures: as emissive shapes along paths, and as strong in classic pictures.
+//! Area lights: emissive shapes for paths, and equally bright under the integrator `classic`.
 
 use juggler::{Picture, Settings};
 use juggler_scene::Scene;
 
-/// A white floor under a camera that sees nothing else, lit by these lights and objects.
+/// A white floor that fills the view, lit by these lights and objects.
 fn floor(material: &str, lights: &str, objects: &str) -> Scene {
     let text = format!(
         r#"{{"version": 1, "render": {{"size": [16, 16], "samples": 64}},
@@ -26,7 +26,7 @@ const PHONG: &str = r#"{"phong": {"diffuse": [0.8, 0.8, 0.8]}}"#;
 
 #[test]
 fn an_area_light_is_an_emissive_shape() {
-    // Radiance of 12 W from one side of 1.2 square units.
+    // Radiance of 12 W emitted from one side of 1.2 square units.
     let radiance = 12.0 / (std::f32::consts::PI * (1.5f32 * 0.8));
     let light = r#"{"area": {"shape": {"rectangle": {"size": [1.5, 0.8]}}, "position": [0, 2, 0.5], "power": 12}}"#;
     let shape = format!(
@@ -62,14 +62,14 @@ fn a_picture_says_which_integrator_made_it() {
     };
     let scene = floor(DIFFUSE, "", "");
     let (name, why) = reason(&scene, &Settings::default());
-    assert!(name == "path" && why.contains("`diffuse`, which `objects[0].material` holds"), "{why}");
+    assert!(name == "path" && why.contains("`diffuse` at `objects[0].material`"), "{why}");
     let classic = Settings { integrator: Some("classic".into()), ..Settings::default() };
-    assert_eq!(reason(&scene, &classic), ("classic", "asked for beside the scene".into()));
-    // A depth is a wish about the integrator that was chosen.
+    assert_eq!(reason(&scene, &classic), ("classic", "set outside the scene".into()));
+    // A maximum depth applies to the default integrator.
     let deep = Settings { max_depth: Some(3), ..Settings::default() };
     let (name, why) = reason(&floor(PHONG, "", ""), &deep);
-    assert!(name == "classic" && why.contains("of the classic kind"), "{why}");
-    // Seen otherwise, it stays the same.
+    assert!(name == "classic" && why.contains("`classic` supports all lights"), "{why}");
+    // Another view keeps the integrator.
     let picture = Picture::new(&scene, &Settings::default()).unwrap();
     let seen = picture.seen(picture.view()).unwrap();
     assert_eq!((seen.integrator(), seen.fingerprint()), (picture.integrator(), picture.fingerprint()));

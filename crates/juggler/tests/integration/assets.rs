@@ -1,11 +1,10 @@
-//! Files that a scene holds in memory: the same pictures and fingerprints as files on the disk
-//! have.
+//! Assets that a scene holds in memory give the same images and fingerprints as files.
 
 use juggler::material::Diffuse;
 use juggler::prelude::*;
 use juggler::scene::Asset;
 
-/// A picture with another color in each pixel, one of them brighter than white.
+/// An image with a different color in each pixel, one of them brighter than white.
 fn pixels() -> Image {
     let pixels = (0..12).map(|i| Rgb::new(i as f32 / 8.0, 0.5, 1.0 - i as f32 / 12.0)).collect();
     Image::from_pixels(4, 3, pixels).unwrap()

@@ -1,4 +1,4 @@
-//! Scenes that are built by programs say what their JSON says.
+//! Scenes built by programs equal their JSON.
 
 use juggler::prelude::*;
 

@@ -1,5 +1,5 @@
-//! Cryptomatte as a reader of others takes it apart, against masks that are made without it: for each thing a picture in which it
-//! shines and all else is black.
+//! Cryptomatte decoded independently and compared with masks rendered without it: for each object,
+//! an image in which it alone emits.
 
 use juggler::render::Control;
 use juggler::scene::Scene;
@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 const PIXELS: usize = 24 * 18;
-/// How far shares may be off: both are sums of some tens of singles.
+/// Maximum error of a coverage: both values are sums of some tens of `f32`.
 const NEAR: f32 = 3e-6;
 
-/// Balls before and behind each other, out of focus.
+/// Overlapping spheres, out of focus.
 const BLURRED: &str = r#"{"camera": {"thin_lens": {"eye": [0, 1, 6], "look_at": [0, 0.6, 0], "lens_radius": 0.4, "focus_distance": 5}},
     "objects": [{"shape": "plane", "name": "floor", "material": "a"},
         {"shape": {"sphere": {"radius": 0.8}}, "name": "near", "transform": [{"translate": [-0.6, 0.7, 3]}], "material": "b"},
@@ -19,7 +19,7 @@ const BLURRED: &str = r#"{"camera": {"thin_lens": {"eye": [0, 1, 6], "look_at": 
         {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [1.2, 1, -2]}], "material": "b"},
         {"shape": {"cuboid": {"min": [-0.5, -1.5, -0.5], "max": [0.5, 1.5, 0.5]}}, "name": "\"föhn\"", "transform": [{"translate": [-1.4, 1, -4]}], "material": "a"}]}"#;
 
-/// Glass before a card of holes, half open, and a wall.
+/// Glass in front of an opacity mask, a half-opaque card, and a wall.
 const OPEN: &str = r#"{"camera": {"orthographic": {"eye": [0, 0, 4], "look_at": [0, 0, 0], "height": 2}},
     "textures": {"holes": {"checker": {"size": 0.37, "space": "world", "even": 1, "odd": 0}}},
     "objects": [{"shape": {"rectangle": {"size": [2.2, 2]}}, "name": "wall", "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0, 0, -1]}], "material": "a"},
@@ -29,13 +29,13 @@ const OPEN: &str = r#"{"camera": {"orthographic": {"eye": [0, 0, 4], "look_at": 
             "material": {"mask": {"opacity": "holes", "material": {"diffuse": {}}}}},
         {"shape": {"sphere": {"radius": 0.4}}, "name": "glass", "transform": [{"translate": [0.2, 0.3, 1]}], "material": "g"}]}"#;
 
-/// What moves while the shutter is open.
+/// Moving objects with motion blur.
 const MOVING: &str = r#"{"camera": {"perspective": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}},
     "animation": {"frames": 4, "frames_per_second": 24}, "shutter": [0, 1],
     "objects": [{"shape": {"sphere": {"radius": 0.5}}, "name": "fast", "transform": [{"translate": ["=frame - 1", 0.3, 0]}], "material": "a"},
         {"shape": {"cuboid": {"min": [-0.5, -0.3, -0.5], "max": [0.5, 0.3, 0.5]}}, "name": "turning", "transform": [{"rotate": {"axis": [1, 1, 0], "degrees": "=80 * frame"}}, {"translate": [0.4, -0.4, -1]}], "material": "b"}]}"#;
 
-/// More things than a pixel can list, and some that stand for several shapes, or share a name.
+/// More objects than a pixel can list, some of several shapes or with the same name.
 fn crowd() -> Value {
     let mut objects = Vec::new();
     for number in 0..54 {
@@ -55,7 +55,7 @@ fn crowd() -> Value {
         "objects": objects})
 }
 
-/// A scene of the parts that matter here.
+/// Returns a scene with these members.
 fn scene(parts: &Value, materials: &Value) -> Scene {
     let mut scene = parts.clone();
     let shutter = scene.as_object_mut().unwrap().remove("shutter").unwrap_or(json!([0, 0]));
@@ -67,7 +67,7 @@ fn scene(parts: &Value, materials: &Value) -> Scene {
     Scene::from_json(scene.to_string(), "test").unwrap()
 }
 
-/// All layers with their channels, and the picture.
+/// Returns the picture, its AOV channels and its pixels.
 fn render(scene: &Scene, aovs: &[Aov]) -> (Picture, Vec<Vec<f32>>, Vec<f32>) {
     let picture = Picture::new(scene, &Settings { aovs: aovs.to_vec(), ..Settings::default() }).unwrap();
     let film = picture.film();
@@ -84,7 +84,8 @@ fn render(scene: &Scene, aovs: &[Aov]) -> (Picture, Vec<Vec<f32>>, Vec<f32>) {
     (picture, channels, red)
 }
 
-/// How much of each pixel the things show that `is_lit` names by place and material; the others are black.
+/// Returns the coverage of each pixel by the objects that `is_lit` selects by index and material;
+/// all others are black.
 fn coverage(parts: &Value, is_lit: &dyn Fn(usize, &Value) -> bool) -> Vec<f32> {
     let mut parts = parts.clone();
     for (place, object) in parts["objects"].as_array_mut().unwrap().iter_mut().enumerate() {
@@ -98,7 +99,8 @@ fn coverage(parts: &Value, is_lit: &dyn Fn(usize, &Value) -> bool) -> Vec<f32> {
     render(&scene(&parts, &json!({})), &[]).2
 }
 
-/// MurmurHash3 for x86, 32 bits, seed 0, byte by byte as Appleby's paper says it, and kept from being no number.
+/// MurmurHash3 for x86, 32 bits, seed 0, byte by byte as Appleby describes it, with exponents
+/// adjusted to finite floats.
 fn murmur3(text: &str) -> u32 {
     let (mut hash, bytes) = (0u32, text.as_bytes());
     for block in bytes.chunks(4) {
@@ -117,7 +119,7 @@ fn murmur3(text: &str) -> u32 {
     if f32::from_bits(hash).is_normal() { hash } else { hash ^ 1 << 23 }
 }
 
-/// The mattes of a picture's masks of that name: for each name of the manifest, how much of each pixel it covers.
+/// Returns the mattes of a picture by name of the manifest: the coverage of each pixel.
 fn mattes(picture: &Picture, channels: &[Vec<f32>], name: &str) -> BTreeMap<String, Vec<f32>> {
     let key = format!("cryptomatte/{:.7}", format!("{:08x}", murmur3(name)));
     let (mut manifest, mut ranks, mut first) = (None, Vec::new(), 0);
@@ -145,7 +147,8 @@ fn mattes(picture: &Picture, channels: &[Vec<f32>], name: &str) -> BTreeMap<Stri
     manifest.unwrap().into_iter().map(matte).collect()
 }
 
-/// Compares all mattes with what they should be; how many pixels list fewer things than they show.
+/// Compares all mattes with the expected coverages. Returns how many pixels list fewer objects than
+/// they show.
 fn check(found: &BTreeMap<String, Vec<f32>>, expected: &BTreeMap<String, Vec<f32>>) -> usize {
     assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
     let mut lost = 0;
@@ -158,7 +161,7 @@ fn check(found: &BTreeMap<String, Vec<f32>>, expected: &BTreeMap<String, Vec<f32
         for (name, expected) in expected {
             let (found, expected) = (found[name][pixel], expected[pixel]);
             listed += usize::from(found > 0.0);
-            // Of what is left out, nothing is more than what is listed.
+            // An omitted coverage is at most the smallest listed one.
             let is_left_out = found == 0.0 && expected <= least + NEAR && shares.len() > 6;
             assert!((found - expected).abs() < NEAR || is_left_out, "{name} {pixel}: {found} for {expected}");
         }
@@ -167,7 +170,7 @@ fn check(found: &BTreeMap<String, Vec<f32>>, expected: &BTreeMap<String, Vec<f32
     lost
 }
 
-/// Both kinds of masks of a scene; how many pixels show more things than they list.
+/// Compares both Cryptomattes of a scene. Returns how many pixels show more objects than they list.
 fn compare(parts: &Value) -> usize {
     let materials = json!({"a": {"diffuse": {}}, "b": {"diffuse": {"reflectance": 0.2}}, "c": {"conductor": {}}, "g": {"dielectric": {}}});
     let (picture, channels, _) = render(&scene(parts, &materials), &[Aov::CryptoObject, Aov::CryptoMaterial]);
@@ -178,7 +181,7 @@ fn compare(parts: &Value) -> usize {
     let names: Vec<String> = objects.iter().enumerate().map(name).collect();
     let of_object = |name: &String| (name.clone(), coverage(parts, &|place, _| names[place] == *name));
     let lost = check(&mattes(&picture, &channels, "CryptoObject"), &names.iter().map(of_object).collect());
-    // Materials that have a name: the others are known by their numbers.
+    // Unnamed materials are identified by their indices.
     let found = mattes(&picture, &channels, "CryptoMaterial");
     let used: BTreeSet<&str> = objects.iter().filter_map(|object| object["material"].as_str()).collect();
     for name in used {

@@ -1,4 +1,5 @@
-//! The scenes of the gallery and of the lighting recipes are without mistakes, show something, and are told of.
+//! The scenes of the gallery and of the lighting recipes have no errors, show something, and are
+//! documented.
 
 use juggler::render::Control;
 use juggler::scene::Scene;
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
 
-/// The scenes of a folder.
+/// Returns the scene files of a folder.
 fn files(folder: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(Path::new(SCENES).join(folder)).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "json")).collect();

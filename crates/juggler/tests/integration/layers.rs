@@ -1,4 +1,4 @@
-//! Layers beside the picture: known answers, and sums that must agree.
+//! AOVs: known values, and sums that must agree.
 
 use juggler::math::Rgb;
 use juggler::render::Control;
@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 const SIZE: u32 = 32;
 const SAMPLES: u32 = 256;
 
-/// A white wall at z = 0 seen from z = 4, its left half covered by a red card at z = 1; lamps to the left and to the right,
-/// a mirror ball, a glowing ball.
+/// A white wall at z = 0 seen from z = 4, its left half covered by a red card at z = 1; lights to
+/// the left and to the right, a mirror sphere and an emitting sphere.
 const SCENE: &str = r#"{
     "version": 1,
     "render": {"size": [32, 32], "samples": 256, "integrator": {"path": {"max_depth": 4}}, "filter": "box"},
@@ -32,7 +32,7 @@ const SCENE: &str = r#"{
     ]
 }"#;
 
-/// Channels by name, and the picture.
+/// Returns the channels by name, and the rendered image.
 fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
     let scene = Scene::from_json(scene, "test").unwrap();
     let picture = Picture::new(&scene, &Settings { aovs: aovs.to_vec(), ..Settings::default() }).unwrap();
@@ -46,12 +46,12 @@ fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
         })
         .unwrap();
     let set = picture.layers();
-    let tiles: Vec<_> = (0..film.layout().tiles()).filter_map(|number| film.tile_of(number)).collect();
+    let tiles: Vec<_> = (0..film.tiling().tile_count()).filter_map(|number| film.copy_of_tile(number)).collect();
     let names = set.headers().into_iter().flat_map(|layer| layer.channels);
     (names.zip(set.band(&picture.region(), &tiles, None)).collect(), rows)
 }
 
-/// The pixel at these coordinates of the scene's plane.
+/// Returns the pixel at these coordinates of the scene's plane.
 fn at(x: f32, y: f32) -> usize {
     let place = |v: f32| ((v + 1.0) / 2.0 * SIZE as f32) as usize;
     place(-y) * SIZE as usize + place(x)
@@ -59,8 +59,8 @@ fn at(x: f32, y: f32) -> usize {
 
 #[test]
 fn what_is_seen_is_what_stands_there() {
-    let wanted = [Aov::Alpha, Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Position, Aov::Samples, Aov::NotFinite];
-    let (found, _) = layers(SCENE, &wanted);
+    let requested = [Aov::Alpha, Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Position, Aov::Samples, Aov::NotFinite];
+    let (found, _) = layers(SCENE, &requested);
     let value = |channel: &str, pixel: usize| found[channel][pixel];
     let (card, wall, outside) = (at(-0.4, 0.1), at(0.1, 0.05), at(0.9, 0.9));
     for (pixel, depth, albedo) in [(card, 3.0, [0.9, 0.1, 0.1]), (wall, 4.0, [0.8; 3])] {
@@ -75,7 +75,7 @@ fn what_is_seen_is_what_stands_there() {
     }
     assert_eq!((value("alpha.A", outside), value("depth.Z", outside)), (0.0, f32::INFINITY));
     assert_eq!(value("albedo.R", outside), 0.0);
-    // The wall is 24 of 32 pixels wide.
+    // The wall covers 24 of 32 pixels of a row.
     let row: Vec<f32> = (0..32).map(|x| found["alpha.A"][16 * 32 + x]).collect();
     assert!(row[4..28].iter().all(|alpha| *alpha == 1.0) && row[3] == 0.0 && row[28] == 0.0, "{row:?}");
 }
@@ -94,7 +94,7 @@ fn light_is_the_sum_of_its_ways_and_of_its_groups() {
             }
         }
     }
-    // The sky behind is seen, the lamp shines, the wall is lit.
+    // The background is visible, the sphere emits, the wall is lit.
     let value = |layer: &str, pixel: usize| found[&format!("{layer}.R")][pixel];
     assert!((value("emission", at(0.9, 0.9)) - 0.1).abs() < 1e-6 && value("direct", at(0.9, 0.9)) == 0.0);
     assert!((value("emission", at(0.5, 0.4)) - 3.0).abs() < 1e-5 && value("light_group_key", at(0.5, 0.4)) > 2.9);
@@ -107,14 +107,14 @@ fn masks_are_the_exact_shares_of_pixels() {
     let ids = |pixel: usize| found["object_id.Y"][pixel];
     assert_eq!([ids(at(0.1, 0.0)), ids(at(-0.4, 0.0)), ids(at(0.5, 0.4)), ids(at(0.5, -0.4))], [1.0, 2.0, 4.0, 5.0]);
     assert_eq!((ids(at(0.9, 0.9)), found["instance_id.Y"][at(0.5, 0.4)]), (0.0, 3.0));
-    // The card ends at x = -0.22: of the pixels from -0.25 to -0.1875 it covers 0.48.
+    // The card ends at x = -0.22: it covers 0.48 of the pixel from -0.25 to -0.1875.
     let pixel = at(-0.22, 0.0);
     let ranks = [("R", "G"), ("B", "A")].map(|(id, share)| {
         (found[&format!("CryptoObject00.{id}")][pixel].to_bits(), found[&format!("CryptoObject00.{share}")][pixel])
     });
     assert!((ranks[0].1 + ranks[1].1 - 1.0).abs() < 1e-6 && ranks[0].1 >= ranks[1].1, "{ranks:?}");
     assert!((ranks[0].1 - 0.52).abs() < 0.01 && (ranks[1].1 - 0.48).abs() < 0.01, "{ranks:?}");
-    // "wall" and "card" by MurmurHash3.
+    // MurmurHash3 of "wall" and "card".
     assert_eq!((ranks[0].0, ranks[1].0), (0x7405_f6ae, 0xf160_40d1));
     assert_eq!(found["CryptoObject00.R"][at(0.1, 0.0)].to_bits(), 0x7405_f6ae);
 }
@@ -126,7 +126,8 @@ fn samples_that_a_limit_cuts_are_counted() {
         layers(&scene, &[Aov::Clamped, Aov::NotFinite]).0["clamped.Y"].clone()
     };
     let cut = limits(r#", "clamp_direct": 1.5"#);
-    // The lamp shines with 3, all else is darker; a limit of infinity is none, and one of next to nothing cuts what is lit.
+    // The sphere emits 3, everything else is darker. An infinite limit clamps nothing, one near
+    // zero all lit pixels.
     assert_eq!((cut[at(0.5, 0.4)], cut[at(0.9, 0.9)], cut[at(0.1, 0.05)]), (SAMPLES as f32, 0.0, 0.0));
     let edge: Vec<f32> = cut.iter().copied().filter(|count| *count > 0.0 && *count < SAMPLES as f32).collect();
     assert!(edge.len() > 8 && edge.iter().all(|count| count.fract() == 0.0), "{edge:?}");
@@ -158,8 +159,8 @@ fn a_picture_whose_halves_are_apart_says_so() {
     assert_eq!(plain, oidn, "their samples are the same");
 }
 
-/// Every integrator fills every AOV: AOVs of the first hit are those of the path tracer, and AOVs of
-/// light paths and light groups add up to the integrator's picture.
+/// Every integrator fills every AOV: AOVs of the first hit equal those of the path tracer, and AOVs
+/// of light paths and light groups sum to the rendered image.
 #[test]
 fn every_integrator_fills_all_layers() {
     let moving = SCENE
@@ -184,13 +185,13 @@ fn every_integrator_fills_all_layers() {
             assert_eq!(&found[channel], values, "{integrator}, {channel}");
         }
         assert!((found["albedo.R"][at(-0.4, 0.1)] - 0.9).abs() < 1e-5, "{integrator}");
-        for (pixel, shown) in picture.iter().enumerate() {
+        for (pixel, expected) in picture.iter().enumerate() {
             let ways = ["emission.G", "direct.G", "indirect.G"];
             let groups = ["light_group_rest.G", "light_group_key.G", "light_group_sky.G"];
             for parts in [ways, groups] {
                 let sum: f32 = parts.iter().map(|channel| found[*channel][pixel]).sum();
-                let near = (sum - shown.g).abs() <= 1e-5 * shown.g.abs();
-                assert!(near, "{integrator}, pixel {pixel}, {parts:?}: {sum}, {shown:?}");
+                let near = (sum - expected.g).abs() <= 1e-5 * expected.g.abs();
+                assert!(near, "{integrator}, pixel {pixel}, {parts:?}: {sum}, {expected:?}");
             }
         }
         assert!(found["variance.G"].iter().any(|variance| *variance > 0.0), "{integrator}");

@@ -1,4 +1,4 @@
-//! Motion vectors: what is seen goes as far on the film as the closed forms say.
+//! Motion vectors equal their closed forms.
 
 use juggler::imaging::Matrix4;
 use juggler::render::Control;
@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 const SIZE: usize = 32;
 
-/// Pixels of 1/16 unit, x from -1 to 1.
+/// Orthographic camera with pixels of 1/16 unit and x from -1 to 1, then a moving perspective
+/// camera.
 const FLAT: &str = r#""camera": {"orthographic": {"eye": [0, 0, 4], "look_at": [0, 0, 0], "height": 2}}"#;
 const DEEP: &str = r#""camera": {"perspective": {"eye": ["=0.1 * frame", 0.2, 4], "direction": [0, 0, -1],
     "yaw_degrees": "=3 * frame", "vertical_fov_degrees": 40}}"#;
@@ -33,8 +34,8 @@ fn render(scene: &Scene, frame: f64, aovs: &[Aov]) -> (Channels, Picture) {
     (names.zip(picture.layers().band(&picture.region(), &tiles, None)).collect(), picture)
 }
 
-/// Checks the vectors of all pixels that show anything (`true`) or nothing against what they should be at the coordinates of
-/// [`FLAT`]; how many there are.
+/// Checks the vectors of all pixels that show an object (`true`) or the background (`false`) at the
+/// coordinates of [`FLAT`]. Returns their number.
 fn check(channels: &Channels, layer: &str, of_things: bool, expected: impl Fn(f32, f32) -> [f32; 2]) -> usize {
     let pixels = (0..SIZE * SIZE).filter(|pixel| (channels["alpha.A"][*pixel] > 0.0) == of_things);
     let each = |pixel: usize| {
@@ -53,14 +54,14 @@ const ALL: [Aov; 3] = [Aov::Motion, Aov::MotionBack, Aov::Alpha];
 #[test]
 fn a_ball_goes_as_many_pixels_as_it_is_moved() {
     let ball = r#""objects": [{"shape": {"sphere": {"radius": 0.4}}, "transform": [{"translate": ["=frame / 4", "=frame * frame / 16", 0]}]}]"#;
-    // With the shutter open it goes on; of several samples the mean is the same where it goes straight.
+    // With an open shutter the mean over the samples is the same for linear motion.
     for more in ["", r#", "shutter": [0, 0.5]"#] {
         let (found, _) = render(&scene(FLAT, more, ball), 1.0, &ALL);
         let things = check(&found, "motion", true, |_, _| [4.0, if more.is_empty() { -3.0 } else { -3.5 }]);
         let back = if more.is_empty() { 1.0 } else { 1.5 };
         assert_eq!(check(&found, "motion_back", true, |_, _| [-4.0, back]), things);
         assert!(things > 100, "{things}");
-        // What all parallel rays miss goes nowhere.
+        // The background does not move under parallel rays.
         assert!(check(&found, "motion", false, |_, _| [0.0, 0.0]) > 100);
     }
 }
@@ -80,7 +81,8 @@ fn a_disc_turns_about_its_middle() {
 
 #[test]
 fn things_take_their_surfaces_along() {
-    // A ball that grows by half, a mesh that is stretched to the right, and a group that is placed twice within another.
+    // A sphere that grows by half, a mesh stretched to the right, and a group instanced twice
+    // within another.
     let wall = r#"{"mesh": {"positions": [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]],
         "triangles": [[0, 1, 2], [0, 2, 3]],
         "morphs": [{"positions": [[-0.5, -0.5, 0], [1.5, -0.5, 0], [1.5, 0.5, 0], [-0.5, 0.5, 0]], "weight": "=frame / 4"}]}}"#;
@@ -123,10 +125,10 @@ fn a_moving_camera_moves_everything() {
         let of = |column: usize| (0..4).map(|i| point[i] * matrix[i][column]).sum::<f32>();
         [of(0) / of(3) * SIZE as f32, of(1) / of(3) * SIZE as f32]
     };
-    let mut seen = [0, 0];
+    let mut counts = [0, 0];
     for (pixel, alpha) in found["alpha.A"].iter().enumerate() {
         let is_thing = *alpha > 0.0;
-        // What is behind everything is as good as very far away.
+        // The background is at infinity.
         let point = if is_thing {
             let [x, y, z] = ["X", "Y", "Z"].map(|axis| found[&format!("position.{axis}")][pixel]);
             [x, y, z, 1.0]
@@ -138,14 +140,14 @@ fn a_moving_camera_moves_everything() {
             let expected = to[axis] - from[axis];
             assert!((found[name][pixel] - expected).abs() < 5e-3, "{pixel}: {} for {expected}", found[name][pixel]);
         }
-        // It turns to the right: all goes to the left.
+        // The camera turns to the right, so everything moves to the left.
         assert!(found["motion.X"][pixel] < -1.0);
-        seen[usize::from(is_thing)] += 1;
+        counts[usize::from(is_thing)] += 1;
     }
-    assert!(seen[0] > 200 && seen[1] > 200, "{seen:?}");
+    assert!(counts[0] > 200 && counts[1] > 200, "{counts:?}");
 }
 
-/// The direction of a pixel's centre for [`DEEP`], turned to the right by so many degrees.
+/// Returns the ray direction at a pixel's center for [`DEEP`], turned to the right by some degrees.
 fn direction(pixel: usize, degrees: f32) -> [f32; 4] {
     let half = 20f32.to_radians().tan();
     let place = |cell: usize| ((cell as f32 + 0.5) / 16.0 - 1.0) * half;

@@ -1,11 +1,12 @@
-//! Whether pictures that differ by noise alone are told from those that do not: on pictures as they are rendered.
+//! Significance tests on rendered images that differ only by noise, and on others.
 
-use juggler::imaging::significance::{Estimate, significance};
+use juggler::imaging::significance::{NoisyImage, significance};
 use juggler::render::Control;
 use juggler::{Picture, Settings, estimate};
 use juggler_scene::Scene;
 
-/// A room with a small lamp, glass, a rough mirror and a sky through the window: noise of all sorts.
+/// A room with a small emitter, glass, a rough mirror and a sky through the window, for many kinds
+/// of noise.
 fn room(lamp: f32, ball: &str) -> Scene {
     let text = format!(
         r#"{{"version": 1,
@@ -31,12 +32,12 @@ const SMALL: [u32; 2] = [40, 30];
 const LARGE: [u32; 2] = [112, 84];
 const GLASS: &str = r#"{"dielectric": {"ior": 1.5}}"#;
 
-fn estimated(scene: &Scene, seed: u64, samples: u32, size: [u32; 2]) -> Estimate {
+fn estimated(scene: &Scene, seed: u64, samples: u32, size: [u32; 2]) -> NoisyImage {
     let settings = Settings { seed: Some(seed), samples: Some(samples), size: Some(size), ..Settings::default() };
     let picture = Picture::new(scene, &settings).unwrap();
     let film = picture.film();
     picture.expose(&film, &Control::default()).unwrap();
-    estimate::of_film(&film)
+    estimate::from_film(&film)
 }
 
 #[test]
@@ -51,7 +52,8 @@ fn pictures_of_other_seeds_are_the_same_as_often_as_was_promised() {
             .collect();
         let mean = pairs.iter().sum::<f64>() / 40.0;
         let below = |level: f64| pairs.iter().filter(|p| **p <= level).count();
-        // Of 40, more than 3 below 1 % come once in 1,300 times, more than 11 below 10 % once in 1,700.
+        // Of 40 pairs, more than 3 below 1 % have a probability of 1 in 1,300, more than 11 below
+        // 10 % 1 in 1,700.
         assert!(below(0.01) <= 3 && below(0.1) <= 11, "{pairs:?}");
         assert!(below(0.5) >= 4 && mean < 0.9, "far too cautious: {pairs:?}");
     }

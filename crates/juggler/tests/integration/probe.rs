@@ -1,4 +1,4 @@
-//! Pixels that are asked about are those of the picture, and their light adds up.
+//! Probed pixels equal those of the image, and their light sums up.
 
 use juggler::probe::{Branch, Detail, Probe, Prober, Share};
 use juggler::render::Control;
@@ -50,24 +50,27 @@ fn the_mean_is_the_pixel_to_the_bit_and_every_account_of_its_light_adds_up_to_it
             let image = Picture::new(&scene, &settings).unwrap().image(&Control::default()).unwrap();
             for pixel in [[0, 0], [6, 9], [17, 11], [12, 16], [12, 3]] {
                 let probe = probed(&scene, &settings, pixel);
-                let wanted = image.pixels()[(pixel[1] * 24 + pixel[0]) as usize].to_array();
-                assert_eq!(probe.mean, wanted, "{filter} {integrator:?} {pixel:?}");
+                let expected = image.pixels()[(pixel[1] * 24 + pixel[0]) as usize].to_array();
+                assert_eq!(probe.mean, expected, "{filter} {integrator:?} {pixel:?}");
                 let Some(light) = probe.light else {
                     assert!(integrator.is_some());
                     continue;
                 };
                 let shares = &light.shares;
-                let lists = [&shares.ways, &shares.groups, &shares.lights, &shares.stretches].map(|list| total(list));
+                let lists = [&shares.kinds, &shares.groups, &shares.lights, &shares.segments].map(|list| total(list));
                 for sum in lists.into_iter().chain([light.paths.light, leaves(&light.paths)]) {
-                    for (sum, wanted) in sum.into_iter().zip(wanted) {
-                        let wanted = f64::from(wanted);
-                        assert!((sum - wanted).abs() < 1e-4 * (0.01 + wanted.abs()), "{sum} {wanted} {integrator:?}");
+                    for (sum, expected) in sum.into_iter().zip(expected) {
+                        let expected = f64::from(expected);
+                        assert!(
+                            (sum - expected).abs() < 1e-4 * (0.01 + expected.abs()),
+                            "{sum} {expected} {integrator:?}"
+                        );
                     }
                 }
                 assert_eq!(light.paths.samples, 33);
                 let shares: Vec<Option<f64>> = light.brightest.iter().map(|sample| sample.share).collect();
-                // Filters with negative lobes may leave less than nothing, and then signs turn.
-                let is_lit = wanted.iter().all(|channel| *channel > 0.0);
+                // Filters with negative lobes may give negative pixels, which reverse the signs.
+                let is_lit = expected.iter().all(|channel| *channel > 0.0);
                 assert!(shares.len() == 3 && (!is_lit || shares[0] >= shares[1]), "{filter} {pixel:?} {shares:?}");
             }
         }
@@ -75,18 +78,18 @@ fn the_mean_is_the_pixel_to_the_bit_and_every_account_of_its_light_adds_up_to_it
 }
 
 #[test]
-fn things_are_told_by_their_names() {
+fn objects_are_reported_by_their_names() {
     let scene = scene(r#""box""#);
     let settings = Settings::default();
     let glass = probed(&scene, &settings, [6, 10]);
-    let seen = glass.seen.unwrap();
-    assert_eq!((seen.object.as_str(), seen.material.as_str(), seen.instance), ("glass", "objects[1].material", 2));
-    assert!(seen.shape.unwrap() == "sphere" && (seen.distance - 4.5).abs() < 0.6 && seen.part.is_none());
+    let hit = glass.first_hit.unwrap();
+    assert_eq!((hit.object.as_str(), hit.material.as_str(), hit.instance), ("glass", "objects[1].material", 2));
+    assert!(hit.shape.unwrap() == "sphere" && (hit.distance - 4.5).abs() < 0.6 && hit.part.is_none());
     let first = &glass.light.as_ref().unwrap().paths.branches[0];
-    assert_eq!(first.step.as_ref().unwrap().object, "glass");
+    assert_eq!(first.scattering.as_ref().unwrap().object, "glass");
     let gold = probed(&scene, &settings, [17, 11]);
-    let seen = gold.seen.unwrap();
-    assert_eq!((seen.object.as_str(), seen.material.as_str()), ("objects[2]", "gold"));
+    let hit = gold.first_hit.unwrap();
+    assert_eq!((hit.object.as_str(), hit.material.as_str()), ("objects[2]", "gold"));
     let floor = probed(&scene, &settings, [12, 16]).light.unwrap();
     let names = |shares: &[Share]| shares.iter().map(|share| share.name.clone()).collect::<Vec<_>>();
     let lights = names(&floor.shares.lights);
@@ -102,7 +105,9 @@ fn things_are_told_by_their_names() {
         floor.brightest[0]
     );
     let sky = probed(&scene, &settings, [0, 0]);
-    assert!(sky.seen.is_none() && sky.light.unwrap().paths.branches[0].light_from.as_deref() == Some("background"));
+    assert!(
+        sky.first_hit.is_none() && sky.light.unwrap().paths.branches[0].light_from.as_deref() == Some("background")
+    );
 }
 
 #[test]
@@ -117,7 +122,7 @@ fn pixels_outside_and_the_smallest_picture() {
     assert_eq!(prober.fireflies(3, &Control::default()).unwrap().pixels, []);
     let empty = Scene::from_json(r#"{"version": 1, "objects": []}"#, "empty.json").unwrap();
     let settings = Settings { size: Some([4, 4]), integrator: Some("path".into()), ..Settings::default() };
-    assert!(probed(&empty, &settings, [1, 2]).seen.is_none());
+    assert!(probed(&empty, &settings, [1, 2]).first_hit.is_none());
 }
 
 #[test]
@@ -129,15 +134,16 @@ fn the_tree_can_be_cut_and_loses_nothing() {
         let light = prober.pixel([6, 10], &detail, &Control::default()).unwrap().light.unwrap();
         let root = &light.paths;
         assert!(light.brightest.is_empty() && root.branches.len() <= branches);
-        let told: f64 = root.branches.iter().map(|branch| branch.share).sum();
+        let listed: f64 = root.branches.iter().map(|branch| branch.share).sum();
         let rest = root.others.as_ref().map_or(0.0, |others| others.share);
-        assert!((told + rest - 1.0).abs() < 1e-6, "{depth} {branches}: {told} {rest}");
+        assert!((listed + rest - 1.0).abs() < 1e-6, "{depth} {branches}: {listed} {rest}");
     }
 }
 
 #[test]
 fn fireflies_are_found_with_the_paths_that_made_them() {
-    // A lamp that is small, behind glass that no light is asked through: paths meet it by chance, and rarely.
+    // A small emitter behind glass, which light sampling cannot reach: only few paths hit it by
+    // BSDF sampling.
     let text = r#"{"version": 1,
         "render": {"size": [40, 30], "samples": 64, "integrator": "path"},
         "camera": {"perspective": {"eye": [0, 2, 5], "look_at": [0, 0.5, 0], "vertical_fov_degrees": 50}},
@@ -158,7 +164,7 @@ fn fireflies_are_found_with_the_paths_that_made_them() {
         assert!(path.contains("cover specular transmission") && path.ends_with("> bulb"), "{path}");
         assert!(firefly.share.unwrap() > 0.1 && firefly.luminance > 3.0 * firefly.median, "{firefly:?}");
     }
-    let chance = |kind: &juggler::probe::Kind| kind.path.contains("diffuse > specular transmission");
+    let chance = |kind: &juggler::probe::PathGroup| kind.path.contains("diffuse > specular transmission");
     assert!(found.kinds.iter().any(chance), "{:?}", found.kinds);
     let share: f64 = found.kinds.iter().map(|kind| kind.share).sum();
     assert!(share > 0.5 && share < 1.0 + 1e-9, "{share}");

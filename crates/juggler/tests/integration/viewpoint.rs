@@ -1,4 +1,4 @@
-//! From where a picture was taken: its matrices find what its pixels show.
+//! Viewpoint of an image: its matrices project positions to their pixels.
 
 use juggler::camera::film::Rect;
 use juggler::imaging::{Matrix4, Options};
@@ -22,7 +22,7 @@ fn picture(camera: &str, settings: &Settings) -> Picture {
     Picture::new(&Scene::from_json(text, "test").unwrap(), settings).unwrap()
 }
 
-/// A point as a row before a matrix.
+/// Multiplies a point as a row vector with a matrix.
 fn times(point: Vec3, matrix: &Matrix4) -> [f32; 3] {
     let row = [point.x, point.y, point.z, 1.0];
     let [x, y, z, w] = [0, 1, 2, 3].map(|column| (0..4).map(|i| row[i] * matrix[i][column]).sum::<f32>());
@@ -41,16 +41,16 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
         let [alpha, x, y, z] = picture.layers().band(&picture.region(), &tiles, None).try_into().unwrap();
         let viewpoint = picture.header(Options::default()).viewpoint.unwrap();
         let [width, height] = picture.size();
-        let mut shown = 0;
+        let mut covered = 0;
         for pixel in (0..alpha.len()).filter(|pixel| alpha[*pixel] > 0.0) {
             let [u, v, _] = times(Vec3::new(x[pixel], y[pixel], z[pixel]), &viewpoint.world_to_ndc);
             let (column, row) = (pixel as u32 % width, pixel as u32 / width);
             let off = [u * width as f32 - column as f32 - 0.5, v * height as f32 - row as f32 - 0.5];
-            // Far away, where the plane is seen from the side, points are known to a hundredth of a pixel.
+            // At grazing angles far away, positions are exact to a hundredth of a pixel.
             assert!(off.iter().all(|off| off.abs() < 0.51), "{camera} {column} {row}: {off:?}");
-            shown += 1;
+            covered += 1;
         }
-        assert!(shown * 2 > alpha.len(), "{camera}: {shown}");
+        assert!(covered * 2 > alpha.len(), "{camera}: {covered}");
     }
 }
 
@@ -58,17 +58,17 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
 fn known_points_are_where_they_are_known_to_be() {
     for camera in CAMERAS {
         let viewpoint = picture(camera, &Settings::default()).viewpoint().unwrap();
-        let centre = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_ndc);
+        let center = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_ndc);
         let ahead = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_camera);
         let eye = times(Vec3::new(3.0, 2.5, 6.0), &viewpoint.world_to_camera);
         assert!(eye.iter().all(|number| number.abs() < 1e-5), "{camera}: {eye:?}");
-        // What is looked at is the centre, but for the camera that is turned to the right.
+        // The `look_at` projects to the center, except for the camera with a yaw.
         if camera.contains("yaw") {
-            assert!(ahead[0] < -0.3 && ahead[1].abs() < 1e-5 && centre[0] < 0.45, "{ahead:?} {centre:?}");
+            assert!(ahead[0] < -0.3 && ahead[1].abs() < 1e-5 && center[0] < 0.45, "{ahead:?} {center:?}");
         } else {
             let distance = (Vec3::new(2.8, 2.1, 6.0)).length();
             assert!(ahead[0].abs() < 1e-5 && ahead[1].abs() < 1e-5 && (ahead[2] - distance).abs() < 1e-4, "{ahead:?}");
-            assert!((centre[0] - 0.5).abs() < 1e-5 && (centre[1] - 0.5).abs() < 1e-5, "{camera}: {centre:?}");
+            assert!((center[0] - 0.5).abs() < 1e-5 && (center[1] - 0.5).abs() < 1e-5, "{camera}: {center:?}");
         }
     }
 }

@@ -1,42 +1,42 @@
-//! What every background must keep.
+//! Contract tests of all backgrounds.
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared, z_test};
-use juggler_math::{DVec3, Frame, fun};
+use juggler_math::{DVec3, Frame, portable};
 
 const SAMPLES: u32 = 1_000_000;
-/// One in a thousand for all examples together.
+/// Significance level of each test: 1e-3 for all examples together.
 const SIGNIFICANCE: f64 = 5e-5;
 
-/// Cells of equal solid angle: bands of height by turns.
+/// Cells of equal solid angle: bands of height by azimuths.
 const BANDS: usize = 12;
-const TURNS: usize = 24;
+const AZIMUTHS: usize = 24;
 
 fn cell(direction: Vec3) -> usize {
-    let index = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
-    index(direction.y * 0.5 + 0.5, BANDS) * TURNS + index(directions::turn(direction), TURNS)
+    let index = |fraction: f32, count: usize| ((fraction * count as f32) as usize).min(count - 1);
+    index(direction.y * 0.5 + 0.5, BANDS) * AZIMUTHS + index(direction_table::azimuth_turns(direction), AZIMUTHS)
 }
 
-/// An even grid of directions, `bands` by `turns` in each cell.
-fn grid(bands: usize, turns: usize) -> impl Iterator<Item = Vec3> {
-    let (rows, columns) = (BANDS * bands, TURNS * turns);
-    let turn = move |i: usize| ((i % columns) as f32 + 0.5) / columns as f32;
+/// Uniform grid of directions, `elevation_gradient` by `azimuths` in each cell.
+fn grid(elevation_gradient: usize, azimuths: usize) -> impl Iterator<Item = Vec3> {
+    let (rows, columns) = (BANDS * elevation_gradient, AZIMUTHS * azimuths);
+    let azimuth = move |i: usize| ((i % columns) as f32 + 0.5) / columns as f32;
     let height = move |i: usize| ((i / columns) as f64 + 0.5) / rows as f64 * 2.0 - 1.0;
-    (0..rows * columns).map(move |i| directions::direction(turn(i), height(i)))
+    (0..rows * columns).map(move |i| direction_table::direction(azimuth(i), height(i)))
 }
 
-/// Whether a density is that of the sun's disk.
+/// Whether a density belongs to the sun's disk.
 fn is_sun(background: &AnyBackground, pdf: f32) -> bool {
     matches!(background, AnyBackground::Sky(_)) && pdf > 500.0
 }
 
-/// Each cell gets as many samples as the integral of the density says, by a fine grid; those to the sun's disk, which
-/// no grid meets, are counted apart, against its chance.
+/// The number of samples in each cell matches the integral of the density on a fine grid. Samples
+/// of the sun's disk, which the grid misses, are counted separately against its probability.
 #[test]
 fn samples_follow_the_density_which_integrates_to_one() {
     for (number, background) in AnyBackground::examples().into_iter().enumerate() {
         let mut random = Random::new(103 + number as u64);
-        let mut observed = vec![0.0; BANDS * TURNS + 1];
+        let mut observed = vec![0.0; BANDS * AZIMUTHS + 1];
         let (mut disk, mut none, mut apart) = (Vec::new(), 0, 0);
         for _ in 0..SAMPLES {
             let Some(sample) = background.sample(random.vec2()) else {
@@ -51,15 +51,17 @@ fn samples_follow_the_density_which_integrates_to_one() {
                 observed[cell(sample.wi)] += 1.0;
             }
         }
-        if background.mean().is_black() {
+        if background.mean_radiance().is_black() {
             assert!(none == SAMPLES && background.pdf(Vec3::X) == 0.0, "{}", name(&background));
             continue;
         }
-        // Only rounding across the borders of cells may tell a sample's density from the one of its direction.
+        // The density of a sample equals that of its direction, except for rounding across cell
+        // boundaries.
         assert!(none == 0 && apart < SAMPLES / 500, "{}: {none} {apart}", name(&background));
-        // Tables have columns that are whole parts of the grid's; their rows are not.
-        let size = 4.0 * std::f64::consts::PI / (BANDS * TURNS * 120 * 24) as f64;
-        let mut expected = vec![0.0; BANDS * TURNS + 1];
+        // A table column spans a whole number of grid columns; a table row does not match grid
+        // rows.
+        let size = 4.0 * std::f64::consts::PI / (BANDS * AZIMUTHS * 120 * 24) as f64;
+        let mut expected = vec![0.0; BANDS * AZIMUTHS + 1];
         for direction in grid(120, 24) {
             let pdf = background.pdf(direction);
             if !is_sun(&background, pdf) {
@@ -78,8 +80,8 @@ fn samples_follow_the_density_which_integrates_to_one() {
     }
 }
 
-/// Directions to a small disk are even over it: 4 rings of the same area by 8 sectors. Its centre is their
-/// mean and its rim the farthest of them.
+/// Directions to a small disk are uniform: 4 rings of equal area by 8 sectors. The center of the
+/// disk is the mean direction, its rim the farthest direction.
 fn fills_its_disk(directions: &[Vec3]) -> Result<(), String> {
     if directions.len() < 1000 {
         return Ok(());
@@ -90,9 +92,9 @@ fn fills_its_disk(directions: &[Vec3]) -> Result<(), String> {
     let most = directions.iter().map(squared).fold(0.0, f64::max);
     let mut observed = [0.0; 32];
     for w in directions {
-        let turn = fun::atan2(w.dot(frame.bitangent), w.dot(frame.tangent)) / std::f32::consts::TAU;
+        let azimuth = portable::atan2(w.dot(frame.bitangent), w.dot(frame.tangent)) / std::f32::consts::TAU;
         let ring = ((squared(w) / most * 4.0) as usize).min(3);
-        observed[ring * 8 + ((turn.rem_euclid(1.0) * 8.0) as usize).min(7)] += 1.0;
+        observed[ring * 8 + ((azimuth.rem_euclid(1.0) * 8.0) as usize).min(7)] += 1.0;
     }
     chi_squared(&observed, &[directions.len() as f64 / 32.0; 32], SIGNIFICANCE)
 }
@@ -108,15 +110,15 @@ fn samples_give_the_mean() {
         let mut values = Vec::new();
         for _ in 0..SAMPLES / 4 {
             let value = background.sample(random.vec2()).map_or(0.0, |sample| {
-                let seen = background.radiance(&Ray::new(Vec3::ZERO, sample.wi)).luminance();
-                assert!(sample.wi.is_normalized() && sample.pdf > 0.0 && seen.is_finite());
-                f64::from(seen / sample.pdf)
+                let radiance = background.radiance(&Ray::new(Vec3::ZERO, sample.wi)).luminance();
+                assert!(sample.wi.is_normalized() && sample.pdf > 0.0 && radiance.is_finite());
+                f64::from(radiance / sample.pdf)
             });
             values.push(value);
         }
-        let mean = f64::from(background.mean().luminance()) * 4.0 * std::f64::consts::PI;
+        let mean = f64::from(background.mean_radiance().luminance()) * 4.0 * std::f64::consts::PI;
         let measured = values.iter().sum::<f64>() / values.len() as f64;
-        // Means of pictures and skies are sums over cells.
+        // Means of environment maps and skies are sums over cells.
         let near = (measured - mean).abs() < 5e-3 * mean || z_test(&values, mean, SIGNIFICANCE).is_ok();
         assert!(near, "{}: {measured} {mean}", name(&background));
         let radius = 3.0f32;
@@ -125,7 +127,7 @@ fn samples_give_the_mean() {
     }
 }
 
-/// By a grid: what is light must have a density.
+/// The density is above 0 wherever there is light, tested on a grid.
 #[test]
 fn there_is_a_density_wherever_there_is_light() {
     for background in AnyBackground::examples() {

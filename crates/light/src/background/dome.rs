@@ -1,28 +1,31 @@
-//! The inside of a huge sphere around the origin, coloured by height: the sky of the Juggler's article.
+//! Inside of a huge sphere around the origin, colored by height: the sky of the Juggler's article.
 //!
 //! ```json
 //! {"dome": {"radius": 1e6, "bottom": "#bdbdff", "top": "#2223f6"}}
 //! ```
 //!
-//! The colour is bottom + (top − bottom) · y / radius where the ray meets the sphere; below y = 0 it stays.
-//! A ray that starts outside sees the far side; one that misses sees as high as it comes nearest.
+//! The color is bottom + (top − bottom) · y / radius at the intersection of the ray and the sphere;
+//! below y = 0 it is `bottom`. A ray that starts outside sees the far side of the sphere. A ray
+//! that misses the sphere uses the height of its closest point.
 
-use super::bands::{Bands, Half};
+use super::elevation_gradient::{ElevationGradient, Hemisphere};
 use super::{Background, BackgroundSample, InvalidBackground, check_color};
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The inside of a huge sphere around the origin, coloured by height.
+/// Inside of a huge sphere around the origin, colored by height. From near the origin it looks like
+/// a gradient by the sine of the elevation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Dome {
-    /// Radius of the sphere, scene units.
+    /// Radius of the sphere in scene units, above 0. For a distant sky it is much larger than the
+    /// scene.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f32,
-    /// Colour at height 0 and below.
+    /// Color at height 0 and below.
     pub bottom: Rgb,
-    /// Colour at the top.
+    /// Color at the top.
     pub top: Rgb,
 }
 
@@ -33,10 +36,10 @@ impl Default for Dome {
 }
 
 impl Dome {
-    /// The sky as the origin sees it, where heights are those of directions.
-    fn bands(&self) -> Bands {
-        let half = |end: Rgb| Half { base: self.bottom, end, squared: false };
-        Bands { axis: Vec3::Y, upper: half(self.top), lower: half(self.bottom) }
+    /// Sky as seen from the origin, where heights are those of directions.
+    fn elevation_gradient(&self) -> ElevationGradient {
+        let half = |end: Rgb| Hemisphere { base: self.bottom, end, squared: false };
+        ElevationGradient { axis: Vec3::Y, upper: half(self.top), lower: half(self.bottom) }
     }
 }
 
@@ -51,31 +54,31 @@ impl Background for Dome {
     }
 
     fn radiance(&self, ray: &Ray) -> Rgb {
-        // In units of the radius: |origin + t direction|² = 1, larger root.
+        // Solve |origin + t direction|² = 1 in units of the radius, for the larger root.
         let origin = ray.origin / self.radius;
         let along = origin.dot(ray.direction);
         let discriminant = (along * along + 1.0 - origin.length_squared()).max(0.0);
         let height = origin.y + ray.direction.y * (discriminant.sqrt() - along);
-        // Written so that NaN, from origins without measure, is 0.
+        // Map NaN, from infinite origins, to 0.
         self.bottom.lerp(self.top, if height > 0.0 { height.min(1.0) } else { 0.0 })
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
-        self.bands().sample(u)
+        self.elevation_gradient().sample(u)
     }
 
     fn pdf(&self, direction: Vec3) -> f32 {
-        self.bands().pdf(direction)
+        self.elevation_gradient().pdf(direction)
     }
 
-    fn mean(&self) -> Rgb {
-        self.bands().mean()
+    fn mean_radiance(&self) -> Rgb {
+        self.elevation_gradient().mean()
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Dome {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { radius: 3.0, ..Self::default() }]
     }
@@ -87,13 +90,13 @@ mod tests {
     use juggler_math::testing::{Random, close};
 
     #[test]
-    fn colour_is_that_of_the_point_on_the_sphere() {
+    fn color_is_that_of_the_point_on_the_sphere() {
         let dome = Dome { radius: 3.0, bottom: Rgb::BLACK, top: Rgb::WHITE };
         let mut random = Random::new(101);
         for _ in 0..2000 {
             let ray = random.ray(1.7);
             let height = dome.radiance(&ray).r * 3.0;
-            // Walk to the sphere by bisection.
+            // Find the sphere by bisection.
             let (mut inside, mut outside) = (0.0f32, 10.0f32);
             for _ in 0..40 {
                 let middle = (inside + outside) * 0.5;

@@ -1,46 +1,49 @@
-//! A picture of everything around, from far away: an equirectangular panorama.
+//! Environment map: an equirectangular image of infinitely distant surroundings.
 //!
 //! ```json
 //! {"environment": {"file": "meadow.exr", "scale": 1, "rotation_degrees": 30, "up": [0, 1, 0]}}
 //! ```
 //!
-//! The picture's first row is up, +Y. From left to right it shows -Z, +X (at a quarter), +Z, -X. Between pixels colours
-//! are blended linearly, round the seam too.
+//! The image's first row is up, +Y. From left to right it shows -Z, +X (at a quarter), +Z, -X.
+//! Lookups use bilinear interpolation, across the seam too.
 //!
-//! Directions are picked by what is brighter than the mean (MIS compensation: Karlík, Šik, Vévoda, Skřivan, Křivánek,
-//! 2019): the even rest is found by those that the surface picks. Deviation: a tenth of the brightness itself stays, so
-//! that the density is above 0 wherever there is light, and samples are right on their own, too.
+//! Directions are importance-sampled by the luminance above its mean (MIS compensation: Karlík,
+//! Šik, Vévoda, Skřivan, Křivánek, 2019); BSDF sampling covers the rest. Deviation: a tenth of the
+//! luminance is added, so the density is above 0 wherever there is light, and light sampling alone
+//! is unbiased.
 
-use super::directions::{Directions, turn};
+use super::direction_table::{DirectionTable, azimuth_turns};
 use super::orientation::{Orientation, check_direction, in_range};
 use super::{Background, BackgroundSample, InvalidBackground};
-use juggler_math::{Image, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, fun};
+use juggler_math::{Image, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 
-/// A picture of everything around.
+/// Environment map: an equirectangular image of infinitely distant surroundings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Environment {
-    /// The picture (OpenEXR, Radiance HDR, PNG, JPEG), relative to the scene file: twice as wide as high, its first row
-    /// up.
+    /// Path of the image (OpenEXR, Radiance HDR, PNG, JPEG), relative to the scene file. The image
+    /// is equirectangular, twice as wide as high, with the first row up.
     pub file: String,
-    /// Factor on its light.
+    /// Factor on the radiance of the image.
     #[serde(default = "one")]
     #[schemars(range(min = 0, max = 1e30))]
     pub scale: f32,
-    /// How far it is turned about its vertical axis, counter-clockwise as seen from above.
+    /// Rotation about the vertical axis in degrees, from -10,000 to 10,000, counterclockwise as
+    /// seen from above.
     #[serde(default)]
+    #[schemars(range(min = -10000, max = 10000))]
     pub rotation_degrees: f32,
-    /// Where its top points, any length.
+    /// Direction of the image's top in world space, of any length.
     #[serde(default = "up")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// The picture that [`Environment::load`] or [`Environment::set_panorama`] was given: clones share it.
+    /// Image from [`Environment::load`] or [`Environment::set_panorama`], shared by clones.
     #[serde(skip)]
     panorama: Option<Arc<Panorama>>,
-    /// What [`Background::prepare`] makes of the numbers.
+    /// Rotation computed by [`Background::prepare`].
     #[serde(skip)]
     orientation: Orientation,
 }
@@ -53,15 +56,15 @@ fn up() -> Vec3 {
     Vec3::Y
 }
 
-/// A picture of all directions, with what directions are picked from. Costly to make, free to share.
+/// Image of all directions with its sampling tables. Costly to create, shared at no cost.
 #[derive(Clone, PartialEq)]
 pub struct Panorama {
     image: Image,
-    directions: Directions,
-    /// Mean over all directions.
+    directions: DirectionTable,
+    /// Mean radiance over all directions.
     mean: Rgb,
-    /// The greatest channel of any pixel.
-    greatest: f32,
+    /// Maximum channel of all pixels.
+    max_channel: f32,
 }
 
 impl fmt::Debug for Panorama {
@@ -71,13 +74,15 @@ impl fmt::Debug for Panorama {
 }
 
 impl Environment {
-    /// One whose picture is to be given to [`Environment::load`] or [`Environment::set_panorama`].
+    /// Creates an environment without an image; see [`Environment::load`] and
+    /// [`Environment::set_panorama`].
     pub fn from_file(file: impl Into<String>) -> Self {
         let (panorama, orientation) = (None, Orientation::default());
         Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, panorama, orientation }
     }
 
-    /// Takes the picture that the file holds, to be [prepared](Background::prepare) then; an error when that cannot be.
+    /// Sets the image of the file; call [`Background::prepare`] afterwards. Returns an error if the
+    /// image is unusable.
     pub fn load(&mut self, image: Image) -> Result<(), InvalidBackground> {
         let wrong =
             |what: &str| InvalidBackground { field: "file", message: format!("`file` \"{}\" {what}", self.file) };
@@ -85,42 +90,43 @@ impl Environment {
         Ok(())
     }
 
-    /// The same with a picture that others may show, too, to be [prepared](Background::prepare) then.
+    /// Sets an image that several environments may share; call [`Background::prepare`] afterwards.
     pub fn set_panorama(&mut self, panorama: Arc<Panorama>) {
         self.panorama = Some(panorama);
     }
 }
 
 impl Panorama {
-    /// Of a picture: its first row is up, +Y. Light that is negative or no number counts as none. When there are no
-    /// pixels, or some are infinite, what is wrong with it.
+    /// Creates a panorama from an image whose first row is up, +Y. Negative and NaN channels become
+    /// black. Returns an error if there are no pixels or some are infinite.
     pub fn new(mut image: Image) -> Result<Self, &'static str> {
         let light = |v: f32| if v > 0.0 { v } else { 0.0 };
         image.pixels_mut().iter_mut().for_each(|pixel| *pixel = pixel.map(light));
-        let greatest = image.pixels().iter().fold(0.0, |most: f32, pixel| most.max(pixel.max_channel()));
-        if greatest == f32::INFINITY {
-            return Err("has pixels without end");
+        let max_channel = image.pixels().iter().fold(0.0, |most: f32, pixel| most.max(pixel.max_channel()));
+        if max_channel == f32::INFINITY {
+            return Err("has infinite pixels");
         }
         let rows = image.height() as usize;
-        let borders = Directions::equal_angles(rows.max(1));
-        let mean = mean(&image, &borders);
-        let brightness = brightness(&image, mean.luminance());
-        let directions = Directions::new(image.width() as usize, borders, &brightness).ok_or("has no pixels")?;
-        Ok(Self { image, directions, mean, greatest })
+        let row_heights = DirectionTable::equal_angles(rows.max(1));
+        let mean = mean(&image, &row_heights);
+        let sampling_weights = sampling_weights(&image, mean.luminance());
+        let directions =
+            DirectionTable::new(image.width() as usize, row_heights, &sampling_weights).ok_or("has no pixels")?;
+        Ok(Self { image, directions, mean, max_channel })
     }
 
-    /// Bytes on the heap of one of so many pixels.
+    /// Heap memory in bytes for a number of pixels.
     pub const fn bytes(pixels: usize) -> usize {
-        // A pixel's colour, and for its cell two numbers and half a cut point at most.
+        // A pixel stores its color; its cell stores two numbers and at most half a cut point.
         pixels.saturating_mul(size_of::<Rgb>() + 2 * size_of::<f32>() + size_of::<u32>() / 2)
     }
 }
 
-/// Mean over the sphere.
-fn mean(image: &Image, borders: &[f64]) -> Rgb {
+/// Mean over the sphere by solid angle.
+fn mean(image: &Image, row_heights: &[f64]) -> Rgb {
     let mut sum = [0.0; 3];
     let width = f64::from(image.width().max(1));
-    for (row, height) in image.pixels().chunks(image.width().max(1) as usize).zip(borders.windows(2)) {
+    for (row, height) in image.pixels().chunks(image.width().max(1) as usize).zip(row_heights.windows(2)) {
         let size = 0.5 * (height[0] - height[1]) / width;
         for pixel in row {
             for (channel, value) in sum.iter_mut().zip(pixel.to_array()) {
@@ -131,8 +137,9 @@ fn mean(image: &Image, borders: &[f64]) -> Rgb {
     Rgb::from(sum.map(|v| v as f32))
 }
 
-/// What each pixel's cell counts: the mean of the blended colours over it, above `mean` in full.
-fn brightness(image: &Image, mean: f32) -> Vec<f32> {
+/// Sampling weight of each pixel's cell: the mean luminance of the interpolated image over the cell
+/// above `mean`, plus a tenth of it.
+fn sampling_weights(image: &Image, mean: f32) -> Vec<f32> {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let luminance: Vec<f32> = image.pixels().iter().map(|pixel| pixel.luminance()).collect();
     let blend = |a: f32, b: f32, c: f32| 0.125 * a + 0.75 * b + 0.125 * c;
@@ -149,12 +156,12 @@ fn brightness(image: &Image, mean: f32) -> Vec<f32> {
 }
 
 impl Panorama {
-    /// The blended colour in a direction of its own space.
-    fn at(&self, direction: Vec3) -> Rgb {
+    /// Bilinear interpolation of the image in a local direction.
+    fn radiance(&self, direction: Vec3) -> Rgb {
         let (width, height) = (self.image.width() as usize, self.image.height() as usize);
         let ring = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let down = fun::atan2(ring, direction.y) * std::f32::consts::FRAC_1_PI;
-        let (x, y) = (turn(direction) * width as f32 - 0.5, down * height as f32 - 0.5);
+        let down = portable::atan2(ring, direction.y) * std::f32::consts::FRAC_1_PI;
+        let (x, y) = (azimuth_turns(direction) * width as f32 - 0.5, down * height as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right_share, low_share) = (x - left, y - top);
         let column = |step: i64| match left as i64 + step {
@@ -180,17 +187,17 @@ impl Background for Environment {
     fn prepare(&mut self) -> Result<(), InvalidBackground> {
         self.check()?;
         let Some(panorama) = &self.panorama else {
-            let message = format!("the picture \"{}\" was not read", self.file);
+            let message = format!("the picture \"{}\" is not loaded", self.file);
             return Err(InvalidBackground { field: "file", message });
         };
-        in_range("scale", self.scale, 0.0, MAX_LIGHT / panorama.greatest.max(1.0))?;
+        in_range("scale", self.scale, 0.0, MAX_LIGHT / panorama.max_channel.max(1.0))?;
         self.orientation = Orientation::new(self.up, self.rotation_degrees);
         Ok(())
     }
 
     fn radiance(&self, ray: &Ray) -> Rgb {
         let Some(panorama) = &self.panorama else { return Rgb::BLACK };
-        panorama.at(self.orientation.to_local(ray.direction)) * self.scale
+        panorama.radiance(self.orientation.to_local(ray.direction)) * self.scale
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
@@ -204,7 +211,7 @@ impl Background for Environment {
         self.panorama.as_ref().map_or(0.0, pdf)
     }
 
-    fn mean(&self) -> Rgb {
+    fn mean_radiance(&self) -> Rgb {
         self.panorama.as_ref().map_or(Rgb::BLACK, |panorama| panorama.mean * self.scale)
     }
 
@@ -216,8 +223,8 @@ impl Background for Environment {
 #[cfg(any(test, feature = "testing"))]
 #[allow(clippy::unwrap_used, reason = "examples for tests")]
 impl Environment {
-    /// A picture for tests, by a function of column and row.
-    pub fn painted(width: u32, height: u32, paint: impl Fn(u32, u32) -> Rgb) -> Self {
+    /// Image for tests, from a function of column and row.
+    pub fn from_function(width: u32, height: u32, paint: impl Fn(u32, u32) -> Rgb) -> Self {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| paint(x, y)).collect();
         let mut environment = Self::from_file("painted");
         environment.load(Image::from_pixels(width, height, pixels).unwrap()).unwrap();
@@ -225,14 +232,20 @@ impl Environment {
         environment
     }
 
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let spots = Self::painted(32, 16, |x, y| Rgb::splat(if (x * 7 + y * 5) % 23 == 0 { 9.0 } else { 0.3 }));
-        let mut turned = Self { scale: 2.5, rotation_degrees: 77.0, up: Vec3::new(0.3, 0.2, -2.0), ..spots.clone() };
-        turned.prepare().unwrap();
+        let spots = Self::from_function(32, 16, |x, y| Rgb::splat(if (x * 7 + y * 5) % 23 == 0 { 9.0 } else { 0.3 }));
+        let mut rotated = Self { scale: 2.5, rotation_degrees: 77.0, up: Vec3::new(0.3, 0.2, -2.0), ..spots.clone() };
+        rotated.prepare().unwrap();
         let single =
-            Self::painted(24, 12, |x, y| if (x, y) == (23, 3) { Rgb::new(50.0, 40.0, 30.0) } else { Rgb::BLACK });
-        vec![spots, turned, single, Self::painted(3, 1, |_, _| Rgb::WHITE), Self::painted(8, 4, |_, _| Rgb::BLACK)]
+            Self::from_function(24, 12, |x, y| if (x, y) == (23, 3) { Rgb::new(50.0, 40.0, 30.0) } else { Rgb::BLACK });
+        vec![
+            spots,
+            rotated,
+            single,
+            Self::from_function(3, 1, |_, _| Rgb::WHITE),
+            Self::from_function(8, 4, |_, _| Rgb::BLACK),
+        ]
     }
 }
 
@@ -246,8 +259,8 @@ mod tests {
 
     #[test]
     fn the_picture_lies_as_documented() {
-        // Red grows to the right, green grows downwards.
-        let panorama = Environment::painted(64, 32, |x, y| Rgb::new(x as f32, y as f32, 0.0));
+        // Red increases to the right, green increases downward.
+        let panorama = Environment::from_function(64, 32, |x, y| Rgb::new(x as f32, y as f32, 0.0));
         for (direction, x, y) in [
             (Vec3::X, 16.0, 16.0),
             (Vec3::Z, 32.0, 16.0),
@@ -258,24 +271,24 @@ mod tests {
             let color = at(&panorama, direction);
             assert!((color.r - x + 0.5).abs() < 1e-3 && (color.g - y + 0.5).abs() < 1e-3, "{direction} {color:?}");
         }
-        // The poles are the mean of nothing but their own row, the seam blends both ends.
+        // The poles use only their own row; the seam interpolates between both ends.
         assert!(at(&panorama, Vec3::Y).g == 0.0 && at(&panorama, -Vec3::Y).g == 31.0);
         assert!((at(&panorama, -Vec3::Z).r - 31.5).abs() < 0.01);
-        let mut turned = Environment { rotation_degrees: 90.0, ..panorama.clone() };
-        turned.prepare().unwrap();
-        // Counter-clockwise from above +X goes to -Z.
-        assert!((at(&turned, -Vec3::Z).r - 15.5).abs() < 1e-3);
+        let mut rotated = Environment { rotation_degrees: 90.0, ..panorama.clone() };
+        rotated.prepare().unwrap();
+        // Counterclockwise as seen from above, +X goes to -Z.
+        assert!((at(&rotated, -Vec3::Z).r - 15.5).abs() < 1e-3);
     }
 
     #[test]
-    fn one_colour_is_that_everywhere_and_picked_evenly() {
-        let flat = Environment::painted(16, 8, |_, _| Rgb::new(0.5, 1.0, 2.0));
+    fn one_color_is_that_everywhere_and_picked_evenly() {
+        let flat = Environment::from_function(16, 8, |_, _| Rgb::new(0.5, 1.0, 2.0));
         for u in [Vec2::new(0.1, 0.9), Vec2::ZERO, Vec2::splat(0.999)] {
             let sample = flat.sample(u).unwrap();
             assert!((sample.pdf * 4.0 * std::f32::consts::PI - 1.0).abs() < 1e-5, "{sample:?}");
             assert!((at(&flat, sample.wi).g - 1.0).abs() < 1e-6);
         }
-        assert!((flat.mean().b - 2.0).abs() < 1e-6);
+        assert!((flat.mean_radiance().b - 2.0).abs() < 1e-6);
     }
 
     #[test]
@@ -285,11 +298,11 @@ mod tests {
         assert!(environment.sample(Vec2::ZERO).is_none());
         let panorama = |v: f32| Panorama::new(Image::filled(2, 1, Rgb::splat(v)));
         assert_eq!(environment.load(Image::filled(0, 0, Rgb::BLACK)).unwrap_err().field, "file");
-        assert_eq!(panorama(f32::INFINITY).err(), Some("has pixels without end"));
+        assert_eq!(panorama(f32::INFINITY).err(), Some("has infinite pixels"));
         for nothing in [-3.0, f32::NAN] {
             environment.set_panorama(Arc::new(panorama(nothing).unwrap()));
             environment.prepare().unwrap();
-            assert_eq!((environment.mean(), at(&environment, Vec3::X)), (Rgb::BLACK, Rgb::BLACK));
+            assert_eq!((environment.mean_radiance(), at(&environment, Vec3::X)), (Rgb::BLACK, Rgb::BLACK));
         }
         environment.set_panorama(Arc::new(panorama(1e30).unwrap()));
         assert!(environment.prepare().is_ok());

@@ -1,43 +1,44 @@
-//! A sky that changes with the elevation: one colour at the horizon, another at the zenith.
+//! Sky with a color gradient by elevation, from the horizon to the zenith.
 //!
 //! ```json
 //! {"gradient": {"horizon": [0.7, 0.7, 1], "zenith": [0.1, 0.1, 1], "blend": "sine_squared"}}
 //! ```
 //!
-//! That is the sky of Eric Graham's Juggler (1986), which looks the same below the horizon as above.
+//! This example is the sky of Eric Graham's Juggler (1986), which looks the same below the horizon
+//! as above.
 
-use super::bands::{Bands, Half};
+use super::elevation_gradient::{ElevationGradient, Hemisphere};
 use super::{Background, BackgroundSample, InvalidBackground, check_color};
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A sky that changes with the elevation.
+/// Sky with a color gradient by elevation, from the horizon to the zenith.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Gradient {
-    /// Colour at the horizon.
+    /// Color at the horizon.
     pub horizon: Rgb,
-    /// Colour straight up.
+    /// Color at the zenith.
     pub zenith: Rgb,
-    /// Colour straight down; without it the lower half mirrors the upper one.
+    /// Color at the nadir. Without it the lower hemisphere mirrors the upper one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nadir: Option<Rgb>,
-    /// The direction of the zenith, any length.
+    /// Direction of the zenith in world space, of any length.
     #[schemars(with = "[f32; 3]")]
     pub axis: Vec3,
-    /// How colours run into each other.
+    /// Interpolation between the colors.
     pub blend: Blend,
 }
 
-/// How colours run into each other between the horizon and the zenith.
+/// Interpolation between the color at the horizon and the color at the zenith or nadir.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Blend {
-    /// With the sine of the elevation, the height of a unit direction.
+    /// Linear in the sine of the elevation, the height of a unit direction.
     #[default]
     Sine,
-    /// With its square: a wider horizon.
+    /// Linear in the square of the sine, which gives a wider horizon.
     SineSquared,
 }
 
@@ -54,10 +55,10 @@ impl Default for Gradient {
 }
 
 impl Gradient {
-    fn bands(&self) -> Bands {
-        let half = |end: Rgb| Half { base: self.horizon, end, squared: self.blend == Blend::SineSquared };
+    fn elevation_gradient(&self) -> ElevationGradient {
+        let half = |end: Rgb| Hemisphere { base: self.horizon, end, squared: self.blend == Blend::SineSquared };
         let axis = self.axis.normalize_or(Vec3::Y);
-        Bands { axis, upper: half(self.zenith), lower: half(self.nadir.unwrap_or(self.zenith)) }
+        ElevationGradient { axis, upper: half(self.zenith), lower: half(self.nadir.unwrap_or(self.zenith)) }
     }
 }
 
@@ -70,36 +71,36 @@ impl Background for Gradient {
         if squared >= f32::MIN_POSITIVE && squared.is_finite() {
             return Ok(());
         }
-        let message = format!("`axis` must have a length, neither zero nor without end; it is {}", self.axis);
+        let message = format!("`axis` must have a finite length above 0; it is {}", self.axis);
         Err(InvalidBackground { field: "axis", message })
     }
 
     fn radiance(&self, ray: &Ray) -> Rgb {
         let sine = (ray.direction.dot(self.axis) / self.axis.length()).clamp(-1.0, 1.0);
         let end = if sine < 0.0 { self.nadir.unwrap_or(self.zenith) } else { self.zenith };
-        let share = match self.blend {
+        let weight = match self.blend {
             Blend::Sine => sine.abs(),
             Blend::SineSquared => sine * sine,
         };
-        self.horizon.lerp(end, share)
+        self.horizon.lerp(end, weight)
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
-        self.bands().sample(u)
+        self.elevation_gradient().sample(u)
     }
 
     fn pdf(&self, direction: Vec3) -> f32 {
-        self.bands().pdf(direction)
+        self.elevation_gradient().pdf(direction)
     }
 
-    fn mean(&self) -> Rgb {
-        self.bands().mean()
+    fn mean_radiance(&self) -> Rgb {
+        self.elevation_gradient().mean()
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Gradient {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let below = Self { nadir: Some(Rgb::splat(0.1)), axis: Vec3::Z * 3.0, ..Self::default() };
         vec![Self::default(), below, Self { blend: Blend::SineSquared, ..Self::default() }]
@@ -120,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_follow_the_elevation() {
+    fn colors_follow_the_elevation() {
         let json = |more: &str| format!(r#"{{"horizon": [1, 0, 0], "zenith": [0, 1, 0], "axis": [0, 0, 2]{more}}}"#);
         let (plain, lower) = (json(""), json(r#", "nadir": [0, 0, 1]"#));
         assert!(near(at(&plain, Vec3::X), [1.0, 0.0, 0.0]) && near(at(&plain, Vec3::Z), [0.0, 1.0, 0.0]));

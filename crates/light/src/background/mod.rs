@@ -1,11 +1,11 @@
-//! Backgrounds: what a ray sees that leaves the world, and light from there.
+//! Backgrounds: the radiance of rays that leave the scene, and importance sampling of it.
 
 use juggler_math::{MAX_LIGHT, Ray, Rgb, Vec2, Vec3, warp};
 
 mod atmosphere;
-mod bands;
-mod directions;
+mod direction_table;
 mod dome;
+mod elevation_gradient;
 mod environment;
 mod gradient;
 mod orientation;
@@ -19,62 +19,63 @@ pub use environment::Panorama;
 pub use gradient::Blend;
 pub use sky::PreparedSky;
 
-/// Why a background cannot be: the field at fault and what it should be.
+/// Error in a background's description: the field at fault and its valid values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct InvalidBackground {
-    /// The field, as in the scene file.
+    /// Name of the field in the scene file.
     pub field: &'static str,
-    /// What is wrong, and what would be right.
+    /// Message that states the error and the valid values.
     pub message: String,
 }
 
-/// A direction that was picked for its light.
+/// Direction sampled by its radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BackgroundSample {
     /// Unit direction towards the light.
     pub wi: Vec3,
-    /// Density per steradian with which it was picked, above 0.
+    /// Density per steradian of `wi`, above 0.
     pub pdf: f32,
 }
 
-/// What a ray sees that leaves the world.
+/// Background as the scene describes it: the radiance of rays that leave the scene.
 pub trait Background: Send + Sync {
-    /// Checks the numbers, those in files left out.
+    /// Checks the fields, but not the contents of files.
     fn check(&self) -> Result<(), InvalidBackground>;
-    /// Checks everything and makes the tables that light comes from. Called once, before all below, when what is in files
-    /// has been loaded.
+    /// Checks everything and computes the tables that the other methods use. Called once before
+    /// them, after files are loaded.
     fn prepare(&mut self) -> Result<(), InvalidBackground> {
         self.check()
     }
-    /// Light from that way; the ray's direction is a unit vector.
+    /// Radiance along a ray with a unit direction.
     fn radiance(&self, ray: &Ray) -> Rgb;
-    /// A direction picked by `u` in the unit square for its light, all over the sphere; `None` when there is none.
+    /// Samples a direction of the sphere with `u` in the unit square; `None` if the background is
+    /// black.
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
         let wi = warp::uniform_sphere(u);
-        let lit = !self.mean().is_black();
+        let lit = !self.mean_radiance().is_black();
         lit.then_some(BackgroundSample { wi, pdf: warp::UNIFORM_SPHERE_PDF })
     }
-    /// Density per steradian with which [`Background::sample`] picks a unit direction; above 0 wherever there is
-    /// light.
+    /// Density per steradian with which [`Background::sample`] samples a unit direction; above 0
+    /// wherever there is light.
     fn pdf(&self, _direction: Vec3) -> f32 {
-        if self.mean().is_black() { 0.0 } else { warp::UNIFORM_SPHERE_PDF }
+        if self.mean_radiance().is_black() { 0.0 } else { warp::UNIFORM_SPHERE_PDF }
     }
-    /// Mean radiance over all directions, from the origin.
-    fn mean(&self) -> Rgb;
-    /// Luminance of the power that enters a ball of this radius, for choosing among lights.
+    /// Mean radiance over all directions, as seen from the origin.
+    fn mean_radiance(&self) -> Rgb;
+    /// Luminance of the power that enters a sphere of radius `world_radius`, for light selection.
     fn power(&self, world_radius: f32) -> f32 {
         const PI: f32 = std::f32::consts::PI;
-        4.0 * PI * PI * world_radius * world_radius * self.mean().luminance()
+        4.0 * PI * PI * world_radius * world_radius * self.mean_radiance().luminance()
     }
-    /// Bytes on the heap.
+    /// Heap memory in bytes.
     fn heap_bytes(&self) -> usize {
         0
     }
 }
 
 juggler_math::closed_set! {
-    /// Every background. In JSON: `{"solid": {"color": [0, 0, 0]}}`.
+    /// Enumeration of all backgrounds. In JSON: `{"solid": {"color": [0, 0, 0]}}`.
     pub enum AnyBackground: Background {
         solid::Solid,
         gradient::Gradient,
@@ -85,13 +86,13 @@ juggler_math::closed_set! {
 }
 
 impl From<Rgb> for AnyBackground {
-    /// The same radiance in every direction.
+    /// Creates a background of uniform radiance.
     fn from(color: Rgb) -> Self {
         Solid { color }.into()
     }
 }
 
-/// Refuses a color with a channel below 0 or above [`MAX_LIGHT`].
+/// Rejects a color with a channel below 0, above [`MAX_LIGHT`] or NaN.
 fn check_color(field: &'static str, color: Rgb) -> Result<(), InvalidBackground> {
     color.to_array().iter().try_for_each(|channel| orientation::in_range(field, *channel, 0.0, MAX_LIGHT))
 }

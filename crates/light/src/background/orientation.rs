@@ -1,9 +1,9 @@
-//! How a sky stands in the world: its top, and how far it is turned about it.
+//! Orientation of a sky in the world: its up direction and its azimuth.
 
 use super::InvalidBackground;
-use juggler_math::{Vec3, fun, range};
+use juggler_math::{Vec3, portable, range};
 
-/// A rotation from a sky's own space, +Y its top, to the world.
+/// Rotation from a sky's local space, with +Y up, to world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Orientation {
     x: Vec3,
@@ -18,49 +18,49 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// The sky's +Y at `up`, the shortest way, after a turn by `degrees` about +Y, counter-clockwise as seen from the
-    /// top. Not turned when `up` has no direction.
+    /// Creates a rotation by `degrees` about +Y, counterclockwise as seen from above, followed by
+    /// the shortest rotation from +Y to `up`. An `up` of zero length counts as +Y.
     pub fn new(up: Vec3, degrees: f32) -> Self {
         let y = up.try_normalize().unwrap_or(Vec3::Y);
-        let (sin, cos) = fun::sin_cos(degrees.to_radians());
-        let way = Vec3::Y.cross(y);
-        let turn = |v: Vec3| {
+        let (sin, cos) = portable::sin_cos(degrees.to_radians());
+        let axis = Vec3::Y.cross(y);
+        let rotate = |v: Vec3| {
             if y.y < -0.9999 {
-                // Half a turn about x; beyond, whatever is at right angles will do.
+                // Half a turn about x; near -Y any perpendicular axis is valid.
                 Vec3::new(v.x, 0.0, -v.z)
             } else {
-                v * y.y + way.cross(v) + way * (way.dot(v) / (1.0 + y.y))
+                v * y.y + axis.cross(v) + axis * (axis.dot(v) / (1.0 + y.y))
             }
         };
-        let z = turn(Vec3::new(sin, 0.0, cos));
+        let z = rotate(Vec3::new(sin, 0.0, cos));
         let z = (z - y * z.dot(y)).normalize();
         Self { x: y.cross(z), y, z }
     }
 
-    /// World → sky.
+    /// Transforms a vector from world to local space.
     pub fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
     }
 
-    /// Sky → world.
+    /// Transforms a vector from local to world space.
     pub fn to_world(self, v: Vec3) -> Vec3 {
         self.x * v.x + self.y * v.y + self.z * v.z
     }
 }
 
-/// Refuses a direction without length.
+/// Rejects a direction of zero or infinite length.
 pub(super) fn check_direction(field: &'static str, direction: Vec3) -> Result<(), InvalidBackground> {
     let squared = direction.length_squared();
     if squared >= f32::MIN_POSITIVE && squared.is_finite() {
         return Ok(());
     }
-    let message = format!("`{field}` must have a length, neither zero nor without end; it is {direction}");
+    let message = format!("`{field}` must have a finite length above 0; it is {direction}");
     Err(InvalidBackground { field, message })
 }
 
-/// Refuses a number outside `low..=high`, and what is no number.
+/// Rejects numbers outside `low..=high` and NaN.
 pub(super) fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidBackground> {
-    let wrong = range::outside(field, value, low, high);
+    let wrong = range::range_error(field, value, low, high);
     wrong.map_or(Ok(()), |message| Err(InvalidBackground { field, message }))
 }
 
@@ -83,7 +83,7 @@ mod tests {
         }
         let quarter = Orientation::new(Vec3::Y, 90.0);
         assert!(close3(quarter.to_world(Vec3::Z), Vec3::X, 1e-6) && close3(quarter.to_world(Vec3::X), -Vec3::Z, 1e-6));
-        // The shortest way: from +Y to +Z about +X.
+        // Shortest rotation: from +Y to +Z about +X.
         assert!(close3(Orientation::new(Vec3::Z, 0.0).to_world(Vec3::X), Vec3::X, 1e-6));
     }
 }

@@ -1,70 +1,76 @@
-//! The sky of a clear day, or of its beginning and end, with the sun.
+//! Physical sky with the sun, for clear days and twilight.
 //!
 //! ```json
-//! {"sky": {"sun_elevation_degrees": 35, "sun_azimuth_degrees": 135, "turbidity": 2, "ground_albedo": [0.3, 0.3, 0.3],
-//!     "intensity": 1, "sun": true, "up": [0, 1, 0]}}
+//! {"sky": {"sun_elevation_degrees": 35, "sun_azimuth_degrees": 135, "turbidity": 2,
+//!     "ground_albedo": [0.3, 0.3, 0.3], "intensity": 1, "sun": true, "up": [0, 1, 0]}}
 //! ```
 //!
-//! Light of the sun is followed through the atmosphere (`atmosphere.rs`). With an intensity of 1, white paper that
-//! faces the sun above the atmosphere has the radiance 1; on the ground it is a little less, and a blue sky is about a
-//! tenth of it. The sun is a disk of its true size, without the darkening of its limb. Below the horizon lies flat
-//! ground in the light of sun and sky.
+//! Scattering of sunlight in the atmosphere is computed in `atmosphere.rs`. With an intensity of 1,
+//! a white diffuse surface above the atmosphere that faces the sun has a radiance of 1. On the
+//! ground the radiance is slightly lower, and a blue sky has about a tenth of it. The sun is a disk
+//! of its true size, without limb darkening. The region below the horizon is flat ground, lit by
+//! sun and sky.
 //!
-//! The sun is picked as a cone, the rest by a table; densities of both add up.
+//! The sun is sampled as a cone, the rest from a table; the density is that of the mixture.
 
 use super::atmosphere::{Atmosphere, GROUND, haze_phase};
-use super::directions::{Directions, direction};
+use super::direction_table::{DirectionTable, direction};
 use super::orientation::{Orientation, check_direction, in_range};
 use super::{Background, BackgroundSample, InvalidBackground};
-use juggler_math::{DVec3, Frame, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, fun, warp};
+use juggler_math::{DVec3, Frame, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, portable, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
 use std::sync::Arc;
 
-/// Angular radius of the sun as seen from the earth.
+/// Angular radius of the sun as seen from the earth, in degrees.
 const SUN_DEGREES: f32 = 0.2665;
 
-/// Lines of the table of colours: elevations, denser towards the horizon, by turns away from the sun.
+/// Grid of the radiance table: elevations, denser towards the horizon, by azimuths relative to the
+/// sun.
 const ELEVATIONS: usize = 40;
-const TURNS: usize = 25;
+const AZIMUTHS: usize = 25;
 
-/// Cells of the table that directions are picked from: rows and columns, 2 by 2 places in each.
+/// Rows and columns of the sampling table; each cell evaluates 2 × 2 directions.
 const CELLS: usize = 96;
 
-/// The sky of a clear day, or of its beginning and end, with the sun.
+/// Physical sky with the sun, for clear days and twilight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Sky {
-    /// Height of the sun above the horizon; below it is twilight.
+    /// Elevation of the sun above the horizon in degrees; negative values give twilight.
     #[schemars(range(min = -90, max = 90))]
     pub sun_elevation_degrees: f32,
-    /// Where the sun stands, as on a compass: 0 at -Z, 90 at +X.
+    /// Azimuth of the sun in degrees, from -10,000 to 10,000, clockwise as on a compass: 0 at -Z,
+    /// 90 at +X.
+    #[schemars(range(min = -10000, max = 10000))]
     pub sun_azimuth_degrees: f32,
-    /// Towards the sun, any length, in the sky's own space where +Y is up; instead of both angles.
+    /// Direction towards the sun, of any length, in the sky's local space with +Y up; replaces both
+    /// angles.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub sun_direction: Option<Vec3>,
-    /// How hazy the air is: 1 without any haze, 2 on a clear day, 10 in thick haze.
+    /// Haziness of the air: 1 is air without haze, 2 a clear day, 10 thick haze.
     #[schemars(range(min = 1, max = 10))]
     pub turbidity: f32,
-    /// Share of light that the ground reflects, from 0 to 1 in every channel; it also lights the sky.
+    /// Diffuse reflectance of the ground, 0 to 1 in every channel. Light from the ground also
+    /// brightens the sky.
     pub ground_albedo: Rgb,
-    /// Factor on all light.
+    /// Factor on the radiance of sky, sun and ground.
     #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
-    /// Whether the sun itself is there: its disk and its direct light.
+    /// Whether the sun's disk and its direct light are included.
     pub sun: bool,
-    /// Where its top points, any length.
+    /// Direction of the sky's zenith in world space, of any length.
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// What [`Background::prepare`] computes: clones share it. Not part of the description.
+    /// Tables computed by [`Background::prepare`], shared by clones; not part of the description.
     #[serde(skip)]
     pub prepared: PreparedSky,
 }
 
-/// What [`Background::prepare`] computes for a [`Sky`]; nothing before.
+/// Tables that [`Background::prepare`] computes for a [`Sky`]; empty before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PreparedSky(Option<Arc<Tables>>);
 
@@ -84,22 +90,23 @@ impl Default for Sky {
     }
 }
 
-/// Everything in the sky's own space.
+/// Tables of a sky in its local space.
 #[derive(Clone, PartialEq)]
 struct Tables {
     orientation: Orientation,
-    /// Unit direction to the sun's centre.
+    /// Unit direction to the sun's center.
     sun: Vec3,
-    /// Radiance of its disk; black when it is not there.
+    /// Radiance of the sun's disk; black if the sun is not included.
     disk: Rgb,
     /// Radiance of the ground.
     ground: Rgb,
-    /// Light scattered by air or often, and once by haze without its phase: rows of elevation.
-    smooth: Vec<Rgb>,
+    /// Radiance table, rows of elevation: light scattered by air or more than once, and light
+    /// scattered once by haze without the phase function.
+    without_haze: Vec<Rgb>,
     haze: Vec<Rgb>,
-    directions: Directions,
-    /// Chance that the sun is picked.
-    sun_chance: f32,
+    directions: DirectionTable,
+    /// Probability of sampling the sun.
+    sun_probability: f32,
     mean: Rgb,
 }
 
@@ -115,13 +122,13 @@ fn sun_size() -> f32 {
 }
 
 impl Sky {
-    /// Unit direction to the sun in the sky's own space.
+    /// Unit direction to the sun in local space.
     fn sun(&self) -> Vec3 {
         if let Some(towards) = self.sun_direction {
             return towards.normalize_or(Vec3::Y);
         }
-        let (sin, cos) = fun::sin_cos(self.sun_elevation_degrees.to_radians());
-        let (sin_turn, cos_turn) = fun::sin_cos(self.sun_azimuth_degrees.to_radians());
+        let (sin, cos) = portable::sin_cos(self.sun_elevation_degrees.to_radians());
+        let (sin_turn, cos_turn) = portable::sin_cos(self.sun_azimuth_degrees.to_radians());
         Vec3::new(cos * sin_turn, sin, -cos * cos_turn)
     }
 }
@@ -130,76 +137,78 @@ impl Tables {
     fn new(sky: &Sky) -> Option<Self> {
         let sun = sky.sun();
         let [r, g, b] = sky.ground_albedo.to_array().map(f64::from);
-        let air = Atmosphere::new(f64::from(sky.turbidity), DVec3::new(r, g, b));
+        let atmosphere = Atmosphere::new(f64::from(sky.turbidity), DVec3::new(r, g, b));
         // Irradiance above the atmosphere.
-        let power = f64::from(PI * sky.intensity);
-        let (smooth, haze) = colors(&air, sun, power);
-        let risen = sky.sun && sun.y > -fun::sin(SUN_DEGREES.to_radians());
-        let disk = air.clear_to_top(GROUND, f64::from(sun.y.max(0.0))) * power / f64::from(TAU * sun_size());
-        let directions = Directions::new(1, vec![1.0, -1.0], &[0.0])?;
+        let irradiance = f64::from(PI * sky.intensity);
+        let (without_haze, haze) = colors(&atmosphere, sun, irradiance);
+        let is_risen = sky.sun && sun.y > -portable::sin(SUN_DEGREES.to_radians());
+        let disk = atmosphere.transmittance_to_top(GROUND, f64::from(sun.y.max(0.0))) * irradiance
+            / f64::from(TAU * sun_size());
+        let directions = DirectionTable::new(1, vec![1.0, -1.0], &[0.0])?;
         let mut tables = Self {
             orientation: Orientation::new(sky.up, 0.0),
             sun,
-            disk: if risen { rgb(disk) } else { Rgb::BLACK },
+            disk: if is_risen { rgb(disk) } else { Rgb::BLACK },
             ground: Rgb::BLACK,
-            smooth,
+            without_haze,
             haze,
             directions,
-            sun_chance: 0.0,
+            sun_probability: 0.0,
             mean: Rgb::BLACK,
         };
-        let direct = rgb(air.sunlight(GROUND, f64::from(sun.y)) * power) * sun.y.max(0.0);
-        tables.fill(if sky.sun { direct } else { Rgb::BLACK }, sky.ground_albedo)?;
+        let direct = rgb(atmosphere.sunlight(GROUND, f64::from(sun.y)) * irradiance) * sun.y.max(0.0);
+        tables.compute_ground_and_sampling(if sky.sun { direct } else { Rgb::BLACK }, sky.ground_albedo)?;
         Some(tables)
     }
 
-    /// Lights the ground, and derives what directions are picked from.
-    fn fill(&mut self, direct: Rgb, albedo: Rgb) -> Option<()> {
-        let borders = Directions::equal_heights(CELLS);
-        let places: Vec<Vec3> = (0..4 * CELLS * CELLS).map(|i| place(&borders, i)).collect();
-        // All of the same solid angle.
-        let size = 4.0 * PI / places.len() as f32;
-        let above = || places.iter().filter(|place| place.y > 0.0);
-        let arrives = above().fold(direct, |sum, place| sum + self.scattered(*place) * (place.y * size));
-        self.ground = albedo * arrives / PI;
-        let colors: Vec<Rgb> = places.iter().map(|place| self.scattered(*place)).collect();
-        let brightness: Vec<f32> =
+    /// Computes the radiance of the ground and the sampling table.
+    fn compute_ground_and_sampling(&mut self, direct: Rgb, albedo: Rgb) -> Option<()> {
+        let row_heights = DirectionTable::equal_heights(CELLS);
+        let cell_directions: Vec<Vec3> = (0..4 * CELLS * CELLS).map(|i| cell_direction(&row_heights, i)).collect();
+        // All directions have the same solid angle.
+        let size = 4.0 * PI / cell_directions.len() as f32;
+        let above = || cell_directions.iter().filter(|direction| direction.y > 0.0);
+        let irradiance = above().fold(direct, |sum, direction| sum + self.scattered(*direction) * (direction.y * size));
+        self.ground = albedo * irradiance / PI;
+        let colors: Vec<Rgb> = cell_directions.iter().map(|direction| self.scattered(*direction)).collect();
+        let sampling_weights: Vec<f32> =
             colors.chunks_exact(4).map(|cell| cell.iter().map(|color| color.luminance()).sum::<f32>() * 0.25).collect();
-        self.directions = Directions::new(CELLS, borders, &brightness)?;
+        self.directions = DirectionTable::new(CELLS, row_heights, &sampling_weights)?;
         let around = colors.iter().fold(Rgb::BLACK, |sum, color| sum + *color) * size;
-        let sun = self.disk * (TAU * sun_size() * self.risen());
+        let sun = self.disk * (TAU * sun_size() * self.visible_sun_fraction());
         self.mean = (around + sun) / (4.0 * PI);
         let total = (around + sun).luminance();
-        self.sun_chance = if total > 0.0 { sun.luminance() / total } else { 0.0 };
+        self.sun_probability = if total > 0.0 { sun.luminance() / total } else { 0.0 };
         Some(())
     }
 
-    /// The part of the sun's disk that is above the horizon.
-    fn risen(&self) -> f32 {
-        let x = (self.sun.y / fun::sin(SUN_DEGREES.to_radians())).clamp(-1.0, 1.0);
-        (fun::acos(-x) + x * (1.0 - x * x).sqrt()) / PI
+    /// Fraction of the sun's disk above the horizon.
+    fn visible_sun_fraction(&self) -> f32 {
+        let x = (self.sun.y / portable::sin(SUN_DEGREES.to_radians())).clamp(-1.0, 1.0);
+        (portable::acos(-x) + x * (1.0 - x * x).sqrt()) / PI
     }
 
-    /// Light of air and ground.
+    /// Radiance of air and ground.
     fn scattered(&self, direction: Vec3) -> Rgb {
         if direction.y < 0.0 {
             return self.ground;
         }
-        let row = (fun::asin(direction.y) / FRAC_PI_2).sqrt() * (ELEVATIONS - 1) as f32;
+        let row = (portable::asin(direction.y) / FRAC_PI_2).sqrt() * (ELEVATIONS - 1) as f32;
         let across = direction.x * self.sun.z - direction.z * self.sun.x;
         let along = direction.x * self.sun.x + direction.z * self.sun.z;
-        let column = fun::atan2(across.abs(), along) / PI * (TURNS - 1) as f32;
-        let (top, left) = ((row as usize).min(ELEVATIONS - 2), (column as usize).min(TURNS - 2));
+        let column = portable::atan2(across.abs(), along) / PI * (AZIMUTHS - 1) as f32;
+        let (top, left) = ((row as usize).min(ELEVATIONS - 2), (column as usize).min(AZIMUTHS - 2));
         let (down, right) = (row - top as f32, column - left as f32);
         let look_up = |table: &[Rgb]| {
-            let at = |row: usize, column: usize| table.get(row * TURNS + column).copied().unwrap_or_default();
+            let at = |row: usize, column: usize| table.get(row * AZIMUTHS + column).copied().unwrap_or_default();
             let line = |row: usize| at(row, left).lerp(at(row, left + 1), right);
             line(top).lerp(line(top + 1), down)
         };
-        look_up(&self.smooth) + look_up(&self.haze) * haze_phase(direction.dot(self.sun))
+        look_up(&self.without_haze) + look_up(&self.haze) * haze_phase(direction.dot(self.sun))
     }
 
-    /// Whether a direction leads to the sun's disk, by the chord, which keeps its digits where cosines lose them.
+    /// Whether a direction hits the sun's disk. The chord stays accurate where cosines lose
+    /// precision.
     fn in_sun(&self, direction: Vec3) -> bool {
         (direction - self.sun).length_squared() <= 2.0 * sun_size()
     }
@@ -211,7 +220,7 @@ impl Tables {
 
     fn pdf(&self, direction: Vec3) -> f32 {
         let sun = if self.in_sun(direction) { warp::uniform_cone_pdf(sun_size()) } else { 0.0 };
-        self.sun_chance * sun + (1.0 - self.sun_chance) * self.directions.pdf(direction)
+        self.sun_probability * sun + (1.0 - self.sun_probability) * self.directions.pdf(direction)
     }
 }
 
@@ -219,28 +228,28 @@ fn rgb(v: DVec3) -> Rgb {
     Rgb::new(v.x as f32, v.y as f32, v.z as f32)
 }
 
-/// The colours of the sky on the lines of its table.
-fn colors(air: &Atmosphere, sun: Vec3, power: f64) -> (Vec<Rgb>, Vec<Rgb>) {
+/// Radiance of the sky at the grid points of its table.
+fn colors(atmosphere: &Atmosphere, sun: Vec3, irradiance: f64) -> (Vec<Rgb>, Vec<Rgb>) {
     let sun = sun.as_dvec3();
     let aside = DVec3::new(sun.x, 0.0, sun.z).normalize_or(DVec3::X);
     let across = DVec3::new(-aside.z, 0.0, aside.x);
     let color = |i: usize| {
-        let share = (i / TURNS) as f64 / (ELEVATIONS - 1) as f64;
-        let (sin, cos) = fun::sin_cos_f64(share * share * f64::from(FRAC_PI_2));
-        let turn = (i % TURNS) as f64 / (TURNS - 1) as f64 * std::f64::consts::PI;
-        let (sin_turn, cos_turn) = fun::sin_cos_f64(turn);
-        let light = air.sky((aside * cos_turn + across * sin_turn) * cos + DVec3::Y * sin, sun);
-        (rgb(light.smooth * power), rgb(light.haze * power))
+        let fraction = (i / AZIMUTHS) as f64 / (ELEVATIONS - 1) as f64;
+        let (sin, cos) = portable::sin_cos_f64(fraction * fraction * f64::from(FRAC_PI_2));
+        let turn = (i % AZIMUTHS) as f64 / (AZIMUTHS - 1) as f64 * std::f64::consts::PI;
+        let (sin_turn, cos_turn) = portable::sin_cos_f64(turn);
+        let light = atmosphere.sky((aside * cos_turn + across * sin_turn) * cos + DVec3::Y * sin, sun);
+        (rgb(light.without_haze * irradiance), rgb(light.haze * irradiance))
     };
-    (0..ELEVATIONS * TURNS).map(color).unzip()
+    (0..ELEVATIONS * AZIMUTHS).map(color).unzip()
 }
 
-/// One of the four places in each cell of the table that directions are picked from.
-fn place(borders: &[f64], i: usize) -> Vec3 {
+/// One of the four directions in each cell of the sampling table.
+fn cell_direction(row_heights: &[f64], i: usize) -> Vec3 {
     let (cell, corner) = (i / 4, i % 4);
     let row = (cell / CELLS) as f64 + 0.25 + 0.5 * (corner / 2) as f64;
     let column = (cell % CELLS) as f32 + 0.25 + 0.5 * (corner % 2) as f32;
-    direction(column / CELLS as f32, Directions::row_height(borders, row))
+    direction(column / CELLS as f32, DirectionTable::row_height(row_heights, row))
 }
 
 impl Background for Sky {
@@ -267,12 +276,12 @@ impl Background for Sky {
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
         let tables = self.prepared.0.as_ref()?;
-        let chance = tables.sun_chance;
-        let local = if u.x < chance {
-            let u = Vec2::new((u.x / chance).min(1f32.next_down()), u.y);
+        let probability = tables.sun_probability;
+        let local = if u.x < probability {
+            let u = Vec2::new((u.x / probability).min(1f32.next_down()), u.y);
             Frame::around(tables.sun).to_world(warp::uniform_cone(u, sun_size() * (1.0 - 1e-4)))
         } else {
-            let u = Vec2::new(((u.x - chance) / (1.0 - chance)).min(1f32.next_down()), u.y);
+            let u = Vec2::new(((u.x - probability) / (1.0 - probability)).min(1f32.next_down()), u.y);
             tables.directions.sample(u)?.0
         };
         let pdf = tables.pdf(local);
@@ -284,13 +293,13 @@ impl Background for Sky {
         self.prepared.0.as_ref().map_or(0.0, |tables| tables.pdf(tables.orientation.to_local(direction)))
     }
 
-    fn mean(&self) -> Rgb {
+    fn mean_radiance(&self) -> Rgb {
         self.prepared.0.as_ref().map_or(Rgb::BLACK, |tables| tables.mean)
     }
 
     fn heap_bytes(&self) -> usize {
         self.prepared.0.as_ref().map_or(0, |_| {
-            size_of::<Tables>() + 2 * ELEVATIONS * TURNS * size_of::<Rgb>() + 2 * CELLS * CELLS * size_of::<f32>()
+            size_of::<Tables>() + 2 * ELEVATIONS * AZIMUTHS * size_of::<Rgb>() + 2 * CELLS * CELLS * size_of::<f32>()
         })
     }
 }
@@ -298,7 +307,7 @@ impl Background for Sky {
 #[cfg(any(test, feature = "testing"))]
 #[allow(clippy::unwrap_used, reason = "examples for tests")]
 impl Sky {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let dusk = Self { sun_elevation_degrees: -4.0, turbidity: 4.0, ..Self::default() };
         let setting = Self { sun_elevation_degrees: 0.1, up: Vec3::new(0.3, 0.1, 1.0), ..Self::default() };
@@ -325,10 +334,10 @@ mod tests {
         for (elevation, turbidity) in [(90.0, 1.0), (35.0, 2.5), (5.0, 4.0)] {
             let sky = sky(elevation, turbidity);
             let tables = sky.prepared.0.as_ref().unwrap();
-            // Radiance times solid angle, over the irradiance above the atmosphere.
+            // Radiance times solid angle, relative to the irradiance above the atmosphere.
             let through = tables.disk * (TAU * sun_size()) / PI;
-            let air = Atmosphere::new(f64::from(turbidity), DVec3::splat(0.3));
-            let truth = rgb(air.sunlight(GROUND, f64::from(fun::sin(elevation.to_radians()))));
+            let atmosphere = Atmosphere::new(f64::from(turbidity), DVec3::splat(0.3));
+            let truth = rgb(atmosphere.sunlight(GROUND, f64::from(portable::sin(elevation.to_radians()))));
             for (a, b) in through.to_array().into_iter().zip(truth.to_array()) {
                 assert!((a / b - 1.0).abs() < 1e-3, "{elevation}: {through:?} {truth:?}");
             }
@@ -340,8 +349,8 @@ mod tests {
     fn the_disk_is_where_it_should_be_and_as_large() {
         let sky = sky(35.0, 2.5);
         let at = |elevation: f32, azimuth: f32| {
-            let (sin, cos) = fun::sin_cos(elevation.to_radians());
-            let (s, c) = fun::sin_cos(azimuth.to_radians());
+            let (sin, cos) = portable::sin_cos(elevation.to_radians());
+            let (s, c) = portable::sin_cos(azimuth.to_radians());
             sky.radiance(&Ray::new(Vec3::ZERO, Vec3::new(cos * s, sin, -cos * c))).g
         };
         assert!(at(35.0, 135.0) > 1e4 && at(35.26, 135.0) > 1e4 && at(35.27, 135.0) < 100.0);
@@ -357,7 +366,7 @@ mod tests {
         assert!(blue.b > 1.5 * blue.r && (0.02..0.3).contains(&blue.luminance()), "{blue:?}");
         let horizon = day.radiance(&Ray::new(Vec3::ZERO, towards(0.01)));
         assert!(horizon.luminance() > 1.5 * blue.luminance() && horizon.b / horizon.r < blue.b / blue.r);
-        // Red towards the setting sun, dark long after.
+        // Red towards the setting sun, dark long after sunset.
         let glow = sky(0.0, 2.5).radiance(&Ray::new(Vec3::ZERO, Vec3::new(0.7, 0.03, 0.7).normalize()));
         assert!(glow.r > 1.5 * glow.b, "{glow:?}");
         assert!(overhead(&sky(-18.0, 2.5)).luminance() < 1e-4 * blue.luminance());

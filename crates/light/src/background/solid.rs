@@ -1,4 +1,4 @@
-//! One colour everywhere.
+//! Background of uniform radiance.
 //!
 //! ```json
 //! {"solid": {"color": [0, 0, 0]}}
@@ -9,11 +9,11 @@ use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One colour everywhere.
+/// Background of uniform radiance.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Solid {
-    /// The colour.
+    /// Radiance in every direction, linear RGB.
     pub color: Rgb,
 }
 
@@ -26,14 +26,14 @@ impl Background for Solid {
         self.color
     }
 
-    fn mean(&self) -> Rgb {
+    fn mean_radiance(&self) -> Rgb {
         self.color
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Solid {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { color: Rgb::new(0.1, 0.2, 3.0) }]
     }

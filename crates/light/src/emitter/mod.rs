@@ -1,10 +1,10 @@
-//! Picking light: which of many emitters to ask, and which place of one, each with its chance.
+//! Light sampling: selection of an emitter among many, and of a point on it, with their densities.
 //!
-//! Nothing here knows scenes or materials: a [`LightTree`] picks among boxes that shine, an [`AreaEmitter`] is a surface
-//! in world space seen from a point.
+//! This module is independent of scenes and materials: a [`LightTree`] selects among bounds of
+//! emitters, and an [`AreaEmitter`] is a surface in world space.
 
 mod area;
 mod tree;
 
 pub use area::{AreaEmitter, AreaSample, DiskEmitter, RectangleEmitter, SphereEmitter, TriangleEmitter};
-pub use tree::{LightBounds, LightTree, Pick};
+pub use tree::{LightBounds, LightTree, LightTreeSample};

@@ -1,15 +1,15 @@
-//! What every material keeps, run over the examples of every kind.
+//! Contract of all materials, tested on the examples of every kind.
 
 use super::*;
 use juggler_bsdf::Scatter;
 use juggler_math::testing::{Random, close, close3};
 
-/// Every example with the scene's names at hand.
+/// All examples, compiled with the names that they use.
 fn examples() -> Vec<(String, MaterialTable, MaterialId)> {
-    AnyMaterial::examples().into_iter().map(|example| made(&example)).collect()
+    AnyMaterial::examples().into_iter().map(|example| compile_example(&example)).collect()
 }
 
-fn made(material: &AnyMaterial) -> (String, MaterialTable, MaterialId) {
+fn compile_example(material: &AnyMaterial) -> (String, MaterialTable, MaterialId) {
     let name = serde_json::to_string(material).unwrap();
     let red = Phong { diffuse: Rgb::new(0.9, 0.1, 0.0).into(), ..Phong::default() };
     let mut compiler = MaterialCompiler::new(textures(), [("red".to_owned(), red.into())]);
@@ -17,8 +17,9 @@ fn made(material: &AnyMaterial) -> (String, MaterialTable, MaterialId) {
     (name, compiler.finish().unwrap(), id)
 }
 
-/// Somewhere, turned anyhow, with a shading normal that leans a little.
-fn place(random: &mut Random) -> (Surface, Tangents) {
+/// Random point and orientation, with a shading normal that differs slightly from the geometric
+/// normal.
+fn random_surface(random: &mut Random) -> (Surface, Tangents) {
     let normal = random.unit_vector();
     let shading_normal = (normal + random.point(0.3)).normalize();
     let uv = Vec2::new(random.range(-3.0, 3.0), random.range(-3.0, 3.0));
@@ -27,22 +28,23 @@ fn place(random: &mut Random) -> (Surface, Tangents) {
     (surface, Tangents { u, v, local_u: u * 0.5, local_v: v * 0.5 })
 }
 
-/// The share of light sent in along `wo` that comes out again, by samples, whose values are compared with those asked for.
-fn energy(name: &str, shade: &Shade, wo: Vec3, random: &mut Random) -> Rgb {
+/// Share of the light along `wo` that is scattered, estimated from samples. Checks the samples
+/// against `eval_pdf`.
+fn energy(name: &str, shading: &Shading, wo: Vec3, random: &mut Random) -> Rgb {
     let count = 16;
     let mut sum = Rgb::BLACK;
     for i in 0..count * count {
         let cell = Vec2::new((i % count) as f32, (i / count) as f32);
         let u = ((cell + random.vec2()) / count as f32).min(Vec2::splat(1f32.next_down()));
-        let Some(sample) = shade.bsdf.sample(wo, u, random.f32()) else { continue };
+        let Some(sample) = shading.bsdf.sample(wo, u, random.f32()) else { continue };
         assert!(sample.weight.to_array().iter().all(|w| *w >= 0.0 && w.is_finite()), "{name}: {sample:?}");
         assert!(sample.wi.is_normalized() && sample.pdf > 0.0, "{name}: {sample:?}");
         if sample.scatter != Scatter::Specular {
-            let (value, pdf) = shade.bsdf.eval_pdf(wo, sample.wi);
-            let (told, asked) = (sample.weight.g * sample.pdf, value.g);
-            // Of what is very narrow, a rounded direction is another one.
-            let near = (told - asked).abs() <= 0.02 * told.abs().max(asked.abs()) + 1e-4;
-            assert!(near && close(pdf / sample.pdf, 1.0, 0.02), "{name}: {told} {asked}, {pdf} {sample:?}");
+            let (value, pdf) = shading.bsdf.eval_pdf(wo, sample.wi);
+            let (sampled, evaluated) = (sample.weight.g * sample.pdf, value.g);
+            // In very narrow lobes, a rounded direction has another value.
+            let near = (sampled - evaluated).abs() <= 0.02 * sampled.abs().max(evaluated.abs()) + 1e-4;
+            assert!(near && close(pdf / sample.pdf, 1.0, 0.02), "{name}: {sampled} {evaluated}, {pdf} {sample:?}");
         }
         sum += sample.weight * (sample.ior * sample.ior / (count * count) as f32);
     }
@@ -54,24 +56,30 @@ fn light_is_finite_and_no_more_than_there_was() {
     let mut random = Random::new(811);
     for (name, table, id) in examples() {
         for _ in 0..60 {
-            let (surface, tangents) = place(&mut random);
+            let (surface, tangents) = random_surface(&mut random);
             let tangents = Some(&tangents).filter(|_| random.f32() < 0.8);
-            let around_ior = if random.f32() < 0.5 { 1.0 } else { 1.4 };
+            let outside_ior = if random.f32() < 0.5 { 1.0 } else { 1.4 };
             let wo = random.unit_vector();
-            let view = View { wo, around_ior, tangents, pick: random.f32(), ..View::of(&surface) };
-            let shade = table.shade(id, &view);
-            assert!((0.0..=1.0).contains(&shade.opacity), "{name}: {shade:?}");
-            assert!(shade.emission.to_array().iter().all(|v| *v >= 0.0 && v.is_finite()), "{name}: {shade:?}");
-            let Frame { tangent, bitangent, normal } = shade.frame;
-            assert!(close3(tangent.cross(bitangent), normal, 1e-5) && normal.is_normalized(), "{name}: {shade:?}");
-            let energy = energy(&name, &shade, shade.frame.to_local(wo), &mut random);
-            assert!(energy.max_channel() <= 1.1, "{name}: {energy:?} {shade:?}");
+            let view = ShadingView {
+                wo,
+                outside_ior,
+                tangents,
+                u_choice: random.f32(),
+                ..ShadingView::along_normal(&surface)
+            };
+            let shading = table.shade(id, &view);
+            assert!((0.0..=1.0).contains(&shading.opacity), "{name}: {shading:?}");
+            assert!(shading.emission.to_array().iter().all(|v| *v >= 0.0 && v.is_finite()), "{name}: {shading:?}");
+            let Frame { tangent, bitangent, normal } = shading.frame;
+            assert!(close3(tangent.cross(bitangent), normal, 1e-5) && normal.is_normalized(), "{name}: {shading:?}");
+            let energy = energy(&name, &shading, shading.frame.to_local(wo), &mut random);
+            assert!(energy.max_channel() <= 1.1, "{name}: {energy:?} {shading:?}");
         }
     }
 }
 
-/// A million samples of each example in all, somewhere, seen from anywhere: what a kind makes of its numbers is a sum of lobes, each of
-/// which the contract of `bsdf` tests from all sides.
+/// Tests each example with a million samples from one direction. A material is a sum of lobes, and
+/// the contract of `bsdf` tests each lobe from all directions.
 #[test]
 fn directions_follow_their_density() {
     let mut random = Random::new(816);
@@ -79,15 +87,20 @@ fn directions_follow_their_density() {
     let (mut tested, count) = (0, all.len());
     for (name, table, id) in all {
         let found = (0..20).find_map(|_| {
-            let (surface, tangents) = place(&mut random);
+            let (surface, tangents) = random_surface(&mut random);
             let wo = random.unit_vector();
-            let view = View { wo, tangents: Some(&tangents), pick: random.f32(), ..View::of(&surface) };
-            let shade = table.shade(id, &view);
-            let local = shade.frame.to_local(wo);
-            // Lobes thinner than the test's cells are left to those tests, and so is what gives nothing from here.
-            let peak = (0..500).filter_map(|_| shade.bsdf.sample(local, random.vec2(), random.f32()));
+            let view = ShadingView {
+                wo,
+                tangents: Some(&tangents),
+                u_choice: random.f32(),
+                ..ShadingView::along_normal(&surface)
+            };
+            let shading = table.shade(id, &view);
+            let local = shading.frame.to_local(wo);
+            // Skip lobes narrower than the test's bins, and BSDFs that scatter nothing from here.
+            let peak = (0..500).filter_map(|_| shading.bsdf.sample(local, random.vec2(), random.f32()));
             let peak = peak.filter(|s| s.scatter != Scatter::Specular).map(|s| s.pdf).fold(0.0, f32::max);
-            (peak > 0.0 && peak < 50.0).then_some((shade.bsdf, local))
+            (peak > 0.0 && peak < 50.0).then_some((shading.bsdf, local))
         });
         let Some((bsdf, local)) = found else { continue };
         let checked = juggler_bsdf::testing::follows_its_density(&bsdf, local, 1_000_000, 1e-3 / count as f64);
@@ -101,24 +114,29 @@ fn directions_follow_their_density() {
 fn what_is_opaque_looks_the_same_from_both_sides() {
     let mut random = Random::new(812);
     let sided = |name: &str| ["phong", "normal_map", "bump_map", "\"red\""].iter().any(|kind| name.contains(kind));
-    let mut seen = 0;
+    let mut compared = 0;
     for (name, table, id) in examples().into_iter().filter(|(name, ..)| !sided(name)) {
         for _ in 0..20 {
-            let (surface, tangents) = place(&mut random);
+            let (surface, tangents) = random_surface(&mut random);
             let turned = Surface { normal: -surface.normal, shading_normal: -surface.shading_normal, ..surface };
-            let view = View { wo: random.unit_vector(), tangents: Some(&tangents), ..View::of(&surface) };
-            let other = View { surface: &turned, normal: turned.shading_normal, ..view };
+            let view = ShadingView {
+                wo: random.unit_vector(),
+                tangents: Some(&tangents),
+                ..ShadingView::along_normal(&surface)
+            };
+            let other = ShadingView { surface: &turned, normal: turned.shading_normal, ..view };
             let (one, other) = (table.shade(id, &view), table.shade(id, &other));
             if table.interior(id).is_some() || one.opacity == 0.0 {
                 continue;
             }
             let wi = random.unit_vector();
-            let light = |shade: &Shade| shade.bsdf.eval(shade.frame.to_local(view.wo), shade.frame.to_local(wi));
+            let light =
+                |shading: &Shading| shading.bsdf.eval(shading.frame.to_local(view.wo), shading.frame.to_local(wi));
             assert_eq!(light(&one), light(&other), "{name}");
-            seen += u32::from(!light(&one).is_black());
+            compared += u32::from(!light(&one).is_black());
         }
     }
-    assert!(seen > 100, "{seen}");
+    assert!(compared > 100, "{compared}");
 }
 
 #[test]
@@ -127,72 +145,73 @@ fn what_has_an_inside_stands_on_its_outside() {
     let (mut inside, mut thin) = (0, 0);
     for (name, table, id) in examples() {
         for _ in 0..10 {
-            let (surface, tangents) = place(&mut random);
+            let (surface, tangents) = random_surface(&mut random);
             let wo = random.unit_vector();
-            let shade = table.shade(id, &View { wo, tangents: Some(&tangents), ..View::of(&surface) });
+            let shading =
+                table.shade(id, &ShadingView { wo, tangents: Some(&tangents), ..ShadingView::along_normal(&surface) });
             if table.interior(id).is_some() {
-                assert!(shade.opacity == 0.0 || shade.transmissive, "{name}");
-                let outwards = shade.frame.normal.dot(surface.normal) > 0.0;
-                assert!(outwards || shade.opacity == 0.0, "{name}");
+                assert!(shading.opacity == 0.0 || shading.transmissive, "{name}");
+                let outwards = shading.frame.normal.dot(surface.normal) > 0.0;
+                assert!(outwards || shading.opacity == 0.0, "{name}");
                 inside += 1;
             } else {
-                assert!(shade.frame.normal.dot(wo) > 0.0, "{name}");
-                thin += u32::from(shade.transmissive);
+                assert!(shading.frame.normal.dot(wo) > 0.0, "{name}");
+                thin += u32::from(shading.transmissive);
             }
         }
     }
     assert!(inside > 0 && thin > 0);
-    // What is refracted is refracted by the index inside over that around, whoever describes it.
+    // The relative index of refraction is the index inside over the index around, for every kind.
     for json in
         [r#"{"dielectric": {"ior": 1.8}}"#, r#"{"principled": {"ior": 1.8, "transmission": 1, "roughness": 0}}"#]
     {
         let (table, id) = compile(json).unwrap();
         let interior = table.interior(id).unwrap();
-        assert_eq!(table.interiors()[interior.place()].ior, 1.8);
+        assert_eq!(table.interiors()[interior.index()].ior, 1.8);
         let surface = at(0.0);
-        let shade = table.shade(id, &View { around_ior: 1.2, ..View::of(&surface) });
-        let through = shade.bsdf.deltas(Vec3::Z).into_iter().find(|delta| delta.is_transmitted(Vec3::Z)).unwrap();
+        let shading = table.shade(id, &ShadingView { outside_ior: 1.2, ..ShadingView::along_normal(&surface) });
+        let through = shading.bsdf.deltas(Vec3::Z).into_iter().find(|delta| delta.is_transmitted(Vec3::Z)).unwrap();
         assert!(close(through.ior, 1.5, 1e-6), "{through:?}");
     }
 }
 
 #[test]
-fn what_shines_is_known_to_shine() {
+fn emission_of_the_table_bounds_the_shading() {
     let mut random = Random::new(814);
-    let holed = [
+    let masked = [
         r#"{"emissive": {"radiance": 2, "material": {"mask": {"opacity": 0.3}}}}"#,
         r#"{"mix": {"amount": 0.25, "a": {"emissive": {"radiance": 4}}, "b": {"mask": {"opacity": "tiles", "material":
             {"mix": {"a": {"principled": {"emissive": [1, 2, 3]}}}}}}}}"#,
     ];
-    let more = holed.map(|json| made(&serde_json::from_str(json).unwrap()));
-    let mut shining = 0;
+    let more = masked.map(|json| compile_example(&serde_json::from_str(json).unwrap()));
+    let mut emitting = 0;
     for (name, table, id) in examples().into_iter().chain(more) {
         for _ in 0..10 {
-            let (surface, _) = place(&mut random);
-            let view = View { wo: random.unit_vector(), ..View::of(&surface) };
+            let (surface, _) = random_surface(&mut random);
+            let view = ShadingView { wo: random.unit_vector(), ..ShadingView::along_normal(&surface) };
             let picks = 200;
             let mut mean = Rgb::BLACK;
             for i in 0..picks {
-                let shade = table.shade(id, &View { pick: (i as f32 + 0.5) / picks as f32, ..view });
-                mean += shade.emission * (shade.opacity / picks as f32);
+                let shading = table.shade(id, &ShadingView { u_choice: (i as f32 + 0.5) / picks as f32, ..view });
+                mean += shading.emission * (shading.opacity / picks as f32);
             }
             let radiance = table.radiance(id, &view);
             let near = (mean - radiance).map(f32::abs).max_channel() <= 0.03 * radiance.max_channel() + 1e-6;
             assert!(near, "{name}: {mean:?} {radiance:?}");
-            match table.glow(id) {
+            match table.emission(id) {
                 None => assert!(radiance.is_black(), "{name}"),
-                Some(Glow { radiance: Some(known), sides }) if sides == Sides::Both || view.is_outside() => {
+                Some(SurfaceEmission { radiance: Some(known), sides }) if sides == Sides::Both || view.is_outside() => {
                     assert_eq!(known, radiance, "{name}");
-                    shining += 1;
+                    emitting += 1;
                 }
-                Some(glow) => assert!(glow.radiance.is_none() || radiance.is_black(), "{name}"),
+                Some(emission) => assert!(emission.radiance.is_none() || radiance.is_black(), "{name}"),
             }
         }
     }
-    assert!(shining > 0);
+    assert!(emitting > 0);
 }
 
-/// Every field that may be a texture, of every kind whose fields are many.
+/// Fields that may be textures, for each kind with several of them.
 const WILD: &[(&str, &[&str])] = &[
     ("diffuse", &["reflectance", "roughness"]),
     ("conductor", &["reflectance", "edge_tint", "roughness", "anisotropy", "anisotropy_rotation"]),
@@ -238,19 +257,19 @@ fn textures_beyond_their_range_are_cut_off() {
             let texts: Vec<String> = wild.iter().map(|field| format!(r#""{field}": "wild""#)).collect();
             let json = format!(r#"{{"{kind}": {{{}}}}}"#, texts.join(", "));
             let (table, id) = compile(&json).unwrap_or_else(|error| panic!("{json}: {error}"));
-            // A rotation makes no difference to what is round.
+            // Rotation has no effect on isotropic roughness.
             assert!(table.is_textured(id) || wild == ["anisotropy_rotation"], "{json}");
             for _ in 0..8 {
-                let (surface, tangents) = place(&mut random);
+                let (surface, tangents) = random_surface(&mut random);
                 let wo = random.unit_vector();
-                let view = View { wo, tangents: Some(&tangents), ..View::of(&surface) };
-                let shade = table.shade(id, &view);
-                let energy = energy(&json, &shade, shade.frame.to_local(wo), &mut random);
+                let view = ShadingView { wo, tangents: Some(&tangents), ..ShadingView::along_normal(&surface) };
+                let shading = table.shade(id, &view);
+                let energy = energy(&json, &shading, shading.frame.to_local(wo), &mut random);
                 assert!(energy.max_channel() <= 1.1, "{json}: {energy:?}");
-                assert!((0.0..=1.0).contains(&shade.opacity), "{json}");
+                assert!((0.0..=1.0).contains(&shading.opacity), "{json}");
             }
         }
-        // A name that the scene has not is told by its field.
+        // The error about an unknown name states its field.
         for field in *fields {
             let error = compile(&format!(r#"{{"{kind}": {{"{field}": "nothing"}}}}"#)).unwrap_err();
             assert_eq!(error.path(), format!("{kind}.{field}"));
@@ -289,13 +308,13 @@ fn what_cannot_be_is_refused_by_its_path() {
 fn opacity_may_have_sharp_edges() {
     for (fields, opacity) in [(r#""opacity": 0.4"#, 0.4), (r#""opacity": 0.4, "alpha_cutoff": 0.5"#, 0.0)] {
         let (table, id) = compile(&format!(r#"{{"principled": {{{fields}}}}}"#)).unwrap();
-        assert!(table.has_holes(id) && table.is_transparent(id));
-        assert!(close(table.gap(id, &at(0.0)), 1.0 - opacity, 1e-6));
-        assert!(close(table.filter(id, &at(0.0)).g, 1.0 - opacity, 1e-6));
-        assert_eq!(table.shade(id, &View::of(&at(0.0))).opacity, opacity);
+        assert!(table.has_opacity(id) && table.is_transparent(id));
+        assert!(close(table.straight_transmittance(id, &at(0.0)), 1.0 - opacity, 1e-6));
+        assert!(close(table.shadow_transmittance(id, &at(0.0)).g, 1.0 - opacity, 1e-6));
+        assert_eq!(table.shade(id, &ShadingView::along_normal(&at(0.0))).opacity, opacity);
     }
     let (table, id) = compile(r#"{"principled": {"opacity": "tiles", "alpha_cutoff": 0.2}}"#).unwrap();
-    assert_eq!((table.gap(id, &at(0.5)), table.gap(id, &at(1.5))), (0.0, 1.0));
+    assert_eq!((table.straight_transmittance(id, &at(0.5)), table.straight_transmittance(id, &at(1.5))), (0.0, 1.0));
     let (table, id) = compile(r#"{"principled": {"opacity": 0.6, "alpha_cutoff": 0.5}}"#).unwrap();
-    assert!(!table.has_holes(id));
+    assert!(!table.has_opacity(id));
 }

@@ -1,11 +1,11 @@
-//! Normals from textures, and which way highlights are stretched.
+//! Normal maps, bump maps, and directions of anisotropic highlights.
 
 use super::*;
 use juggler_bsdf::fresnel::reflect;
 use juggler_math::testing::{Random, close, close3};
 use std::f32::consts::PI;
 
-/// Level ground that faces y, at the surface coordinates (0.3, 0.4).
+/// Horizontal surface with normal y, at the surface coordinates (0.3, 0.4).
 fn ground() -> Surface {
     Surface::new(Vec3::new(0.3, 0.0, 0.4), 0.0, Vec3::Y, Vec2::new(0.3, 0.4))
 }
@@ -14,18 +14,18 @@ fn tangents(u: Vec3, v: Vec3) -> Tangents {
     Tangents { u, v, local_u: u, local_v: v }
 }
 
-/// The normal that a map makes of the ground's, seen from above.
+/// Mapped shading normal of the ground, seen from above.
 fn normal(json: &str, tangents: &Tangents) -> Vec3 {
     let (table, id) = compile(json).unwrap();
     assert!(table.needs_tangents(id) && table.is_textured(id));
     let surface = ground();
-    table.shade(id, &View { tangents: Some(tangents), ..View::of(&surface) }).frame.normal
+    table.shade(id, &ShadingView { tangents: Some(tangents), ..ShadingView::along_normal(&surface) }).frame.normal
 }
 
-/// Light from `wi` towards `view.wo`.
-fn light(table: &MaterialTable, id: MaterialId, view: &View, wi: Vec3) -> Rgb {
-    let shade = table.shade(id, view);
-    shade.bsdf.eval(shade.frame.to_local(view.wo), shade.frame.to_local(wi))
+/// BSDF times cosine for light from `wi` towards `view.wo`.
+fn light(table: &MaterialTable, id: MaterialId, view: &ShadingView, wi: Vec3) -> Rgb {
+    let shading = table.shade(id, view);
+    shading.bsdf.eval(shading.frame.to_local(view.wo), shading.frame.to_local(wi))
 }
 
 #[test]
@@ -41,7 +41,11 @@ fn a_map_of_normals_that_do_not_lean_changes_nothing() {
                 let shading_normal = (normal + random.point(0.5)).normalize();
                 let surface = Surface { shading_normal, ..Surface::new(Vec3::ZERO, 0.0, normal, Vec2::ZERO) };
                 let tangents = tangents(random.unit_vector(), random.unit_vector());
-                let view = View { wo: random.unit_vector(), tangents: Some(&tangents), ..View::of(&surface) };
+                let view = ShadingView {
+                    wo: random.unit_vector(),
+                    tangents: Some(&tangents),
+                    ..ShadingView::along_normal(&surface)
+                };
                 let wi = random.unit_vector();
                 assert_eq!(light(&plain, plain_id, &view, wi), light(&mapped, mapped_id, &view, wi), "{json}");
             }
@@ -49,9 +53,9 @@ fn a_map_of_normals_that_do_not_lean_changes_nothing() {
     }
 }
 
-/// The cosine of `wi` to a shading normal that leans from the geometric normal by some 20 degrees,
-/// plus a quarter of the cosine of the direction below the surface whose light goes on along `wi`:
-/// a quarter as far below the surface as `wi` is above.
+/// Cosine term of a diffuse BSDF whose shading normal leans from the geometric normal by some 20
+/// degrees: the cosine of `wi`, plus a quarter of the cosine of the direction below the surface
+/// that the BSDF maps to `wi`, at a quarter of the elevation angle of `wi`.
 fn leaning_cosine(normal: Vec3, leaning: Vec3, wi: Vec3) -> f32 {
     let lean = leaning.reject_from_normalized(normal).normalize();
     let (along, up) = (wi.dot(lean), wi.dot(normal));
@@ -69,16 +73,16 @@ fn a_map_that_leans_is_a_surface_that_leans() {
     for _ in 0..100 {
         let turn = random.rotation();
         let (u, n, v) = (turn.vector(Vec3::X), turn.vector(Vec3::Y), turn.vector(Vec3::NEG_Z));
-        // Neither lengths nor what they have of the normal make a difference.
+        // Lengths of the tangents and their components along the normal have no effect.
         let tangents = tangents(u * 3.0 + n * 0.1, v * 0.2 + u * 0.05);
         let leaning = (u * 0.3 + v * -0.1 + n * 0.8).normalize();
         let surface = Surface::new(Vec3::ZERO, 0.0, n, Vec2::ZERO);
-        let view = View { wo: n, tangents: Some(&tangents), ..View::of(&surface) };
+        let view = ShadingView { wo: n, tangents: Some(&tangents), ..ShadingView::along_normal(&surface) };
         let wi = random.unit_vector();
         let expected = 0.7 / PI * leaning_cosine(n, leaning, wi);
         assert!(close(light(&table, id, &view, wi).g, expected, 1e-4) || expected < 1e-5, "{wi}");
-        // From below it is the same sheet, its relief turned over.
-        let below = View { wo: -n, ..view };
+        // Seen from below, the relief is inverted.
+        let below = ShadingView { wo: -n, ..view };
         let expected = 0.7 / PI * leaning_cosine(-n, -leaning, wi);
         assert!(close(light(&table, id, &below, wi).g, expected, 1e-4) || expected < 1e-5, "{wi}");
     }
@@ -95,27 +99,30 @@ fn mirrored_coordinates_mirror_normals() {
 
 #[test]
 fn a_height_that_rises_evenly_is_a_slope() {
-    // The height is the luminance of (u, v, 0), or of the fractions of a point in object space.
+    // The height is the luminance of (u, v, 0), or of the fractional parts of the point in object
+    // space.
     let (red, green) = (0.2126, 0.7152);
     for (u, v) in [(Vec3::X, Vec3::NEG_Z), (Vec3::X * 2.0, Vec3::new(0.5, 0.0, -3.0)), (Vec3::Z, Vec3::X * 0.8)] {
         let t = tangents(u, v);
         let json = r#"{"bump_map": {"height": "u and v", "distance": 0.5}}"#;
-        // The slope g lies in the ground, with g · u and g · v what the height rises along each.
+        // The gradient g lies in the surface; g · u and g · v are the derivatives of the height
+        // along u and v.
         let across = u.x * v.z - u.z * v.x;
         let slope = Vec3::new(red * v.z - green * u.z, 0.0, green * u.x - red * v.x) * (0.5 / across);
         assert!(close3(normal(json, &t), (Vec3::Y - slope).normalize(), 2e-3), "{u} {v}: {}", normal(json, &t));
-        // An object of twice the size, carved: half as steep in the world, as heights are measured there.
+        // An object scaled by 2 with a pattern in object space: heights stay in scene units, so
+        // slopes halve.
         let t = Tangents { local_u: u * 0.5, local_v: v * 0.5, ..t };
         let carved = r#"{"bump_map": {"height": "x, y and z", "distance": -1}}"#;
         let blue = 1.0 - red - green;
         let slope = Vec3::new(red, 0.0, blue) * -0.5;
         assert!(close3(normal(carved, &t), (Vec3::Y - slope).normalize(), 2e-3), "{u} {v}: {}", normal(carved, &t));
     }
-    // Level ground, and ground that does not say how it runs.
+    // A constant height, and a surface without tangents.
     let level = r#"{"bump_map": {"height": 3, "material": {"diffuse": {}}}}"#;
     assert_eq!(normal(level, &tangents(Vec3::X, Vec3::Z)), Vec3::Y);
     let (table, id) = compile(r#"{"bump_map": {"height": "u and v"}}"#).unwrap();
-    assert_eq!(table.shade(id, &View::of(&ground())).frame.normal, Vec3::Y);
+    assert_eq!(table.shade(id, &ShadingView::along_normal(&ground())).frame.normal, Vec3::Y);
 }
 
 #[test]
@@ -140,7 +147,7 @@ fn no_normal_shows_what_is_below_the_surface() {
         let (table, id) = compile(&format!(r#"{{"normal_map": {{"texture": {color}}}}}"#)).unwrap();
         let surface = ground();
         let wo = random.unit_vector();
-        let view = View { wo, tangents: Some(&t), ..View::of(&surface) };
+        let view = ShadingView { wo, tangents: Some(&t), ..ShadingView::along_normal(&surface) };
         let normal = table.shade(id, &view).frame.normal;
         let side = wo.y.signum();
         assert!(normal.dot(wo) > 0.0 && reflect(wo, normal).y * side > 0.0, "{color} {wo} {normal}");
@@ -162,13 +169,13 @@ fn brushed_metal_follows_the_coordinates() {
         let angle = random.range(0.0, 7.0);
         let u = Vec3::new(angle.cos(), 0.0, angle.sin());
         let v = Vec3::Y.cross(u);
-        // Highlights are long along u, where the normals of microfacets lean most.
+        // Highlights are elongated along u, where alpha is larger.
         let t = tangents(u, v);
-        let view = View { tangents: Some(&t), ..View::of(&surface) };
+        let view = ShadingView { tangents: Some(&t), ..ShadingView::along_normal(&surface) };
         let at = |way: Vec3| light(&along, along_id, &view, Vec3::Y * half.0 + way * half.1).g;
         assert!(at(u) > 1.5 * at(v) && close(at(u), at(-u), 1e-3), "{} {}", at(u), at(v));
         let wi = random.unit_vector();
-        let view = View { wo: (Vec3::Y + random.point(0.9)).normalize(), ..view };
+        let view = ShadingView { wo: (Vec3::Y + random.point(0.9)).normalize(), ..view };
         let (one, other) = (light(&along, along_id, &view, wi).g, light(&across, across_id, &view, wi).g);
         assert!(close(one, other, 1e-3), "{one} {other}");
     }
@@ -182,8 +189,9 @@ fn rotations_run_from_u_to_v_whichever_way_that_is() {
     for v in [Vec3::NEG_Z, Vec3::Z] {
         let t = tangents(Vec3::X, v);
         for wo in [Vec3::Y, Vec3::NEG_Y] {
-            let shade = table.shade(id, &View { wo, tangents: Some(&t), ..View::of(&surface) });
-            assert!(close3(shade.frame.tangent, (Vec3::X + v).normalize(), 1e-6), "{v} {wo}");
+            let shading =
+                table.shade(id, &ShadingView { wo, tangents: Some(&t), ..ShadingView::along_normal(&surface) });
+            assert!(close3(shading.frame.tangent, (Vec3::X + v).normalize(), 1e-6), "{v} {wo}");
         }
     }
 }

@@ -1,57 +1,57 @@
-//! Which solids a path is in: nested dielectrics by priority (Schmidt and Budge, Simple Nested Dielectrics in Ray Traced
-//! Images, 2002).
+//! Solids around a path: nested dielectrics by priority (Schmidt and Budge, Simple Nested
+//! Dielectrics in Ray Traced Images, 2002).
 
 use super::Medium;
 
-/// Solids that a path can be in at once and know of.
+/// Maximum number of nested solids that a path tracks.
 pub const MAX_INTERIORS: usize = 4;
 
-/// What is behind a surface that light goes through.
+/// Interior of a solid, behind a surface that transmits light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interior {
     /// Index of refraction.
     pub ior: f32,
-    /// Where solids overlap, the one with the highest priority is there, and the others are not.
+    /// Priority where solids overlap: the highest priority fills the overlap.
     pub priority: i32,
-    /// What fills it.
+    /// Medium inside.
     pub medium: Medium,
 }
 
-/// An interior's place among those of the world's materials.
+/// Index of an interior in the table of a world's interiors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InteriorId(u16);
 
 impl InteriorId {
-    /// For one of a table's interiors; `None` when there are too many.
-    pub fn new(place: usize) -> Option<Self> {
-        u16::try_from(place).ok().filter(|place| *place < u16::MAX).map(Self)
+    /// Id of the interior at `index` in the table; `None` beyond the largest id.
+    pub fn new(index: usize) -> Option<Self> {
+        u16::try_from(index).ok().filter(|index| *index < u16::MAX).map(Self)
     }
 
-    /// Its place in the table.
+    /// Index in the table.
     #[inline]
-    pub fn place(self) -> usize {
+    pub fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// The solids that a path is in, in the order in which it came in.
+/// Solids around a path, in order of entry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Interiors {
-    /// Places plus one; zeros at the end.
+    /// Places in the table plus 1; unused elements are 0 and stand at the end.
     solids: [u16; MAX_INTERIORS],
 }
 
 impl Interiors {
-    /// In the open.
+    /// Outside of all solids.
     pub const NONE: Self = Self { solids: [0; MAX_INTERIORS] };
 
-    /// Whether it is in none.
+    /// Whether the path is outside of all solids.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.solids[0] == 0
     }
 
-    /// After it came into one more; unchanged when it is in too many already.
+    /// Interiors after entering a solid; unchanged if [`MAX_INTERIORS`] solids are tracked already.
     #[must_use]
     #[inline]
     pub fn entered(mut self, id: InteriorId) -> Self {
@@ -61,38 +61,39 @@ impl Interiors {
         self
     }
 
-    /// After it left one, the last of that kind that it came into; unchanged when it is not in it.
+    /// Interiors after leaving a solid: the last entry of that solid is removed; unchanged if there
+    /// is none.
     #[must_use]
     #[inline]
-    pub fn left(self, id: InteriorId) -> Self {
+    pub fn exited(self, id: InteriorId) -> Self {
         let Some(at) = self.solids.iter().rposition(|solid| *solid == id.0 + 1) else { return self };
         let mut solids = [0; MAX_INTERIORS];
         let others = self.solids.iter().enumerate().filter(|(i, _)| *i != at).map(|(_, solid)| *solid);
-        solids.iter_mut().zip(others).for_each(|(place, solid)| *place = solid);
+        solids.iter_mut().zip(others).for_each(|(slot, solid)| *slot = solid);
         Self { solids }
     }
 
-    /// After it crossed the surface of one.
+    /// Interiors after crossing the interface of a solid.
     #[must_use]
     #[inline]
     pub fn crossed(self, id: InteriorId, inwards: bool) -> Self {
-        if inwards { self.entered(id) } else { self.left(id) }
+        if inwards { self.entered(id) } else { self.exited(id) }
     }
 
-    /// Whether the surface of a solid is not there where a path that is in these meets it, on its way in or out: in another
-    /// one, of higher priority.
+    /// Whether another solid of higher priority hides the interface of solid `id`, which the path
+    /// crosses inwards or outwards. `interiors` is the table of all interiors.
     #[inline]
-    pub fn hide(&self, id: InteriorId, inwards: bool, interiors: &[Interior]) -> bool {
+    pub fn hides_interface(&self, id: InteriorId, inwards: bool, interiors: &[Interior]) -> bool {
         if self.is_empty() {
             return false;
         }
-        let others = if inwards { *self } else { self.left(id) };
-        let own = interiors.get(id.place()).map(|own| own.priority);
+        let others = if inwards { *self } else { self.exited(id) };
+        let own = interiors.get(id.index()).map(|own| own.priority);
         others.top(interiors).map(|other| other.priority) > own
     }
 
-    /// What it really is in: of the solids with the highest priority the one it came into last. `interiors` is the table
-    /// of all.
+    /// Interior that the path is in: among the solids of the highest priority, the one entered
+    /// last. `interiors` is the table of all interiors.
     #[inline]
     pub fn top<'i>(&self, interiors: &'i [Interior]) -> Option<&'i Interior> {
         if self.is_empty() {

@@ -1,18 +1,19 @@
-//! In which direction a medium scatters (Henyey and Greenstein, Diffuse Radiation in the Galaxy, 1941).
+//! Phase function of Henyey and Greenstein (Diffuse Radiation in the Galaxy, 1941).
 
-use juggler_math::{Frame, Vec2, Vec3, fun};
+use juggler_math::{Frame, Vec2, Vec3, portable};
 use std::f32::consts::PI;
 
-/// The phase function of Henyey and Greenstein. Directions are those in which light goes on: `forward` is the one it
-/// had.
+/// Phase function of Henyey and Greenstein. Directions point along the light; `forward` is the
+/// direction before scattering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// Mean cosine of the angle by which light is turned, above -1 and below 1.
+    /// Mean cosine g of the scattering angle, above -1 and below 1.
     pub anisotropy: f32,
 }
 
 impl HenyeyGreenstein {
-    /// Density per steradian, and share of light, that goes on at an angle with cosine `cos` to `forward`.
+    /// Value and density per steradian for the cosine `cos` of the angle between `forward` and the
+    /// scattered direction.
     #[inline]
     pub fn eval(&self, cos: f32) -> f32 {
         let g = self.anisotropy;
@@ -20,7 +21,8 @@ impl HenyeyGreenstein {
         (1.0 - g * g) / (4.0 * PI * squared * squared.sqrt())
     }
 
-    /// A direction to go on, its density is [`HenyeyGreenstein::eval`] of its cosine (PBR 4th ed., equation 11.20).
+    /// Samples a scattered direction, with [`HenyeyGreenstein::eval`] of its cosine as density (PBR
+    /// 4th ed., equation 11.20).
     pub fn sample(&self, forward: Vec3, u: Vec2) -> Vec3 {
         let g = self.anisotropy;
         let cos = if g.abs() < 1e-3 {
@@ -30,7 +32,7 @@ impl HenyeyGreenstein {
             ((1.0 + g * g - part * part) / (2.0 * g)).clamp(-1.0, 1.0)
         };
         let radius = (1.0 - cos * cos).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = fun::sin_cos_turns(u.y);
+        let (sin_phi, cos_phi) = portable::sin_cos_turns(u.y);
         Frame::around(forward).to_world(Vec3::new(radius * cos_phi, radius * sin_phi, cos)).normalize()
     }
 }

@@ -11,16 +11,20 @@ fn medium(json: &str) -> Medium {
 }
 
 #[test]
-fn colours_are_absorption() {
+fn colors_are_absorption() {
     let green = medium(r#"{"color": [0.25, 1, 0.5], "distance": 2, "absorption": [0, 0.1, 0]}"#);
-    let left = green.transmittance(4.0);
-    assert!(close(left.r, 0.0625, 1e-6) && close(left.g, (-0.4f32).exp(), 1e-6) && close(left.b, 0.25, 1e-6));
+    let transmittance = green.transmittance(4.0);
+    assert!(
+        close(transmittance.r, 0.0625, 1e-6)
+            && close(transmittance.g, (-0.4f32).exp(), 1e-6)
+            && close(transmittance.b, 0.25, 1e-6)
+    );
     assert_eq!(medium("{}").transmittance(f32::INFINITY), Rgb::WHITE);
     assert!(medium(r#"{"color": 0}"#).transmittance(10.0).max_channel() < 1e-30);
 }
 
 #[test]
-fn ways_through_a_medium_are_weighted_to_what_beer_and_lambert_say() {
+fn weights_agree_with_the_beer_lambert_law() {
     let fog = medium(r#"{"scattering": [0.2, 0.5, 1.5], "absorption": [0.1, 0, 0.3]}"#);
     let (mut random, count, distance) = (Random::new(81), 400_000, 1.3);
     let (mut through, mut scattered) = ([0.0; 3], [0.0; 3]);
@@ -32,9 +36,13 @@ fn ways_through_a_medium_are_weighted_to_what_beer_and_lambert_say() {
         }
     }
     for (channel, (s, a)) in [(0.2f64, 0.1f64), (0.5, 0.0), (1.5, 0.3)].into_iter().enumerate() {
-        let left = (-(s + a) * f64::from(distance)).exp();
-        assert!((through[channel] / left - 1.0).abs() < 0.01, "{channel}: {} {left}", through[channel]);
-        let expected = (1.0 - left) * s / (s + a);
+        let transmittance = (-(s + a) * f64::from(distance)).exp();
+        assert!(
+            (through[channel] / transmittance - 1.0).abs() < 0.01,
+            "{channel}: {} {transmittance}",
+            through[channel]
+        );
+        let expected = (1.0 - transmittance) * s / (s + a);
         assert!((scattered[channel] / expected - 1.0).abs() < 0.01, "{channel}: {} {expected}", scattered[channel]);
     }
 }
@@ -79,12 +87,12 @@ fn the_solid_of_highest_priority_is_there() {
     let (glass, water, diamond) = (id(0), id(1), id(2));
     let in_glass = Interiors::NONE.entered(glass);
     assert_eq!((top(Interiors::NONE), top(in_glass)), (None, Some(1.5)));
-    // Water that overlaps its glass is not there; outside the glass it is.
-    assert_eq!((top(in_glass.entered(water)), top(in_glass.entered(water).left(glass))), (Some(1.5), Some(1.33)));
-    // Of equals the one that came later.
+    // The glass hides the water where both overlap; outside of the glass there is water.
+    assert_eq!((top(in_glass.entered(water)), top(in_glass.entered(water).exited(glass))), (Some(1.5), Some(1.33)));
+    // Among equals, the solid that was entered last.
     assert_eq!(top(in_glass.entered(diamond)), Some(2.4));
-    assert_eq!(top(in_glass.entered(diamond).left(diamond)), Some(1.5));
-    assert_eq!(in_glass.left(water), in_glass);
+    assert_eq!(top(in_glass.entered(diamond).exited(diamond)), Some(1.5));
+    assert_eq!(in_glass.exited(water), in_glass);
     let full = (0..9).fold(Interiors::NONE, |inside, _| inside.entered(water));
-    assert_eq!((0..MAX_INTERIORS).fold(full, |inside, _| inside.left(water)), Interiors::NONE);
+    assert_eq!((0..MAX_INTERIORS).fold(full, |inside, _| inside.exited(water)), Interiors::NONE);
 }

@@ -1,4 +1,4 @@
-//! How a colour is written in JSON: `[r, g, b]` in linear light, `"#rrggbb"` in sRGB, or one number for a grey.
+//! JSON form of a color: linear `[r, g, b]`, sRGB `"#rrggbb"`, or one number for a gray.
 
 use super::Rgb;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -7,17 +7,17 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// A colour: linear `[red, green, blue]`, one number for a grey, or sRGB as `"#rrggbb"`.
+/// A color: linear `[red, green, blue]`, one linear number for a gray, or sRGB as `"#rrggbb"`.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Color")]
 #[allow(dead_code, reason = "only its schema is used")]
-enum Written {
-    /// Linear red, green, blue; 0 to 1 for reflectances, any size for light.
+enum ColorForm {
+    /// Linear red, green and blue: 0 to 1 for reflectances, 0 to 1e30 for light.
     Channels([f32; 3]),
-    /// The same value in all three channels.
-    Grey(f32),
-    /// sRGB as `#rrggbb`, or as `#rgb` for short.
+    /// Linear value of all three channels.
+    Gray(f32),
+    /// sRGB as `#rrggbb`, or `#rgb` with each digit doubled.
     Hex(#[schemars(regex(pattern = r"^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"))] String),
 }
 
@@ -38,7 +38,7 @@ impl JsonSchema for Rgb {
         "Color".into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Written::json_schema(generator)
+        ColorForm::json_schema(generator)
     }
 }
 
@@ -48,7 +48,7 @@ impl<'de> Visitor<'de> for Reader {
     type Value = Rgb;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a colour: linear [r, g, b], sRGB \"#rrggbb\", or one number for a grey")
+        f.write_str("a color: linear [r, g, b], sRGB \"#rrggbb\", or one number for a gray")
     }
 
     fn visit_f64<E: Error>(self, v: f64) -> Result<Rgb, E> {
@@ -64,7 +64,7 @@ impl<'de> Visitor<'de> for Reader {
     }
 
     fn visit_str<E: Error>(self, v: &str) -> Result<Rgb, E> {
-        Rgb::from_hex(v).ok_or_else(|| E::custom(format!("`{v}` is no colour, which is written `#rrggbb`")))
+        Rgb::from_hex(v).ok_or_else(|| E::custom(format!("`{v}` is not a color; write `#rrggbb`")))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Rgb, A::Error> {
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_three_ways_to_write_a_colour() {
+    fn the_three_forms_of_a_color() {
         assert_eq!(read("[0.1, 2, 3e1]"), Ok(Rgb::new(0.1, 2.0, 30.0)));
         assert_eq!(read("0.5"), Ok(Rgb::splat(0.5)));
         assert_eq!(read("1"), Ok(Rgb::WHITE));
@@ -107,11 +107,11 @@ mod tests {
     }
 
     #[test]
-    fn errors_say_what_a_colour_is() {
+    fn errors_say_what_a_color_is() {
         for wrong in ["true", "{}", "[1, 2]", "[1, 2, 3, 4]"] {
             assert!(read(wrong).unwrap_err().contains("linear [r, g, b]"), "{wrong}");
         }
-        assert!(read("\"red\"").unwrap_err().contains("`red` is no colour"));
+        assert!(read("\"red\"").unwrap_err().contains("`red` is not a color"));
         assert!(read("[1, \"a\", 2]").unwrap_err().contains("f32"));
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::kernel::{self, Kernel};
-use crate::meshes::Recipe;
+use crate::meshes::MeshSpec;
 use crate::rays::{self, RaySet};
 use juggler_bvh::Quality;
 use juggler_math::Vec3;
@@ -15,19 +15,19 @@ fn numbered(count: usize) -> Vec<Ray> {
 fn every_ray_is_traced_equally_often_by_any_number_of_threads() {
     for (count, passes) in [(0, 3), (1000, 65), (4097, 15), (30_000, 2), (100_001, 1)] {
         for threads in [1, 2, 5] {
-            let seen = Mutex::new(Vec::new());
+            let origins = Mutex::new(Vec::new());
             let trace = |rays: &[Ray], _: &mut Scratch| {
-                seen.lock().unwrap().extend(rays.iter().map(|ray| ray.origin.x as usize));
-                Sums { hits: rays.len() as u64, distance: rays.iter().map(|ray| f64::from(ray.origin.x)).sum() }
+                origins.lock().unwrap().extend(rays.iter().map(|ray| ray.origin.x as usize));
+                HitSummary { hits: rays.len() as u64, distance: rays.iter().map(|ray| f64::from(ray.origin.x)).sum() }
             };
-            let (time, sums) = run(&numbered(count), &trace, threads, passes);
-            let mut seen = seen.into_inner().unwrap();
-            seen.sort_unstable();
+            let (time, summary) = run(&numbered(count), &trace, threads, passes);
+            let mut origins = origins.into_inner().unwrap();
+            origins.sort_unstable();
             let expected: Vec<usize> = (0..count).flat_map(|ray| std::iter::repeat_n(ray, passes)).collect();
-            assert!(seen == expected, "{count} rays, {threads} threads");
-            assert_eq!(sums.hits, count as u64);
+            assert!(origins == expected, "{count} rays, {threads} threads");
+            assert_eq!(summary.hits, count as u64);
             let sum = (count * count.saturating_sub(1) / 2) as f64;
-            assert!((sums.distance - sum).abs() <= 1e-9 * sum);
+            assert!((summary.distance - sum).abs() <= 1e-9 * sum);
             assert!(time.wall > 0.0 && time.cpu >= 0.0);
         }
     }
@@ -38,10 +38,10 @@ fn tracers_take_turns_and_each_comes_first() {
     let order = Mutex::new(Vec::new());
     let note = |name: char| {
         order.lock().unwrap().push(name);
-        Sums::default()
+        HitSummary::default()
     };
     let (a, b) = (|_: &[Ray], _: &mut Scratch| note('a'), |_: &[Ray], _: &mut Scratch| note('b'));
-    let timings = in_turns(&numbered(CHUNK), &[&a, &b], 1, 3);
+    let timings = measure_alternately(&numbered(CHUNK), &[&a, &b], 1, 3);
     assert_eq!(timings.iter().map(|timing| timing.repeats.len()).collect::<Vec<_>>(), [3, 3]);
     let order = order.into_inner().unwrap();
     let (warm_up, timed) = order.split_at(2);
@@ -56,14 +56,14 @@ fn tracers_take_turns_and_each_comes_first() {
 fn the_slower_one_has_the_lower_rate() {
     let wait = |milliseconds| {
         move |_: &[Ray], _: &mut Scratch| {
-            let start = Stopwatch::start(Of::Thread);
+            let start = Stopwatch::start(CpuClock::Thread);
             while start.elapsed().cpu < Duration::from_millis(milliseconds).as_secs_f64() {}
-            Sums::default()
+            HitSummary::default()
         }
     };
     let (fast, slow) = (wait(1), wait(4));
-    let timings = in_turns(&numbered(CHUNK), &[&fast, &slow], 1, 3);
-    let ratio = timings[0].speed_against(&timings[1]);
+    let timings = measure_alternately(&numbered(CHUNK), &[&fast, &slow], 1, 3);
+    let ratio = timings[0].speedup_over(&timings[1]);
     assert!((3.0..5.0).contains(&ratio), "{ratio}");
     let expected = CHUNK as f64 * 1e-3;
     assert!((0.85..1.03).contains(&(timings[0].cpu_rate() / expected)), "{}", timings[0].cpu_rate());
@@ -73,34 +73,39 @@ fn the_slower_one_has_the_lower_rate() {
 #[test]
 fn medians() {
     assert_eq!((median([3.0, 1.0, 2.0]), median([4.0, 1.0]), median([5.0])), (2.0, 2.5, 5.0));
-    assert!(median([]).is_nan() && in_turns(&[], &[&|_, _| Sums::default()], 1, 1)[0].cpu_rate().is_nan());
+    assert!(
+        median([]).is_nan() && measure_alternately(&[], &[&|_, _| HitSummary::default()], 1, 1)[0].cpu_rate().is_nan()
+    );
 }
 
 #[test]
 fn sums_tell_tracers_apart() {
-    let sums = Sums::of_distances([Some(1.0), None, Some(2.5)].into_iter());
-    assert_eq!(sums, Sums { hits: 2, distance: 3.5 });
-    assert!(sums.agrees(&sums) && !sums.agrees(&Sums { hits: 3, ..sums }));
-    assert!(!sums.agrees(&Sums { distance: 3.5001, ..sums }) && sums.agrees(&Sums { distance: 3.5 + 1e-12, ..sums }));
-    assert_eq!(Sums::of_occluded([true, false, true].into_iter()).hits, 2);
+    let summary = HitSummary::from_distances([Some(1.0), None, Some(2.5)].into_iter());
+    assert_eq!(summary, HitSummary { hits: 2, distance: 3.5 });
+    assert!(summary.agrees(&summary) && !summary.agrees(&HitSummary { hits: 3, ..summary }));
+    assert!(
+        !summary.agrees(&HitSummary { distance: 3.5001, ..summary })
+            && summary.agrees(&HitSummary { distance: 3.5 + 1e-12, ..summary })
+    );
+    assert_eq!(HitSummary::from_occluded([true, false, true].into_iter()).hits, 2);
 }
 
 #[test]
 fn all_kernels_come_to_the_same_and_to_what_single_calls_say() {
-    let mesh = Recipe::named("hall:3").unwrap().make();
+    let mesh = MeshSpec::parse("hall:3").unwrap().make();
     let trees = [Quality::Balanced, Quality::Best].map(|quality| kernel::build(&mesh, quality).unwrap());
     for (_, bvh) in trees.into_iter().flat_map(kernel::with_tests) {
         for RaySet { kind, rays } in rays::make(&mesh, &bvh, 12_000) {
             let hits = match kind.query() {
-                rays::Query::Closest => rays.iter().filter(|ray| bvh.closest(ray).is_some()).count(),
-                rays::Query::Any => rays.iter().filter(|ray| bvh.any(ray)).count(),
+                rays::QueryKind::Closest => rays.iter().filter(|ray| bvh.closest(ray).is_some()).count(),
+                rays::QueryKind::Any => rays.iter().filter(|ray| bvh.any(ray)).count(),
             };
-            let sums = Kernel::ALL.map(|kernel| {
+            let summaries = Kernel::ALL.map(|kernel| {
                 let trace = |rays: &[Ray], scratch: &mut Scratch| kernel.trace(&bvh, kind.query(), rays, scratch);
                 run(&rays, &trace, 2, 1).1
             });
-            assert_eq!(sums[0].hits, hits as u64, "{kind:?}");
-            assert!(sums.iter().all(|other| other.agrees(&sums[0])), "{kind:?}: {sums:?}");
+            assert_eq!(summaries[0].hits, hits as u64, "{kind:?}");
+            assert!(summaries.iter().all(|other| other.agrees(&summaries[0])), "{kind:?}: {summaries:?}");
         }
     }
 }

@@ -1,12 +1,12 @@
-//! A bumpy, organic body on the ground: medium triangles of like size, the sky around it. As large as the scans
-//! that ray tracers like to be shown with.
+//! A bumpy organic body on the ground under an open sky: medium triangles of similar size, as many
+//! as the scans in ray tracing benchmarks.
 
 use super::builder::Builder;
 use super::noise::fractal;
-use super::{BuiltIn, Mesh, View};
-use juggler_math::{Vec3, fun, vec3};
+use super::{Mesh, MeshKind, View};
+use juggler_math::{Vec3, portable, vec3};
 
-pub const KIND: BuiltIn = BuiltIn {
+pub const KIND: MeshKind = MeshKind {
     name: "blob",
     about: "a bumpy body on the ground; size: quads along a twelfth of its skin's edge",
     size: 76,
@@ -14,7 +14,7 @@ pub const KIND: BuiltIn = BuiltIn {
     make,
 };
 
-/// Where the body bulges: direction, height, sharpness.
+/// Bulges of the body: direction, height, sharpness.
 const BULGES: [(Vec3, f32, f32); 5] = [
     (Vec3::new(0.35, 0.85, 0.4), 0.75, 14.0),
     (Vec3::new(0.1, 1.0, -0.15), 0.9, 60.0),
@@ -25,7 +25,7 @@ const BULGES: [(Vec3, f32, f32); 5] = [
 
 fn make(size: u32) -> Mesh {
     let mut builder = Builder::default();
-    builder.skin(Vec3::ZERO, size, radius);
+    builder.cube_sphere(Vec3::ZERO, size, radius);
     let (far, ground) = (12.0, -1.05);
     let corner = |x: f32, z: f32| vec3(x * far, ground, z * far);
     builder.quad([corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)]);
@@ -40,7 +40,7 @@ fn make(size: u32) -> Mesh {
 
 fn radius(direction: Vec3) -> f32 {
     let bulge = |(towards, height, sharpness): (Vec3, f32, f32)| {
-        height * fun::exp(sharpness * (direction.dot(towards.normalize()) - 1.0))
+        height * portable::exp(sharpness * (direction.dot(towards.normalize()) - 1.0))
     };
     let bulges: f32 = BULGES.into_iter().map(bulge).sum();
     1.0 + bulges + 0.12 * fractal(direction * 2.5, 3, 11) + 0.02 * fractal(direction * 18.0, 2, 12)

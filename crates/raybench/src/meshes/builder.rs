@@ -1,26 +1,26 @@
-//! Parts that meshes are put together from.
+//! Building blocks of the procedural meshes.
 
 use super::{Mesh, View};
-use juggler_math::{Frame, Vec3, fun, hash, vec3};
+use juggler_math::{Frame, Vec3, hash, portable, vec3};
 
-/// A mesh in the making.
+/// A mesh under construction.
 #[derive(Default)]
 pub struct Builder {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
 
-/// A place in the plane: turned about the vertical axis, then moved.
+/// A placement on the ground: a rotation about the vertical axis, then a translation.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct Placement {
     pub origin: Vec3,
     pub turns: f32,
 }
 
-impl Place {
-    /// Local → world.
+impl Placement {
+    /// Transforms a point from local to world space.
     pub fn point(&self, p: Vec3) -> Vec3 {
-        let (sin, cos) = fun::sin_cos_turns(self.turns);
+        let (sin, cos) = portable::sin_cos_turns(self.turns);
         self.origin + vec3(p.x * cos + p.z * sin, p.y, p.z * cos - p.x * sin)
     }
 }
@@ -35,14 +35,14 @@ impl Builder {
         self.positions.len() as u32 - 1
     }
 
-    /// Four corners in a row around a flat patch: two triangles.
+    /// Appends a planar quad with four vertices in order around it: two triangles.
     pub fn quad(&mut self, corners: [Vec3; 4]) {
         let [a, b, c, d] = corners.map(|corner| self.vertex(corner));
         self.triangles.extend([[a, b, c], [a, c, d]]);
     }
 
-    /// A patch of `columns` by `rows` quads; `at` gives the corner at (column, row), both from 0 to their count
-    /// inclusive. Points whose numbers agree are one vertex only within the patch.
+    /// Appends a patch of `columns` × `rows` quads; `at` gives the vertex at (column, row), both
+    /// inclusive of their maximum. Vertices are shared within the patch only.
     pub fn patch(&mut self, columns: u32, rows: u32, at: impl Fn(u32, u32) -> Vec3) {
         let first = self.positions.len() as u32;
         for row in 0..=rows {
@@ -57,8 +57,8 @@ impl Builder {
         }
     }
 
-    /// A box with these half edges around a local point: twelve triangles.
-    pub fn cuboid(&mut self, place: Place, center: Vec3, half: Vec3) {
+    /// Appends a box of the given half edge lengths around a local center: twelve triangles.
+    pub fn cuboid(&mut self, place: Placement, center: Vec3, half: Vec3) {
         let corner = |i: u32| {
             let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
             place.point(center + half * vec3(sign(0), sign(1), sign(2)))
@@ -69,7 +69,7 @@ impl Builder {
         }
     }
 
-    /// A straight rod with flat ends: `4 sides` triangles.
+    /// Appends a straight rod with flat ends: `4 sides` triangles.
     pub fn rod(&mut self, from: Vec3, to: Vec3, radius: f32, sides: u32) {
         self.tube(&[from, to], sides, |_| radius);
         let ring = |end: u32| self.positions.len() as u32 - (2 - end) * sides;
@@ -80,8 +80,9 @@ impl Builder {
         }
     }
 
-    /// An open tube along a line of points, each ring of `sides` corners at right angles to the first piece or,
-    /// later, turned as little as the line allows: `2 sides` triangles a piece.
+    /// Appends an open tube along a polyline: `2 sides` triangles per piece. Each ring has `sides`
+    /// vertices, perpendicular to the line and rotated as little as possible relative to the
+    /// previous ring.
     pub fn tube(&mut self, line: &[Vec3], sides: u32, radius: impl Fn(usize) -> f32) {
         let first = self.positions.len() as u32;
         let mut across = Vec3::ZERO;
@@ -91,7 +92,7 @@ impl Builder {
             across = (across - along * across.dot(along)).normalize_or(Frame::around(along).tangent);
             let beside = along.cross(across);
             for side in 0..sides {
-                let (sin, cos) = fun::sin_cos_turns(side as f32 / sides as f32);
+                let (sin, cos) = portable::sin_cos_turns(side as f32 / sides as f32);
                 self.positions.push(point + (across * cos + beside * sin) * radius(i));
             }
         }
@@ -104,9 +105,9 @@ impl Builder {
         }
     }
 
-    /// A closed skin around `center`, made of the six faces of a cube of `n` by `n` quads each: `12 n²` triangles
-    /// of like size. `radius` gives the distance in each (unit) direction.
-    pub fn skin(&mut self, center: Vec3, n: u32, radius: impl Fn(Vec3) -> f32) {
+    /// Appends a closed surface around `center`, the six faces of a cube with `n` × `n` quads each:
+    /// `12 n²` triangles of similar size. `radius` gives the distance for each unit direction.
+    pub fn cube_sphere(&mut self, center: Vec3, n: u32, radius: impl Fn(Vec3) -> f32) {
         let at = |i: u32| i as f32 / n as f32 * 2.0 - 1.0;
         for face in 0..6 {
             let side = if face < 3 { 1.0 } else { -1.0 };
@@ -122,14 +123,14 @@ impl Builder {
     }
 }
 
-/// Numbers in [0, 1), the same in every run.
+/// Deterministic random numbers.
 pub struct Random {
     seed: u32,
     count: u32,
 }
 
 impl Random {
-    /// A stream of its own for each seed.
+    /// Constructs a generator whose sequence depends on `seed` only.
     pub fn new(seed: u32) -> Self {
         Self { seed, count: 0 }
     }
@@ -143,7 +144,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A point in the cube from -1 to 1.
+    /// A point in the cube [-1, 1)³.
     pub fn cube(&mut self) -> Vec3 {
         vec3(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0))
     }

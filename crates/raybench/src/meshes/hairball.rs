@@ -1,10 +1,10 @@
-//! A ball of curls: long thin triangles whose boxes overlap everywhere.
+//! A ball of curls: long thin triangles with heavily overlapping boxes.
 
 use super::builder::{Builder, Random};
-use super::{BuiltIn, Mesh, View};
+use super::{Mesh, MeshKind, View};
 use juggler_math::{Vec3, vec3};
 
-pub const KIND: BuiltIn = BuiltIn {
+pub const KIND: MeshKind = MeshKind {
     name: "hairball",
     about: "long thin triangles whose boxes overlap; size: strands of 90 triangles",
     size: 32_000,
@@ -29,7 +29,7 @@ fn make(size: u32) -> Mesh {
     })
 }
 
-/// A walk outwards from the core that is pulled aside a little more with every step.
+/// Random walk outward from the core, deflected by a constant pull per strand.
 fn strand_points(random: &mut Random) -> [Vec3; PIECES + 1] {
     let mut point = random.cube().normalize_or(Vec3::Y) * 0.25;
     let mut step = point.normalize() * 0.07;

@@ -1,4 +1,5 @@
-//! Meshes that are made by rule: no files, the same triangles everywhere. One kind is one file and two lines here.
+//! Procedural meshes: no files, the same triangles on every platform. One kind is one file and two
+//! lines here.
 
 mod blob;
 mod builder;
@@ -13,12 +14,12 @@ use juggler_math::{Aabb, Vec3, vec3};
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// Triangles to trace, and where to look at them from.
+/// A triangle mesh with a view of it.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// Corners, world space, scene units.
+    /// Vertices in world space, scene units.
     pub positions: Vec<Vec3>,
-    /// Three numbers of `positions` each.
+    /// Three indices into `positions` per triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Camera and light.
     pub view: View,
@@ -27,20 +28,20 @@ pub struct Mesh {
 /// A pinhole camera and a point light, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where the camera is.
+    /// Position of the camera.
     pub eye: Vec3,
-    /// A point in the middle of the picture.
+    /// Point at the center of the image.
     pub look_at: Vec3,
-    /// A direction that points upwards in the picture.
+    /// Up direction of the image.
     pub up: Vec3,
-    /// Angle between the picture's upper and lower edge, in degrees, above 0 and below 180.
+    /// Vertical field of view in degrees, above 0 and below 180.
     pub fov_degrees: f32,
-    /// Where the light is.
+    /// Position of the light.
     pub light: Vec3,
 }
 
 impl View {
-    /// The whole box, from the front, the right and above; for meshes that bring no camera.
+    /// View of the whole box from the front, the right and above, for meshes without a camera.
     pub fn around(bounds: &Aabb) -> Self {
         if bounds.is_empty() {
             return Self::around(&Aabb::from_points([Vec3::ZERO]));
@@ -49,55 +50,55 @@ impl View {
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let center = bounds.center();
         let (fov_degrees, aside) = (40.0, vec3(0.45, 0.4, 0.8).normalize());
-        // The ball around the box just fits between the picture's upper and lower edge: 1 / sin 20°.
+        // The bounding sphere fits the vertical field of view: 1 / sin 20°.
         let eye = center + aside * (radius * 2.95);
         Self { eye, look_at: center, up: Vec3::Y, fov_degrees, light: center + vec3(-0.6, 2.0, 1.0) * radius }
     }
 }
 
-/// A kind of mesh. Its size says how fine it is, in a unit of its own.
+/// A kind of procedural mesh. Its size sets the resolution, in a unit of its own.
 #[derive(Clone, Copy, Debug)]
-pub struct BuiltIn {
-    /// What it is called.
+pub struct MeshKind {
+    /// Name of the kind.
     pub name: &'static str,
-    /// What it is and what it stresses, in one line.
+    /// One line about its content and the property that it stresses.
     pub about: &'static str,
-    /// What [`make`](Self::make) is given when nobody says otherwise.
+    /// Default of the size that [`make`](Self::make) takes.
     pub size: u32,
-    /// The smallest and the largest size that can be made.
+    /// Smallest and largest size.
     pub sizes: (u32, u32),
-    /// Makes it.
+    /// Builds the mesh of a size.
     pub make: fn(u32) -> Mesh,
 }
 
 /// All kinds.
-pub const BUILT_IN: [BuiltIn; 6] =
+pub const BUILT_IN: [MeshKind; 6] =
     [blob::KIND, classroom::KIND, hall::KIND, stadium::KIND, hairball::KIND, terrain::KIND];
 
-/// A built-in mesh of one size, made when it is asked for.
+/// A procedural mesh of one size, built on demand.
 #[derive(Clone, Copy, Debug)]
-pub struct Recipe {
+pub struct MeshSpec {
     /// The kind.
-    pub kind: BuiltIn,
-    /// How fine.
+    pub kind: MeshKind,
+    /// Resolution, in the unit of the kind.
     pub size: u32,
 }
 
-/// Why a name is no recipe.
+/// Reason why a name is not a recipe.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RecipeError {
+pub enum MeshSpecError {
     /// No kind has this name.
     Unknown,
-    /// The kind exists; what follows the colon is not one of its sizes.
+    /// The kind exists, but the text after the colon is not one of its sizes.
     Size {
-        /// Its name.
+        /// Name of the kind.
         name: &'static str,
-        /// The sizes that it has.
+        /// Sizes of the kind.
         sizes: RangeInclusive<u32>,
     },
 }
 
-impl fmt::Display for RecipeError {
+impl fmt::Display for MeshSpecError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown => f.write_str("no built-in mesh has this name"),
@@ -108,22 +109,22 @@ impl fmt::Display for RecipeError {
     }
 }
 
-impl std::error::Error for RecipeError {}
+impl std::error::Error for MeshSpecError {}
 
-impl Recipe {
-    /// Reads `NAME` or `NAME:SIZE`.
-    pub fn named(text: &str) -> Result<Self, RecipeError> {
+impl MeshSpec {
+    /// Parses `NAME` or `NAME:SIZE`.
+    pub fn parse(text: &str) -> Result<Self, MeshSpecError> {
         let (name, size) = text.split_once(':').map_or((text, None), |(name, size)| (name, Some(size)));
-        let kind = BUILT_IN.into_iter().find(|kind| kind.name == name).ok_or(RecipeError::Unknown)?;
+        let kind = BUILT_IN.into_iter().find(|kind| kind.name == name).ok_or(MeshSpecError::Unknown)?;
         let Some(size) = size else { return Ok(Self { kind, size: kind.size }) };
         let sizes = kind.sizes.0..=kind.sizes.1;
         match size.parse() {
             Ok(size) if sizes.contains(&size) => Ok(Self { kind, size }),
-            _ => Err(RecipeError::Size { name: kind.name, sizes }),
+            _ => Err(MeshSpecError::Size { name: kind.name, sizes }),
         }
     }
 
-    /// The mesh.
+    /// Builds the mesh.
     pub fn make(&self) -> Mesh {
         (self.kind.make)(self.size)
     }

@@ -1,8 +1,8 @@
-//! Smooth random heights: value noise on a lattice (Perlin 1985; Ebert et al., Texturing and Modeling, chapter 2).
+//! Value noise on a lattice (Perlin 1985; Ebert et al., Texturing and Modeling, chapter 2).
 
 use juggler_math::{Vec3, hash};
 
-/// Smooth in [-1, 1], with features of the size one.
+/// Smooth noise in [-1, 1] with features of size 1.
 pub fn noise(p: Vec3, seed: u32) -> f32 {
     let cell = p.floor();
     let [x, y, z] = (p - cell).to_array().map(|t| t * t * (3.0 - 2.0 * t));
@@ -15,7 +15,8 @@ pub fn noise(p: Vec3, seed: u32) -> f32 {
     mix(mix(row(0.0, 0.0), row(1.0, 0.0), y), mix(row(0.0, 1.0), row(1.0, 1.0), y), z)
 }
 
-/// Noise of `octaves` sizes, each half as large and half as strong as the one before.
+/// Fractal noise: a sum of `octaves`, each with half the feature size and half the amplitude of the
+/// one before.
 pub fn fractal(p: Vec3, octaves: u32, seed: u32) -> f32 {
     let mut scale = 1.0;
     let octave = |i: u32| {

@@ -1,10 +1,11 @@
-//! A tiny, fine thing in a huge, coarse bowl ("teapot in a stadium"): hierarchies must go from one scale to the other.
+//! A tiny, fine object in a huge, coarse bowl ("teapot in a stadium"): the hierarchy must bridge
+//! both scales.
 
 use super::builder::Builder;
-use super::{BuiltIn, Mesh, View};
-use juggler_math::{Vec3, fun, vec3};
+use super::{Mesh, MeshKind, View};
+use juggler_math::{Vec3, portable, vec3};
 
-pub const KIND: BuiltIn = BuiltIn {
+pub const KIND: MeshKind = MeshKind {
     name: "stadium",
     about: "a tiny, fine coil in a huge, coarse bowl; size: sides of the coil's wire",
     size: 32,
@@ -12,9 +13,9 @@ pub const KIND: BuiltIn = BuiltIn {
     make,
 };
 
-/// Rings of a piece of wire for each of its sides.
+/// Number of rings of the wire per side of its cross section.
 const RINGS: u32 = 68;
-/// Tiers of seats, and sectors around.
+/// Tiers of seats, and sectors around the bowl.
 const TIERS: u32 = 18;
 const SECTORS: u32 = 96;
 
@@ -24,8 +25,8 @@ fn make(size: u32) -> Mesh {
     let coil: Vec<Vec3> = (0..=rings).map(|i| coil(i as f32 / rings as f32)).collect();
     builder.tube(&coil, size, |_| 0.012);
     builder.patch(SECTORS, 2 * TIERS, |sector, edge| {
-        let (sin, cos) = fun::sin_cos_turns((sector % SECTORS) as f32 / SECTORS as f32);
-        // Every other edge goes up, every other one out.
+        let (sin, cos) = portable::sin_cos_turns((sector % SECTORS) as f32 / SECTORS as f32);
+        // Edges alternate: one goes up, the next one outward.
         let (out, up) = (edge.div_ceil(2) as f32, (edge / 2) as f32);
         let radius = 65.0 + 5.5 * out;
         vec3(cos * radius * 1.15, 2.6 * up, sin * radius * 0.9)
@@ -41,9 +42,9 @@ fn make(size: u32) -> Mesh {
     })
 }
 
-/// A wire wound forty times around a ring; half a unit wide.
+/// A wire wound forty times around a ring, half a unit wide.
 fn coil(along: f32) -> Vec3 {
-    let (around, winding) = (fun::sin_cos_turns(along), fun::sin_cos_turns(along * 40.0));
+    let (around, winding) = (portable::sin_cos_turns(along), portable::sin_cos_turns(along * 40.0));
     let radius = 0.22 + 0.07 * winding.1;
-    vec3(radius * around.1, 0.2 + 0.07 * winding.0 + 0.08 * fun::sin_cos_turns(along * 3.0).0, radius * around.0)
+    vec3(radius * around.1, 0.2 + 0.07 * winding.0 + 0.08 * portable::sin_cos_turns(along * 3.0).0, radius * around.0)
 }

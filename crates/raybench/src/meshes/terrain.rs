@@ -1,11 +1,11 @@
-//! Ridged mountains to the horizon: a tree far larger than any cache.
+//! Ridged mountains up to the horizon: a hierarchy far larger than any cache.
 
 use super::builder::Builder;
 use super::noise::noise;
-use super::{BuiltIn, Mesh, View};
+use super::{Mesh, MeshKind, View};
 use juggler_math::{Vec3, vec3};
 
-pub const KIND: BuiltIn = BuiltIn {
+pub const KIND: MeshKind = MeshKind {
     name: "terrain",
     about: "mountains, a tree far beyond the cache; size: cells along an edge, two triangles each",
     size: 2236,
@@ -28,8 +28,8 @@ fn make(size: u32) -> Mesh {
     })
 }
 
-/// Ridges where the noise changes its sign, each size of them held up by the larger ones (Musgrave, in Ebert et
-/// al., Texturing and Modeling, section 16.2).
+/// Ridged multifractal height: ridges at the zeros of the noise, each octave weighted by the one
+/// before (Musgrave, in Ebert et al., Texturing and Modeling, section 16.2).
 fn height(x: f32, z: f32) -> f32 {
     let (mut sum, mut weight, mut scale) = (0.0, 1.0, 48.0);
     for octave in 0..9 {

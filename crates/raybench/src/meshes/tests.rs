@@ -5,12 +5,12 @@ use juggler_bvh::Quality;
 use juggler_math::{Ray, hash, testing::Random};
 use std::collections::HashMap;
 
-/// Small enough for tests, large enough to have all parts.
+/// Sizes small enough for tests and large enough for all parts.
 const SMALL: [(&str, u32); 6] =
     [("blob", 12), ("classroom", 2), ("hall", 4), ("stadium", 6), ("hairball", 3000), ("terrain", 64)];
 
 fn small() -> impl Iterator<Item = (&'static str, Mesh)> {
-    SMALL.into_iter().map(|(name, size)| (name, Recipe::named(&format!("{name}:{size}")).unwrap().make()))
+    SMALL.into_iter().map(|(name, size)| (name, MeshSpec::parse(&format!("{name}:{size}")).unwrap().make()))
 }
 
 #[test]
@@ -18,21 +18,21 @@ fn names_and_sizes() {
     let all: Vec<&str> = BUILT_IN.iter().map(|kind| kind.name).collect();
     assert_eq!(all, SMALL.map(|(name, _)| name));
     for kind in BUILT_IN {
-        assert_eq!(Recipe::named(kind.name).map(|recipe| recipe.size), Ok(kind.size));
+        assert_eq!(MeshSpec::parse(kind.name).map(|spec| spec.size), Ok(kind.size));
         assert!((kind.sizes.0..=kind.sizes.1).contains(&kind.size));
     }
-    assert_eq!(Recipe::named("hairball:7").map(|recipe| (recipe.kind.name, recipe.size)), Ok(("hairball", 7)));
-    assert_eq!(Recipe::named("hairbal:7").err(), Some(RecipeError::Unknown));
+    assert_eq!(MeshSpec::parse("hairball:7").map(|spec| (spec.kind.name, spec.size)), Ok(("hairball", 7)));
+    assert_eq!(MeshSpec::parse("hairbal:7").err(), Some(MeshSpecError::Unknown));
     for wrong in ["blob:", "blob:0", "blob:-1", "blob:x", "blob:4097", "blob:1:2"] {
-        let message = Recipe::named(wrong).unwrap_err().to_string();
+        let message = MeshSpec::parse(wrong).unwrap_err().to_string();
         assert_eq!(message, "the size of `blob` is a whole number from 1 to 4096", "{wrong}");
     }
 }
 
-/// The counts that the documentation names; the two large ones by the rule that makes them.
+/// Triangle counts stated in the documentation; of the two large meshes small instances.
 #[test]
 fn meshes_have_the_sizes_that_are_documented() {
-    let count = |name: &str| Recipe::named(name).unwrap().make().triangles.len();
+    let count = |name: &str| MeshSpec::parse(name).unwrap().make().triangles.len();
     assert_eq!((count("blob"), count("stadium")), (69_314, 146_178));
     assert_eq!((count("classroom"), count("hall")), (116_124, 760_546));
     assert_eq!((count("hairball:10"), count("terrain:10")), (900, 200));
@@ -54,7 +54,8 @@ fn triangles_name_corners_and_corners_are_finite() {
     }
 }
 
-/// Figures of different machines are of the same meshes: these numbers change only together with a note in CHANGELOG.
+/// Figures of different machines must be of the same meshes: these hashes may change only together
+/// with a note in CHANGELOG.
 #[test]
 fn meshes_are_the_same_bits_as_ever() {
     let known = [2_442_935_998, 2_175_274_366, 3_031_150_253, 3_497_501_880, 2_586_744_402, 483_235_478];
@@ -94,10 +95,10 @@ fn nothing_escapes_from_the_hall_and_the_classroom() {
     }
 }
 
-/// Each edge of the body belongs to two triangles, when corners at one place count as one.
+/// Each edge of the body belongs to two triangles, if vertices at one position count as one.
 #[test]
 fn the_body_of_the_blob_is_closed() {
-    let mesh = Recipe::named("blob:9").unwrap().make();
+    let mesh = MeshSpec::parse("blob:9").unwrap().make();
     let mut edges: HashMap<[[u32; 3]; 2], u32> = HashMap::new();
     for triangle in &mesh.triangles[..mesh.triangles.len() - 2] {
         let at = triangle.map(|i| mesh.positions[i as usize].to_array().map(|x| (x + 0.0).to_bits()));

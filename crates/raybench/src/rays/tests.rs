@@ -1,11 +1,11 @@
 use super::*;
 use crate::kernel;
-use crate::meshes::Recipe;
+use crate::meshes::MeshSpec;
 use juggler_bvh::Quality;
 use std::collections::HashSet;
 
 fn sets(name: &str, count: usize) -> (Mesh, TriangleBvh, [RaySet; 6]) {
-    let mesh = Recipe::named(name).unwrap().make();
+    let mesh = MeshSpec::parse(name).unwrap().make();
     let bvh = kernel::build(&mesh, Quality::Balanced).unwrap();
     let sets = make(&mesh, &bvh, count);
     (mesh, bvh, sets)
@@ -36,12 +36,13 @@ fn tiles_are_as_many_as_wanted_and_from_everywhere() {
         let chosen = tiles(count);
         assert_eq!(chosen.len(), count.div_ceil(64), "{count}");
         assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]), "{count}");
-        // A grid of 4 by 3 fields gets about its share each, unless tiles are very few.
+        // Each field of a 4 × 3 grid gets about its share, unless there are very few tiles.
         let across = WIDTH / TILE;
         let field = |tile: &u32| (tile % across / 60) + (tile / across / 45) * 4;
-        for wanted in 0..12 {
-            let share = chosen.iter().filter(|tile| field(tile) == wanted).count() as f64 * 12.0 / chosen.len() as f64;
-            assert!(chosen.len() < 100 || (0.7..1.3).contains(&share), "{count}: field {wanted} has {share}");
+        for requested in 0..12 {
+            let share =
+                chosen.iter().filter(|tile| field(tile) == requested).count() as f64 * 12.0 / chosen.len() as f64;
+            assert!(chosen.len() < 100 || (0.7..1.3).contains(&share), "{count}: field {requested} has {share}");
         }
     }
 }
@@ -105,7 +106,7 @@ fn no_ray_meets_the_triangle_that_it_leaves() {
         let same =
             diffuse.rays.iter().zip(&from).filter(|(ray, from)| bvh.closest(ray).is_some_and(|h| h.index == **from));
         assert_eq!(same.count(), 0, "{name}");
-        // The origin is not far from the surface either.
+        // The origin must lie near the surface.
         let near = |(ray, from): (&Ray, &u32)| {
             let [a, b, c] = mesh.triangles[*from as usize].map(|i| mesh.positions[i as usize]);
             let size = (b - a).length() + (c - a).length() + a.length();
@@ -115,7 +116,7 @@ fn no_ray_meets_the_triangle_that_it_leaves() {
     }
 }
 
-/// Their mean component along the normal is 2/3, by the density of the cosine.
+/// With a cosine density the mean component along the normal is 2/3.
 #[test]
 fn diffuse_rays_leave_with_the_density_of_the_cosine() {
     let floor = |x: f32, z: f32| vec3(x * 1e3, 0.0, z * 1e3);

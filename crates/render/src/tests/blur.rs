@@ -1,9 +1,9 @@
-//! Tests of motion blur against closed forms: how much of the time that the shutter is open a point is covered.
+//! Tests of motion blur against closed forms: fraction of the shutter time that a point is covered.
 
 use super::{job, look, pixels, read, world, world_in_motion};
 use crate::*;
-use juggler_camera::{AnyCamera, Orthographic, Projection, Shot};
-use juggler_integrator::{AnyIntegrator, Emit, PathState};
+use juggler_camera::{AnyCamera, Orthographic, Projection, ShutterCamera};
+use juggler_integrator::{AnyIntegrator, PathState, VertexOutput};
 use juggler_math::testing::{chi_squared, z_test};
 use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use juggler_world::Vertex;
@@ -12,18 +12,18 @@ use std::sync::Mutex;
 const SAMPLES: u32 = 1024;
 const WHITE: &str = r#"{"phong": {"diffuse": 1}}"#;
 
-/// Parallel rays down −z through a square of `height`.
+/// Orthographic camera that looks along −z at a square of side `height`.
 fn above(eye: Vec3, height: f32, size: UVec2) -> Projection {
     let camera = Orthographic { eye, direction: Some(Vec3::NEG_Z), height: Some(height), ..Orthographic::default() };
-    AnyCamera::from(camera).project(size).unwrap()
+    AnyCamera::from(camera).projection(size).unwrap()
 }
 
-/// A white thing on black that moves.
+/// World of a white moving object on black.
 fn moving(shape: &str, motion: Motion) -> World {
     world_in_motion(&[(shape, motion, WHITE)], &[], Rgb::BLACK)
 }
 
-fn covered(world: &World, camera: &Shot, size: UVec2) -> Vec<f32> {
+fn covered(world: &World, camera: &ShutterCamera, size: UVec2) -> Vec<f32> {
     let albedo: AnyIntegrator = read(r#"{"albedo": {}}"#);
     pixels(world, camera, &albedo, size, SAMPLES).iter().map(|pixel| pixel.g).collect()
 }
@@ -33,7 +33,7 @@ fn a_moving_edge_covers_the_share_of_time_that_it_has_passed() {
     let size = UVec2::new(32, 1);
     for count in [2, 3, 17] {
         let key = |i: usize| Transform::translation(Vec3::X * (i as f32 / (count - 1) as f32));
-        let motion = Motion::through((0..count).map(key).collect()).unwrap();
+        let motion = Motion::from_keys((0..count).map(key).collect()).unwrap();
         let world = moving(r#"{"cuboid": {"min": [-9, -9, -1], "max": [0, 9, 0]}}"#, motion);
         let camera = above(Vec3::new(0.5, 0.0, 5.0), 1.0 / 32.0, size).into();
         for (i, covered) in covered(&world, &camera, size).into_iter().enumerate() {
@@ -43,20 +43,21 @@ fn a_moving_edge_covers_the_share_of_time_that_it_has_passed() {
     }
 }
 
-/// The half of a disk that turns by a quarter: where it is half way, half of the time.
+/// A half plane rotates by at most half a turn; the covered fraction of the time follows from the
+/// angles.
 #[test]
 fn a_spinning_disk_covers_by_the_angle() {
     for (turn, keys) in [(0.25, 2), (0.25, 17), (0.5, 17)] {
         let key = |i: usize| {
             Transform::rotation(Vec3::Z, turn * std::f32::consts::TAU * i as f32 / (keys - 1) as f32).unwrap()
         };
-        let motion = Motion::through((0..keys).map(key).collect()).unwrap().smoothed(9.0);
+        let motion = Motion::from_keys((0..keys).map(key).collect()).unwrap().smoothed(9.0);
         let world = moving(r#"{"cuboid": {"min": [0, -9, -1], "max": [9, 9, 0]}}"#, motion);
         for step in 0..24 {
             let angle = (step as f32 + 0.5) / 24.0;
-            let (sin, cos) = juggler_math::fun::sin_cos_turns(angle);
+            let (sin, cos) = juggler_math::portable::sin_cos_turns(angle);
             let camera = above(Vec3::new(3.0 * cos, 3.0 * sin, 5.0), 1e-3, UVec2::ONE).into();
-            // Covered while the half's own angle is within a quarter turn of the point's.
+            // Covered while the half plane's angle is within a quarter turn of the point's.
             let inside = |low: f32, high: f32| (high.min(turn) - low.max(0.0)).max(0.0);
             let windows = [-1.0, 0.0, 1.0].map(|whole| inside(angle + whole - 0.25, angle + whole + 0.25));
             let expected = windows.iter().sum::<f32>() / turn;
@@ -74,8 +75,8 @@ fn a_camera_that_moves_over_a_checkerboard_sees_its_mean() {
     let world = world(&floor, &[], Rgb::BLACK);
     for (start, way) in [(0.2, 0.5), (0.2, 1.0), (0.7, 1.7), (0.1, 2.0), (0.4, 0.0)] {
         let at = |x: f32| above(Vec3::new(x, 0.5, 5.0), 1e-3, UVec2::ONE);
-        let shot = Shot::moving(at(start), vec![at(start + way * 0.5), at(start + way)]);
-        // White cells are those from even to odd x: the integral of what is under the way.
+        let shot = ShutterCamera::from_keys(at(start), vec![at(start + way * 0.5), at(start + way)]);
+        // White cells extend from even to odd x: integrate the pattern under the object's way.
         let white = |x: f32| (x * 0.5).floor() + (x - (x * 0.5).floor() * 2.0).min(1.0);
         let expected = if way == 0.0 { 1.0 } else { (white(start + way) - white(start)) / way };
         let covered = covered(&world, &shot, UVec2::ONE)[0];
@@ -83,13 +84,13 @@ fn a_camera_that_moves_over_a_checkerboard_sees_its_mean() {
     }
 }
 
-/// Notes the time of every ray that leaves the world.
+/// Integrator that records the time of every ray that leaves the world.
 #[derive(Default)]
 struct Clock(Mutex<Vec<f32>>);
 
 impl Integrator for Clock {
-    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut Emit) {}
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, _emit: &mut Emit) {
+    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut VertexOutput) {}
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, _output: &mut VertexOutput) {
         self.0.lock().unwrap().push(ray.time);
     }
 }
@@ -97,7 +98,7 @@ impl Integrator for Clock {
 fn times(size: UVec2, samples: u32, moves: bool) -> Vec<f32> {
     let world = world(&[], &[], Rgb::BLACK);
     let at = |x: f32| above(Vec3::new(x, 0.0, 5.0), 1.0, size);
-    let shot = if moves { Shot::moving(at(0.0), vec![at(1.0)]) } else { at(0.0).into() };
+    let shot = if moves { ShutterCamera::from_keys(at(0.0), vec![at(1.0)]) } else { at(0.0).into() };
     let (clock, albedo) = (Clock::default(), read(r#"{"albedo": {}}"#));
     let job = Job { integrator: &clock, ..job(&world, &shot, &albedo, samples) };
     let pixels = Rect { x: 0, y: 0, width: size.x, height: size.y };
@@ -116,14 +117,14 @@ fn times_are_uniform_and_each_part_of_the_time_has_its_sample() {
         parts.sort_unstable();
         assert!(parts.iter().copied().eq(0..16), "{parts:?}");
     }
-    // Neighbours have nothing to do with each other.
+    // The times of neighboring pixels are uncorrelated.
     let pairs: Vec<f64> = all.windows(17).step_by(16).map(|w| f64::from(w[0] - 0.5) * f64::from(w[16] - 0.5)).collect();
     z_test(&pairs, 0.0, 1e-4).unwrap();
     assert!(times(UVec2::new(8, 8), 4, false).iter().all(|time| *time == 0.0));
     assert!(times(UVec2::new(8, 8), 1, true).iter().all(|time| *time == 0.5));
 }
 
-/// The mirror image of what moves is where it is at the time of the camera's ray.
+/// A mirror shows a moving object at the time of the camera ray.
 #[test]
 fn mirrors_keep_the_time_of_the_camera_ray() {
     let mirror = r#"{"phong": {"diffuse": 0, "specular": 0, "reflection": 1}}"#;
@@ -136,14 +137,14 @@ fn mirrors_keep_the_time_of_the_camera_ray() {
     let size = UVec2::new(24, 16);
     let start = Transform::translation(Vec3::new(-2.0, 1.5, 0.0));
     let end = Transform::translation(Vec3::new(2.0, 1.5, 0.0));
-    let moving = world(Motion::through(vec![start, end]).unwrap());
+    let moving = world(Motion::from_keys(vec![start, end]).unwrap());
     let classic = AnyIntegrator::default();
     let camera = look(Vec3::new(0.0, 4.0, 12.0), Vec3::ZERO, "30", size);
     let blurred = pixels(&moving, &camera, &classic, size, 256);
-    // The mean of many stills.
+    // Average many still pictures.
     let mut mean = vec![Rgb::BLACK; blurred.len()];
     for i in 0..128 {
-        let place = start.towards(&end, (i as f32 + 0.5) / 128.0);
+        let place = start.lerp(&end, (i as f32 + 0.5) / 128.0);
         let picture = pixels(&world(place.into()), &camera, &classic, size, 4);
         mean.iter_mut().zip(picture).for_each(|(sum, pixel)| *sum += pixel / 128.0);
     }

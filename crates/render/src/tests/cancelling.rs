@@ -1,23 +1,23 @@
-//! A render that is cancelled ends at the next vertex, and its engine can be used again.
+//! Tests of cancellation: a render ends at the next vertex, and its engine can be reused.
 
 use super::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// The classic integrator, and a control that is cancelled at a certain vertex.
+/// The classic integrator, which cancels the render at a given vertex.
 struct Cancelling<'c> {
     classic: AnyIntegrator,
     control: &'c Control,
-    /// Vertices that were handed over.
+    /// Number of vertices shaded.
     vertices: AtomicU32,
     cancelled_at: u32,
 }
 
 impl Integrator for Cancelling<'_> {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
         if self.vertices.fetch_add(1, Relaxed) + 1 == self.cancelled_at {
             self.control.cancel();
         }
-        self.classic.vertex(world, ray, path, vertex, emit);
+        self.classic.vertex(world, ray, path, vertex, output);
     }
 }
 
@@ -33,7 +33,7 @@ fn a_cancelled_render_ends_at_the_next_vertex() {
             Cancelling { classic: classic.clone(), control: &control, vertices: AtomicU32::new(0), cancelled_at };
         let job = Job { integrator: &integrator, ..job(&world, &camera, &classic, samples) };
         let mut engine = wavefront::Engine::new(&job);
-        assert_eq!(engine.render(&work, &control), Err(Stopped));
+        assert_eq!(engine.render(&work, &control), Err(Cancelled));
         assert_eq!(integrator.vertices.load(Relaxed), cancelled_at);
         let again = engine.render(&work, &Control::default()).unwrap();
         assert_eq!(again, job.render(&work, &Control::default()).unwrap(), "cancelled at vertex {cancelled_at}");

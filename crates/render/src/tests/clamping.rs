@@ -1,7 +1,7 @@
-//! Clamping: what it takes and what it leaves are what was there, whoever renders which part.
+//! Tests of clamping: the remaining and the removed radiance add up, for any division of the work.
 
 use super::*;
-use juggler_camera::film::{Clamped, Film, Layout, Mitchell};
+use juggler_camera::film::{ClampedRadiance, Film, Mitchell, Tiling};
 use juggler_integrator::Path;
 use rayon::ThreadPoolBuilder;
 use std::convert::Infallible;
@@ -9,7 +9,7 @@ use std::convert::Infallible;
 const SIZE: UVec2 = UVec2::new(23, 18);
 const REGION: Rect = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
 
-/// A bright ball in a corner with gloss.
+/// A bright sphere in a corner of glossy surfaces.
 fn corner() -> World {
     let floor = r#"{"disk": {"radius": 6}}"#;
     let lambert = r#"{"diffuse": {"reflectance": [0.8, 0.6, 0.3]}}"#;
@@ -28,10 +28,10 @@ fn path(direct: Option<f32>, indirect: Option<f32>) -> AnyIntegrator {
     Path { max_depth: 6, clamp_direct: direct, clamp_indirect: indirect, ..Path::default() }.into()
 }
 
-/// Renders with a filter that weights samples, by less than nothing too.
+/// Runs `test` with a filter that has positive and negative weights.
 fn with_job<T>(integrator: &AnyIntegrator, samples: u32, test: impl FnOnce(&Job) -> T) -> T {
     let (world, camera) = (corner(), look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", SIZE));
-    let filter = Mitchell::default().filter(samples);
+    let filter = Mitchell::default().sampler(samples);
     test(&Job { filter, ..job(&world, &camera, integrator, samples) })
 }
 
@@ -63,13 +63,13 @@ fn what_is_taken_and_what_is_left_are_all_there_was() {
 fn limits_that_nothing_reaches_change_no_bit() {
     let (plain, clamped) = (tile(&path(None, None), 20), tile(&path(Some(1e9), Some(1e9)), 20));
     assert_eq!(plain, clamped);
-    assert_eq!(clamped.clamped(), Clamped::default());
+    assert_eq!(clamped.clamped(), ClampedRadiance::default());
     assert_eq!(path(None, Some(f32::INFINITY)).clamp(), None);
 }
 
 #[test]
 fn nothing_brighter_than_the_limit_is_left() {
-    // One sample, in the open: at most one light and one emission a vertex.
+    // With a single sample: at most one light sample and one emission at each of six vertices.
     let means = tile(&path(Some(0.5), Some(0.5)), 1).means();
     let brightest = means.iter().map(|mean| mean.max_channel()).fold(0.0, f32::max);
     assert!(brightest > 0.5 && brightest <= 0.5 * 12.0, "{brightest}");
@@ -85,14 +85,14 @@ fn the_sum_is_the_same_whoever_renders_what() {
             with_job(&integrator, 40, |job| {
                 let schedule = Schedule { band_pixels: 1 << (4 * threads), ..Schedule::default() };
                 let control = Control::default();
-                let rows = |_| Ok::<(), Stopped>(());
+                let rows = |_| Ok::<(), Cancelled>(());
                 assert_eq!(render(job, REGION, schedule, &control, rows), Ok(whole), "{threads} threads");
-                // In parts, the first ending within a block.
-                let film = Film::new(Layout::new(REGION), 0..7);
-                expose(job, &film, Stop::Samples, &control).unwrap();
-                let rest = Film::new(Layout::new(REGION), 0..40);
+                // Render in parts, the first of which ends within a block.
+                let film = Film::new(Tiling::new(REGION), 0..7);
+                render_progressive(job, &film, StopCriterion::Samples, &control).unwrap();
+                let rest = Film::new(Tiling::new(REGION), 0..40);
                 film.tiles().for_each(|(number, tile)| assert_eq!(rest.add(number, tile), Ok(true)));
-                expose(job, &rest, Stop::Evenly, &control).unwrap();
+                render_progressive(job, &rest, StopCriterion::Evenly, &control).unwrap();
                 assert_eq!(rest.clamped(), whole, "{threads} threads, in parts");
                 let developed: Result<(), Infallible> = rest.develop(|_| Ok(()));
                 assert_eq!(developed, Ok(()));

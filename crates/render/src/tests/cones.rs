@@ -1,21 +1,22 @@
-//! How wide rays are: pictures on surfaces are smooth from afar and sharp from near, straight on and in mirrors.
+//! Tests of ray cones: image textures are smooth from afar and sharp from nearby, directly and in
+//! mirrors.
 
 use super::*;
 use juggler_math::testing::Random;
 use std::sync::Arc;
 
-/// Black and white texels at random.
+/// Random black and white texels.
 struct Noise;
 
 impl Images for Noise {
-    fn image(&self, _texture: &str, _image: &Image) -> Result<Arc<Pyramid>, String> {
+    fn image(&self, _texture: &str, _image: &Image) -> Result<Arc<MipMap>, String> {
         let mut random = Random::new(911);
         let numbers = (0..256 * 256).map(|_| random.f32().round()).collect();
-        Ok(Arc::new(Pyramid::of_numbers([256, 256], 1, numbers).unwrap()))
+        Ok(Arc::new(MipMap::from_floats([256, 256], 1, numbers).unwrap()))
     }
 }
 
-/// A floor that shines as a picture says, 1 on 1 repeated, and a mirror far above it.
+/// A floor that emits by a texture repeated every unit, and a mirror far above it.
 fn floor(texture: &str) -> World {
     let named = [("noise".to_owned(), read(texture))];
     let (textures, wrong) = TextureTable::compile(named, &Noise);
@@ -34,7 +35,7 @@ fn floor(texture: &str) -> World {
     World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
 }
 
-/// The mean distance of pixels from 1/2.
+/// Mean absolute difference of the pixels from 1/2.
 fn contrast(world: &World, integrator: &AnyIntegrator, eye: Vec3, aim: Vec3) -> f32 {
     let size = UVec2::new(12, 12);
     let camera = look(eye, aim, "30", size);
@@ -55,13 +56,14 @@ fn pictures_are_smooth_from_afar_and_sharp_from_near() {
         let down = near - Vec3::Y + aside;
         assert!(seen(&world, near, down) > 0.1);
         assert_eq!(seen(&world, near, down), seen(&sharp, near, down));
-        // By the mirror, up and down again.
+        // Through the mirror, up and down again.
         let up = near + Vec3::Y + aside;
         assert!(seen(&world, near, up) < 0.02 && seen(&sharp, near, up) > 0.1);
     }
 }
 
-/// Patterns fade in paths; in classic pictures they are as sharp as ever, even beside pictures.
+/// The path integrator filters procedural textures; the classic integrator keeps them sharp, even
+/// beside image textures.
 #[test]
 fn patterns_fade_in_paths_alone() {
     let world = floor(r#"{"noise": {"space": "world", "scale": 200}}"#);

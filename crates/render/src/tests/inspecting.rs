@@ -1,12 +1,14 @@
-//! A pixel's samples, inspected: the light of the picture to the bit, all of it accounted for.
+//! Tests of pixel inspection: the radiance is bit-identical to the picture's, and all of it is
+//! accounted for.
 
 use super::*;
 use juggler_camera::film::{AnyFilter, Mitchell, Tent};
-use juggler_integrator::{Direct, Event, Path, Scattering, Way};
-use juggler_world::{LightSource, LightsApart};
+use juggler_integrator::{Direct, Path, PathKind, ScatterEvent, Scattering};
+use juggler_world::{LightSource, SeparateLights};
 use std::collections::BTreeSet;
 
-/// A room with a lamp, a sun, a shape that shines, glass, a polished ball, a medium and a mask with holes.
+/// A room with a point light, a directional light, an emissive sphere, glass, rough metal and a
+/// medium.
 fn room() -> World {
     let matt = r#"{"diffuse": {"reflectance": [0.7, 0.6, 0.5]}}"#;
     let objects = [
@@ -46,62 +48,62 @@ fn it_is_the_pixel_of_the_picture_to_the_bit_and_its_ways_sum_up_to_it() {
         (busy(), classic.into(), BoxFilter {}.into(), 3),
     ];
     for (world, integrator, filter, samples) in cases {
-        let (world, _) = world.with_lights_apart();
-        let job = Job { filter: filter.filter(samples), ..job(&world, &camera, &integrator, samples) };
+        let (world, _) = world.with_separate_lights();
+        let job = Job { filter: filter.sampler(samples), ..job(&world, &camera, &integrator, samples) };
         let whole = job.render(&Work::first(Rect { x: 0, y: 0, width: 9, height: 7 }, samples), &Control::default());
         let (whole, name) = (whole.unwrap(), integrator.name());
         for pixel in [[0, 0], [3, 3], [4, 4], [6, 3], [8, 6], [4, 1]] {
-            let (mut sum, mut ways) = (Rgb::BLACK, Rgb::BLACK);
+            let (mut sum, mut total) = (Rgb::BLACK, Rgb::BLACK);
             let (mean, statistics) = inspect(&job, pixel, &Control::default(), |sample| {
                 sum += sample.radiance;
-                let lights = sample.vertices.iter().flat_map(|vertex| &vertex.lights);
-                ways += lights.fold(sample.untold, |sum, gain| sum + gain.radiance);
+                let lights = sample.vertices.iter().flat_map(|vertex| &vertex.contributions);
+                total += lights.fold(sample.unrecorded, |sum, contribution| sum + contribution.radiance);
             })
             .unwrap();
             let place = (pixel[1] * 9 + pixel[0]) as usize;
             assert_eq!(mean, whole.means()[place], "{name}, pixel {pixel:?}");
             assert_eq!(statistics, whole.statistics(place));
-            assert!(difference(sum, ways) < 1e-4, "{name}, pixel {pixel:?}: {sum:?} {ways:?}");
+            assert!(difference(sum, total) < 1e-4, "{name}, pixel {pixel:?}: {sum:?} {total:?}");
             assert!(difference(mean, sum / samples as f32) < 1e-4);
         }
     }
 }
 
-/// What was told of some samples.
+/// Summary of the recorded samples.
 #[derive(Default)]
-struct Told {
+struct Summary {
     events: BTreeSet<(Scattering, bool)>,
     sources: BTreeSet<LightSource>,
-    by_balls: u32,
-    ways: [u32; 3],
+    by_spheres: u32,
+    by_path_kind: [u32; 3],
 }
 
-impl Told {
-    /// Checks a place against the one before it.
-    fn place(&mut self, sample: &Inspected, number: usize) {
+impl Summary {
+    /// Checks a vertex against its parent.
+    fn place(&mut self, sample: &InspectedSample, number: usize) {
         let vertex = &sample.vertices[number];
         assert_eq!(vertex.parent.is_none(), number == 0);
         let Some(parent) = vertex.parent.map(|parent| &sample.vertices[parent as usize]) else { return };
-        let event = vertex.came.unwrap();
+        let event = vertex.event.unwrap();
         self.events.insert((event.scattering, event.transmitted));
         assert!(vertex.parent < Some(number as u32));
-        assert_eq!(vertex.depth, parent.depth + u32::from(event.scattering != Scattering::Passed));
-        let from = parent.scattered_at.unwrap_or_else(|| parent.met.unwrap().surface.point);
-        assert_eq!(parent.scattered_at.is_some(), event == Event::VOLUME);
+        assert_eq!(vertex.depth, parent.depth + u32::from(event.scattering != Scattering::PassThrough));
+        let from = parent.scattered_at.unwrap_or_else(|| parent.hit.unwrap().surface.point);
+        assert_eq!(parent.scattered_at.is_some(), event == ScatterEvent::VOLUME);
         assert!((vertex.ray.origin - from).length() < 1e-3, "{vertex:?} {from}");
     }
 
-    /// Checks light against the place where it was added.
-    fn gain(&mut self, vertex: &PathVertex, gain: &LightGain, apart: &LightsApart) {
-        self.sources.insert(apart.source(gain.group).0);
-        self.ways[gain.way as usize] += 1;
-        let more = if gain.asked { 2 } else { 1 };
-        assert!(gain.by.is_some() || gain.stretches == vertex.depth + more);
-        assert_eq!(gain.way, Way::of(gain.stretches));
-        if let Some((ball, is_mirror)) = &gain.by {
-            self.by_balls += 1;
-            assert!([1, 4].contains(&ball.object));
-            assert_eq!(gain.stretches, vertex.depth + if *is_mirror { 3 } else { 4 });
+    /// Checks a contribution against its vertex.
+    fn contribution(&mut self, vertex: &PathVertex, contribution: &LightContribution, apart: &SeparateLights) {
+        self.sources.insert(apart.source(contribution.group).0);
+        self.by_path_kind[contribution.path_kind as usize] += 1;
+        let more = if contribution.is_light_sample { 2 } else { 1 };
+        assert!(contribution.sphere.is_some() || contribution.segments == vertex.depth + more);
+        assert_eq!(contribution.path_kind, PathKind::from_segments(contribution.segments));
+        if let Some((sphere, is_mirror)) = &contribution.sphere {
+            self.by_spheres += 1;
+            assert!([1, 4].contains(&sphere.shape));
+            assert_eq!(contribution.segments, vertex.depth + if *is_mirror { 3 } else { 4 });
         }
     }
 }
@@ -110,30 +112,30 @@ impl Told {
 fn places_follow_each_other_and_are_told_as_what_they_are() {
     let size = UVec2::new(15, 11);
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
-    let (world, apart) = room().with_lights_apart();
+    let (world, apart) = room().with_separate_lights();
     let integrator = Path::default().into();
     let job = job(&world, &camera, &integrator, 64);
-    let mut told = Told::default();
+    let mut summary = Summary::default();
     for y in 0..size.y {
-        let check = |sample: Inspected| {
-            (0..sample.vertices.len()).for_each(|number| told.place(&sample, number));
+        let check = |sample: InspectedSample| {
+            (0..sample.vertices.len()).for_each(|number| summary.place(&sample, number));
             for vertex in &sample.vertices {
-                vertex.lights.iter().for_each(|gain| told.gain(vertex, gain, &apart));
+                vertex.contributions.iter().for_each(|contribution| summary.contribution(vertex, contribution, &apart));
             }
         };
         inspect(&job, [7, y], &Control::default(), check).unwrap();
     }
-    let Told { events, sources, by_balls, ways } = told;
-    let wanted = [LightSource::Background, LightSource::Lamp(0), LightSource::Lamp(1), LightSource::Entry(0)];
-    assert!(wanted.iter().all(|source| sources.contains(source)), "{sources:?}");
-    let wanted = [
+    let Summary { events, sources, by_spheres, by_path_kind } = summary;
+    let expected = [LightSource::Background, LightSource::Light(0), LightSource::Light(1), LightSource::Entry(0)];
+    assert!(expected.iter().all(|source| sources.contains(source)), "{sources:?}");
+    let expected = [
         (Scattering::Diffuse, false),
         (Scattering::Specular, true),
         (Scattering::Specular, false),
         (Scattering::Volume, false),
     ];
-    assert!(wanted.iter().all(|event| events.contains(event)), "{events:?}");
-    assert!(by_balls > 0 && ways.iter().all(|count| *count > 0), "{by_balls} {ways:?}");
+    assert!(expected.iter().all(|event| events.contains(event)), "{events:?}");
+    assert!(by_spheres > 0 && by_path_kind.iter().all(|count| *count > 0), "{by_spheres} {by_path_kind:?}");
 }
 
 #[test]
@@ -142,5 +144,5 @@ fn a_cancelled_look_ends() {
     let (world, integrator) = (room(), Path::default().into());
     let control = Control::default();
     control.cancel();
-    assert_eq!(inspect(&job(&world, &camera, &integrator, 4), [0, 0], &control, |_| {}), Err(Stopped));
+    assert_eq!(inspect(&job(&world, &camera, &integrator, 4), [0, 0], &control, |_| {}), Err(Cancelled));
 }

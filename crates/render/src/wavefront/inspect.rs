@@ -1,290 +1,319 @@
-//! The samples of one pixel as the engine takes them, with all that their paths did: for those who ask why a pixel is as it is.
+//! Inspection of a pixel: traces its samples as a render does, and records the vertices and
+//! contributions of their paths.
 //!
-//! Each sample is traced alone. As queues are cut between samples, and a sample's own rays at [`GROUP`], its light is added in
-//! the same order as in a picture: the radiance is the same to the bit. Within a segment each ray has a slot of its own, so that the log
-//! tells whose light is whose.
+//! Each sample is traced alone. A render cuts queues between samples and a sample's own rays at
+//! [`GROUP_RAYS`], so contributions are added in the same order and the radiance is bit-identical.
+//! Within a segment each ray has a slot of its own, by which the log identifies the ray of a
+//! contribution.
 
-use super::{Engine, GROUP, meet};
-use crate::expose::expose;
-use crate::exposed::Exposed;
-use crate::{Control, Job, Rays, Stopped, Work};
-use juggler_camera::film::{Rect, Samples, Statistics, Tile};
-use juggler_camera::layer::LightGroup;
-use juggler_integrator::{Arrival, Event, PathLog, PathState, Queue, Record, Seen, Way};
+use super::{Engine, GROUP_RAYS, shade_ray};
+use crate::camera_rays::push_camera_rays;
+use crate::tile_samples::TileSamples;
+use crate::{Cancelled, Control, Job, RayCounts, Work};
+use juggler_camera::aov::LightGroup;
+use juggler_camera::film::{PixelSamples, PixelStatistics, Rect, Tile};
+use juggler_integrator::{AovRecord, HitRecord, PathKind, PathLog, PathState, Queue, ScatterEvent, ShadingPoint};
 use juggler_math::{Ray, Rgb, Vec3};
 use juggler_world::Vertex;
 
-/// Places of one sample that are kept; its light is right whatever their number.
-const MOST_VERTICES: usize = 1 << 20;
+/// Maximum number of vertices recorded per sample. The radiance includes the others.
+const MAX_VERTICES: usize = 1 << 20;
 
-/// Light that a sample gathers at a place.
+/// Contribution of a light to a sample at one vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightGain {
-    /// Its group of lights.
+pub struct LightContribution {
+    /// Light group.
     pub group: LightGroup,
-    /// How far it came.
-    pub way: Way,
-    /// Stretches from the camera to the light.
-    pub stretches: u32,
-    /// What it adds to the sample.
+    /// Kind of path, by its number of segments.
+    pub path_kind: PathKind,
+    /// Number of path segments from the camera to the light.
+    pub segments: u32,
+    /// Radiance times throughput and filter weight, after clamping.
     pub radiance: Rgb,
-    /// Whether the light was asked for; otherwise the path met it.
-    pub asked: bool,
-    /// The polished ball by whose way it was asked for: the number of its shape, its material, and whether it mirrors.
-    pub by: Option<(Vertex, bool)>,
+    /// Whether the contribution is a light sample; otherwise the path hit the emitter.
+    pub is_light_sample: bool,
+    /// Specular sphere of a light sample through a sphere, and whether the sphere reflects
+    /// (otherwise it refracts).
+    pub sphere: Option<(Vertex, bool)>,
 }
 
-/// A place where a path was.
+/// A vertex of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathVertex {
-    /// The place before it among the sample's; nothing for the first.
+    /// Index of the previous vertex; `None` for the first.
     pub parent: Option<u32>,
-    /// What the path did there to come here.
-    pub came: Option<Event>,
-    /// Vertices before it.
+    /// Scattering event at the previous vertex.
+    pub event: Option<ScatterEvent>,
+    /// Number of scattering vertices before this one.
     pub depth: u32,
-    /// The ray that led here; it ends at what was met.
+    /// Ray that arrived; it ends at the hit.
     pub ray: Ray,
-    /// What radiance from here is worth to the sample.
+    /// Throughput (beta) times the filter weight.
     pub weight: Rgb,
-    /// The surface that the ray met; nothing where it left the world.
-    pub met: Option<Vertex>,
-    /// Where the path was scattered by a medium before it came there.
+    /// Surface that the ray hit; `None` if it left the world.
+    pub hit: Option<Vertex>,
+    /// Point in world space at which a medium scattered the path before it reached the surface.
     pub scattered_at: Option<Vec3>,
-    /// How light is scattered here that was asked for.
-    pub lit: Event,
-    /// Whether the surface was there, and no hole.
-    pub is_seen: bool,
-    /// Light that was added here.
-    pub lights: Vec<LightGain>,
+    /// Scattering event of light samples at this vertex.
+    pub light_sample_event: ScatterEvent,
+    /// Whether the surface was shaded; `false` if its opacity let the path pass, if a medium
+    /// scattered the path before it, or if there is no surface.
+    pub is_shaded: bool,
+    /// Contributions at this vertex.
+    pub contributions: Vec<LightContribution>,
 }
 
-/// A sample, and what its paths did.
+/// A sample, with the vertices of its paths.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inspected {
-    /// Which sample of its pixel.
+pub struct InspectedSample {
+    /// Index of the sample in its pixel.
     pub index: u32,
-    /// What the pixel's filter makes of it.
+    /// Weight of the sample by the reconstruction filter.
     pub weight: f32,
-    /// What it adds to the pixel, as the film takes it.
+    /// Contribution to the pixel, as the film receives it.
     pub radiance: Rgb,
-    /// What clamping took off it: the mean of its channels.
+    /// Radiance that clamping removed, averaged over the channels.
     pub clamped: f32,
-    /// All places of its paths; each comes after the one before it.
+    /// Vertices of all paths; each follows its parent.
     pub vertices: Vec<PathVertex>,
-    /// Light of places beyond the most that are kept.
-    pub untold: Rgb,
+    /// Contributions of vertices beyond the maximum number recorded.
+    pub unrecorded: Rgb,
 }
 
-/// Takes all samples of a pixel and hands each to `each`. Returns the pixel of the finished picture, as the film has it, and its
-/// statistics.
+/// Traces all samples of a pixel and passes each to `each`. Returns the color of the pixel as in
+/// the finished picture, and its statistics.
+///
+/// # Errors
+///
+/// [`Cancelled`] if `control` is cancelled.
 pub fn inspect(
     job: &Job,
     pixel: [u32; 2],
     control: &Control,
-    mut each: impl FnMut(Inspected),
-) -> Result<(Rgb, Statistics), Stopped> {
+    mut each: impl FnMut(InspectedSample),
+) -> Result<(Rgb, PixelStatistics), Cancelled> {
     let pixels = Rect { x: pixel[0], y: pixel[1], width: 1, height: 1 };
     let work = Work::first(pixels, job.samples);
-    let mut film = Exposed::new(&work, &juggler_camera::layer::NONE);
-    let mut inspector = Inspector { engine: Engine::new(job), control, sample: Inspected::default() };
-    inspector.engine.harvest.record = Some(Record::logging());
+    let mut film = TileSamples::new(&work, &juggler_camera::aov::NO_AOVS);
+    let mut inspector = Inspector { engine: Engine::new(job), control, sample: InspectedSample::default() };
+    inspector.engine.buffers.record = Some(AovRecord::logging());
     for index in 0..job.samples {
         let sample = inspector.sample(&Work { samples: index..index + 1, ..work.clone() });
         if control.is_cancelled() {
-            return Err(Stopped);
+            return Err(Cancelled);
         }
-        let Inspected { radiance, clamped, .. } = sample;
-        film.add(Samples { radiance: &[radiance], clamped: &[clamped], ..Samples::default() });
-        control.add(1, &Rays::default());
+        let InspectedSample { radiance, clamped, .. } = sample;
+        film.add(PixelSamples { radiance: &[radiance], clamped: &[clamped], ..PixelSamples::default() });
+        control.add(1, &RayCounts::default());
         each(sample);
     }
     let tile: Tile = film.tile();
     Ok((tile.means().first().copied().unwrap_or(Rgb::BLACK), tile.statistics(0)))
 }
 
-/// One sample after the other.
+/// Traces and records one sample at a time.
 struct Inspector<'j> {
     engine: Engine<'j>,
     control: &'j Control,
-    /// The sample that is traced; not all of it when `control` is cancelled.
-    sample: Inspected,
+    /// Current sample; incomplete if `control` is cancelled.
+    sample: InspectedSample,
 }
 
-/// Rays on their way, and where each comes from: the place, and what happened there.
-struct Flight {
+/// Rays in flight; `from` holds the vertex that each ray left and the scattering event there.
+struct RecordedQueue {
     queue: Queue,
-    from: Vec<Option<(u32, Event)>>,
+    from: Vec<Option<(u32, ScatterEvent)>>,
 }
 
-/// What one segment's rays met.
+/// Hits of one segment's rays.
 #[derive(Default)]
-struct Segment {
-    /// The place of each ray, where it is kept.
-    places: Vec<Option<u32>>,
-    met: Vec<Option<Vertex>>,
-    seen: Vec<Option<Seen>>,
-    /// How many lights were asked for straight.
-    straight: usize,
-    /// Stretches of ways by balls, and the ball.
-    bent: Vec<Option<Bend>>,
+struct SegmentHits {
+    /// Index of each ray's vertex, if recorded.
+    vertex_indices: Vec<Option<u32>>,
+    vertices: Vec<Option<Vertex>>,
+    shading_points: Vec<Option<ShadingPoint>>,
+    /// Number of light samples that do not pass a specular sphere.
+    direct_count: usize,
+    /// Light samples through specular spheres, by ray.
+    bent: Vec<Option<BentPath>>,
 }
 
-/// A way by a ball: how many stretches it makes, and the ball, where one sees it.
+/// Light sample through a specular sphere: number of path segments, and the sphere if it is
+/// visible.
 #[derive(Clone, Copy)]
-struct Bend {
-    stretches: u32,
-    ball: Option<(Vertex, bool)>,
+struct BentPath {
+    segments: u32,
+    sphere: Option<(Vertex, bool)>,
 }
 
 impl Inspector<'_> {
-    fn sample(&mut self, work: &Work) -> Inspected {
+    fn sample(&mut self, work: &Work) -> InspectedSample {
         let mut camera = Queue::default();
-        expose(self.engine.job, &self.engine.start, work, 1, 0..1, &mut camera);
-        let weight = camera.paths.first().map_or(1.0, |path| path.weight.r);
-        self.sample = Inspected { index: work.samples.start, weight, ..Inspected::default() };
-        let mut stack = vec![Flight { from: vec![None; camera.len()], queue: camera }];
-        while let Some(flight) = stack.pop()
+        push_camera_rays(self.engine.job, &self.engine.start, work, 1, 0..1, &mut camera);
+        let weight = camera.paths.first().map_or(1.0, |path| path.beta.r);
+        self.sample = InspectedSample { index: work.samples.start, weight, ..InspectedSample::default() };
+        let mut stack = vec![RecordedQueue { from: vec![None; camera.len()], queue: camera }];
+        while let Some(recorded) = stack.pop()
             && !self.control.is_cancelled()
         {
-            self.segment(flight, &mut stack);
+            self.segment(recorded, &mut stack);
         }
         std::mem::take(&mut self.sample)
     }
 
-    fn segment(&mut self, mut flight: Flight, stack: &mut Vec<Flight>) {
-        let count = flight.queue.len();
-        (0..).zip(&mut flight.queue.paths).for_each(|(slot, path)| path.slot = slot);
+    fn segment(&mut self, mut recorded: RecordedQueue, stack: &mut Vec<RecordedQueue>) {
+        let count = recorded.queue.len();
+        (0..).zip(&mut recorded.queue.paths).for_each(|(slot, path)| path.slot = slot);
         self.begin(count);
-        self.engine.nearest(&mut flight.queue);
-        let mut segment = Segment { bent: vec![None; count], seen: vec![None; count], ..Segment::default() };
-        let Engine { job, measures, hits, harvest, .. } = &mut self.engine;
-        for ((ray, path), hit) in flight.queue.rays.iter().zip(&flight.queue.paths).zip(hits.iter()) {
-            segment.met.push(meet(job, *measures, harvest, ray, path, hit));
+        self.engine.nearest(&mut recorded.queue);
+        let mut segment =
+            SegmentHits { bent: vec![None; count], shading_points: vec![None; count], ..SegmentHits::default() };
+        let Engine { job, has_ray_differentials, hits, buffers, .. } = &mut self.engine;
+        for ((ray, path), hit) in recorded.queue.rays.iter().zip(&recorded.queue.paths).zip(hits.iter()) {
+            segment.vertices.push(shade_ray(job, *has_ray_differentials, buffers, ray, path, hit));
         }
-        let met = self.log().map_or(0, |log| log.lights.len());
-        segment.straight = self.engine.harvest.shadows.iter().map(|queue| queue.gains.len()).sum();
-        self.ways_by_balls(&flight.queue, &mut segment);
+        let emission_count = self.log().map_or(0, |log| log.lights.len());
+        segment.direct_count = self.engine.buffers.shadows.iter().map(|queue| queue.contributions.len()).sum();
+        self.find_bent_paths(&recorded.queue, &mut segment);
         self.engine.shadows(self.control);
-        self.keep(&flight, &mut segment);
-        self.gains(&flight.queue, &segment, met);
-        self.go_on(&flight.queue, &segment, stack);
+        self.record_vertices(&recorded, &mut segment);
+        self.record_contributions(&recorded.queue, &segment, emission_count);
+        self.stack_next(&recorded.queue, &segment, stack);
     }
 
     fn begin(&mut self, count: usize) {
         let weight = self.sample.weight;
-        let harvest = &mut self.engine.harvest;
-        harvest.reset(count, self.engine.job.world.lamps().len());
-        if let Some(clamping) = &mut harvest.clamping {
+        let buffers = &mut self.engine.buffers;
+        buffers.reset(count, self.engine.job.world.lights().len());
+        if let Some(clamping) = &mut buffers.clamping {
             clamping.begin(std::iter::repeat_n(weight, count));
         }
-        if let Some(record) = &mut harvest.record {
+        if let Some(record) = &mut buffers.record {
             record.begin(std::iter::repeat_n(weight, count));
             record.log.iter_mut().for_each(|log| log.clear());
         }
     }
 
     fn log(&self) -> Option<&PathLog> {
-        self.engine.harvest.record.as_ref()?.log.as_deref()
+        self.engine.buffers.record.as_ref()?.log.as_deref()
     }
 
-    /// How long the ways are by which lights were asked by way of balls, and by which balls.
-    fn ways_by_balls(&self, queue: &Queue, segment: &mut Segment) {
+    /// Determines the lengths and the spheres of light samples through specular spheres.
+    fn find_bent_paths(&self, queue: &Queue, segment: &mut SegmentHits) {
         let world = self.engine.job.world;
-        for bent in &self.engine.harvest.bent {
+        for bent in &self.engine.buffers.bent {
             let slot = bent.slot as usize;
-            let (Some(way), Some(path), Some(first)) =
-                (segment.bent.get_mut(slot), queue.paths.get(slot), bent.legs.first())
+            let (Some(entry), Some(path), Some(first)) =
+                (segment.bent.get_mut(slot), queue.paths.get(slot), bent.segments.first())
             else {
                 continue;
             };
             let mut ray = Ray { t_max: f32::INFINITY, ..*first };
             let hit = world.closest(&mut ray);
-            // What stands before the ball hides this way, and says nothing of the others.
+            // An object in front of the sphere blocks this path only.
             let is_free = hit.is_some() && ray.t_max >= first.t_max;
-            let ball = is_free.then(|| (world.vertex(&ray, &hit), bent.legs.len() == 2));
-            let known = way.and_then(|bend| bend.ball);
-            *way = Some(Bend { stretches: path.depth + 1 + bent.legs.len() as u32, ball: known.or(ball) });
+            let sphere = is_free.then(|| (world.vertex(&ray, &hit), bent.segments.len() == 2));
+            let known = entry.and_then(|bent_path| bent_path.sphere);
+            *entry = Some(BentPath { segments: path.depth + 1 + bent.segments.len() as u32, sphere: known.or(sphere) });
         }
     }
 
-    /// Keeps the places of a segment.
-    fn keep(&mut self, flight: &Flight, segment: &mut Segment) {
-        for (slot, seen) in self.log().map_or(&[][..], |log| &log.seen) {
-            if let Some(place) = segment.seen.get_mut(*slot) {
-                *place = Some(*seen);
+    /// Records the vertices of a segment.
+    fn record_vertices(&mut self, recorded: &RecordedQueue, segment: &mut SegmentHits) {
+        for (slot, shading_point) in self.log().map_or(&[][..], |log| &log.hits) {
+            if let Some(place) = segment.shading_points.get_mut(*slot) {
+                *place = Some(*shading_point);
             }
         }
-        let rays = flight.queue.rays.iter().zip(&flight.queue.paths).zip(&flight.from);
-        for (((ray, path), from), (met, seen)) in rays.zip(segment.met.iter().zip(&segment.seen)) {
+        let rays = recorded.queue.rays.iter().zip(&recorded.queue.paths).zip(&recorded.from);
+        for (((ray, path), from), (vertex, shading_point)) in
+            rays.zip(segment.vertices.iter().zip(&segment.shading_points))
+        {
             let place = self.sample.vertices.len();
-            let is_kept = place < MOST_VERTICES && (path.depth == 0 || from.is_some());
-            segment.places.push(is_kept.then_some(place as u32));
+            let is_kept = place < MAX_VERTICES && (path.depth == 0 || from.is_some());
+            segment.vertex_indices.push(is_kept.then_some(place as u32));
             if is_kept {
-                let lit = Arrival { ray, path, vertex: met.as_ref(), seen: seen.as_ref() }.lit();
+                let light_sample_event =
+                    HitRecord { ray, path, vertex: vertex.as_ref(), shading_point: shading_point.as_ref() }
+                        .light_sample_event();
                 self.sample.vertices.push(PathVertex {
                     parent: from.map(|(parent, _)| parent),
-                    came: from.map(|(_, event)| event),
+                    event: from.map(|(_, event)| event),
                     depth: path.depth,
                     ray: *ray,
-                    weight: path.weight,
-                    met: *met,
+                    weight: path.beta,
+                    hit: *vertex,
                     scattered_at: None,
-                    lit,
-                    is_seen: seen.is_some(),
-                    lights: Vec::new(),
+                    light_sample_event,
+                    is_shaded: shading_point.is_some(),
+                    contributions: Vec::new(),
                 });
             }
         }
     }
 
-    /// Adds up the light of a segment, in order. The first `met` contributions are what paths met; ways by balls come last.
-    fn gains(&mut self, queue: &Queue, segment: &Segment, met: usize) {
+    /// Adds up the contributions of a segment, in order: the first `emission_count` are emission that paths
+    /// hit; light samples through specular spheres come last.
+    fn record_contributions(&mut self, queue: &Queue, segment: &SegmentHits, emission_count: usize) {
         let lights = self.log().map(|log| log.lights.clone()).unwrap_or_default();
-        for (number, (slot, way, group, radiance)) in lights.into_iter().enumerate() {
+        for (number, (slot, path_kind, group, radiance)) in lights.into_iter().enumerate() {
             self.sample.radiance += radiance;
             let depth = queue.paths.get(slot).map_or(0, |path| path.depth);
-            let bent = segment.bent.get(slot).copied().flatten().filter(|_| number >= met + segment.straight);
-            let stretches = match bent {
-                Some(Bend { stretches, .. }) => stretches,
-                None => depth + 1 + u32::from(number >= met),
+            let bent =
+                segment.bent.get(slot).copied().flatten().filter(|_| number >= emission_count + segment.direct_count);
+            let segments = match bent {
+                Some(BentPath { segments, .. }) => segments,
+                None => depth + 1 + u32::from(number >= emission_count),
             };
-            let by = bent.and_then(|bend| bend.ball);
-            let gain = LightGain { group, way, stretches, radiance, asked: number >= met, by };
-            let place = segment.places.get(slot).copied().flatten();
+            let sphere = bent.and_then(|bent_path| bent_path.sphere);
+            let contribution = LightContribution {
+                group,
+                path_kind,
+                segments,
+                radiance,
+                is_light_sample: number >= emission_count,
+                sphere,
+            };
+            let place = segment.vertex_indices.get(slot).copied().flatten();
             match place.and_then(|place| self.sample.vertices.get_mut(place as usize)) {
                 Some(_) if radiance.is_black() => {}
-                Some(vertex) => vertex.lights.push(gain),
-                None => self.sample.untold += radiance,
+                Some(vertex) => vertex.contributions.push(contribution),
+                None => self.sample.unrecorded += radiance,
             }
         }
-        let taken = self.engine.harvest.clamping.as_ref().map_or(&[][..], |clamping| &clamping.taken);
-        self.sample.clamped = taken.iter().fold(self.sample.clamped, |sum, taken| sum + taken);
+        let removed = self.engine.buffers.clamping.as_ref().map_or(&[][..], |clamping| &clamping.removed);
+        self.sample.clamped = removed.iter().fold(self.sample.clamped, |sum, removed| sum + removed);
     }
 
-    /// Stacks the rays that go on, the first of them on top.
-    fn go_on(&mut self, queue: &Queue, segment: &Segment, stack: &mut Vec<Flight>) {
-        let next = std::mem::take(&mut self.engine.harvest.next);
+    /// Stacks the rays that continue, the first on top.
+    fn stack_next(&mut self, queue: &Queue, segment: &SegmentHits, stack: &mut Vec<RecordedQueue>) {
+        let next = std::mem::take(&mut self.engine.buffers.next);
         let mut from = Vec::with_capacity(next.len());
         for (ray, path) in next.rays.iter().zip(&next.paths) {
             from.push(self.event(queue, segment, ray, path));
         }
-        let pieces = next.rays.chunks(GROUP).zip(next.paths.chunks(GROUP)).zip(from.chunks(GROUP));
+        let pieces = next.rays.chunks(GROUP_RAYS).zip(next.paths.chunks(GROUP_RAYS)).zip(from.chunks(GROUP_RAYS));
         for ((rays, paths), from) in pieces.rev() {
             let queue = Queue { rays: rays.to_vec(), paths: paths.to_vec() };
-            stack.push(Flight { queue, from: from.to_vec() });
+            stack.push(RecordedQueue { queue, from: from.to_vec() });
         }
     }
 
-    /// Where a ray that goes on comes from, and what happened there.
-    fn event(&mut self, queue: &Queue, segment: &Segment, ray: &Ray, path: &PathState) -> Option<(u32, Event)> {
+    /// Vertex that a continuing ray left, and the scattering event there.
+    fn event(
+        &mut self,
+        queue: &Queue,
+        segment: &SegmentHits,
+        ray: &Ray,
+        path: &PathState,
+    ) -> Option<(u32, ScatterEvent)> {
         let slot = path.slot as usize;
-        let place = segment.places.get(slot).copied().flatten()?;
-        let vertex = segment.met.get(slot)?.as_ref();
-        let seen = segment.seen.get(slot)?.as_ref();
-        let arrival = Arrival { ray: queue.rays.get(slot)?, path: queue.paths.get(slot)?, vertex, seen };
+        let place = segment.vertex_indices.get(slot).copied().flatten()?;
+        let vertex = segment.vertices.get(slot)?.as_ref();
+        let shading_point = segment.shading_points.get(slot)?.as_ref();
+        let arrival = HitRecord { ray: queue.rays.get(slot)?, path: queue.paths.get(slot)?, vertex, shading_point };
         let event = arrival.event(self.engine.job.world, ray, path);
-        if event == Event::VOLUME {
+        if event == ScatterEvent::VOLUME {
             self.sample.vertices.get_mut(place as usize)?.scattered_at = Some(ray.origin);
         }
         Some((place, event))

@@ -1,10 +1,11 @@
-//! Formulas of light that need no renderer.
+//! Closed forms of light transport.
 
 use juggler_math::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// Irradiance at the origin, of a surface that faces `normal`, from a polygon of radiance 1 that lies wholly above it:
-/// half the sum over its edges of the angle that each is seen under times the cosine between the normals (Lambert 1760).
+/// Irradiance at the origin on a surface with unit normal `normal`, from a polygon of radiance 1
+/// that lies above its horizon: half the sum over the edges of the angle that the edge subtends
+/// times the cosine between the edge plane's normal and `normal` (Lambert 1760).
 pub fn polygon(corners: &[Vec3], normal: Vec3) -> f64 {
     let corners: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3().normalize()).collect();
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -14,7 +15,7 @@ pub fn polygon(corners: &[Vec3], normal: Vec3) -> f64 {
     0.5 * sum.abs()
 }
 
-/// Irradiance on a floor through the origin from a rectangle of radiance 1 around `center`.
+/// Irradiance at the origin on a horizontal floor, from a rectangle of radiance 1 around `center`.
 pub fn rectangle(center: Vec3, edges: [Vec3; 2]) -> f64 {
     let [a, b] = edges.map(|edge| edge * 0.5);
     polygon(&[center - a - b, center + a - b, center + a + b, center - a + b], Vec3::Y)
@@ -28,7 +29,7 @@ pub fn integral(value: impl Fn(f64) -> f64) -> f64 {
     (0..=STEPS).map(|i| weight(i) * at(i)).sum::<f64>() / f64::from(3 * STEPS)
 }
 
-/// Fresnel's share of unpolarised light that is mirrored at a border of relative index `ior`.
+/// Fresnel reflectance for unpolarized light at an interface of relative index of refraction `ior`.
 pub fn fresnel(cos: f64, ior: f64) -> f64 {
     let inside = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
     let across = (cos - ior * inside) / (cos + ior * inside);
@@ -36,14 +37,16 @@ pub fn fresnel(cos: f64, ior: f64) -> f64 {
     0.5 * (across * across + along * along)
 }
 
-/// What a stack of layers mirrors and lets through, light going to and fro among them without interfering. `layers` are
-/// pairs of both, each the same from either side.
+/// Reflectance and transmittance of a stack of layers, with multiple reflections between the layers
+/// and without interference. `layers` holds the reflectance and transmittance of each layer, equal
+/// from both sides.
 pub fn stack(layers: &[[f64; 2]]) -> [f64; 2] {
     let [mirrored, through, _] = layers.iter().fold([0.0, 1.0, 0.0], add);
     [mirrored, through]
 }
 
-/// The shares of a stack, mirrored as seen from above, let through, mirrored as seen from below, with one layer more.
+/// Adds a layer below a stack, given by its reflectance from above, transmittance, and reflectance
+/// from below.
 fn add([above, through, below]: [f64; 3], [mirrored, passed]: &[f64; 2]) -> [f64; 3] {
     let again = 1.0 / (1.0 - below * mirrored);
     [above + through * through * mirrored * again, through * passed * again, mirrored + passed * passed * below * again]
@@ -51,7 +54,8 @@ fn add([above, through, below]: [f64; 3], [mirrored, passed]: &[f64; 2]) -> [f64
 
 #[test]
 fn formulas_agree_with_each_other() {
-    // A corner of a parallel rectangle (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3).
+    // Form factor to a corner of a parallel rectangle (Howell, A Catalog of Radiation Heat Transfer
+    // Configuration Factors, B-3).
     let (x, y) = (2.0f64 / 1.5, 0.7f64 / 1.5);
     let part = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * (b / (1.0 + a * a).sqrt()).atan();
     let published = (part(x, y) + part(y, x)) / (2.0 * PI);

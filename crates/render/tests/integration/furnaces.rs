@@ -1,13 +1,14 @@
-//! White furnaces: in light of radiance 1 from everywhere, what loses no light has the radiance 1.
+//! White furnaces: under uniform illumination of radiance 1, objects that absorb no light have
+//! radiance 1.
 
-use crate::probe::{Measured, Scene, looking, measure, path};
+use crate::probe::{Estimate, Scene, looking, measure, path};
 use juggler_math::{Transform, Vec3};
 
-/// What a point of a ball of this material shows, at 45 degrees.
-fn ball(material: &str, samples: u32) -> Measured {
+/// Radiance of a point of a sphere of this material, viewed at 45 degrees.
+fn ball(material: &str, samples: u32) -> Estimate {
     let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0);
     let point = Vec3::new(1.0, 0.0, 1.0).normalize();
-    // Roulette would only bring noise: nothing is lost.
+    // Without absorption, Russian roulette would only add noise.
     measure(&scene.world(), &looking(Vec3::Z * 5.0 + point, point), &*path(r#""max_depth": 1000"#), samples)
 }
 
@@ -37,7 +38,8 @@ fn white_things_vanish() {
     }
 }
 
-/// The tables of what is scattered more than once are good to half a percent a surface, of which light meets two and more.
+/// The tables of multiple scattering are accurate to half a percent per surface, and paths hit two
+/// or more surfaces.
 #[test]
 fn rough_things_vanish_nearly() {
     for roughness in [0.05, 0.3, 1.0] {
@@ -49,15 +51,15 @@ fn rough_things_vanish_nearly() {
             r#"dielectric": {"ior": 1.5, "thin": true"#,
         ];
         for kind in kinds {
-            // Light that is caught in rough glass is what takes more.
+            // Light trapped in rough glass makes the estimate noisier.
             let samples = if kind.contains("ior") { 256 } else { 64 };
-            let Measured { mean, sigma } = ball(&of(kind), samples);
+            let Estimate { mean, sigma } = ball(&of(kind), samples);
             assert!((mean - 1.0).abs() < 3.0 * sigma + 0.007 && sigma < 0.004, "{kind}, {roughness}: {mean} ± {sigma}");
         }
     }
 }
 
-/// Without compensation light is lost, more on rougher things.
+/// Without energy compensation, light is lost, more on rougher surfaces.
 #[test]
 fn what_is_not_compensated_is_darker() {
     let of = |roughness: f64| {
@@ -73,7 +75,7 @@ fn what_is_not_compensated_is_darker() {
     assert!(rough < 0.95 && rough > 0.4 && smooth < 1.0 && smooth > rough + 0.02, "{smooth} {rough}");
 }
 
-/// Many things of all kinds that lose nothing, on a white floor in a white sky.
+/// Many objects of all kinds that absorb no light, on a white floor under a white sky.
 #[test]
 fn a_white_scene_is_white() {
     let shapes = [

@@ -1,12 +1,12 @@
-//! Panes and stacks of them.
+//! Glass panes, stacks of panes, and nested dielectrics.
 
 use crate::closed_forms::{fresnel, integral, stack};
-use crate::probe::{Measured, Scene, at_origin, looking, measure, path, traced};
+use crate::probe::{Estimate, Scene, at_origin, looking, measure, path, traced};
 use juggler_math::{Transform, Vec3};
 
-/// What is seen of a wall of radiance 1 at z = -5 through what stands before it, along a ray that comes down on z = 0 with
-/// this cosine.
-fn through(mut scene: Scene, cos: f32) -> Measured {
+/// Radiance of a wall of radiance 1 at `z = -5` behind the scene, along a ray that meets the plane
+/// `z = 0` at an angle of incidence of cosine `cos`.
+fn through(mut scene: Scene, cos: f32) -> Estimate {
     let wall = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
     scene = scene.placed(
         r#"{"rectangle": {"size": [4000, 4000]}}"#,
@@ -23,7 +23,7 @@ fn pane(scene: Scene, from: f32, to: f32, material: &str) -> Scene {
     scene.with(&shape, Vec3::ZERO, material)
 }
 
-/// The shares that a border mirrors and lets through.
+/// Reflectance and transmittance of an interface.
 fn border(cos: f64, ior: f64) -> [f64; 2] {
     let share = fresnel(cos, ior);
     [share, 1.0 - share]
@@ -36,7 +36,7 @@ fn one_pane_and_two() {
         let share = fresnel(cos, 1.5);
         let one = pane(Scene::new(), 0.0, 0.1, glass);
         through(one, cos as f32).is((1.0 - share) / (1.0 + share));
-        // (1 - R) / (1 + (2n - 1) R) for n panes (Stokes 1862).
+        // Transmittance of n panes: (1 - R) / (1 + (2n - 1) R) (Stokes 1862).
         let two = pane(pane(Scene::new(), 0.0, 0.1, glass), 0.2, 0.4, glass);
         through(two, cos as f32).is((1.0 - share) / (1.0 + 3.0 * share));
         let thin = Scene::new().placed(
@@ -49,7 +49,7 @@ fn one_pane_and_two() {
 }
 
 #[test]
-fn coloured_glass() {
+fn colored_glass() {
     let glass = r#"{"dielectric": {"ior": 1.5, "medium": {"color": 0.5, "distance": 0.2}}}"#;
     for cos in [1.0f64, 0.6] {
         let share = fresnel(cos, 1.5);
@@ -60,25 +60,26 @@ fn coloured_glass() {
     }
 }
 
-/// Water that reaches into its glass, and water that only touches air where the glass ends: the border between both is that
-/// of 1.33 and 1.5, wherever the water's own surface lies in the glass.
+/// Water that overlaps its glass, and water that only touches it: the interface between them has
+/// the indices 1.33 and 1.5, wherever the water's own surface lies inside the glass.
 #[test]
 fn water_in_a_glass() {
     let cos = 0.8f64;
-    // The cosine in a medium of this index.
+    // Cosine of the refraction angle in a medium of this index.
     let inside = |ior: f64| (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
     let [_, expected] = stack(&[border(cos, 1.5), border(inside(1.5), 1.33 / 1.5), border(inside(1.33), 1.0 / 1.33)]);
     for (glass_priority, water_priority, from) in [(1, 0, 0.25), (0, -3, 0.2001), (0, 1, 0.3), (5, 4, 0.4)] {
         let glass = format!(r#"{{"dielectric": {{"ior": 1.5, "priority": {glass_priority}}}}}"#);
         let water = format!(r#"{{"dielectric": {{"ior": 1.33, "priority": {water_priority}}}}}"#);
-        // Where the water has the higher priority, it is the glass that reaches into it.
+        // If the water has the higher priority, the glass extends into it.
         let (glass_from, water_to) = (if water_priority > glass_priority { 0.2 } else { 0.15 }, from);
         let scene = pane(pane(Scene::new(), glass_from, 0.5, &glass), 0.0, water_to, &water);
         through(scene, cos as f32).is(expected);
     }
 }
 
-/// A wall that shines within glass: its light spreads out on the way into the air, by the square of the index.
+/// An emitting wall inside glass: its radiance decreases on the way into the air by the square of
+/// the index.
 #[test]
 fn a_lamp_in_glass() {
     let upright = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
@@ -95,7 +96,7 @@ fn a_lamp_in_glass() {
     }
 }
 
-/// A drop in a block of glass: from glass to water and back.
+/// A layer of water inside a block of glass: from glass to water and back.
 #[test]
 fn one_within_another() {
     let scene = pane(Scene::new(), 0.0, 1.0, r#"{"dielectric": {"ior": 1.5}}"#);
@@ -105,8 +106,8 @@ fn one_within_another() {
     through(scene, 1.0).is(expected);
 }
 
-/// A floor under a pane in even light: T of all directions comes through, and what the floor gives back comes down again
-/// by R.
+/// A floor under a pane in uniform light: the hemispherical transmittance T comes through, and the
+/// pane returns the fraction R of the light that the floor reflects.
 #[test]
 fn light_through_a_pane() {
     let mirrored = |cos: f64| {
@@ -123,8 +124,9 @@ fn light_through_a_pane() {
     traced(sheet.in_light(1.0), &below, 256).is(expected);
 }
 
-/// A small lamp behind a pane lights the floor below only along refracted rays, that is by chance: as much as a formula
-/// says of a lamp straight above, which a pane of thickness t seems to bring nearer by t (1 - 1/n).
+/// A small light behind a pane lights the floor only through refracted rays, so by BSDF sampling.
+/// The closed form is that of a light straight above, which a pane of thickness t moves nearer by t
+/// (1 - 1/n).
 #[test]
 fn a_caustic_of_a_pane() {
     let lamp = r#"{"sphere": {"radius": 0.2}}"#;
@@ -139,13 +141,14 @@ fn a_caustic_of_a_pane() {
     let radiance = traced(scene, &looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO), 16_384);
     let seen = 0.2 / (3.0 - 0.2);
     let pane = fresnel(1.0, 1.5);
-    // A hundredth of the floor's light comes back by the pane; beside the axis all changes little.
+    // The pane returns a hundredth of the floor's light; off the axis the irradiance changes
+    // little.
     let expected = 0.01 * 10.0 * seen * seen * (1.0 - pane) / (1.0 + pane);
     let off = radiance.mean / expected - 1.0;
     assert!(off.abs() < 0.02 + 3.0 * radiance.sigma / radiance.mean, "{radiance:?} {expected}");
 }
 
-/// A ball of glass on a white floor in a white sky is not seen, whatever light it gathers.
+/// A glass sphere on a white floor under a white sky is invisible, whatever light it focuses.
 #[test]
 fn a_ball_on_a_white_floor() {
     let scene = Scene::new()

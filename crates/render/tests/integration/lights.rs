@@ -1,17 +1,17 @@
-//! Irradiance of a floor by lights whose closed forms are known. 256 estimates of 64 samples each where nothing else is
-//! said.
+//! Irradiance of a floor by lights with closed forms; 256 estimates of 64 samples each unless
+//! stated otherwise.
 
 use crate::closed_forms::{polygon, rectangle};
 use crate::probe::{Scene, at_origin, camera, json, looking, measure, path, traced};
 use juggler_math::{Transform, Vec3};
 use std::f64::consts::PI;
 
-/// The floor shows half of the irradiance, over π.
+/// Radiance of the floor per irradiance: albedo 0.5 over π.
 const SHOWN: f64 = 0.5 / PI;
 
 const LAMP: &str = r#"{"emissive": {"radiance": 3}}"#;
 
-/// Upside down, then there.
+/// Turned upside down, then moved.
 fn down(at: Vec3) -> Transform {
     Transform::rotation(Vec3::X, std::f32::consts::PI).unwrap().then(&Transform::translation(at))
 }
@@ -38,7 +38,7 @@ fn a_rectangle_above_and_one_beside() {
     let center = Vec3::new(0.3, 1.2, -0.5);
     let above = Scene::floor().placed(size, down(center), LAMP);
     traced(above, &at_origin(), 64).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 3.0]));
-    // It stands on the floor, its front towards +X.
+    // Stand the rectangle on the floor, its front towards +x.
     let center = Vec3::new(-1.0, 1.0, 0.4);
     let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
     let beside = Scene::floor().placed(size, upright.then(&Transform::translation(center)), LAMP);
@@ -61,19 +61,20 @@ fn a_triangle() {
     }
 }
 
-/// The form factor of equal squares face to face at a distance of their side is 0.19982, of two that share an edge at a
-/// right angle 0.20004 (Howell, C-11 and C-14).
+/// The form factor of two parallel unit squares at a distance of 1 is 0.19982, that of two that
+/// share an edge at a right angle 0.20004 (Howell, C-11 and C-14).
 #[test]
 fn squares_of_a_box() {
     let square = r#"{"rectangle": {"size": [1, 1]}}"#;
     let show = r#"{"diffuse": {"reflectance": 1}}"#;
     let lamp = r#"{"emissive": {"radiance": 1}}"#;
-    // Half way up, so that its picture is the floor.
+    // A camera at half height, whose picture is the floor.
     let floor = camera(
         r#"{"perspective": {"eye": [0, 0.5, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "vertical_fov_degrees": 90}}"#,
     );
     let opposed = Scene::new().with(square, Vec3::ZERO, show).placed(square, down(Vec3::Y), lamp);
-    // Pixels see different places: their spread is no measure of the error, which is far smaller.
+    // Pixels show different points, so their spread does not measure the error, which is far
+    // smaller.
     let mean = measure(&opposed.world(), &floor, &*path(""), 256).mean;
     assert!((mean - 0.199_825).abs() < 2e-4, "{mean}");
     let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
@@ -94,7 +95,7 @@ fn a_point_falls_off_with_the_square() {
 
 #[test]
 fn a_spot_fades_between_its_angles() {
-    // The floor's origin lies 30 degrees off its axis: in the beam, half way to the edge, outside.
+    // The origin lies 30 degrees off the axis: inside the beam, halfway to the cut-off, outside.
     for (beam, cutoff, share) in [(35.0, 40.0, 1.0), (20.0, 40.0, 0.5), (20.0, 29.0, 0.0)] {
         let light = format!(
             r#"{{"spot": {{"position": [0, 2, 0], "direction": [0.57735027, -1, 0], "intensity": 5,
@@ -105,7 +106,8 @@ fn a_spot_fades_between_its_angles() {
     }
 }
 
-/// Every place of its disk gives the same light, so the cosine is that of the axis times the mean one.
+/// All points of the sun's disk have the same radiance, so the irradiance has the cosine of its
+/// center times the mean cosine within the disk.
 #[test]
 fn a_sun_of_any_size() {
     for angle in [0.0f64, 0.53, 40.0] {
@@ -128,13 +130,13 @@ fn lights_add_up() {
         Scene::floor().in_light(0.2),
     ];
     let sum: f64 = each.map(|scene| traced(scene, &at_origin(), 1024).mean).iter().sum();
-    // The sphere hides a little of the sky.
+    // The sphere hides a small part of the sky.
     let hidden = SHOWN * 0.2 * PI * 0.25 / 6.0 * 2.0 / 6f64.sqrt();
     let all = Scene::floor().lit(point).lit(sun).with(sphere, at, LAMP).in_light(0.2);
     traced(all, &at_origin(), 1024).is(sum - hidden);
 }
 
-/// 1,024 tiles are as one.
+/// 1,024 tiles equal one rectangle.
 #[test]
 fn a_thousand_tiles() {
     let center = Vec3::new(0.3, 1.5, -0.2);
@@ -148,8 +150,8 @@ fn a_thousand_tiles() {
     traced(tiles, &at_origin(), 256).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 2.0]));
 }
 
-/// A white wall all round gives light back again and again: light that is evenly spread after the first time
-/// (Sumpner's integrating sphere).
+/// An integrating sphere: diffuse interreflection makes the irradiance uniform after the first
+/// bounce (Sumpner 1892).
 #[test]
 fn a_closed_sphere() {
     let shell = r#"{"sphere": {"radius": 2}}"#;
@@ -157,7 +159,7 @@ fn a_closed_sphere() {
     let light = r#"{"point": {"position": [0, 0, 0], "intensity": 12.566370614}}"#;
     let centered = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
     let shot = looking(Vec3::new(0.2, 0.3, 0.1), Vec3::new(0.0, 0.0, -2.0));
-    // E = I / r² = π, of which 0.5 / π is shown; twice as much by all that comes back.
+    // E = I / r² = π, of which 0.5 / π is visible; interreflection doubles it.
     traced(centered, &shot, 64).is(1.0);
     let light = r#"{"point": {"position": [0, 0, 1], "intensity": 12.566370614}}"#;
     let aside = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);

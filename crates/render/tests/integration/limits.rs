@@ -1,12 +1,12 @@
-//! Where paths end: depth, kinds of scattering, roulette.
+//! Limits of paths: depth, numbers of scattering events, and Russian roulette.
 
-use crate::probe::{Measured, Scene, at_origin, looking, measure, path, picture};
+use crate::probe::{Estimate, Scene, at_origin, looking, measure, path, picture};
 use crate::strategies;
 use juggler_math::Vec3;
 use std::f64::consts::PI;
 
-/// The inside of a closed sphere that glows 0.25 and gives back 0.75: bounce n adds 0.25 · 0.75ⁿ.
-fn furnace(options: &str) -> Measured {
+/// The inside of a closed sphere that emits 0.25 and reflects 0.75: bounce n adds 0.25 · 0.75ⁿ.
+fn furnace(options: &str) -> Estimate {
     let wall = r#"{"emissive": {"radiance": 0.25, "sides": "both", "material": {"diffuse": {"reflectance": 0.75}}}}"#;
     let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, wall);
     measure(&scene.world(), &looking(Vec3::X * 0.1, Vec3::new(0.0, 0.6, 0.8)), &*path(options), 64)
@@ -20,7 +20,7 @@ fn depth_cuts_the_series() {
     }
 }
 
-/// `max_diffuse` is how often matte surfaces scatter: light that a lamp sends to the last of them counts in full.
+/// `max_diffuse` limits the number of diffuse bounces; light samples at the last one still count.
 #[test]
 fn kinds_of_scattering_cut_the_series() {
     for most in [0, 1, 2, 4] {
@@ -53,7 +53,8 @@ fn roulette_changes_no_mean() {
     }
 }
 
-/// Inside dense glass radiance is larger than outside by the square of the index, and roulette must not take it for loss.
+/// Inside dense glass, radiance is larger by the square of the index, which Russian roulette must
+/// compensate.
 #[test]
 fn roulette_behind_glass() {
     let scene = Scene::new()
@@ -80,7 +81,7 @@ fn seeds_give_other_noise_of_the_same_mean() {
     assert!(first.iter().zip(&second).filter(|(a, b)| a == b).count() < 16, "two seeds, one noise");
     assert_eq!(first, of(1));
     let mean =
-        |pixels: &[juggler_math::Rgb]| Measured::of(&pixels.iter().map(|pixel| f64::from(pixel.r)).collect::<Vec<_>>());
+        |pixels: &[juggler_math::Rgb]| Estimate::of(&pixels.iter().map(|pixel| f64::from(pixel.r)).collect::<Vec<_>>());
     mean(&first).equals(mean(&second), "two seeds");
     mean(&first).is(0.5 / PI * 3.0 * PI / 9.0);
 }

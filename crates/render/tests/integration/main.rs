@@ -1,13 +1,14 @@
-//! The path tracer as a whole against closed forms, against two plain path tracers without multiple importance
-//! sampling, and against itself on other threads; the JSON snippets of the documentation.
+//! Tests of the whole path tracer: against closed forms, against two simple path tracers without
+//! multiple importance sampling, and against itself on other numbers of threads; and the JSON
+//! snippets of the documentation.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test")]
 
-mod balls;
+mod caustics;
 mod closed_forms;
+mod emissive_shapes;
 mod furnaces;
 mod glass;
-mod glowing;
 mod lights;
 mod limits;
 mod media;

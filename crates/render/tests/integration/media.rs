@@ -1,20 +1,20 @@
-//! Fog and coloured clear things.
+//! Participating media and absorbing dielectrics.
 
 use crate::closed_forms::integral;
-use crate::probe::{Measured, Scene, looking, measure, path, traced};
+use crate::probe::{Estimate, Scene, looking, measure, path, traced};
 use juggler_math::{Transform, Vec3};
 use std::f64::consts::PI;
 
 const WALL: &str = r#"{"emissive": {"radiance": [1, 2, 3]}}"#;
 
-/// A layer of this medium from y = 0 to y = `thickness`, a thousand wide.
+/// A layer of this medium from y = 0 to y = `thickness`, 2,000 wide.
 fn layer(thickness: f64, medium: &str) -> Scene {
     let shape = format!(r#"{{"cuboid": {{"min": [-1000, 0, -1000], "max": [1000, {thickness}, 1000]}}}}"#);
     Scene::new().with(&shape, Vec3::ZERO, &format!(r#"{{"boundary": {{"medium": {medium}}}}}"#))
 }
 
-/// Along a ray that comes down with this cosine.
-fn down(cos: f32) -> juggler_camera::Shot {
+/// A view of the origin from above, at an angle to the vertical of cosine `cos`.
+fn down(cos: f32) -> juggler_camera::ShutterCamera {
     looking(Vec3::new((1.0 - cos * cos).sqrt(), cos, 0.0) * 5.0, Vec3::ZERO)
 }
 
@@ -34,7 +34,7 @@ fn clear_things_absorb() {
     }
 }
 
-/// What comes straight through fog, when nothing that is scattered counts.
+/// Unscattered transmittance of fog, with scattered light disabled.
 #[test]
 fn fog_dims() {
     let scene = layer(0.6, r#"{"scattering": [0.5, 1, 2], "absorption": [0.2, 0, 0.1]}"#).with(
@@ -48,7 +48,8 @@ fn fog_dims() {
     }
 }
 
-/// Light of the sun scattered once by a layer (Chandrasekhar 1950, section 48): p ω E μ₀ / (μ₀ + μ) (1 - exp(-τ (1/μ₀ + 1/μ))).
+/// Single scattering of sunlight by a layer (Chandrasekhar 1950, section 48): p ω E μ₀ / (μ₀ + μ)
+/// (1 - exp(-τ (1/μ₀ + 1/μ))).
 #[test]
 fn fog_scatters_once() {
     let (sun, view, depth) = (2.0 / 3.0, 0.8f64, 0.6 * 0.5);
@@ -56,7 +57,7 @@ fn fog_scatters_once() {
         let medium = format!(r#"{{"scattering": 0.4, "absorption": 0.1, "anisotropy": {g}}}"#);
         let light = r#"{"directional": {"direction": [1, -2, 2], "intensity": 4}}"#;
         let measured = measure(&layer(0.6, &medium).lit(light).world(), &down(0.8), &*path(r#""max_depth": 2"#), 256);
-        // Light goes on towards the viewer: the cosine of the angle by which it is turned.
+        // Cosine of the angle between the incident and the scattered direction.
         let cos = 0.6 / 3.0 - 0.8 * 2.0 / 3.0;
         let phase = (1.0 - g * g) / (4.0 * PI * (1.0 + g * g - 2.0 * g * cos).powf(1.5));
         let share = 1.0 - (-depth * (1.0 / sun + 1.0 / view)).exp();
@@ -64,7 +65,8 @@ fn fog_scatters_once() {
     }
 }
 
-/// The same by a shape that glows, which rays that are scattered meet too: once over the way through a ball of fog.
+/// Single scattering of light from an emissive shape, which scattered rays can hit too, along a ray
+/// through a sphere of fog.
 #[test]
 fn fog_scatters_the_light_of_lamps_once() {
     let fog = r#"{"boundary": {"medium": {"scattering": 0.5}}}"#;
@@ -77,15 +79,15 @@ fn fog_scatters_the_light_of_lamps_once() {
     measured.is(once(0.5, 4000));
 }
 
-/// Along the z axis through a ball of radius 1: at each place light of a sphere at (0, 3, 0), dimmed on its way in and out.
-/// Solid angle by rings of the sphere, which is small.
+/// Single scattering along the z axis through a sphere of radius 1: at each point, the light of a
+/// sphere at (0, 3, 0), attenuated on the way in and out, integrated over rings of its solid angle.
 fn once(coefficient: f64, steps: u32) -> f64 {
     let at = |share: f64| {
         let z = 1.0 - 2.0 * share;
         let squared = 9.0 + z * z;
         let sin_squared = 0.25 / squared;
         let cos_max = (1.0 - sin_squared).sqrt();
-        // The mean over the cone of what is left on the way out of the fog, by rings and turns.
+        // Average the transmittance out of the fog over the cone of directions to the light.
         let mut sum = 0.0;
         let (rings, turns) = (8, 16);
         let axis = juggler_math::DVec3::new(0.0, 3.0, -z).normalize();
@@ -107,19 +109,19 @@ fn once(coefficient: f64, steps: u32) -> f64 {
     coefficient / (4.0 * PI) * 2.0 * mean
 }
 
-/// Fog that only scatters, so thick that nothing comes through: from a half space of it in even light, all light comes
-/// back. And one that absorbs gives back what Chandrasekhar's H function says: 1 - H(μ) √(1 - ω).
+/// Fog of albedo 1, optically thick: a half space in uniform light reflects all of it. With
+/// absorption, it reflects 1 - H(μ) √(1 - ω), with Chandrasekhar's H function.
 #[test]
 fn thick_fog_gives_light_back() {
     let albedo = 0.8f64;
     let scene = layer(40.0, r#"{"scattering": 0.8, "absorption": 0.2}"#).in_light(1.0);
     let shot = looking(Vec3::new(0.6, 40.8, 0.0), Vec3::new(0.0, 40.0, 0.0));
-    let measured: Measured = measure(&scene.world(), &shot, &*path(r#""max_depth": 1000, "roulette_depth": 20"#), 256);
+    let measured: Estimate = measure(&scene.world(), &shot, &*path(r#""max_depth": 1000, "roulette_depth": 20"#), 256);
     measured.is(1.0 - chandrasekhar(0.8, albedo) * (1.0 - albedo).sqrt());
 }
 
-/// H(μ) of isotropic scattering by iteration of 1 / H(μ) = √(1 - ω) + ω / 2 ∫ μ' H(μ') / (μ + μ') dμ' (Chandrasekhar 1950,
-/// section 38).
+/// H(μ) of isotropic scattering, by iteration of 1 / H(μ) = √(1 - ω) + ω / 2 ∫ μ' H(μ') / (μ + μ')
+/// dμ' (Chandrasekhar 1950, section 38).
 fn chandrasekhar(cos: f64, albedo: f64) -> f64 {
     const PLACES: u32 = 400;
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
@@ -134,7 +136,7 @@ fn chandrasekhar(cos: f64, albedo: f64) -> f64 {
     next(&values, cos)
 }
 
-/// A floor in fog under the sun: dimmed on the way down, and on the way up.
+/// A floor in fog under the sun: attenuated on the way down and on the way up.
 #[test]
 fn a_floor_under_fog() {
     let light = r#"{"directional": {"direction": [0, -1, 0], "intensity": 4}}"#;
@@ -145,7 +147,7 @@ fn a_floor_under_fog() {
     );
     let shot = looking(Vec3::new(3.0, 4.1, 0.0), Vec3::Y * 0.1);
     traced(scene, &shot, 4).is(0.5 / PI * 4.0 * (-0.25f64 - 0.25 / 0.8).exp());
-    // And in light from everywhere: each way is dimmed by its own length.
+    // In uniform light, each direction is attenuated over its own length.
     let scene = layer(0.6, r#"{"absorption": 0.5}"#).in_light(1.0).with(
         r#"{"plane": {}}"#,
         Vec3::Y * 0.1,
@@ -155,7 +157,7 @@ fn a_floor_under_fog() {
     traced(scene, &shot, 256).is(0.5 * arrives * (-0.25f64 / 0.8).exp());
 }
 
-/// A lamp in fog that hides a block of glass: light goes through where that is not.
+/// Fog of higher priority hides a block of glass: light in the fog passes it unchanged.
 #[test]
 fn glass_that_is_hidden_in_fog() {
     let fog = r#"{"boundary": {"priority": 1, "medium": {"scattering": 1}}}"#;
@@ -173,7 +175,7 @@ fn glass_that_is_hidden_in_fog() {
     traced(scene(), &shot, 256).equals(hidden, "hidden glass");
 }
 
-/// Fog that overlaps fog: where both are, the one of higher priority is.
+/// Overlapping media: the one of higher priority applies.
 #[test]
 fn fog_in_fog() {
     let boundary = |absorption: f64, priority: i32| {

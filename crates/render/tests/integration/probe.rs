@@ -1,9 +1,9 @@
-//! Tiny worlds written in JSON, and what a camera that sees one point of them measures.
+//! Small worlds built from JSON, and estimates of the radiance at one point.
 
+use juggler_camera::aov;
 use juggler_camera::film::{AnyFilter, Rect};
-use juggler_camera::layer;
 use juggler_camera::sampler::AnySampler;
-use juggler_camera::{AnyCamera, Shot};
+use juggler_camera::{AnyCamera, ShutterCamera};
 use juggler_integrator::{AnyIntegrator, Integrator};
 use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
@@ -20,7 +20,7 @@ pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))
 }
 
-/// A world that grows.
+/// Builder of a world.
 pub struct Scene {
     compiler: MaterialCompiler,
     pub objects: Vec<Object>,
@@ -29,19 +29,19 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Nothing, and black all around.
+    /// Empty scene with a black background.
     pub fn new() -> Self {
         Self::textured("{}")
     }
 
-    /// Nothing but textures by name.
+    /// Empty scene with named textures.
     pub fn textured(textures: &str) -> Self {
         let textures: BTreeMap<String, AnyTexture> = read(textures);
         let compiler = MaterialCompiler::new(TextureTable::new(textures), []);
         Self { compiler, objects: Vec::new(), lights: Vec::new(), background: read(r#"{"solid": {}}"#) }
     }
 
-    /// With a floor at y = 0 that gives back half of the light, so that it shows the irradiance over 2π.
+    /// Scene with a floor of albedo 0.5 at y = 0, whose radiance is its irradiance over 2π.
     pub fn floor() -> Self {
         Self::new().with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.5}}"#)
     }
@@ -50,12 +50,12 @@ impl Scene {
         self.compiler.compile(&read::<AnyMaterial>(material)).unwrap()
     }
 
-    /// One more shape, moved only.
+    /// Adds a translated shape.
     pub fn with(self, shape: &str, at: Vec3, material: &str) -> Self {
         self.placed(shape, Transform::translation(at), material)
     }
 
-    /// One more shape.
+    /// Adds a shape with a motion.
     pub fn placed(mut self, shape: &str, motion: impl Into<Motion>, material: &str) -> Self {
         let material = self.material(material);
         self.objects.push(Object::new(prepared(shape), motion, material));
@@ -67,13 +67,13 @@ impl Scene {
         self
     }
 
-    /// In front of a background that is prepared already.
+    /// Sets a background that is prepared already.
     pub fn before(mut self, background: AnyBackground) -> Self {
         self.background = background;
         self
     }
 
-    /// In light of this radiance from everywhere.
+    /// Sets a uniform background of this radiance.
     pub fn in_light(self, radiance: f32) -> Self {
         self.before(read(&format!(r#"{{"solid": {{"color": {radiance}}}}}"#)))
     }
@@ -89,20 +89,20 @@ pub fn prepared(shape: &str) -> AnyShape {
     shape
 }
 
-/// The path tracer with these options: `""` for none.
+/// The path integrator with these options; `""` for the defaults.
 pub fn path(options: &str) -> AnyIntegrator {
     read(&format!(r#"{{"path": {{{options}}}}}"#))
 }
 
-/// Edge of the picture: each of its pixels is an estimate of its own.
+/// Edge of the picture, in pixels; each pixel is an independent estimate.
 pub const EDGE: u32 = 16;
 
-pub fn camera(json: &str) -> Shot {
-    read::<AnyCamera>(json).project(UVec2::splat(EDGE)).unwrap().into()
+pub fn camera(json: &str) -> ShutterCamera {
+    read::<AnyCamera>(json).projection(UVec2::splat(EDGE)).unwrap().into()
 }
 
-/// From `eye` at the point `at`, and at next to nothing around it.
-pub fn looking(eye: Vec3, at: Vec3) -> Shot {
+/// Orthographic camera at `eye` that sees only the point `at`.
+pub fn looking(eye: Vec3, at: Vec3) -> ShutterCamera {
     let up = if (eye - at).cross(Vec3::Y).length() > 0.01 { Vec3::Y } else { Vec3::Z };
     camera(&format!(
         r#"{{"orthographic": {{"eye": {}, "look_at": {}, "up": {}, "height": 1e-4}}}}"#,
@@ -112,8 +112,8 @@ pub fn looking(eye: Vec3, at: Vec3) -> Shot {
     ))
 }
 
-/// From the side at the origin.
-pub fn at_origin() -> Shot {
+/// View of the origin from the side.
+pub fn at_origin() -> ShutterCamera {
     looking(Vec3::new(3.0, 2.0, 4.0), Vec3::ZERO)
 }
 
@@ -121,23 +121,23 @@ pub fn json(v: Vec3) -> String {
     format!("[{}, {}, {}]", v.x, v.y, v.z)
 }
 
-/// A mean and its standard error.
+/// Mean and its standard error.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured {
+pub struct Estimate {
     pub mean: f64,
     pub sigma: f64,
 }
 
-/// Whether all cases are asked for (`check.sh deep furnaces`); the check takes a few of them.
+/// Whether to run all cases (`check.sh deep furnaces`) instead of a few.
 pub fn is_deep() -> bool {
     std::env::var_os("JUGGLER_FURNACES").is_some()
 }
 
-/// What rounding to single precision along a path may do to a mean.
+/// Relative error of a mean by rounding to single precision along paths.
 const ROUNDING: f64 = 1e-4;
 
-impl Measured {
-    /// Of estimates that know nothing of each other.
+impl Estimate {
+    /// Mean of independent estimates.
     pub fn of(estimates: &[f64]) -> Self {
         let count = estimates.len() as f64;
         let mean = estimates.iter().sum::<f64>() / count;
@@ -145,7 +145,8 @@ impl Measured {
         Self { mean, sigma: (squares / (count - 1.0) / count).sqrt() }
     }
 
-    /// Within three standard errors, which must be below half a percent.
+    /// Asserts that the mean is within three standard errors of `expected`, and the standard error
+    /// below half a percent.
     #[track_caller]
     pub fn is(self, expected: f64) {
         let Self { mean, sigma } = self;
@@ -155,13 +156,14 @@ impl Measured {
         assert!((mean - expected).abs() <= allowed, "{mean} ± {sigma}, expected {expected}, off by {off:+.5}");
     }
 
-    /// Two estimates of the same: three standard errors of their difference (Welch's t at so many degrees of freedom).
+    /// Asserts that two estimates agree within three standard errors of their difference.
     #[track_caller]
     pub fn equals(self, other: Self, what: &str) {
         self.equals_within(other, 3.0, what);
     }
 
-    /// Two estimates of the same, which chance sets apart by less than so many standard errors: see [`family_wise_deviations`](juggler_math::testing::family_wise_deviations).
+    /// Asserts that two estimates agree within `deviations` standard errors of their difference;
+    /// see [`family_wise_deviations`](juggler_math::testing::family_wise_deviations).
     #[track_caller]
     pub fn equals_within(self, other: Self, deviations: f64, what: &str) {
         let sigma = (self.sigma * self.sigma + other.sigma * other.sigma).sqrt();
@@ -171,28 +173,28 @@ impl Measured {
     }
 }
 
-/// Red, green, blue of the mean of all pixels, `samples` each.
-pub fn colors(world: &World, camera: &Shot, integrator: &dyn Integrator, samples: u32) -> [Measured; 3] {
+/// Mean red, green and blue of all pixels, with `samples` each.
+pub fn colors(world: &World, camera: &ShutterCamera, integrator: &dyn Integrator, samples: u32) -> [Estimate; 3] {
     let pixels = picture(world, camera, integrator, samples, 1);
     [0, 1, 2].map(|channel| {
         let values: Vec<f64> = pixels.iter().map(|pixel| f64::from(pixel.to_array()[channel])).collect();
-        Measured::of(&values)
+        Estimate::of(&values)
     })
 }
 
-/// The red of the mean of all pixels, `samples` each.
-pub fn measure(world: &World, camera: &Shot, integrator: &dyn Integrator, samples: u32) -> Measured {
+/// Mean red of all pixels, with `samples` each.
+pub fn measure(world: &World, camera: &ShutterCamera, integrator: &dyn Integrator, samples: u32) -> Estimate {
     colors(world, camera, integrator, samples)[0]
 }
 
-/// What the path tracer, with no options, measures.
-pub fn traced(scene: Scene, camera: &Shot, samples: u32) -> Measured {
+/// Estimate by the path integrator with default options.
+pub fn traced(scene: Scene, camera: &ShutterCamera, samples: u32) -> Estimate {
     measure(&scene.world(), camera, &*path(""), samples)
 }
 
 pub fn picture(
     world: &World,
-    camera: &Shot,
+    camera: &ShutterCamera,
     integrator: &dyn Integrator,
     samples: u32,
     seed: u64,
@@ -202,28 +204,28 @@ pub fn picture(
 
 /// Red of all pixels of a square picture.
 pub fn square(world: &World, camera: &AnyCamera, integrator: &dyn Integrator, edge: u32, samples: u32) -> Vec<f64> {
-    let camera: Shot = camera.project(UVec2::splat(edge)).unwrap().into();
+    let camera: ShutterCamera = camera.projection(UVec2::splat(edge)).unwrap().into();
     pixels(world, &camera, integrator, edge, (samples, 1)).iter().map(|pixel| f64::from(pixel.r)).collect()
 }
 
 fn pixels(
     world: &World,
-    camera: &Shot,
+    camera: &ShutterCamera,
     integrator: &dyn Integrator,
     edge: u32,
     (samples, seed): (u32, u64),
 ) -> Vec<juggler_math::Rgb> {
     let (filter, pattern) =
-        (read::<AnyFilter>(r#"{"box": {}}"#).filter(samples), read::<AnySampler>(r#"{"sobol": {}}"#));
+        (read::<AnyFilter>(r#"{"box": {}}"#).sampler(samples), read::<AnySampler>(r#"{"sobol": {}}"#));
     let job = Job {
         world,
         camera,
         integrator,
         filter,
-        pattern: pattern.pattern(samples),
+        pattern: pattern.point_set(samples),
         samples,
         seed,
-        layers: &layer::NONE,
+        aovs: &aov::NO_AOVS,
         frames: None,
     };
     let pixels = Rect { x: 0, y: 0, width: edge, height: edge };

@@ -1,28 +1,29 @@
 //! Room furnaces: surfaces of albedo a that emit 1 − a have radiance 1 everywhere, whatever their
-//! shape, where all other light has radiance 1 too. Every shape that can emit, exact and as a mesh,
-//! from inside and outside, in many places, by every sampling strategy; and flat emitters in their
-//! own plane, where rounding decides on which side a point lies.
+//! shape, if all other light has radiance 1 too. Covers every emissive shape, exact and as a mesh,
+//! from inside and outside, under many transforms, with every sampling strategy; and flat emitters
+//! in their own plane, where rounding decides on which side a point lies.
 
-use crate::probe::{Measured, Scene, camera, is_deep, json, looking, measure, path, picture};
+use crate::probe::{Estimate, Scene, camera, is_deep, json, looking, measure, path, picture};
 use juggler_bvh::simd_levels;
-use juggler_camera::Shot;
+use juggler_camera::ShutterCamera;
 use juggler_integrator::Integrator;
 use juggler_math::testing::Random;
 use juggler_math::{Rgb, Transform, Vec3};
 use juggler_world::World;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Largest difference of a mean from 1, and largest standard error of a mean.
+/// Maximum difference of a mean from 1, and maximum standard error of a mean.
 const TOLERANCE: f64 = 0.002;
 const MOST_NOISE: f64 = 0.0008;
 
-/// The same standard error over the whole grid, whose bounds count it.
+/// Maximum standard error over the whole grid, whose tolerances include it.
 const DEEP_NOISE: f64 = 3.0 * MOST_NOISE;
 
-/// Factor on the samples of noisy means, at most.
+/// Maximum factor on the number of samples of noisy means.
 const MOST_REPEATS: u32 = 64;
 
-/// Standard errors that one of some 3,000 means exceeds by chance in one of a hundred runs (Šidák).
+/// Number of standard errors that one of about 3,000 means exceeds by chance in one of a hundred
+/// runs (Šidák).
 const FAMILY_WISE: f64 = 4.7;
 
 /// A surface that surrounds a room or stands alone; about 2 across, around the origin.
@@ -30,17 +31,17 @@ struct Room {
     name: &'static str,
     walls: Vec<(String, Transform)>,
     form: Form,
-    /// Whether even transforms leave a shape that is light-sampled by solid angle.
+    /// Whether transforms that keep angles leave a shape that is light-sampled by solid angle.
     by_solid_angle: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
-    /// Its front is outside, and no light comes in.
+    /// The front faces outside, and no light enters.
     Closed,
-    /// Walls whose front is inside.
+    /// The front of the walls faces inside.
     FacingIn,
-    /// Light goes around or through it, or it has no end.
+    /// Light passes around or through the shape, or the shape is infinite.
     Open,
 }
 
@@ -50,7 +51,7 @@ fn mesh(positions: &[Vec3], triangles: &[[usize; 3]]) -> String {
     format!(r#"{{"mesh": {{"positions": [{}], "triangles": {triangles:?}}}}}"#, positions.join(", "))
 }
 
-/// A cube of two triangles a side.
+/// A cube of two triangles per side.
 fn box_mesh() -> String {
     let corners: Vec<Vec3> =
         (0..8u8).map(|i| Vec3::new(f32::from(i & 1), f32::from(i >> 1 & 1), f32::from(i >> 2)) * 2.0 - 1.0).collect();
@@ -124,8 +125,7 @@ fn rooms() -> Vec<Room> {
     ]
 }
 
-/// Where rooms stand: even, stretched, mirrored, far from the origin; whether the transform keeps
-/// angles.
+/// Name and transform of each placement of the rooms, and whether the transform keeps angles.
 fn places() -> Vec<(&'static str, Transform, bool)> {
     let turn = Transform::rotation(Vec3::new(1.0, 2.0, 0.5), 0.9).unwrap();
     let scale = |scale: [f32; 3]| Transform::scale(Vec3::from(scale)).unwrap();
@@ -147,7 +147,7 @@ fn wall(albedo: f32, sides: &str) -> String {
     format!(r#"{{"emissive": {{"radiance": {}, "sides": "{sides}", "material": {reflecting}}}}}"#, 1.0 - albedo)
 }
 
-/// How a room is looked at.
+/// A room, its transform, material and sampling options.
 struct Case<'a> {
     room: &'a Room,
     place: (&'static str, Transform, bool),
@@ -158,7 +158,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn measure(&self, sides: &str, around: f32, shot: &Shot) -> Measured {
+    fn measure(&self, sides: &str, around: f32, shot: &ShutterCamera) -> Estimate {
         let material = wall(self.albedo, sides);
         let scene = self.room.walls.iter().fold(Scene::new().in_light(around), |scene, (shape, place)| {
             scene.placed(shape, place.then(&self.place.1), &material)
@@ -172,9 +172,10 @@ impl Case<'_> {
         self.measure_until_sure(&scene.world(), shot, &*path(&options))
     }
 
-    /// A mean. Over the whole grid, where its variance has a bound, its samples are taken four times
-    /// as often until its standard error is small enough; light samples alone are noisy at a high albedo.
-    fn measure_until_sure(&self, world: &World, shot: &Shot, integrator: &dyn Integrator) -> Measured {
+    /// Estimates a mean. Over the whole grid, if the variance is bounded, the number of samples is
+    /// quadrupled until the standard error is small enough; light sampling alone is noisy at a high
+    /// albedo.
+    fn measure_until_sure(&self, world: &World, shot: &ShutterCamera, integrator: &dyn Integrator) -> Estimate {
         let mut samples = self.samples;
         loop {
             let mean = measure(world, shot, integrator, samples);
@@ -185,13 +186,13 @@ impl Case<'_> {
         }
     }
 
-    /// A view from a point of the room's own space towards another.
-    fn view(&self, eye: Vec3, at: Vec3, degrees: f32) -> Shot {
+    /// View between two points of the room's object space.
+    fn view(&self, eye: Vec3, at: Vec3, degrees: f32) -> ShutterCamera {
         let (eye, at) = (json(self.place.1.point(eye)), json(self.place.1.point(at)));
         camera(&format!(r#"{{"perspective": {{"eye": {eye}, "look_at": {at}, "vertical_fov_degrees": {degrees}}}}}"#))
     }
 
-    /// The views that show radiance 1.
+    /// Checks the views that show radiance 1, and returns the failures.
     fn check(&self) -> Vec<String> {
         let inside = self.view(Vec3::new(0.3, 0.2, -0.25), Vec3::new(-0.4, -0.3, 0.1), 110.0);
         let outside = self.view(Vec3::new(1.5, 2.2, 3.1), Vec3::ZERO, 40.0);
@@ -224,11 +225,11 @@ impl Case<'_> {
         failures
     }
 
-    /// The most light that a closed room may let in whose walls emit outwards. Points of a wall within
-    /// a unit in the last place (of the coordinates) of an edge may be rounded to beyond the next wall,
-    /// whose front then lights them. With e the share of such points, a path of albedo a meets them
-    /// e / (1 - a) times and sees 1 - a each time: e in all. A square of side 2 s has a share of 2 / s
-    /// units.
+    /// Maximum radiance that leaks into a closed room whose walls emit outwards. Points of a wall
+    /// within a unit in the last place (of the coordinates) of an edge may be rounded to beyond the
+    /// next wall, whose front then lights them. With e the fraction of such points, a path of
+    /// albedo a meets them e / (1 - a) times and sees 1 - a each time: e in all. For a square of
+    /// side 2 s the fraction is 2 / s units.
     fn most_leaked(&self) -> f64 {
         let place = &self.place.1;
         let center = place.point(Vec3::ZERO);
@@ -237,14 +238,15 @@ impl Case<'_> {
         f64::from(2.0 * unit / sizes.into_iter().fold(f32::INFINITY, f32::min)).max(1e-6)
     }
 
-    /// Whether the variance of its samples has a bound: that of light samples that are not spread by
-    /// solid angle has none.
+    /// Whether the variance of the samples is bounded. Light samples that are not distributed by
+    /// solid angle have unbounded variance.
     fn has_bound(&self) -> bool {
         self.sampling != "light" || (self.room.by_solid_angle && self.place.2)
     }
 
-    /// Whether a mean is not 1. Means whose variance has no bound are judged by their own errors alone.
-    fn is_wrong(&self, &Measured { mean, sigma }: &Measured) -> bool {
+    /// Whether a mean differs from 1. Means of unbounded variance are judged by their standard
+    /// errors alone.
+    fn is_wrong(&self, &Estimate { mean, sigma }: &Estimate) -> bool {
         let off = (mean - 1.0).abs();
         if !is_deep() {
             return off > TOLERANCE || sigma > MOST_NOISE;
@@ -277,7 +279,7 @@ fn every_shape_that_emits_is_a_furnace() {
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 
-/// A pose from a seed: turned anyhow, moved, in even cases stretched.
+/// Random rotation and translation; for even numbers also a non-uniform scale.
 fn pose(random: &mut Random, number: u32) -> Transform {
     let turn = Transform::rotation(random.unit_vector(), random.range(0.0, TAU)).unwrap();
     let stretch = Vec3::new(random.range(0.3, 3.0), random.range(0.3, 3.0), random.range(0.3, 3.0));
@@ -295,7 +297,8 @@ const FLAT: [&str; 6] = [
     r#"{"polygon": {"vertices": [[-1, 0, -1], [-1, 0, 1], [0.5, 0, 1], [1, 0, 0], [0.5, 0, -1]]}}"#,
 ];
 
-/// What all pixels show that look at a lone flat shape in the dark, from its front or its back.
+/// Asserts that a lone flat shape in the dark has radiance 1 in all pixels, from its front or its
+/// back.
 fn alone(shape: &str, material: &str, side: f32) {
     let mut random = Random::new(3401);
     for number in 0..40 {

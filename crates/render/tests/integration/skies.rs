@@ -1,4 +1,4 @@
-//! Light from all around, against sums over all directions.
+//! Infinite lights, against sums over all directions.
 
 use crate::probe::{Scene, at_origin, read, traced};
 use juggler_light::background::{AnyBackground, Environment, Panorama};
@@ -11,12 +11,12 @@ fn prepared(mut background: AnyBackground) -> AnyBackground {
     background
 }
 
-/// What a floor of albedo 0.5 shows of the upper half: 0.5 / π ∫ L cos dω.
+/// Radiance of a floor of albedo 0.5 under the upper hemisphere: 0.5 / π ∫ L cos dω.
 fn shown(background: &AnyBackground, rows: u32) -> f64 {
     let columns = 2 * rows;
     let mut sum = 0.0;
     for i in 0..rows {
-        // Even in the squared sine, so that each place counts the same.
+        // Uniform in the squared cosine, so that all directions have the same weight.
         let height = ((f64::from(i) + 0.5) / f64::from(rows)).sqrt();
         for j in 0..columns {
             let (sin, cos) = ((f64::from(j) + 0.5) * TAU / f64::from(columns)).sin_cos();
@@ -35,7 +35,8 @@ fn the_same_everywhere() {
 
 #[test]
 fn from_the_horizon_to_the_zenith() {
-    // ∫ cos (h + (z - h) cos) dω / π = h / 3 + 2 z / 3, and (h + z) / 2 where it goes with the square.
+    // ∫ cos (h + (z - h) cos) dω / π = h / 3 + 2 z / 3, and (h + z) / 2 for a blend by the squared
+    // cosine.
     for (blend, expected) in [("sine", 1.0 / 3.0 + 8.0 / 3.0), ("sine_squared", 2.5)] {
         let sky = format!(r#"{{"gradient": {{"horizon": 1, "zenith": 4, "nadir": 9, "blend": "{blend}"}}}}"#);
         traced(Scene::floor().before(prepared(read(&sky))), &at_origin(), 256).is(0.5 * expected);
@@ -49,7 +50,7 @@ fn a_clear_sky_with_its_sun() {
     };
     let without = shown(&sky(false), 400);
     traced(Scene::floor().before(sky(false)), &at_origin(), 256).is(without);
-    // The sun's disk: its radiance at the middle, its solid angle, its height.
+    // The sun's disk: radiance at its center times solid angle times cosine.
     let towards = {
         let (sin, cos) = 135f64.to_radians().sin_cos();
         let up = 30f64.to_radians();
@@ -62,7 +63,7 @@ fn a_clear_sky_with_its_sun() {
     traced(Scene::floor().before(sky(true)), &at_origin(), 256).is(without + direct);
 }
 
-/// A grey panorama with a small hot spot.
+/// A gray panorama with a small bright spot.
 pub fn panorama() -> AnyBackground {
     let mut image = Image::filled(64, 32, Rgb::splat(0.3));
     for (x, y) in [(20, 8), (21, 8), (21, 9)] {

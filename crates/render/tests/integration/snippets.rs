@@ -1,4 +1,5 @@
-//! The JSON in a kind's documentation is what a reader will copy: it must be that kind, whole and right.
+//! The JSON snippets in the documentation of each kind must parse as that kind, since readers copy
+//! them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
@@ -12,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 /// JSON blocks in the documentation of each file of a folder of `crates`, except `lib.rs` and
-/// `mod.rs`, with the name of the file.
+/// `mod.rs`, with the file's name.
 fn snippets(folder: &str) -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
     let mut found = Vec::new();
@@ -41,13 +42,13 @@ fn each<T: DeserializeOwned>(folder: &str, least: usize, check: impl Fn(&T) -> R
 #[test]
 fn documented_kinds_are_right() {
     let text = |error: &dyn std::error::Error| error.to_string();
-    each("camera/src", 3, |camera: &AnyCamera| camera.project([4, 3].into()).map(|_| ()).map_err(|e| text(&e)));
+    each("camera/src", 3, |camera: &AnyCamera| camera.projection([4, 3].into()).map(|_| ()).map_err(|e| text(&e)));
     each("texture/src", 17, |texture: &AnyTexture| texture.check().map_err(|e| text(&e)));
     each("light/src", 4, |light: &AnyLight| light.check().map_err(|e| text(&e)));
     each("light/src/background", 3, |background: &AnyBackground| background.check().map_err(|e| text(&e)));
     each("material/src", 14, |material: &AnyMaterial| {
         match MaterialCompiler::new(TextureTable::default(), []).compile(material) {
-            // Names stand for textures and materials of the scene around.
+            // Accept names of textures and materials, which a scene would define.
             Err(error) if !error.is_unknown_name() => Err(text(&error)),
             _ => Ok(()),
         }

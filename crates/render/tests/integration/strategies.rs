@@ -1,69 +1,77 @@
-//! The path tracer, which weighs two ways to find light against each other, against two that know one of them only, and
-//! have no weights to get wrong.
+//! The path integrator, which combines light and BSDF sampling by multiple importance sampling,
+//! against two path tracers that use one strategy each and need no weights.
 
 use crate::probe::{Scene, looking, measure, path};
 use crate::skies::panorama;
 use juggler_bsdf::Scatter;
-use juggler_camera::Shot;
-use juggler_camera::layer::LightGroup;
-use juggler_integrator::{Emit, Integrator, PathState, Trail};
+use juggler_camera::ShutterCamera;
+use juggler_camera::aov::LightGroup;
+use juggler_integrator::{Integrator, PathHistory, PathState, VertexOutput};
 use juggler_math::testing::family_wise_deviations;
 use juggler_math::{Ray, Rgb, Transform, Vec3};
-use juggler_world::{Receiver, Shadows, Vertex, World};
+use juggler_world::{LightSampleContext, ShadowMode, Vertex, World};
 
 const MAX_DEPTH: u32 = 12;
 
-/// How light is found.
+/// Sampling strategy.
 #[derive(Clone, Copy, PartialEq)]
-enum Finds {
-    /// Where the path happens to meet it.
-    Lights,
-    /// By asking a light at each vertex; met by chance only in mirrors, through clear glass, and directly.
-    Asks,
+enum Strategy {
+    /// BSDF sampling: emission counts where paths hit it.
+    Bsdf,
+    /// Next-event estimation at each vertex; emission that paths hit counts only from the camera or
+    /// after specular surfaces.
+    Light,
 }
 
-/// Surfaces only: no media, no solids within each other.
-struct Plain(Finds);
+/// Path tracer for surfaces only, without media and nested dielectrics.
+struct Plain(Strategy);
 
 impl Integrator for Plain {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        let choice = path.sampler.at(0).next_2d();
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        let choice = path.sampler.skipped(0).next_2d();
         let wo = -ray.direction;
-        let shade = world.shade(vertex, wo, 1.0, choice.x);
-        if shade.opacity < 1.0 && choice.y >= shade.opacity {
-            return emit.follow(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, path.trail, 0);
+        let shading = world.shade(vertex, wo, 1.0, choice.x);
+        if shading.opacity < 1.0 && choice.y >= shading.opacity {
+            return output.continue_path(
+                vertex.surface.spawn_ray(ray.direction, ray.time),
+                Rgb::WHITE,
+                path.history,
+                0,
+            );
         }
-        if self.0 == Finds::Lights || path.trail.pdf == f32::INFINITY {
-            emit.add(shade.emission, LightGroup::REST);
+        if self.0 == Strategy::Bsdf || path.history.pdf == f32::INFINITY {
+            output.add(shading.emission, LightGroup::REST);
         }
         if path.depth + 1 >= MAX_DEPTH {
             return;
         }
-        let (surface, local) = (&vertex.surface, shade.frame.to_local(wo));
-        if self.0 == Finds::Asks {
-            let normal = if shade.transmissive { Vec3::ZERO } else { shade.frame.normal };
-            let to = Receiver { point: surface.point, error: surface.error, normal, time: ray.time };
-            if let Some(light) = world.sample_light(&to, path.sampler.at(1).next_2d()) {
-                let (scattered, _) = shade.bsdf.eval_pdf(local, shade.frame.to_local(light.wi));
-                let shadow = surface.spawn_to(light.wi, light.distance, ray.time);
-                emit.if_visible(shadow, light.radiance * scattered * (1.0 / light.pdf), LightGroup::REST);
+        let (surface, local) = (&vertex.surface, shading.frame.to_local(wo));
+        if self.0 == Strategy::Light {
+            let normal = if shading.transmissive { Vec3::ZERO } else { shading.frame.normal };
+            let to = LightSampleContext { point: surface.point, error: surface.position_error, normal, time: ray.time };
+            if let Some(light) = world.sample_light(&to, path.sampler.skipped(1).next_2d()) {
+                let (scattered, _) = shading.bsdf.eval_pdf(local, shading.frame.to_local(light.wi));
+                let shadow = surface.spawn_ray_to(light.wi, light.distance, ray.time);
+                output.add_shadow_ray(shadow, light.radiance * scattered * (1.0 / light.pdf), LightGroup::REST);
             }
         }
-        if let Some(sample) = shade.bsdf.sample(local, path.sampler.at(2).next_2d(), path.sampler.at(3).next_1d()) {
+        if let Some(sample) =
+            shading.bsdf.sample(local, path.sampler.skipped(2).next_2d(), path.sampler.skipped(3).next_1d())
+        {
             let pdf = if sample.scatter == Scatter::Specular { f32::INFINITY } else { sample.pdf };
-            let way = surface.spawn(shade.frame.to_world(sample.wi), ray.time);
-            emit.follow(way, sample.weight, Trail { pdf, ..path.trail }, 1);
+            let way = surface.spawn_ray(shading.frame.to_world(sample.wi), ray.time);
+            output.continue_path(way, sample.weight, PathHistory { pdf, ..path.history }, 1);
         }
     }
 
-    fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
-        if self.0 == Finds::Lights || path.trail.pdf == f32::INFINITY {
-            emit.add(world.background(ray), LightGroup::REST);
+    fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
+        if self.0 == Strategy::Bsdf || path.history.pdf == f32::INFINITY {
+            output.add(world.background_radiance(ray), LightGroup::REST);
         }
     }
 
-    fn shadows(&self) -> Shadows {
-        Shadows::Physical
+    fn shadows(&self) -> ShadowMode {
+        ShadowMode::Physical
     }
 }
 
@@ -80,8 +88,8 @@ fn rough(roughness: f32) -> Scene {
     plate(&format!(r#"{{"conductor": {{"metal": "copper", "roughness": {roughness}}}}}"#))
 }
 
-/// From where the mirror image of a lamp straight above is a little beside the point.
-fn view() -> Shot {
+/// View in which the mirror image of a light straight above lies a little beside the point.
+fn view() -> ShutterCamera {
     looking(Vec3::new(1.0, 2.0, 0.5), Vec3::ZERO)
 }
 
@@ -90,7 +98,7 @@ fn classic() -> Scene {
     lamp(plate(material), 0.6, Vec3::new(-1.0, 2.0, -0.5), 4.0).in_light(0.2)
 }
 
-/// A box with a lamp in its ceiling, a block of rough glass and a stretched ball that glows.
+/// A box with a light in its ceiling, a sphere of rough glass and an emissive ellipsoid.
 fn room() -> Scene {
     let walls = r#"{"cuboid": {"min": [-2, 0, -2], "max": [2, 4, 2]}}"#;
     let down = Transform::rotation(Vec3::X, std::f32::consts::PI).unwrap();
@@ -124,12 +132,12 @@ fn lid(material: &str) -> Scene {
     plate(material).placed(r#"{"rectangle": {"size": [3, 3]}}"#, down, r#"{"emissive": {"radiance": 1}}"#)
 }
 
-fn inside() -> Shot {
+fn inside() -> ShutterCamera {
     looking(Vec3::new(0.0, 2.0, 1.8), Vec3::new(0.3, 0.0, -0.2))
 }
 
-/// Worlds of surfaces with light that both ways find.
-pub fn scenes() -> Vec<(&'static str, Scene, Shot)> {
+/// Worlds of surfaces whose light both strategies find.
+pub fn scenes() -> Vec<(&'static str, Scene, ShutterCamera)> {
     let above = Vec3::new(-1.0, 2.0, -0.5);
     vec![
         ("small lamp, glossy plate", lamp(rough(0.35), 0.3, above, 50.0), view()),
@@ -152,21 +160,21 @@ fn all_ways_find_the_same_light() {
     for (name, scene, shot) in scenes() {
         let world = scene.world();
         let both = measure(&world, &shot, &*path(r#""max_depth": 12, "roulette_depth": null"#), 256);
-        let met = measure(&world, &shot, &Plain(Finds::Lights), 1024);
-        let asked = measure(&world, &shot, &Plain(Finds::Asks), 1024);
-        println!("{name}: {both:?} {met:?} {asked:?}");
-        both.equals(met, &format!("{name}, met"));
-        both.equals(asked, &format!("{name}, asked"));
+        let bsdf_sampled = measure(&world, &shot, &Plain(Strategy::Bsdf), 1024);
+        let light_sampled = measure(&world, &shot, &Plain(Strategy::Light), 1024);
+        println!("{name}: {both:?} {bsdf_sampled:?} {light_sampled:?}");
+        both.equals(bsdf_sampled, &format!("{name}, met"));
+        both.equals(light_sampled, &format!("{name}, asked"));
     }
 }
 
-/// `sampling` changes the noise alone, also of light by way of polished balls.
+/// The `sampling` option changes only the noise, also for caustics of specular spheres.
 #[test]
 fn all_settings_of_sampling_have_one_mean() {
-    // Light samples by way of glass are right, but too noisy to tell.
-    let balls = crate::balls::SCENES.into_iter().filter(|(name, _)| !name.contains("glass") && *name != "sky");
-    let balls = balls.map(|(name, build)| (name, build(false), crate::balls::look()));
-    let all: Vec<_> = scenes().into_iter().chain(balls).collect();
+    // Light sampling through glass is correct, but too noisy for this test.
+    let caustics = crate::caustics::SCENES.into_iter().filter(|(name, _)| !name.contains("glass") && *name != "sky");
+    let caustics = caustics.map(|(name, build)| (name, build(false), crate::caustics::look()));
+    let all: Vec<_> = scenes().into_iter().chain(caustics).collect();
     assert!(all.len() >= 12);
     let deviations = family_wise_deviations(2 * all.len());
     for (name, scene, shot) in all {

@@ -1,18 +1,18 @@
-//! The same bits, whoever does what.
+//! Results are bit-identical for any number of threads and any schedule.
 
 use crate::probe::{Scene, path, read};
+use juggler_camera::aov;
 use juggler_camera::film::{AnyFilter, Rect};
-use juggler_camera::layer;
 use juggler_camera::sampler::AnySampler;
-use juggler_camera::{AnyCamera, Shot};
+use juggler_camera::{AnyCamera, ShutterCamera};
 use juggler_math::{Rgb, Transform, UVec2, Vec3};
-use juggler_render::{Control, Job, Schedule, Scheduler, Stopped, Work, render};
+use juggler_render::{Cancelled, Control, Job, Schedule, Scheduler, Work, render};
 use juggler_world::World;
 
 const SIZE: UVec2 = UVec2::new(30, 22);
 const SAMPLES: u32 = 6;
 
-/// Glass, fog, textures, lamps of all kinds, a sky.
+/// Glass, fog, textures, all kinds of lights, and a sky.
 fn world() -> World {
     let textures = r#"{"tiles": {"checker": {"size": 0.5, "even": [0.9, 0.5, 0.2], "odd": [0.1, 0.3, 0.8]}},
         "clouds": {"fbm": {}}}"#;
@@ -45,9 +45,9 @@ fn world() -> World {
         .world()
 }
 
-fn camera() -> Shot {
+fn camera() -> ShutterCamera {
     let json = r#"{"thin_lens": {"eye": [0, 2, 6], "look_at": [0, 0.8, 0], "lens_radius": 0.05, "focus_distance": 6}}"#;
-    read::<AnyCamera>(json).project(SIZE).unwrap().into()
+    read::<AnyCamera>(json).projection(SIZE).unwrap().into()
 }
 
 fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
@@ -62,11 +62,11 @@ fn threads_and_tiles_cannot_be_seen() {
         world: &world,
         camera: &camera,
         integrator: &*integrator,
-        filter: filter.filter(SAMPLES),
-        pattern: pattern.pattern(SAMPLES),
+        filter: filter.sampler(SAMPLES),
+        pattern: pattern.point_set(SAMPLES),
         samples: SAMPLES,
         seed: 7,
-        layers: &layer::NONE,
+        aovs: &aov::NO_AOVS,
         frames: None,
     };
     let region = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
@@ -77,7 +77,7 @@ fn threads_and_tiles_cannot_be_seen() {
             let mut rows = Vec::new();
             let schedule = Schedule { scheduler, band_pixels: 300 };
             pool.install(|| {
-                render::<Stopped>(&job, region, schedule, &Control::default(), |band| {
+                render::<Cancelled>(&job, region, schedule, &Control::default(), |band| {
                     rows.extend(band);
                     Ok(())
                 })
@@ -94,5 +94,5 @@ fn threads_and_tiles_cannot_be_seen() {
             assert_eq!(*pixel, whole[(row * SIZE.x + column) as usize], "{column}, {row} of {part:?}");
         }
     }
-    assert!(whole.iter().collect::<std::collections::BTreeSet<_>>().len() > 500, "a picture, not a colour");
+    assert!(whole.iter().collect::<std::collections::BTreeSet<_>>().len() > 500, "a picture, not a color");
 }

@@ -1,11 +1,12 @@
-//! What cameras and mirrors do to what shines.
+//! Emitters as seen by cameras and in mirrors.
 
 use crate::closed_forms::fresnel;
 use crate::probe::{EDGE, Scene, camera, looking, measure, path, picture};
 use juggler_math::{Transform, Vec3};
 use std::f64::consts::PI;
 
-/// A small disk far behind the sharp plane is a circle of radius R |d - f| / f, evenly bright, and as much light in all.
+/// A small disk far behind the focal plane appears as a uniform circle of confusion of radius
+/// `R |d - f| / f`, with the same total light.
 #[test]
 fn a_circle_of_confusion() {
     let (lens, focus, distance, radius) = (0.2f64, 4.0, 6.0, 0.02);
@@ -33,13 +34,13 @@ fn a_circle_of_confusion() {
     }
     let light = 100.0 * PI * radius * radius;
     assert!((total / light - 1.0).abs() < 0.01, "{total} {light}");
-    // Mean squares: of the circle, of the disk's own image, of a pixel.
+    // Mean squared radii of the circle of confusion, of the disk's own image, and of a pixel.
     let circle = lens * (distance - focus) / focus;
     let expected = circle * circle / 2.0 + radius * radius / 2.0 + edge * edge / 6.0;
     assert!((moment / total / expected - 1.0).abs() < 0.02, "{} {expected}", moment / total);
 }
 
-/// A lamp in a mirror is as bright as the mirror gives back, in a curved one too.
+/// An emitter in a mirror has its radiance times the reflectance, in a curved mirror too.
 #[test]
 fn a_lamp_in_a_mirror() {
     let lamp = r#"{"emissive": {"radiance": 3}}"#;
@@ -55,10 +56,10 @@ fn a_lamp_in_a_mirror() {
     for bent in [false, true] {
         seen(r#"{"conductor": {"reflectance": 0.7, "grazing": 0.7}}"#, bent).is(2.1);
         seen(r#"{"phong": {"diffuse": 0, "specular": 0, "reflection": 0.4}}"#, bent).is(1.2);
-        // The black inside of the body below takes what goes through.
+        // The tint of 0 absorbs the transmitted light.
         seen(r#"{"dielectric": {"ior": 1.5, "transmission_tint": 0}}"#, bent).is(3.0 * fresnel(0.8, 1.5));
     }
-    // Copper-like indices: Fresnel for a complex index.
+    // Fresnel reflectance for a complex index similar to copper's.
     let (eta, k, cos) = (0.5f64, 3.0f64, 0.8f64);
     let sin2 = 1.0 - cos * cos;
     let part = eta * eta - k * k - sin2;
@@ -70,7 +71,7 @@ fn a_lamp_in_a_mirror() {
     seen(r#"{"conductor": {"eta": 0.5, "k": 3}}"#, false).is(1.5 * (across + along));
 }
 
-/// Two mirrors face to face dim each time.
+/// Two parallel mirrors attenuate at each reflection.
 #[test]
 fn mirrors_in_mirrors() {
     let mirror = r#"{"conductor": {"reflectance": 0.9, "grazing": 0.9}}"#;
@@ -80,7 +81,8 @@ fn mirrors_in_mirrors() {
         .placed(r#"{"plane": {}}"#, at(0.0), mirror)
         .placed(r#"{"plane": {}}"#, at(2.0), mirror)
         .with(r#"{"plane": {}}"#, Vec3::Y * 20.25, r#"{"emissive": {"radiance": 1, "sides": "both"}}"#);
-    // Up by half as much as to and fro: 20.25 up are 40.5 across, which from z = 1 is 20 mirrors, one every 2.
+    // The ray rises half as fast as it travels across: 20.25 up are 40.5 across, which from z = 1
+    // are 20 reflections, one every 2 units.
     let view = looking(Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, 0.5, 0.0));
     measure(&scene.world(), &view, &*path(r#""roulette_depth": null"#), 4).is(0.9f64.powi(20));
 }

@@ -1,15 +1,15 @@
-//! Pictures of rough balls in a white world: what loses no energy vanishes, seen from outside and, where light goes through
-//! it, from within, where radiance is n² times as large. With `JUGGLER_FURNACES=all` over a whole grid: `check.sh deep
-//! furnaces`.
+//! White furnaces of rough spheres: materials without energy loss are invisible from outside and,
+//! if they transmit light, from inside, where radiance is n² times as large. `JUGGLER_FURNACES=all`
+//! runs the whole grid: `check.sh deep furnaces`.
 
-use crate::probe::{Measured, Scene, is_deep, path, read, square};
+use crate::probe::{Estimate, Scene, is_deep, path, read, square};
 use juggler_camera::AnyCamera;
 use juggler_math::Vec3;
 use juggler_math::testing::family_wise_deviations;
 
-/// How far a mean may be off.
+/// Tolerance of a mean.
 const NEAR: f64 = 0.002;
-/// A picture of a ball of radius 1 at the origin that covers all of it, by pixel.
+/// Pixels of a picture of a sphere of radius 1 at the origin, which fills it.
 fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
     let camera = if is_within {
         WITHIN
@@ -19,14 +19,14 @@ fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
     ball_by(camera, Scene::new(), material, edge, samples)
 }
 
-/// A camera inside the ball.
+/// A camera inside the sphere.
 pub const WITHIN: &str =
     r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#;
 
-/// A picture by a camera of that ball, of a material that may name textures of the scene.
+/// Pixels of a picture of that sphere by `camera`; the material may name textures of the scene.
 pub fn ball_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
     let world = scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
-    // Light may be caught for long; roulette would only bring noise.
+    // Light may be trapped for long; Russian roulette would only add noise.
     let integrator = path(r#""max_depth": 1000"#);
     square(&world, &read::<AnyCamera>(camera), &*integrator, edge, samples)
 }
@@ -68,9 +68,9 @@ fn glasses() -> Vec<Glass> {
     all
 }
 
-/// Checks that a white picture is white: its mean, and each of its pixels.
+/// Checks that the mean and the brightest pixel of a white picture are near 1.
 fn check(what: &str, pixels: &[f64], cases: usize) -> Result<(), String> {
-    let (Measured { mean, sigma }, most) = (Measured::of(pixels), pixels.iter().copied().fold(0.0, f64::max));
+    let (Estimate { mean, sigma }, most) = (Estimate::of(pixels), pixels.iter().copied().fold(0.0, f64::max));
     println!("{what}: mean {mean:.5} ± {sigma:.5}, brightest {most:.4}");
     let is_near = (mean - 1.0).abs() <= NEAR + family_wise_deviations(cases) * sigma && sigma < 0.5 * NEAR;
     if is_near && most <= 1.5 { Ok(()) } else { Err(format!("{what}: {mean} ± {sigma}, brightest {most}")) }
@@ -86,7 +86,7 @@ fn rough_glass_vanishes() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Fireflies are rare: they show in large pictures.
+/// Fireflies are rare and appear only in large pictures.
 #[test]
 fn rough_glass_has_no_bright_pixels() {
     let edge = if is_deep() { 256 } else { 32 };
@@ -114,7 +114,7 @@ fn rough_metal_vanishes() {
     }
 }
 
-/// Light that a leaning normal would send to the wrong side of the surface is not lost.
+/// Light that a tilted shading normal would send to the wrong side of the surface is not lost.
 #[test]
 fn glass_under_a_map_of_normals_vanishes() {
     let few = [(1.5, 0.5, 1.0, false), (1.5, 0.5, 0.3, true)];
@@ -128,7 +128,8 @@ fn glass_under_a_map_of_normals_vanishes() {
         let fields = format!(r#""texture": [0.7, 0.45, 0.9], "strength": {strength}, "material": {glass}"#);
         let material = format!(r#"{{"normal_map": {{{fields}}}}}"#);
         let scale = if *is_within { ior * ior } else { 1.0 };
-        // The densest and roughest glass needs that many samples for its standard error to be below half of `NEAR`.
+        // The densest and roughest glass needs this many samples for a standard error below half of
+        // `NEAR`.
         let samples = if is_deep() { 512 } else { 256 };
         let pixels: Vec<f64> =
             ball(&material, *is_within, 32, samples).into_iter().map(|value| value / scale).collect();
@@ -137,8 +138,8 @@ fn glass_under_a_map_of_normals_vanishes() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Patchworks and layers of `principled` keep 99 %, also of dense glass and metal from within,
-/// where light meets the metal some thirty times before it leaves.
+/// Mixtures and layers of `principled` keep 99 % of the energy, also dense glass with metal from
+/// inside, where light hits the metal about thirty times before it leaves.
 #[test]
 fn principled_glass_and_what_lies_over_it_vanishes() {
     let outside = [
@@ -163,7 +164,7 @@ fn principled_glass_and_what_lies_over_it_vanishes() {
         let samples = if ior.is_some() { 256 } else { 144 };
         let pixels: Vec<f64> =
             ball(&material, ior.is_some(), 32, samples).into_iter().map(|value| value / scale).collect();
-        let Measured { mean, sigma } = Measured::of(&pixels);
+        let Estimate { mean, sigma } = Estimate::of(&pixels);
         println!("{material}, from within: {}: {mean:.5} ± {sigma:.5}", ior.is_some());
         let allowed = family_wise_deviations(all.len()) * sigma;
         assert!(

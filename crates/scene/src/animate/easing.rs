@@ -1,5 +1,5 @@
-//! Ease: how a stretch begins and ends, as a cubic Bezier curve from (0, 0) to (1, 1) as in CSS (Easing Functions
-//! Level 1, section 2.2).
+//! Easing between two keys, as a cubic Bézier curve from (0, 0) to (1, 1) as in CSS (Easing
+//! Functions Level 1, section 2.2).
 //!
 //! ```json
 //! {"ease": "in_out"}
@@ -9,34 +9,34 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Halvings of the interval in which the curve's parameter is looked for: all that 64 bits can tell apart.
-const HALVINGS: u32 = 60;
+/// Bisection steps for the curve's parameter, sufficient for the precision of 64 bits.
+const BISECTION_STEPS: u32 = 60;
 
-/// How a stretch between two keys begins and ends.
+/// Named easing between two keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Easing {
-    /// Evenly.
+    /// Constant rate of change.
     #[default]
     Linear,
-    /// Begins slowly: `[0.42, 0, 1, 1]`.
+    /// Slow start: `[0.42, 0, 1, 1]`.
     In,
-    /// Ends slowly: `[0, 0, 0.58, 1]`.
+    /// Slow end: `[0, 0, 0.58, 1]`.
     Out,
-    /// Begins and ends slowly: `[0.42, 0, 0.58, 1]`.
+    /// Slow start and end: `[0.42, 0, 0.58, 1]`.
     InOut,
-    /// Stays at the value of its first key until the next.
+    /// Holds the value of the earlier key until the next.
     Step,
 }
 
-/// One of the named ways, or the two inner points x1, y1, x2, y2 of a cubic Bezier curve as in CSS, x1 and x2 between
-/// 0 and 1.
+/// Easing between two keys: a name, or the inner control points x1, y1, x2, y2 of a cubic Bézier
+/// curve as in CSS. x (time) must be from 0 to 1; y (value) may leave this range to overshoot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Ease {
-    /// By name.
+    /// Named easing.
     Named(Easing),
-    /// By its inner points.
+    /// Inner control points.
     Bezier([f64; 4]),
 }
 
@@ -47,22 +47,22 @@ impl Default for Ease {
 }
 
 impl Ease {
-    /// Whether the value stays until the next key.
+    /// Whether the value is constant until the next key.
     pub fn is_step(&self) -> bool {
         *self == Self::Named(Easing::Step)
     }
 
-    /// Why there is no such curve.
-    pub fn wrong(&self) -> Option<&'static str> {
+    /// Error message if the control points are invalid.
+    pub fn error(&self) -> Option<&'static str> {
         match self {
             Self::Bezier([x1, _, x2, _]) if !(0.0..=1.0).contains(x1) || !(0.0..=1.0).contains(x2) => {
-                Some("x1 and x2 (the first and third number) must be between 0 and 1: time does not run backwards")
+                Some("x1 and x2 (the first and third numbers) must be between 0 and 1, since they are times")
             }
             _ => None,
         }
     }
 
-    /// How far the value has come when this share of the time has gone.
+    /// Fraction of the change of value at a fraction of the time between two keys.
     pub fn at(&self, share: f64) -> f64 {
         match self {
             Self::Named(Easing::Linear | Easing::Step) => share,
@@ -74,21 +74,21 @@ impl Ease {
     }
 }
 
-/// The y where the curve has this x, which never falls along the curve.
+/// Solves the curve for y at x. x increases monotonically along the curve.
 fn bezier([x1, y1, x2, y2]: [f64; 4], x: f64) -> f64 {
     if x <= 0.0 || x >= 1.0 {
         return x.clamp(0.0, 1.0);
     }
-    let along = |a: f64, b: f64, s: f64| {
+    let bezier_coordinate = |a: f64, b: f64, s: f64| {
         let rest = 1.0 - s;
         s * (3.0 * rest * (rest * a + s * b) + s * s)
     };
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTION_STEPS {
         let middle = 0.5 * (low + high);
-        if along(x1, x2, middle) < x { low = middle } else { high = middle }
+        if bezier_coordinate(x1, x2, middle) < x { low = middle } else { high = middle }
     }
-    along(y1, y2, 0.5 * (low + high))
+    bezier_coordinate(y1, y2, 0.5 * (low + high))
 }
 
 #[cfg(test)]
@@ -97,7 +97,7 @@ mod tests {
 
     const NAMED: [Easing; 4] = [Easing::Linear, Easing::In, Easing::Out, Easing::InOut];
 
-    /// Values of the curves, solved with 50 digits elsewhere.
+    /// Reference values, computed with 50 digits.
     #[test]
     fn known_values_of_css() {
         for (easing, share, value) in [
@@ -137,8 +137,8 @@ mod tests {
     #[test]
     fn curves_may_leave_the_square_upwards_but_not_sideways() {
         let back = Ease::Bezier([0.5, -1.0, 0.5, 2.0]);
-        assert!(back.at(0.2) < 0.0 && back.at(0.8) > 1.0 && back.wrong().is_none());
-        assert!(Ease::Bezier([-0.1, 0.0, 0.5, 1.0]).wrong().is_some());
-        assert!(Ease::Bezier([0.1, 0.0, 1.5, 1.0]).wrong().is_some());
+        assert!(back.at(0.2) < 0.0 && back.at(0.8) > 1.0 && back.error().is_none());
+        assert!(Ease::Bezier([-0.1, 0.0, 0.5, 1.0]).error().is_some());
+        assert!(Ease::Bezier([0.1, 0.0, 1.5, 1.0]).error().is_some());
     }
 }

@@ -1,52 +1,52 @@
-//! The scene's paths: resolved once each, when somebody asks for them or after all variables.
+//! Paths of a scene. Each is resolved once, on first use or after all variables.
 
 use super::curve::Curve;
-use super::walk::Walk;
+use super::tree_resolver::TreeResolver;
 use crate::document::{Members, Node, Value};
-use crate::path::Trail;
+use crate::path::PathRef;
 use juggler_math::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Most points of a path.
+/// Maximum number of points of a path.
 pub const MAX_POINTS: usize = 10_000;
 
-/// Name of one of the scene's paths.
+/// Name of a path of the scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct PathName(pub String);
 
-/// The paths of a scene, as far as they are known.
+/// Paths of a scene with their state of resolution.
 pub(super) struct Paths<'s> {
     written: Option<&'s Arc<Members>>,
-    known: BTreeMap<&'s str, Known>,
+    known: BTreeMap<&'s str, PathState>,
 }
 
-/// What is known of a path.
-enum Known {
-    /// It is being resolved.
-    Open,
-    /// It is resolved; the node is there when that changed anything.
+/// State of resolution of a path.
+enum PathState {
+    /// The path is being resolved.
+    InProgress,
+    /// The path is resolved; `None` if it has no expressions.
     Node(Option<Node>),
-    /// The curve, too; nothing when the path is wrong, which others report.
+    /// The curve is built, too; `None` if the path is invalid, which validation reports.
     Curve(Option<Node>, Option<Arc<Curve>>),
 }
 
-/// What becomes of the search for a path.
-pub(super) enum Search {
-    /// There it is.
+/// Result of a search for a path.
+pub(super) enum PathLookup {
+    /// Curve of the path.
     Found(Arc<Curve>),
-    /// Something is wrong with it, which is reported where it stands.
-    Wrong,
-    /// It is needed for itself.
-    Open,
+    /// The path is invalid, which validation reports.
+    Invalid,
+    /// The path depends on itself.
+    Cyclic,
     /// No path has this name.
     Missing,
 }
 
 impl<'s> Paths<'s> {
-    pub fn of(tree: &'s Node) -> Self {
+    pub fn from_tree(tree: &'s Node) -> Self {
         let written = match tree.get("paths").map(|paths| &paths.value) {
             Some(Value::Object(members)) => Some(members),
             _ => None,
@@ -54,36 +54,37 @@ impl<'s> Paths<'s> {
         Self { written, known: BTreeMap::new() }
     }
 
-    /// What the paths are called.
+    /// Names of all paths.
     pub fn names(&self) -> impl Iterator<Item = &'s str> + Clone + use<'s> {
         self.written.into_iter().flat_map(|members| members.keys()).map(String::as_str)
     }
 }
 
-impl<'s> Walk<'s> {
-    /// The curve of a path.
-    pub fn curve(&mut self, name: &str) -> Search {
+impl<'s> TreeResolver<'s> {
+    /// Returns the curve of a path. Resolves the path on first use.
+    pub fn curve(&mut self, name: &str) -> PathLookup {
         let Some((key, member)) = self.paths.written.and_then(|written| written.get_key_value(name)) else {
-            return Search::Missing;
+            return PathLookup::Missing;
         };
         self.resolve_path(key, &member.node);
         let node = match self.paths.known.get_mut(key.as_str()) {
-            Some(Known::Node(node)) => node.take(),
-            Some(Known::Curve(_, curve)) => return curve.clone().map_or(Search::Wrong, Search::Found),
-            _ => return Search::Open,
+            Some(PathState::Node(node)) => node.take(),
+            Some(PathState::Curve(_, curve)) => return curve.clone().map_or(PathLookup::Invalid, PathLookup::Found),
+            _ => return PathLookup::Cyclic,
         };
-        let curve = curve_of(node.as_ref().unwrap_or(&member.node)).map(Arc::new);
-        self.paths.known.insert(key, Known::Curve(node, curve.clone()));
-        curve.map_or(Search::Wrong, Search::Found)
+        let curve = curve_from_json(node.as_ref().unwrap_or(&member.node)).map(Arc::new);
+        self.paths.known.insert(key, PathState::Curve(node, curve.clone()));
+        curve.map_or(PathLookup::Invalid, PathLookup::Found)
     }
 
-    /// All paths with values for expressions; nothing when they can stay as they are.
+    /// Resolves all paths; `None` if no path has expressions.
     pub fn all_paths(&mut self) -> Option<Arc<Members>> {
         let written = self.paths.written?;
         let mut resolved: Option<Members> = None;
         for (i, (name, member)) in written.iter().enumerate() {
             self.resolve_path(name, &member.node);
-            let (Some(Known::Node(node)) | Some(Known::Curve(node, _))) = self.paths.known.get(name.as_str()) else {
+            let (Some(PathState::Node(node)) | Some(PathState::Curve(node, _))) = self.paths.known.get(name.as_str())
+            else {
                 continue;
             };
             if let Some(node) = node {
@@ -96,19 +97,19 @@ impl<'s> Walk<'s> {
         resolved.map(Arc::new)
     }
 
-    /// Puts values in place of a path's expressions, unless that has been done or is being done.
+    /// Resolves a path, unless that is done or in progress.
     fn resolve_path(&mut self, name: &'s str, node: &'s Node) {
         if self.paths.known.contains_key(name) {
             return;
         }
-        self.paths.known.insert(name, Known::Open);
-        let resolved = self.node(node, &Trail::Root.key("paths").key(name));
-        self.paths.known.insert(name, Known::Node(resolved));
+        self.paths.known.insert(name, PathState::InProgress);
+        let resolved = self.node(node, &PathRef::Root.key("paths").key(name));
+        self.paths.known.insert(name, PathState::Node(resolved));
     }
 }
 
-/// The curve of a path as it stands; nothing when it does not fit the schema.
-fn curve_of(path: &Node) -> Option<Curve> {
+/// Builds the curve of a resolved path; `None` if the path does not fit the schema.
+fn curve_from_json(path: &Node) -> Option<Curve> {
     let closed = match path.get("closed").map(|closed| &closed.value) {
         None => false,
         Some(Value::Bool(closed)) => *closed,
@@ -118,12 +119,12 @@ fn curve_of(path: &Node) -> Option<Curve> {
     if points.len() > MAX_POINTS {
         return None;
     }
-    Curve::through(points.iter().map(point).collect::<Option<Vec<DVec3>>>()?, closed)
+    Curve::from_points(points.iter().map(point).collect::<Option<Vec<DVec3>>>()?, closed)
 }
 
 fn point(node: &Node) -> Option<DVec3> {
     let coordinate = |node: &Node| match &node.value {
-        // What 32 bits can hold, as everywhere in a scene: so that distances neither vanish nor overflow.
+        // Round to 32 bits, the precision of all scene data: distances neither vanish nor overflow.
         Value::Number(number) => number.as_f64().map(|value| f64::from(value as f32)).filter(|value| value.is_finite()),
         _ => None,
     };

@@ -11,10 +11,10 @@ const MAX_KEPT: usize = 1 << 20;
 /// Compiled expressions by text, shared by a scene, its copies and its other frames. A program
 /// depends on its text only, so it stays valid whatever else changes in the scene.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Programs(Arc<Mutex<Kept>>);
+pub(crate) struct Programs(Arc<Mutex<Cache>>);
 
 #[derive(Debug, Default)]
-struct Kept {
+struct Cache {
     by_text: HashMap<Box<str>, Arc<Program>>,
     /// Length of all texts in bytes.
     length: usize,
@@ -23,27 +23,27 @@ struct Kept {
 impl Programs {
     /// Program of an expression whose names are checked when it is compiled first.
     pub fn compile(&self, text: &str, names: &Names) -> Result<Arc<Program>, ExpressionError> {
-        self.kept_or(text, |text| Program::compile(text, names))
+        self.get_or_compile(text, |text| Program::compile(text, names))
     }
 
     /// Program of an expression whose names are checked at evaluation only.
     pub fn parse(&self, text: &str) -> Result<Arc<Program>, ExpressionError> {
-        self.kept_or(text, Program::parse)
+        self.get_or_compile(text, Program::parse)
     }
 
-    fn kept_or(
+    fn get_or_compile(
         &self,
         text: &str,
         compile: impl FnOnce(&str) -> Result<Program, ExpressionError>,
     ) -> Result<Arc<Program>, ExpressionError> {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(program) = kept.by_text.get(text) {
+        let mut cache = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(program) = cache.by_text.get(text) {
             return Ok(Arc::clone(program));
         }
         let program = Arc::new(compile(text)?);
-        if kept.length + text.len() <= MAX_KEPT {
-            kept.length += text.len();
-            kept.by_text.insert(text.into(), Arc::clone(&program));
+        if cache.length + text.len() <= MAX_KEPT {
+            cache.length += text.len();
+            cache.by_text.insert(text.into(), Arc::clone(&program));
         }
         Ok(program)
     }

@@ -1,19 +1,22 @@
-//! Catmull-Rom splines through values at uneven times (Catmull and Rom 1974; Barry and Goldman 1988), as cubic
-//! Hermite pieces: at each value the curve has the slope of the parabola through it and its two neighbours.
+//! Catmull-Rom splines through values at uneven times (Catmull and Rom 1974; Barry and Goldman
+//! 1988), as cubic Hermite segments: the slope at a value is that of the parabola through the value
+//! and its two neighbors.
 
-/// The slope at a value between two stretches that last `before` and `after`, with these slopes of their chords.
+/// Slope at a value between two segments of durations `before` and `after`, from the slopes of
+/// their chords.
 pub fn tangent([slope_before, slope_after]: [f64; 2], [before, after]: [f64; 2]) -> f64 {
     (slope_before * after + slope_after * before) / (before + after)
 }
 
-/// The cubic from `a` to `b` with the slopes `slope_a` and `slope_b`, at the share `u` of a stretch that lasts `length`.
+/// Cubic Hermite segment from `a` to `b` with the slopes `slope_a` and `slope_b` and the duration
+/// `length`, at the parameter `u` from 0 to 1.
 pub fn hermite([a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2], length: f64, u: f64) -> f64 {
     let rest = 1.0 - u;
     let bend = (slope_a * length - (b - a)) * rest - (slope_b * length - (b - a)) * u;
     a * rest + b * u + u * rest * bend
 }
 
-/// The slope of [`hermite`], per unit of its length.
+/// Derivative of [`hermite`] with respect to time.
 pub fn hermite_slope([a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2], length: f64, u: f64) -> f64 {
     let rest = 1.0 - u;
     let chord = (b - a) / length;
@@ -36,7 +39,7 @@ mod tests {
         }
     }
 
-    /// A parabola through three values at uneven times is reproduced with its slope.
+    /// The tangent of a parabola through three values at uneven times is exact.
     #[test]
     fn parabolas_keep_their_slope() {
         let parabola = |t: f64| 2.0 * t * t - 3.0 * t + 1.0;

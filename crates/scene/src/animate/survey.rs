@@ -1,79 +1,77 @@
-//! What moves in a scene: its value forms for people to read, and whether anything changes with time.
+//! Survey of a scene's value forms, and detection of time-dependent values.
 
-use super::values::{self, Interpolation, Repeat};
-use super::walk::Walk;
-use super::{CHANGING, PLAIN, Programs};
+use super::tree_resolver::TreeResolver;
+use super::values::{self, Extrapolation, Interpolation};
+use super::{NOT_ANIMATED, Programs, TIME_NAMES};
 use crate::document::{Node, Value};
-use crate::path::{Path, Trail};
+use crate::path::{Path, PathRef};
 use std::collections::BTreeSet;
 
-/// What moves in a scene.
+/// Animation of a scene, for display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Survey {
-    /// Its value forms, in the order in which they are resolved.
-    pub tracks: Vec<Track>,
-    /// Expressions that depend on time, by themselves or through variables.
+    /// Value forms, in order of evaluation.
+    pub forms: Vec<FormSummary>,
+    /// Number of expressions that depend on time, directly or through variables.
     pub expressions: usize,
 }
 
-/// A value form of a scene.
+/// Value form of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Track {
-    /// Where it stands.
+pub struct FormSummary {
+    /// Path of the form.
     pub path: Path,
-    /// Its reserved key: `animate`.
+    /// Reserved key, such as `animate`.
     pub kind: String,
-    /// How many keys it has.
+    /// Number of keys.
     pub keys: Option<usize>,
-    /// The times of the first and the last key.
-    pub span: Option<[f64; 2]>,
-    /// What lies between the keys.
+    /// Times of the first and the last key.
+    pub time_range: Option<[f64; 2]>,
+    /// Interpolation between the keys.
     pub interpolation: Option<Interpolation>,
-    /// What lies outside of them.
-    pub repeat: Option<Repeat>,
-    /// The path that it goes along.
+    /// Extrapolation beyond the keys.
+    pub repeat: Option<Extrapolation>,
+    /// Name of the path that the form follows.
     pub along: Option<String>,
 }
 
-impl Walk<'_> {
-    /// Writes down a value form whose content stands at `at`, where somebody asks for them.
-    pub fn note(&mut self, at: &Trail<'_>, fill: impl FnOnce(Track) -> Track) {
-        let Some(tracks) = &mut self.tracks else { return };
-        let (Trail::Key(outer, _) | Trail::Index(outer, _)) = at else { return };
+impl TreeResolver<'_> {
+    /// Records a value form whose content is at `at`, if the walk is a survey.
+    pub fn record_form(&mut self, at: &PathRef<'_>, fill: impl FnOnce(FormSummary) -> FormSummary) {
+        let Some(forms) = &mut self.forms else { return };
+        let (PathRef::Key(outer, _) | PathRef::Index(outer, _)) = at else { return };
         let kind = at.last_key().unwrap_or_default().to_owned();
-        tracks.push(fill(Track { path: Path::from(*outer), kind, ..Track::default() }));
+        forms.push(fill(FormSummary { path: Path::from(*outer), kind, ..FormSummary::default() }));
     }
 }
 
-/// Whether anything in a tree may change with the frame. Variables that nothing uses do not count.
+/// Whether any value of a tree depends on time. Unused variables do not count.
 pub fn depends_on_time(tree: &Node) -> bool {
     let programs = Programs::default();
-    let mut changes = TimeDependence::of(tree, &programs);
-    parts(tree).any(|part| changes.holds(part))
+    let mut time_dependence = TimeDependence::from_tree(tree, &programs);
+    parts(tree).any(|part| time_dependence.depends_on_time(part))
 }
 
-/// How many expressions depend on time.
+/// Number of expressions that depend on time.
 pub(super) fn changing_expressions(tree: &Node, programs: &Programs) -> usize {
-    let mut changes = TimeDependence::of(tree, programs);
-    changes.expressions = 0;
+    let mut time_dependence = TimeDependence::from_tree(tree, programs);
+    time_dependence.expressions = 0;
     for (_, variable) in tree.get("variables").into_iter().flat_map(Node::members) {
-        changes.search(&variable.node, true);
+        time_dependence.search(&variable.node, true);
     }
     parts(tree).for_each(|part| {
-        changes.holds(part);
+        time_dependence.depends_on_time(part);
     });
-    changes.expressions
+    time_dependence.expressions
 }
 
-/// The parts of a scene in which things may move.
+/// Sections of a scene that may be animated.
 fn parts(tree: &Node) -> impl Iterator<Item = &Node> {
-    let moves = |key: &str| key == "paths" || !PLAIN.contains(&key);
+    let moves = |key: &str| key == "paths" || !NOT_ANIMATED.contains(&key);
     tree.members().filter(move |(key, _)| moves(key)).map(|(_, member)| &member.node)
 }
 
-/// Whether a value may differ from scene to scene: it holds a value form, or an expression that
-/// uses a name other than
-/// `pi`.
+/// Whether a value contains a value form, or an expression that uses a name other than `pi`.
 pub(crate) fn has_expressions(node: &Node, programs: &Programs) -> bool {
     match &node.value {
         Value::String(text) => text.strip_prefix('=').is_some_and(|text| uses(text, programs, |name| name != "pi")),
@@ -85,78 +83,80 @@ pub(crate) fn has_expressions(node: &Node, programs: &Programs) -> bool {
     }
 }
 
-/// Whether an expression uses a name that satisfies a predicate. An expression that is no program,
-/// because of an error, counts as one that does.
-fn uses(expression: &str, programs: &Programs, is_wanted: impl Fn(&str) -> bool) -> bool {
+/// Whether an expression uses a name that satisfies a predicate. Invalid expressions count as using
+/// one.
+fn uses(expression: &str, programs: &Programs, predicate: impl Fn(&str) -> bool) -> bool {
     let program = programs.parse(expression).ok();
-    program.is_none_or(|program| program.inputs().iter().any(|input| is_wanted(&input.name)))
+    program.is_none_or(|program| program.inputs().iter().any(|input| predicate(&input.name)))
 }
 
-/// What changes with time, by name: the search for it in values.
+/// Names of variables and paths that depend on time, and the search for their uses.
 pub(crate) struct TimeDependence<'t> {
     names: BTreeSet<&'t str>,
     paths: BTreeSet<&'t str>,
-    /// Expressions that changed so far.
+    /// Number of time-dependent expressions found so far.
     expressions: usize,
     programs: &'t Programs,
 }
 
 impl<'t> TimeDependence<'t> {
-    /// By the variables and paths of a scene, and its compiled expressions.
-    pub fn of(tree: &'t Node, programs: &'t Programs) -> Self {
-        let names = BTreeSet::from(CHANGING);
-        let mut changing = Self { names, paths: BTreeSet::new(), expressions: 0, programs };
-        // Variables may ask for paths, and paths for variables and for each other: until nothing is added.
+    /// Finds the time-dependent variables and paths of a scene.
+    pub fn from_tree(tree: &'t Node, programs: &'t Programs) -> Self {
+        let names = BTreeSet::from(TIME_NAMES);
+        let mut time_dependence = Self { names, paths: BTreeSet::new(), expressions: 0, programs };
+        // Iterate to a fixed point: variables may use paths; paths may use variables and each
+        // other.
         loop {
-            let before = changing.names.len() + changing.paths.len();
+            let before = time_dependence.names.len() + time_dependence.paths.len();
             for (name, member) in tree.get("variables").into_iter().flat_map(Node::members) {
-                if changing.search(&member.node, true) {
-                    changing.names.insert(name);
+                if time_dependence.search(&member.node, true) {
+                    time_dependence.names.insert(name);
                 }
             }
             for (name, member) in tree.get("paths").into_iter().flat_map(Node::members) {
-                if changing.search(&member.node, false) {
-                    changing.paths.insert(name);
+                if time_dependence.search(&member.node, false) {
+                    time_dependence.paths.insert(name);
                 }
             }
-            if changing.names.len() + changing.paths.len() == before {
-                return changing;
+            if time_dependence.names.len() + time_dependence.paths.len() == before {
+                return time_dependence;
             }
         }
     }
 
-    /// Whether a value changes with time.
-    pub fn holds(&mut self, node: &Node) -> bool {
+    /// Whether a value depends on time.
+    pub fn depends_on_time(&mut self, node: &Node) -> bool {
         self.search(node, false)
     }
 
-    /// All of a value is looked at; `bare` where texts are expressions without a sign in front, too.
+    /// Searches a whole value. `bare` accepts strings without a leading `=` as expressions.
     fn search(&mut self, node: &Node, bare: bool) -> bool {
         match &node.value {
             Value::String(text) => {
                 let expression = text.strip_prefix('=').or_else(|| bare.then_some(text.as_str()));
-                let changes =
+                let depends =
                     expression.is_some_and(|text| uses(text, self.programs, |name| self.names.contains(name)));
-                self.expressions += usize::from(changes);
-                changes
+                self.expressions += usize::from(depends);
+                depends
             }
             Value::Array(elements) => elements.iter().filter(|element| self.search(element, bare)).count() > 0,
             Value::Object(members) => {
-                let own = values::kind_in(members).is_some_and(|_| looks_up_seconds(node) || self.goes_along(node));
+                let own =
+                    values::kind_in(members).is_some_and(|_| uses_scene_time(node) || self.follows_animated_path(node));
                 members.values().filter(|member| self.search(&member.node, false)).count() > 0 || own
             }
             _ => false,
         }
     }
 
-    /// Whether a form follows a path that changes.
-    fn goes_along(&self, form: &Node) -> bool {
+    /// Whether a form follows a path that depends on time.
+    fn follows_animated_path(&self, form: &Node) -> bool {
         let path = form.get("along").and_then(|content| content.get("path")?.as_str());
         path.is_some_and(|path| self.paths.contains(path))
     }
 }
 
-/// Whether it is a track that says nothing of the time that it looks up.
-fn looks_up_seconds(form: &Node) -> bool {
+/// Whether a form is an `animate` without `at`, which evaluates its keys at the scene's time.
+fn uses_scene_time(form: &Node) -> bool {
     form.get("animate").is_some_and(|content| content.get("at").is_none())
 }

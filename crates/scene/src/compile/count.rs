@@ -1,83 +1,90 @@
-//! How many objects a scene places and how many it must store, before any is placed: groups within groups multiply.
+//! Counts the objects that a scene places and stores before any object is placed. Nested groups
+//! multiply.
 
-use super::emitting;
+use super::emitter_count;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use indexmap::IndexMap;
 
-/// Most objects of a scene, those of groups counted as often as they are placed.
+/// Maximum number of placed objects; objects of a group count once per placement.
 pub const MAX_OBJECTS: u64 = juggler_world::MAX_OBJECTS;
-/// Most objects that a scene stores.
+/// Maximum number of stored objects.
 pub const MAX_STORED: u64 = 4_000_000;
-/// Most shapes of a scene that emit light, those of groups counted as often as they are placed.
+/// Maximum number of emissive shapes; shapes of a group count once per placement.
 pub const MAX_EMITTERS: u64 = 4_000_000;
-/// Most groups within each other.
+/// Maximum nesting depth of groups.
 pub const MAX_NESTING: u32 = 64;
-/// A group is stored once and shared when all its placements together make more objects than this.
+/// A group is stored once and instanced if all its placements together have more objects than this.
 const SHARED_FROM: u64 = 1 << 17;
-/// A group that stores fewer objects than this is never shared: going from one space to another costs more.
+/// A group that stores fewer objects than this is never instanced, since transforming rays costs
+/// more.
 const SHARED_SIZE: u64 = 16;
 
-/// What becomes of a group.
+/// Counts of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// Objects that one placement makes.
+    /// Number of objects per placement.
     objects: u64,
-    /// Objects that are stored for it.
+    /// Number of objects stored for the group.
     stored: u64,
-    /// Groups on the longest way down, this one counted.
+    /// Nesting depth, this group included.
     nesting: u32,
-    /// Levels on the longest way down when it is shared.
+    /// Number of nested levels, the group's own included, if the group is shared.
     depth: u32,
-    /// How often it is placed in the whole scene.
+    /// Number of placements in the whole scene.
     placements: u64,
-    /// Stored once as a level of its own; otherwise its objects are placed as if they stood where it is placed.
+    /// Whether the group is stored once as a level of its own. Otherwise its objects are copied to
+    /// each placement.
     pub is_shared: bool,
 }
 
 impl Count {
-    /// Objects that one placement makes.
+    /// Number of objects per placement.
     pub fn objects(&self) -> u64 {
         self.objects
     }
 }
 
-/// All groups of a scene; each after those that it places.
+/// Counts of all groups of a scene. Each group follows the groups that it places.
 pub type Counts<'s> = IndexMap<&'s str, Count>;
 
-/// Decides which groups are shared. Refuses groups that contain themselves and scenes with too many objects.
+/// Counts all objects and decides which groups are shared. Returns errors for groups that contain
+/// themselves and for too many objects.
 pub fn count(scene: &Description) -> Result<Counts<'_>, Vec<Finding>> {
-    let mut counter = Counter { scene, done: Counts::new(), open: Vec::new(), findings: Vec::new() };
+    let mut counter = Counter { scene, counts: Counts::new(), in_progress: Vec::new(), findings: Vec::new() };
     for name in scene.groups.keys() {
         counter.group(name, &Path::root().key("groups").key(name.as_str()));
     }
     let top = Path::root().key("objects");
     let placed = counter.objects(&scene.objects, &top);
-    let Counter { done: mut counts, mut findings, .. } = counter;
+    let Counter { mut counts, mut findings, .. } = counter;
     if findings.is_empty() {
         count_placements(scene, &mut counts);
         let stored = count_stored(scene, &mut counts);
         findings.extend(too_many(placed, stored).map(|finding| finding.at(top)));
-        findings.extend(emitting::too_many(scene));
+        findings.extend(emitter_count::too_many(scene));
     }
     if findings.is_empty() { Ok(counts) } else { Err(findings) }
 }
 
-/// Objects that a scene of these groups stores.
+/// Number of objects that a scene with these groups stores.
 pub fn stored(scene: &Description, counts: &Counts<'_>) -> u64 {
     let shared = counts.values().filter(|count| count.is_shared).map(|count| count.stored);
-    shared.fold(store(&scene.objects, counts).0, u64::saturating_add)
+    shared.fold(count_list(&scene.objects, counts).0, u64::saturating_add)
 }
 
 fn too_many(placed: u64, stored: u64) -> Option<Finding> {
     if placed > MAX_OBJECTS {
         let message = format!("the scene places {placed} objects, the limit is {MAX_OBJECTS}");
-        Some(Finding::error(message).help("groups within groups multiply; large meshes belong into mesh files"))
+        Some(
+            Finding::error(message)
+                .help("nested groups multiply the number of objects; store large meshes in mesh files"),
+        )
     } else if stored > MAX_STORED {
         let message = format!("the scene needs {stored} objects in memory, the limit is {MAX_STORED}");
-        let help = format!("what repeats belongs into a group of at least {SHARED_SIZE} objects");
+        let help = format!("put repeated objects into a group of at least {SHARED_SIZE} objects, which is stored once");
         Some(Finding::error(message).help(help))
     } else {
         None
@@ -86,9 +93,9 @@ fn too_many(placed: u64, stored: u64) -> Option<Finding> {
 
 struct Counter<'s> {
     scene: &'s Description,
-    done: Counts<'s>,
-    /// Groups that are being counted, each placed by the one before.
-    open: Vec<&'s str>,
+    counts: Counts<'s>,
+    /// Groups in progress, each placed by the one before.
+    in_progress: Vec<&'s str>,
     findings: Vec<Finding>,
 }
 
@@ -111,41 +118,42 @@ impl<'s> Counter<'s> {
         count
     }
 
-    /// Objects of a group, which `path` names; 0 for a group that is unknown, which others report.
+    /// Number of objects of a group that is named at `path`; 0 for an unknown group, which
+    /// validation reports.
     fn group(&mut self, name: &'s str, path: &Path) -> u64 {
-        if let Some(count) = self.done.get(name) {
+        if let Some(count) = self.counts.get(name) {
             return count.objects;
         }
-        if let Some(at) = self.open.iter().position(|open| *open == name) {
-            let chain: Vec<&str> = self.open.iter().skip(at).copied().chain([name]).collect();
+        if let Some(at) = self.in_progress.iter().position(|open| *open == name) {
+            let chain: Vec<&str> = self.in_progress.iter().skip(at).copied().chain([name]).collect();
             let message = match chain.as_slice() {
                 [_, _] => format!("the group `{name}` contains itself"),
-                _ => format!("groups contain each other in a circle: {}", chain.join(" → ")),
+                _ => format!("groups contain each other in a cycle: {}", chain.join(" → ")),
             };
             self.findings.push(Finding::error(message).at(path));
             return 0;
         }
         let Some(objects) = self.scene.groups.get(name) else { return 0 };
-        if self.open.len() >= MAX_NESTING as usize {
+        if self.in_progress.len() >= MAX_NESTING as usize {
             return self.too_deep(path);
         }
-        self.open.push(name);
+        self.in_progress.push(name);
         let count = self.objects(objects, &Path::root().key("groups").key(name));
-        self.open.pop();
+        self.in_progress.pop();
         let mut below = 0;
-        each_group(objects, &mut |inner| below = below.max(self.done.get(inner).map_or(0, |count| count.nesting)));
-        self.done.insert(name, Count { objects: count, nesting: below + 1, ..Count::default() });
+        each_group(objects, &mut |inner| below = below.max(self.counts.get(inner).map_or(0, |count| count.nesting)));
+        self.counts.insert(name, Count { objects: count, nesting: below + 1, ..Count::default() });
         if below == MAX_NESTING { self.too_deep(path) } else { count }
     }
 
     fn too_deep(&mut self, path: &Path) -> u64 {
-        let message = format!("groups within groups are more than {MAX_NESTING} deep");
+        let message = format!("groups are nested deeper than the limit of {MAX_NESTING}");
         self.findings.push(Finding::error(message).at(path));
         0
     }
 }
 
-/// Shapes that an object is by itself.
+/// Number of an object's own shapes, without groups and child objects.
 pub fn shapes(object: &Object) -> u64 {
     let mut count = u64::from(object.shape.is_some());
     if let Some(chain) = &object.chain {
@@ -157,7 +165,7 @@ pub fn shapes(object: &Object) -> u64 {
     count
 }
 
-/// Calls `visit` with every group that the objects place.
+/// Calls `visit` with each group that the visible objects place.
 fn each_group<'s>(objects: &'s [Item<Object>], visit: &mut impl FnMut(&'s str)) {
     for object in objects.iter().filter(|object| object.is_visible()) {
         if let Some(group) = &object.group {
@@ -167,7 +175,7 @@ fn each_group<'s>(objects: &'s [Item<Object>], visit: &mut impl FnMut(&'s str)) 
     }
 }
 
-/// How often each group is placed: those that place it come first, which are the last of all.
+/// Counts the placements of each group, outer groups first, which are last in `counts`.
 fn count_placements(scene: &Description, counts: &mut Counts<'_>) {
     add_placements(&scene.objects, 1, counts);
     for i in (0..counts.len()).rev() {
@@ -189,11 +197,12 @@ fn objects_of<'s>(scene: &'s Description, group: &str) -> &'s [Item<Object>] {
     scene.groups.get(group).map(|o| o.as_slice()).unwrap_or_default()
 }
 
-/// Decides for each group, those within it first, whether it is shared. Returns how many objects the scene stores.
+/// Decides for each group whether it is shared, inner groups first. Returns the number of objects
+/// that the scene stores.
 fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
     for i in 0..counts.len() {
         let Some((name, _)) = counts.get_index(i) else { continue };
-        let (held, depth) = store(objects_of(scene, name), counts);
+        let (held, depth) = count_list(objects_of(scene, name), counts);
         let Some((_, count)) = counts.get_index_mut(i) else { continue };
         let many = count.placements > 1 && count.objects.saturating_mul(count.placements) > SHARED_FROM;
         let is_shared = many && held >= SHARED_SIZE && depth < juggler_world::MAX_DEPTH;
@@ -202,12 +211,12 @@ fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
     stored(scene, counts)
 }
 
-/// Objects that are stored where `objects` stand, shared groups counted as one each, and the levels on the longest
-/// way down.
-fn store(objects: &[Item<Object>], counts: &Counts<'_>) -> (u64, u32) {
+/// Number of objects stored for a list, in which a shared group counts as one, and its number of
+/// nested levels.
+fn count_list(objects: &[Item<Object>], counts: &Counts<'_>) -> (u64, u32) {
     objects.iter().filter(|object| object.is_visible()).fold((0_u64, 1), |(sum, depth), object| {
         let inner = object.inner();
-        let (mut stored, mut below) = store(inner, counts);
+        let (mut stored, mut below) = count_list(inner, counts);
         stored = stored.saturating_add(shapes(object));
         if let Some(count) = object.group.as_ref().and_then(|group| counts.get(group.0.as_str())) {
             stored = stored.saturating_add(if count.is_shared { 1 } else { count.stored });

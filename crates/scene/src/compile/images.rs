@@ -1,127 +1,131 @@
-//! Pictures: each file read and prepared once, shared by all textures, frames and copies of a scene.
+//! Image files of textures. Each file is read and prepared once and shared by all textures, frames
+//! and copies of a scene.
 
-use super::meshes::{Files, Library, explain, state};
+use super::meshes::{AssetCache, Files, file_stamp, import_error_message};
 use crate::description::Description;
 use crate::import::Limits;
 use crate::item::Item;
 use crate::path::Path;
 use crate::store::Store;
-use juggler_imaging::raster::{Layout, decode_raster, inspect_raster};
-use juggler_imaging::{Encoding, ImageError, Raster, Samples};
-use juggler_texture::{AnyTexture, ColorSpace, Image, Images, Pyramid};
+use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
+use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
+use juggler_texture::{AnyTexture, ColorSpace, Image, Images, MipMap};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
-/// The longest side of a picture.
+/// Maximum width and height of an image, in pixels.
 pub const MAX_SIDE: u32 = 65_536;
 
-/// Most pixels of a picture: 16,384 × 16,384.
+/// Maximum number of pixels of an image: 16,384 × 16,384.
 pub const MAX_TEXELS: u64 = 1 << 28;
 
-/// What is checked of a picture before it is decoded.
-pub(super) const MAX_PICTURE: juggler_imaging::Limits =
-    juggler_imaging::Limits { most_pixels: MAX_TEXELS, longest_side: MAX_SIDE };
+/// Limits that are checked before an image is decoded.
+pub(super) const IMAGE_LIMITS: juggler_imaging::Limits =
+    juggler_imaging::Limits { max_pixels: MAX_TEXELS, longest_side: MAX_SIDE };
 
-/// A file, and what its numbers are taken for.
-pub type Name = (PathBuf, ColorSpace);
+/// File, and the color space that its samples are decoded from.
+pub type ImageKey = (PathBuf, ColorSpace);
 
-/// The pictures that were loaded so far.
+/// Cache of loaded images.
 #[derive(Clone, Debug, Default)]
-pub struct Pictures {
-    entries: Arc<Mutex<BTreeMap<Name, Arc<Picture>>>>,
+pub struct ImageCache {
+    entries: Arc<Mutex<BTreeMap<ImageKey, Arc<ImageFile>>>>,
 }
 
-/// A picture file.
+/// Image file.
 #[derive(Debug)]
-struct Picture {
-    /// The hash of its content; zeros when it could not be read.
+struct ImageFile {
+    /// Hash of the content; zeros if the file could not be read.
     digest: [u8; 32],
-    /// Ready to be looked at; or why not.
-    pixels: Result<Arc<Pyramid>, String>,
-    /// How long the file was and when it was last written to, before it was read.
-    state: Option<(u64, SystemTime)>,
+    /// Mipmap pyramid, or an error message.
+    pixels: Result<Arc<MipMap>, String>,
+    /// Length and modification time, taken before the file was read; `None` for an asset.
+    stamp: Option<(u64, SystemTime)>,
 }
 
-impl Pictures {
-    /// Those whose files have not changed.
-    pub fn renewed(&self) -> Self {
+impl ImageCache {
+    /// Cache without the files that have changed.
+    pub fn without_changed_files(&self) -> Self {
         let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |path: &PathBuf, entry: &Picture| entry.state.is_some() && entry.state == state(path);
+        let same = |path: &PathBuf, entry: &ImageFile| entry.stamp.is_some() && entry.stamp == file_stamp(path);
         let kept = entries.iter().filter(|((path, _), entry)| same(path, entry));
         let kept = kept.map(|(name, entry)| (name.clone(), Arc::clone(entry))).collect();
         Self { entries: Arc::new(Mutex::new(kept)) }
     }
 
-    /// As with meshes, files are loaded without the lock.
-    fn load(&self, path: &std::path::Path, space: ColorSpace, store: &Store) -> Arc<Picture> {
-        let name = (store.true_name(path), space);
+    /// Loads an image without holding the lock, as for meshes.
+    fn load(&self, path: &std::path::Path, space: ColorSpace, store: &Store) -> Arc<ImageFile> {
+        let name = (store.canonical_name(path), space);
         let entries = || self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = entries().get(&name) {
             return Arc::clone(known);
         }
-        let picture = Arc::new(Picture::load(path, space, store));
-        Arc::clone(entries().entry(name).or_insert(picture))
+        let image = Arc::new(ImageFile::load(path, space, store));
+        Arc::clone(entries().entry(name).or_insert(image))
     }
 }
 
-impl Library {
-    /// The pixels of a picture file, with its smaller copies; or why there are none, in words that name the file.
-    pub fn picture(&self, path: &std::path::Path, space: ColorSpace) -> Result<Arc<Pyramid>, String> {
-        self.pictures().load(path, space, self.store()).pixels.clone()
+impl AssetCache {
+    /// Mipmap pyramid of an image file, or an error message that names the file.
+    pub fn image(&self, path: &std::path::Path, space: ColorSpace) -> Result<Arc<MipMap>, String> {
+        self.images().load(path, space, self.store()).pixels.clone()
     }
 
-    /// The hash of a picture file's content; zeros for a file that cannot be read, which compiling reports.
-    pub fn picture_digest(&self, path: &std::path::Path, space: ColorSpace) -> [u8; 32] {
-        self.pictures().load(path, space, self.store()).digest
+    /// Hash of an image file's content; zeros for a file that cannot be read, which compilation
+    /// reports.
+    pub fn image_digest(&self, path: &std::path::Path, space: ColorSpace) -> [u8; 32] {
+        self.images().load(path, space, self.store()).digest
     }
 }
 
-impl Picture {
+impl ImageFile {
     fn load(path: &std::path::Path, space: ColorSpace, store: &Store) -> Self {
         if let Some((image, digest)) = store.assets.image_at(path) {
             return Self::from_image(image, digest, path);
         }
-        let state = state(path);
-        let bytes = match store.mesh(path, &Limits::default()) {
+        let stamp = file_stamp(path);
+        let bytes = match store.read_bytes(path, &Limits::default()) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], pixels: Err(explain(&error)), state },
+            Err(error) => return Self { digest: [0; 32], pixels: Err(import_error_message(&error)), stamp },
         };
         let digest = blake3::hash(&bytes).into();
-        let raster = decode_raster(&path.display().to_string(), Cursor::new(&*bytes), &MAX_PICTURE);
+        let raster = decode_raster(&path.display().to_string(), Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
-            pyramid(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: holds no picture", path.display()))
+            mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", path.display()))
         });
-        Self { digest, pixels, state }
+        Self { digest, pixels, stamp }
     }
 }
 
-impl Picture {
-    /// Picture of pixels in linear light, whatever the color space that a texture names.
+impl ImageFile {
+    /// Creates an image from pixels in linear light; the color space of textures has no effect.
     fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
-        let pixels = Pyramid::of_numbers([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
-        let pixels = pixels.ok_or_else(|| format!("`{}`: holds no picture", path.display()));
-        Self { digest, pixels, state: None }
+        let pixels = MipMap::from_floats([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
+        let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", path.display()));
+        Self { digest, pixels, stamp: None }
     }
 }
 
-/// A picture with its smaller copies, its numbers taken for what `space` says.
-fn pyramid(raster: Raster, space: ColorSpace) -> Option<Pyramid> {
-    let encoding = match space {
-        ColorSpace::Auto => raster.encoding,
-        ColorSpace::Srgb => Encoding::Srgb,
-        ColorSpace::Linear => Encoding::Linear,
+/// Creates a mipmap pyramid; decodes the samples from `space`.
+fn mip_map(raster: Raster, space: ColorSpace) -> Option<MipMap> {
+    let transfer_function = match space {
+        ColorSpace::Auto => raster.transfer_function,
+        ColorSpace::Srgb => TransferFunction::Srgb,
+        ColorSpace::Linear => TransferFunction::Linear,
     };
-    let Layout { width, height, channels, .. } = raster.layout;
+    let RasterLayout { width, height, channels, .. } = raster.layout;
     let size = [width, height];
     match raster.samples {
-        Samples::Bytes(bytes) => Pyramid::of_bytes(size, channels, bytes, |level| encoding.decode(level)),
-        Samples::Words(words) => {
+        RasterSamples::Bytes(bytes) => {
+            MipMap::from_bytes(size, channels, bytes, |level| transfer_function.decode(level))
+        }
+        RasterSamples::Words(words) => {
             let table: Vec<f32> =
-                (0..=u16::MAX).map(|word| encoding.decode(f64::from(word) / 65_535.0) as f32).collect();
+                (0..=u16::MAX).map(|word| transfer_function.decode(f64::from(word) / 65_535.0) as f32).collect();
             let color = |word: u16| table.get(usize::from(word)).copied().unwrap_or_default();
             let numbers = words.chunks(usize::from(channels)).flat_map(|texel| {
                 let alpha = if channels.is_multiple_of(2) { texel.len().checked_sub(1) } else { None };
@@ -129,84 +133,86 @@ fn pyramid(raster: Raster, space: ColorSpace) -> Option<Pyramid> {
                     move |i: usize, word: u16| if Some(i) == alpha { f32::from(word) / 65_535.0 } else { color(word) };
                 texel.iter().enumerate().map(move |(i, word)| number(i, *word))
             });
-            Pyramid::of_numbers(size, channels, numbers.collect())
+            MipMap::from_floats(size, channels, numbers.collect())
         }
-        Samples::Floats(mut numbers) => {
-            if encoding != Encoding::Linear {
+        RasterSamples::Floats(mut numbers) => {
+            if transfer_function != TransferFunction::Linear {
                 let colors = usize::from(channels) - usize::from(channels.is_multiple_of(2));
                 for texel in numbers.chunks_mut(usize::from(channels)) {
-                    texel.iter_mut().take(colors).for_each(|v| *v = encoding.decode(f64::from(*v)) as f32);
+                    texel.iter_mut().take(colors).for_each(|v| *v = transfer_function.decode(f64::from(*v)) as f32);
                 }
             }
-            Pyramid::of_numbers(size, channels, numbers)
+            MipMap::from_floats(size, channels, numbers)
         }
     }
 }
 
 impl Images for Files<'_> {
-    fn image(&self, texture: &str, image: &Image) -> Result<Arc<Pyramid>, String> {
-        self.library.picture(&self.of_texture(texture, image), image.color_space)
+    fn image(&self, texture: &str, image: &Image) -> Result<Arc<MipMap>, String> {
+        self.asset_cache.image(&self.texture_file(texture, image), image.color_space)
     }
 }
 
 impl Files<'_> {
-    /// Where a texture is described: among the scene's textures, or where it is written in place, by the name that it
-    /// has got there.
+    /// Path of a texture: in the scene's `textures`, or inline, where its name is a JSON pointer.
     pub fn texture_path(&self, name: &str) -> Path {
         let own = Path::root().key("textures").key(name);
         let in_place = Path::from_pointer(name);
-        // A texture is written in place where the item that it belongs to was written around it.
-        let place = |path: &Path| self.scene.item_of(path).and_then(|(item, _)| item.place());
+        // An inline texture is part of the source text of its item.
+        let place = |path: &Path| self.scene.innermost_item(path).and_then(|(item, _)| item.place());
         match place(&in_place).zip(place(&own)) {
             Some((outer, inner)) if name.starts_with('/') && outer.contains(inner) => in_place,
             _ => own,
         }
     }
 
-    /// Bytes that become of images in memory among these files, by their numbers of pixels.
+    /// Memory of those files that are images in memory; `bytes` converts a number of pixels to
+    /// bytes.
     pub(super) fn image_bytes(&self, files: &[PathBuf], bytes: impl Fn(usize) -> usize) -> u64 {
-        let assets = &self.library.store().assets;
+        let assets = &self.asset_cache.store().assets;
         let images = files.iter().filter_map(|file| assets.image_at(file));
         images.map(|(image, _)| bytes(image.pixels().len()) as u64).fold(0, u64::saturating_add)
     }
 
-    /// The file of an image texture.
-    fn of_texture(&self, name: &str, image: &Image) -> PathBuf {
+    /// File of an image texture.
+    fn texture_file(&self, name: &str, image: &Image) -> PathBuf {
         self.locate(&Path::root().key("textures").key(name), &image.file)
     }
 }
 
-/// The pictures that a scene names, each once.
-pub fn pictures(scene: &Description, files: &Files<'_>) -> BTreeSet<Name> {
+/// Image files that a scene names, each once.
+pub fn image_files(scene: &Description, files: &Files<'_>) -> BTreeSet<ImageKey> {
     let image = |(name, texture): (&String, &Item<AnyTexture>)| match &**texture {
-        AnyTexture::Image(image) => Some((files.of_texture(name, image), image.color_space)),
+        AnyTexture::Image(image) => Some((files.texture_file(name, image), image.color_space)),
         _ => None,
     };
     scene.textures.iter().filter_map(image).collect()
 }
 
-/// What a picture file takes.
+/// Memory of an image file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Estimate {
-    /// Bytes that stay.
-    pub kept: u64,
-    /// Bytes at once while it is read.
-    pub peak: u64,
+    /// Bytes that remain in memory.
+    pub resident_bytes: u64,
+    /// Peak in bytes while the file is read.
+    pub peak_bytes: u64,
 }
 
-/// What a picture file takes at most, by its size and head. Nothing for a file that cannot be read.
+/// Upper bound of the memory for an image file, from its size and header; zero for a file that
+/// cannot be read.
 pub fn estimate(path: &std::path::Path) -> Estimate {
     let Ok(layout) = inspect_raster(path) else { return Estimate::default() };
     let samples = u64::from(layout.width) * u64::from(layout.height) * u64::from(layout.channels);
     if samples > MAX_TEXELS * 4 {
         return Estimate::default();
     }
-    // Kept as bytes or floats, with a third for the smaller copies; decoders hold samples and blocks beside.
-    let (kept, beside) = match layout.sample_bytes {
+    // Pyramids store bytes or floats, a third more for the smaller levels. Decoders hold samples
+    // and blocks in addition.
+    let (sample_bytes, beside) = match layout.sample_bytes {
         1 => (1, 4),
         _ => (4, 8),
     };
-    let kept = samples * kept * 4 / 3 + 64;
+    let resident_bytes = samples * sample_bytes * 4 / 3 + 64;
     let file = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    Estimate { kept, peak: kept + samples * beside + file }
+    Estimate { resident_bytes, peak_bytes: resident_bytes + samples * beside + file }
 }

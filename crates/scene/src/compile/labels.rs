@@ -1,31 +1,31 @@
-//! What belongs together, and its names: entries of the scene, materials, groups of lights.
+//! Names and indices of scene entries, materials and light groups.
 
-use super::areas;
+use super::area_lights;
 use crate::description::Description;
-use juggler_camera::layer::LightGroup;
+use juggler_camera::aov::LightGroup;
 use juggler_light::AnyLight;
 use juggler_material::MaterialId;
-use juggler_world::{Labels, Lamp};
+use juggler_world::{Labels, SceneLight};
 
-/// What light is called that belongs to no group.
+/// Name of the light group of all light without a group.
 pub const REST: &str = "rest";
 
-/// Names of what masks and layers tell apart.
+/// Names of objects, materials and light groups, for masks and AOVs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// How many entries the scene has: its `objects`, then its area lights.
+    /// Number of scene entries: `objects`, then area lights.
     pub entries: u32,
-    /// Of each of them that has one, by number, rising.
+    /// Index and name of each named entry, in ascending order.
     pub objects: Vec<(u32, String)>,
-    /// Of each material that has one, by number, rising.
+    /// Index and name of each named material, in ascending order.
     pub materials: Vec<(MaterialId, String)>,
-    /// Of each group of lights, by number; the first is [`REST`].
+    /// Names of light groups by index; the first is [`REST`].
     pub light_groups: Vec<String>,
 }
 
 impl Names {
-    /// Of a scene.
-    pub fn of(scene: &Description) -> Self {
+    /// Collects the names of a scene.
+    pub fn from_scene(scene: &Description) -> Self {
         let names = (0..).zip(&scene.objects).filter_map(|(i, object)| Some((i, object.name.clone()?)));
         let entries = u32::try_from(scene.objects.len()).unwrap_or(u32::MAX);
         let mut light_groups = vec![REST.to_owned()];
@@ -39,20 +39,20 @@ impl Names {
         Self { entries, objects: names.collect(), materials: Vec::new(), light_groups }
     }
 
-    /// One more entry, behind those of the scene's `objects`.
+    /// Adds an entry after the scene's `objects`.
     pub(super) fn add_entry(&mut self, name: String) {
         self.objects.push((self.entries, name));
         self.entries = self.entries.saturating_add(1);
     }
 
-    /// Of a material by number: its own, or its number.
+    /// Name of a material by index; `material INDEX` for an unnamed one.
     pub fn material(&self, number: u32) -> String {
         let found = self.materials.binary_search_by_key(&number, |(id, _)| id.0).ok();
         let name = found.and_then(|at| self.materials.get(at)).map(|(_, name)| name.clone());
         name.unwrap_or_else(|| format!("material {number}"))
     }
 
-    /// Of an entry of the scene's objects by number: its own, or its place.
+    /// Name of a scene entry by index; its path for an unnamed one.
     pub fn object(&self, number: u32) -> String {
         let found = self.objects.binary_search_by_key(&number, |(entry, _)| *entry).ok();
         let name = found.and_then(|at| self.objects.get(at)).map(|(_, name)| name.clone());
@@ -61,21 +61,22 @@ impl Names {
 
     fn group(&self, name: Option<&str>) -> LightGroup {
         let place = name.and_then(|name| self.light_groups.iter().position(|known| known == name));
-        // There are fewer than that: `settings` checks it.
+        // Light groups beyond the range of 16 bits belong to `rest`.
         place.and_then(|place| u16::try_from(place).ok()).map_or(LightGroup::REST, LightGroup)
     }
 
-    /// Says of lamps which group they are of.
-    pub fn mark(&self, lamps: &mut [Lamp], lights: &[AnyLight]) {
-        for (lamp, light) in lamps.iter_mut().zip(lights) {
-            lamp.group = self.group(light.light_group());
+    /// Assigns lights to their groups.
+    pub fn assign_groups(&self, compiled: &mut [SceneLight], lights: &[AnyLight]) {
+        for (compiled, light) in compiled.iter_mut().zip(lights) {
+            compiled.group = self.group(light.light_group());
         }
     }
 
-    /// The same of all else that shines; `entries` are the first shapes of the scene's objects.
+    /// Scene entries and their light groups; `entries` holds the index of the first shape of each
+    /// entry.
     pub fn labels(&self, scene: &Description, entries: Vec<u32>) -> Labels {
         let of_objects = scene.objects.iter().map(|object| object.light_group.as_deref());
-        let of_areas = areas::of(&scene.lights).map(|(_, area)| area.light_group.as_deref());
+        let of_areas = area_lights::iter(&scene.lights).map(|(_, area)| area.light_group.as_deref());
         let groups: Vec<Option<&str>> = of_objects.chain(of_areas).collect();
         let any = groups.iter().any(Option::is_some);
         let groups = groups.into_iter().filter(|_| any).map(|group| self.group(group)).collect();

@@ -1,9 +1,9 @@
-//! What light comes from: files of backgrounds and lights, each read once, and backgrounds that are ready to be used.
+//! Files of backgrounds and lights, each read once, and prepared backgrounds.
 
-use super::images::{Estimate, MAX_PICTURE, MAX_TEXELS};
-use super::meshes::{Files, Library};
-use super::shelf::{Shelf, Shelved};
-use crate::description::{Backdrop, Description};
+use super::file_cache::{CachedFile, FileCache};
+use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS};
+use super::meshes::{AssetCache, Files};
+use crate::description::{BackgroundInput, Description};
 use crate::import::Limits;
 use crate::item::Item;
 use crate::kind::name_of;
@@ -11,82 +11,84 @@ use crate::path::Path;
 use crate::report::Finding;
 use juggler_imaging::raster::inspect_raster;
 use juggler_light::background::{AnyBackground, Panorama};
-use juggler_light::{AnyLight, Profile};
+use juggler_light::{AnyLight, IesProfile};
 use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Most bytes of a photometric file; real ones have a few thousand.
+/// Maximum size of a photometric file, in bytes. Typical files have a few thousand.
 const MAX_PROFILE_BYTES: u64 = 16 << 20;
 
-/// Skies that are kept when they are ready: what is checked is compiled next, and frames are made side by side.
-const KEPT: usize = 4;
+/// Number of prepared skies in the cache: a check precedes compilation, and frames are compiled in
+/// parallel.
+const MAX_PREPARED_SKIES: usize = 4;
 
-/// What a file is for.
+/// Purpose of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Purpose {
-    /// A picture of everything around.
+    /// Environment map.
     Panorama,
-    /// How strongly a lamp shines into each direction.
+    /// Photometric profile (IES): intensity of a light by direction.
     Profile,
 }
 
-/// What was read and prepared so far.
+/// Cache of files and prepared backgrounds.
 #[derive(Clone, Debug, Default)]
-pub struct Lighting {
-    panoramas: Shelf<Panorama>,
-    profiles: Shelf<Profile>,
-    /// Descriptions with what they are when prepared, the newest last.
-    skies: Arc<Mutex<Vec<(AnyBackground, AnyBackground)>>>,
+pub struct LightFiles {
+    panoramas: FileCache<Panorama>,
+    profiles: FileCache<IesProfile>,
+    /// Descriptions of skies with their prepared form, the newest last.
+    prepared_skies: Arc<Mutex<Vec<(AnyBackground, AnyBackground)>>>,
 }
 
-impl Lighting {
-    /// Without files that have changed.
-    pub fn renewed(&self) -> Self {
-        let (panoramas, profiles) = (self.panoramas.renewed(), self.profiles.renewed());
-        Self { panoramas, profiles, skies: Arc::clone(&self.skies) }
+impl LightFiles {
+    /// Cache without the files that have changed.
+    pub fn without_changed_files(&self) -> Self {
+        let (panoramas, profiles) = (self.panoramas.without_changed_files(), self.profiles.without_changed_files());
+        Self { panoramas, profiles, prepared_skies: Arc::clone(&self.prepared_skies) }
     }
 
-    /// A prepared one of before.
-    fn ready(&self, background: &AnyBackground) -> Option<AnyBackground> {
-        let skies = self.skies.lock().unwrap_or_else(PoisonError::into_inner);
-        skies.iter().find(|(description, _)| description == background).map(|(_, ready)| ready.clone())
+    /// Prepared form of a background in the cache.
+    fn prepared(&self, background: &AnyBackground) -> Option<AnyBackground> {
+        let prepared_skies = self.prepared_skies.lock().unwrap_or_else(PoisonError::into_inner);
+        prepared_skies.iter().find(|(description, _)| description == background).map(|(_, prepared)| prepared.clone())
     }
 
-    fn keep(&self, description: AnyBackground, ready: AnyBackground) {
-        let mut skies = self.skies.lock().unwrap_or_else(PoisonError::into_inner);
-        if skies.len() >= KEPT {
-            skies.remove(0);
+    fn insert_prepared(&self, description: AnyBackground, prepared: AnyBackground) {
+        let mut prepared_skies = self.prepared_skies.lock().unwrap_or_else(PoisonError::into_inner);
+        if prepared_skies.len() >= MAX_PREPARED_SKIES {
+            prepared_skies.remove(0);
         }
-        skies.push((description, ready));
+        prepared_skies.push((description, prepared));
     }
 }
 
-impl Library {
-    fn panorama(&self, path: &std::path::Path) -> Arc<Shelved<Panorama>> {
+impl AssetCache {
+    fn panorama(&self, path: &std::path::Path) -> Arc<CachedFile<Panorama>> {
         let shown = path.display();
         let panorama = |image| Panorama::new(image).map_err(|wrong| format!("`{shown}` {wrong}"));
         if let Some((image, digest)) = self.store().assets.image_at(path) {
-            return self.lighting().panoramas.keep(path, digest, || panorama(image.clone()));
+            return self.light_files().panoramas.insert_asset(path, digest, || panorama(image.clone()));
         }
-        self.lighting().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
-            let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &MAX_PICTURE);
+        self.light_files().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
+            let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &IMAGE_LIMITS);
             panorama(image.map_err(|error| error.to_string())?)
         })
     }
 
-    fn profile(&self, path: &std::path::Path) -> Arc<Shelved<Profile>> {
+    fn profile(&self, path: &std::path::Path) -> Arc<CachedFile<IesProfile>> {
         let shown = path.display();
         let limits = Limits { file_bytes: MAX_PROFILE_BYTES, ..Limits::default() };
-        self.lighting().profiles.load(path, self.store(), &limits, |bytes| {
-            // Old files have names in the letters of their country: only what is between them counts.
+        self.light_files().profiles.load(path, self.store(), &limits, |bytes| {
+            // Decode lossily: old files contain names in local encodings, but the numbers are
+            // ASCII.
             let wrong = |error| format!("cannot read `{shown}`: {error}");
-            Profile::read(&String::from_utf8_lossy(bytes)).map_err(wrong)
+            IesProfile::parse(&String::from_utf8_lossy(bytes)).map_err(wrong)
         })
     }
 
-    /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
+    /// Hash of a file's content; zeros for a file that cannot be read, which compilation reports.
     pub fn light_digest(&self, path: &std::path::Path, purpose: Purpose) -> [u8; 32] {
         match purpose {
             Purpose::Panorama => self.panorama(path).digest,
@@ -95,42 +97,44 @@ impl Library {
     }
 }
 
-fn of_background(background: &AnyBackground) -> Path {
+fn background_path(background: &AnyBackground) -> Path {
     Path::root().key("background").key(name_of(background))
 }
 
-fn of_light(number: usize, light: &AnyLight) -> Path {
+fn light_file_path(number: usize, light: &AnyLight) -> Path {
     Path::root().key("lights").index(number).key(name_of(light)).key("ies").key("file")
 }
 
-/// The files that a scene's background and lights name, each once.
+/// Files that a scene's background and lights name, each once.
 pub fn files(scene: &Description, files: &Files<'_>) -> BTreeSet<(PathBuf, Purpose)> {
     let mut found = BTreeSet::new();
-    if let Some(Backdrop::Kind(background @ AnyBackground::Environment(environment))) = scene.background.as_deref() {
-        let path = of_background(background).key("file");
+    if let Some(BackgroundInput::Kind(background @ AnyBackground::Environment(environment))) =
+        scene.background.as_deref()
+    {
+        let path = background_path(background).key("file");
         found.insert((files.locate(&path, &environment.file), Purpose::Panorama));
     }
     for (i, light) in scene.lights.iter().enumerate() {
         if let Some(ies) = (**light).clone().ies() {
-            found.insert((files.locate(&of_light(i, light), &ies.file), Purpose::Profile));
+            found.insert((files.locate(&light_file_path(i, light), &ies.file), Purpose::Profile));
         }
     }
     found
 }
 
-/// Lights with what their files hold.
+/// Lights with the content of their files.
 pub fn lights(lights: &[Item<AnyLight>], files: Files<'_>, findings: &mut Vec<Finding>) -> Vec<AnyLight> {
-    lights.iter().enumerate().map(|(i, light)| loaded(i, light, files, findings)).collect()
+    lights.iter().enumerate().map(|(i, light)| load_light(i, light, files, findings)).collect()
 }
 
-/// Light number `i` with what its file holds.
-pub fn loaded(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut Vec<Finding>) -> AnyLight {
+/// Light `i` with the content of its file.
+pub fn load_light(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut Vec<Finding>) -> AnyLight {
     let mut light = light.clone();
-    // The path is made only where it is needed: a scene may have a million lights.
+    // Build the path only if necessary: a scene may have a million lights.
     if light.ies().is_some() {
-        let path = of_light(i, &light);
+        let path = light_file_path(i, &light);
         if let Some(ies) = light.ies() {
-            match &files.library.profile(&files.locate(&path, &ies.file)).content {
+            match &files.asset_cache.profile(&files.locate(&path, &ies.file)).content {
                 Ok(profile) => ies.set_profile(Arc::clone(profile)),
                 Err(message) => findings.push(Finding::error(message.clone()).at(&path)),
             }
@@ -139,13 +143,13 @@ pub fn loaded(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut Vec<F
     light
 }
 
-/// The scene's background, ready to be used; nothing when there is none, or one that cannot be.
+/// Prepared background of the scene; `None` if the scene has none or an invalid one.
 pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Option<AnyBackground> {
     let mut background = AnyBackground::from(scene.background.clone()?.into_inner());
-    let path = of_background(&background);
+    let path = background_path(&background);
     if let AnyBackground::Environment(environment) = &mut background {
         let path = path.key("file");
-        match &files.library.panorama(&files.locate(&path, &environment.file)).content {
+        match &files.asset_cache.panorama(&files.locate(&path, &environment.file)).content {
             Ok(panorama) => environment.set_panorama(Arc::clone(panorama)),
             Err(message) => {
                 findings.push(Finding::error(message.clone()).at(&path));
@@ -153,29 +157,30 @@ pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Find
             }
         }
     }
-    let dear = matches!(background, AnyBackground::Sky(_));
-    let lighting = files.library.lighting();
-    if let Some(ready) = dear.then(|| lighting.ready(&background)).flatten() {
-        return Some(ready);
+    let is_expensive = matches!(background, AnyBackground::Sky(_));
+    let light_files = files.asset_cache.light_files();
+    if let Some(prepared) = is_expensive.then(|| light_files.prepared(&background)).flatten() {
+        return Some(prepared);
     }
-    let description = dear.then(|| background.clone());
+    let description = is_expensive.then(|| background.clone());
     if let Err(invalid) = background.prepare() {
         findings.push(Finding::error(invalid.message).at(path.join(invalid.field)));
         return None;
     }
-    description.into_iter().for_each(|description| lighting.keep(description, background.clone()));
+    description.into_iter().for_each(|description| light_files.insert_prepared(description, background.clone()));
     Some(background)
 }
 
-/// What a picture of everything around takes at most, by its head. Nothing for a file that cannot be read.
+/// Upper bound of the memory for an environment map, from the file's header; zero for a file that
+/// cannot be read.
 pub fn estimate(path: &std::path::Path) -> Estimate {
     let Ok(layout) = inspect_raster(path) else { return Estimate::default() };
     let pixels = u64::from(layout.width) * u64::from(layout.height);
     if pixels > MAX_TEXELS {
         return Estimate::default();
     }
-    // Beside what stays, decoders hold 8 bytes a pixel; then there are three numbers for each on their way to the table.
-    let kept = Panorama::bytes(pixels as usize) as u64 + 8 * u64::from(layout.height) + 4096;
+    // At the peak, decoders hold 8 bytes per pixel; later, three floats per pixel await the table.
+    let resident_bytes = Panorama::bytes(pixels as usize) as u64 + 8 * u64::from(layout.height) + 4096;
     let file = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    Estimate { kept, peak: kept + 12 * pixels + file }
+    Estimate { resident_bytes, peak_bytes: resident_bytes + 12 * pixels + file }
 }

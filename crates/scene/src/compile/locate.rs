@@ -1,7 +1,7 @@
-//! From a shape's number back to the place where it is described. Nothing is kept for it: objects are counted in the
-//! order in which they are placed.
+//! Maps the index of a shape to the place of its description. Counts objects in the order of
+//! placement, so that no table is stored.
 
-use super::areas;
+use super::area_lights;
 use super::count::{self, Counts};
 use crate::description::{Description, Object};
 use crate::item::Item;
@@ -9,22 +9,22 @@ use crate::kind::name_of;
 use crate::path::Path;
 use juggler_material::MaterialRef;
 
-/// Where a shape is described.
+/// Place of a shape in the scene description.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
-    /// The object: `objects[3]`, or `groups.tree[2]` for one of a group.
+pub struct ShapePlace {
+    /// Path of the object: `objects[3]`, or `groups.tree[2]` for an object of a group.
     pub path: String,
-    /// The kind of its shape; `sphere` for those of chains and limbs.
+    /// Kind of the shape; `sphere` for chains and limbs.
     pub kind: String,
-    /// The material's name, or where it is described; `default` where nothing says.
+    /// Name of the material, or its path if inline; `default` for the default material.
     pub material: String,
 }
 
-impl Part {
-    /// The shape `number` of a scene's world, as its vertices count.
-    pub fn of(scene: &Description, number: u32) -> Option<Self> {
+impl ShapePlace {
+    /// Finds the shape of index `number` in a scene's world, as vertices state it.
+    pub fn find(scene: &Description, number: u32) -> Option<Self> {
         let counts = count::count(scene).ok()?;
-        let search = Search { scene, counts };
+        let search = ShapeSearch { scene, counts };
         let number = u64::from(number);
         let objects: u64 = scene.objects.iter().map(|object| search.count(object)).sum();
         if let Some(light) = number.checked_sub(objects) {
@@ -34,20 +34,20 @@ impl Part {
     }
 }
 
-/// An area light by its number among those: they stand behind all objects.
-fn area(scene: &Description, number: usize) -> Option<Part> {
-    let (light, area) = areas::of(&scene.lights).nth(number)?;
+/// Area light by its index among area lights, which follow all objects.
+fn area(scene: &Description, number: usize) -> Option<ShapePlace> {
+    let (light, area) = area_lights::iter(&scene.lights).nth(number)?;
     let path = Path::root().key("lights").index(light);
-    Some(Part { path: path.to_string(), kind: name_of(&area.shape), material: path.to_string() })
+    Some(ShapePlace { path: path.to_string(), kind: name_of(&area.shape), material: path.to_string() })
 }
 
-struct Search<'s> {
+struct ShapeSearch<'s> {
     scene: &'s Description,
     counts: Counts<'s>,
 }
 
-impl Search<'_> {
-    fn among(&self, objects: &[Item<Object>], at: &Path, mut number: u64, inherited: String) -> Option<Part> {
+impl ShapeSearch<'_> {
+    fn among(&self, objects: &[Item<Object>], at: &Path, mut number: u64, inherited: String) -> Option<ShapePlace> {
         for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let count = self.count(object);
             if number < count {
@@ -67,7 +67,7 @@ impl Search<'_> {
         count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()
     }
 
-    fn within(&self, object: &Object, at: &Path, number: u64, inherited: String) -> Option<Part> {
+    fn within(&self, object: &Object, at: &Path, number: u64, inherited: String) -> Option<ShapePlace> {
         let material = match &object.material {
             None => inherited,
             Some(MaterialRef::Name(name)) => name.clone(),
@@ -81,7 +81,7 @@ impl Search<'_> {
             return self.among(objects, &at.key("objects"), number, material);
         }
         let kind = object.shape.as_ref().map_or_else(|| "sphere".into(), name_of);
-        Some(Part { path: at.to_string(), kind, material })
+        Some(ShapePlace { path: at.to_string(), kind, material })
     }
 }
 
@@ -108,9 +108,9 @@ mod tests {
             "lights": [{"point": {}}, {"area": {"shape": {"sphere": {"radius": 0.1}}, "power": 5}}]
         }"#;
         let scene = Scene::from_json(scene, "test.json").unwrap();
-        let shapes = scene.compile().unwrap().world.geometry().shapes as u32;
+        let shapes = scene.compile().unwrap().world.geometry_stats().shapes as u32;
         let parts: Vec<[String; 3]> = (0..shapes)
-            .map(|number| Part::of(&scene.description, number).unwrap())
+            .map(|number| ShapePlace::find(&scene.description, number).unwrap())
             .map(|part| [part.path, part.kind, part.material])
             .collect();
         let expected = [
@@ -126,6 +126,6 @@ mod tests {
             ["lights[1]", "sphere", "lights[1]"],
         ];
         assert_eq!(parts, expected);
-        assert_eq!(Part::of(&scene.description, shapes), None);
+        assert_eq!(ShapePlace::find(&scene.description, shapes), None);
     }
 }

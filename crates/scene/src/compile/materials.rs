@@ -1,32 +1,32 @@
-//! Materials: compiled once each, mistakes charged to the place where they stand.
+//! Compiles each material once and reports errors at the place of its description.
 
 use super::labels::Names;
 use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::item::Item;
-use crate::path::{Path, Trail};
+use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use juggler_material::{
-    AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
+    AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialResolver, MaterialTable,
 };
 use juggler_texture::TextureTable;
 use std::sync::Arc;
 
-/// Compiles materials as objects ask for them.
+/// Compiler of the materials that objects request.
 pub struct Materials {
     compiler: MaterialCompiler,
-    plain: Option<MaterialId>,
-    glows: bool,
-    /// The materials that were asked for, in order.
-    given: Vec<MaterialId>,
+    default_material: Option<MaterialId>,
+    has_emission: bool,
+    /// Requested materials, in order.
+    requested: Vec<MaterialId>,
 }
 
 impl Materials {
-    /// Takes the scene's textures and named materials.
+    /// Compiles the scene's textures and collects its named materials.
     pub fn new(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
         let named = scene.textures.iter().map(|(name, texture)| (name.clone(), (**texture).clone()));
         let (textures, errors) = TextureTable::compile(named, &files);
-        // Unknown names have been reported: `validate::names`.
+        // Unknown names are reported already by `validate::names`.
         for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
             let kind = scene.textures.get(name).map(crate::kind::name_of).unwrap_or_default();
             let path = files.texture_path(name).key(kind);
@@ -36,65 +36,66 @@ impl Materials {
         let compiler = MaterialCompiler::new(textures, named);
         Self {
             compiler,
-            plain: None,
-            glows: scene.materials.values().any(|material| glows(material)),
-            given: Vec::new(),
+            default_material: None,
+            has_emission: scene.materials.values().any(|material| has_emission(material)),
+            requested: Vec::new(),
         }
     }
 
-    /// The material that stands at `path`; a plain one where there is a mistake.
-    pub fn get(&mut self, material: &MaterialRef, path: &Trail<'_>, findings: &mut Vec<Finding>) -> MaterialId {
+    /// Compiles the material at `path`. Returns the default material after an error.
+    pub fn get(&mut self, material: &MaterialRef, path: &PathRef<'_>, findings: &mut Vec<Finding>) -> MaterialId {
         let compiled = match material {
             MaterialRef::Inline(material) => {
-                self.glows |= glows(material);
+                self.has_emission |= has_emission(material);
                 self.compiler.compile(material)
             }
             MaterialRef::Name(_) => self.compiler.material("", material),
         };
         let id = compiled.unwrap_or_else(|error| {
             findings.extend(finding(&error, &path.into()));
-            self.plain()
+            self.default_material()
         });
-        self.given.push(id);
+        self.requested.push(id);
         id
     }
 
-    /// Asks for the materials of a scene's objects in the order in which [`place`](super::placing::place) does.
-    pub fn get_all(&mut self, scene: &Description, findings: &mut Vec<Finding>) {
-        let groups = Trail::Root.key("groups");
-        scene.groups.iter().for_each(|(name, objects)| self.get_of(objects, &groups.key(name), findings));
-        self.get_of(&scene.objects, &Trail::Root.key("objects"), findings);
-        self.plain();
+    /// Requests the materials of a scene's objects in the order of
+    /// [`place`](super::placing::place).
+    pub fn request_all(&mut self, scene: &Description, findings: &mut Vec<Finding>) {
+        let groups = PathRef::Root.key("groups");
+        scene.groups.iter().for_each(|(name, objects)| self.request_objects(objects, &groups.key(name), findings));
+        self.request_objects(&scene.objects, &PathRef::Root.key("objects"), findings);
+        self.default_material();
     }
 
-    fn get_of(&mut self, objects: &[Item<Object>], path: &Trail<'_>, findings: &mut Vec<Finding>) {
+    fn request_objects(&mut self, objects: &[Item<Object>], path: &PathRef<'_>, findings: &mut Vec<Finding>) {
         for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let path = path.index(i);
             if let Some(material) = &object.material {
                 self.get(material, &path.key("material"), findings);
             }
             if object.shape.is_none() && object.group.is_none() {
-                self.get_of(object.inner(), &path.key("objects"), findings);
+                self.request_objects(object.inner(), &path.key("objects"), findings);
             }
         }
     }
 
-    /// What things are made of that say nothing.
-    pub fn plain(&mut self) -> MaterialId {
+    /// Default material, of objects without one.
+    pub fn default_material(&mut self) -> MaterialId {
         let compiler = &mut self.compiler;
-        *self.plain.get_or_insert_with(|| match MaterialRef::default() {
+        *self.default_material.get_or_insert_with(|| match MaterialRef::default() {
             MaterialRef::Inline(material) => compiler.compile(&material).unwrap_or(MaterialId(0)),
             MaterialRef::Name(_) => MaterialId(0),
         })
     }
 
-    /// Whether any material gives off light of its own.
-    pub fn glows(&self) -> bool {
-        self.glows
+    /// Whether any material emits light.
+    pub fn has_emission(&self) -> bool {
+        self.has_emission
     }
 
-    /// All that was compiled, and its names; nothing when a named material is wrong.
-    /// The last is which materials were asked for, in order.
+    /// Returns the table of all compiled materials, empty if a named material is invalid, and the
+    /// requested materials in order. Stores the names of materials in `names`.
     pub fn finish(self, names: &mut Names, findings: &mut Vec<Finding>) -> (MaterialTable, Arc<Vec<MaterialId>>) {
         let named = self.compiler.compiled().map(|(name, id)| (id, name.to_owned()));
         names.materials = named.collect();
@@ -105,20 +106,19 @@ impl Materials {
             }
             MaterialTable::default()
         });
-        (table, Arc::new(self.given))
+        (table, Arc::new(self.requested))
     }
 }
 
-/// What to say of an error. Names are looked up in the whole scene before (`validate::names`): one that is unknown
-/// here belongs to something that has been complained about already.
+/// Finding for an error; `None` for an unknown name, which `validate::names` reports.
 fn finding(error: &MaterialError, path: &Path) -> Option<Finding> {
     (!error.is_unknown_name()).then(|| Finding::error(error.to_string()).at(path.join(&error.path())))
 }
 
-fn glows(material: &AnyMaterial) -> bool {
+fn has_emission(material: &AnyMaterial) -> bool {
     let inline = |material: &MaterialRef| match material {
-        MaterialRef::Inline(material) => glows(material),
+        MaterialRef::Inline(material) => has_emission(material),
         MaterialRef::Name(_) => false,
     };
-    material.has_emission() || material.parts().into_iter().any(inline)
+    material.has_emission() || material.nested_materials().into_iter().any(inline)
 }

@@ -1,12 +1,14 @@
-//! The files of a scene: meshes (pictures in [`super::images`], what light comes from in [`super::lighting`]), each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
+//! Mesh files of a scene. Each file is loaded, prepared and hashed once and shared by all objects,
+//! frames and copies of a scene. For image files see [`super::images`], for files of lights and
+//! backgrounds [`super::lighting`].
 
-use super::images::Pictures;
-use super::lighting::Lighting;
+use super::images::ImageCache;
+use super::lighting::LightFiles;
 use crate::asset::Asset;
 use crate::description::Description;
 use crate::document::Sources;
-use crate::import::{Fault, ImportError, Limits, parse};
-use crate::path::{Path, Trail};
+use crate::import::{ImportError, ImportErrorKind, Limits, parse};
+use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
 use juggler_math::{Aabb, Vec3};
@@ -16,34 +18,34 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-/// The files that were loaded so far.
+/// Cache of loaded files.
 #[derive(Clone, Debug, Default)]
-pub struct Library {
+pub struct AssetCache {
     store: Store,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
-    pictures: Pictures,
-    lighting: Lighting,
+    images: ImageCache,
+    light_files: LightFiles,
 }
 
-/// A mesh file.
+/// Mesh file.
 #[derive(Debug)]
 struct Entry {
-    /// The hash of its content; zeros when it could not be read.
+    /// Hash of the content; zeros if the file could not be read.
     digest: [u8; 32],
-    /// A mesh ready to be placed, with all that is odd about it; or why there is none.
+    /// Prepared mesh with its warnings, or an error message.
     mesh: Result<(Mesh, Vec<String>), String>,
-    /// How long the file was and when it was last written to, before it was read.
-    state: Option<(u64, SystemTime)>,
+    /// Length and modification time, taken before the file was read.
+    stamp: Option<(u64, SystemTime)>,
 }
 
-/// How long a file is and when it was last written to.
-pub(super) fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
+/// Length and modification time of a file.
+pub(super) fn file_stamp(path: &std::path::Path) -> Option<(u64, SystemTime)> {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.len(), metadata.modified().ok()?))
 }
 
-impl Library {
-    /// Of files that come from there.
+impl AssetCache {
+    /// Creates an empty cache of files from a store.
     pub fn new(store: Store) -> Self {
         Self { store, ..Self::default() }
     }
@@ -54,47 +56,48 @@ impl Library {
         self.store.assets.insert(name, asset);
     }
 
-    /// Where files come from.
+    /// Store that files are read from.
     pub fn store(&self) -> &Store {
         &self.store
     }
 
-    pub(super) fn pictures(&self) -> &Pictures {
-        &self.pictures
+    pub(super) fn images(&self) -> &ImageCache {
+        &self.images
     }
 
-    pub(super) fn lighting(&self) -> &Lighting {
-        &self.lighting
+    pub(super) fn light_files(&self) -> &LightFiles {
+        &self.light_files
     }
 
-    /// A library that reads those files again that have changed.
-    pub fn renewed(&self) -> Self {
-        let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
+    /// Cache without the files that have changed, which are read again on use.
+    pub fn without_changed_files(&self) -> Self {
+        let same = |path: &PathBuf, entry: &Entry| entry.stamp.is_some() && entry.stamp == file_stamp(path);
         let entries = self.entries();
         let kept = entries.iter().filter(|(path, entry)| same(path, entry));
         let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
-        let (pictures, lighting) = (self.pictures.renewed(), self.lighting.renewed());
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), pictures, lighting }
+        let (images, light_files) = (self.images.without_changed_files(), self.light_files.without_changed_files());
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), images, light_files }
     }
 
-    /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
+    /// Hash of a file's content; zeros for a file that cannot be read, which compilation reports.
     pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
         self.get(path).digest
     }
 
-    /// The box around the mesh of a file, or why there is none.
+    /// Bounding box of a file's mesh in object space, or an error message.
     pub fn bounds(&self, path: &std::path::Path) -> Result<Aabb, String> {
         self.get(path).mesh.as_ref().map(|(mesh, _)| mesh.bounds()).map_err(Clone::clone)
     }
 
-    /// Files are loaded without the lock, which threads of one pool must not wait for in the midst of their work:
-    /// of two threads that load the same file, both take the mesh of the first.
+    /// Loads a file without holding the lock, since threads of one pool must not wait for each
+    /// other in the middle of their work. If two threads load the same file, both get the mesh of
+    /// the first.
     fn get(&self, path: &std::path::Path) -> Arc<Entry> {
         if let Some(known) = self.entries().get(path) {
             return Arc::clone(known);
         }
-        // The same file by another name.
-        let file = self.store.true_name(path);
+        // Find the same file under another name.
+        let file = self.store.canonical_name(path);
         let known = self.entries().get(&file).filter(|entry| entry.mesh.is_ok()).map(Arc::clone);
         let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path, &self.store)));
         let mut entries = self.entries();
@@ -109,58 +112,59 @@ impl Library {
 
 impl Entry {
     fn load(path: &std::path::Path, store: &Store) -> Self {
-        let (limits, state) = (Limits::default(), state(path));
-        let bytes = match store.mesh(path, &limits) {
+        let (limits, stamp) = (Limits::default(), file_stamp(path));
+        let bytes = match store.read_bytes(path, &limits) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)), state },
+            Err(error) => return Self { digest: [0; 32], mesh: Err(import_error_message(&error)), stamp },
         };
         let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
-        // Building the hierarchy takes memory of its own.
+        // Free memory before the hierarchy is built.
         drop(bytes);
-        let mesh = imported.map_err(|error| explain(&error)).and_then(|found| {
+        let mesh = imported.map_err(|error| import_error_message(&error)).and_then(|found| {
             let mut shape = Mesh::from(found.mesh);
-            let invalid = |invalid| format!("`{}` holds a mesh that cannot be: {invalid}", path.display());
+            let invalid = |invalid| format!("`{}` contains an invalid mesh: {invalid}", path.display());
             shape.prepare().map_err(invalid)?;
             let mut warnings = found.warnings;
             warnings.extend(shape.warnings());
             Ok((shape, warnings))
         });
-        Self { digest, mesh, state }
+        Self { digest, mesh, stamp }
     }
 }
 
-pub(super) fn explain(error: &ImportError) -> String {
+pub(super) fn import_error_message(error: &ImportError) -> String {
     let shown = error.path.display();
-    match &error.fault {
-        Fault::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
-        fault => format!("cannot read `{shown}`: {fault}"),
+    match &error.kind {
+        ImportErrorKind::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
+        kind => format!("cannot read `{shown}`: {kind}"),
     }
 }
 
-/// Where a scene's files lie.
+/// Files of a scene.
 #[derive(Clone, Copy)]
 pub struct Files<'s> {
-    /// The scene.
+    /// Scene that names the files.
     pub scene: &'s Description,
-    /// The texts that it was read from; none for scenes made by programs.
+    /// Source texts of the scene; empty for scenes built by programs.
     pub sources: &'s Sources,
-    /// What was loaded before.
-    pub library: &'s Library,
+    /// Cache of loaded files.
+    pub asset_cache: &'s AssetCache,
 }
 
 impl Files<'_> {
-    /// A file named at `path`: an asset of that name, or a file relative to the scene file that
-    /// names it.
+    /// Location of a file named at `path`: the asset of that name, or a file relative to the scene
+    /// file that names it.
     pub fn locate(&self, path: &Path, file: &str) -> PathBuf {
-        if let Some(asset) = self.library.store().assets.path_of(file) {
+        if let Some(asset) = self.asset_cache.store().assets.path_of(file) {
             return asset;
         }
-        let place = self.scene.item_of(path).and_then(|(item, _)| item.place());
+        let place = self.scene.innermost_item(path).and_then(|(item, _)| item.place());
         self.sources.folder(place).join(file)
     }
 
-    /// The mesh that a description at `path` means: its own arrays, or those of its file, blended with its morphs.
-    pub fn mesh(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
+    /// Mesh of a description at `path`: its own arrays or those of its file, with morph targets
+    /// applied.
+    pub fn mesh(&self, mesh: &Mesh, path: &PathRef<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
         if mesh.morphs.is_empty() && (mesh.file.is_none() || mesh.crease_angle_degrees.is_none()) {
             return self.base(mesh, path, findings);
         }
@@ -169,11 +173,12 @@ impl Files<'_> {
         Some(own)
     }
 
-    /// What a mesh is at `moments` while the shutter is open, where that is not always the same.
+    /// Mesh that deforms from one of the `moments` to the next while the shutter is open; `None` if
+    /// all of them are equal.
     pub fn moving(
         &self,
         moments: &[&Mesh],
-        path: &Trail<'_>,
+        path: &PathRef<'_>,
         findings: &mut Vec<Finding>,
     ) -> Option<Result<Mesh, InvalidShape>> {
         let first = moments.first()?;
@@ -182,14 +187,14 @@ impl Files<'_> {
         }
         let mut keys = vec![self.data(first, path, findings)?];
         for at in moments.iter().skip(1) {
-            // What is odd about a file has been said.
+            // Warnings about files are reported already.
             keys.push(self.data(at, path, &mut Vec::new())?);
         }
-        Some(Mesh::moving(keys, first.crease_angle_degrees))
+        Some(Mesh::from_keyframes(keys, first.crease_angle_degrees))
     }
 
-    /// The arrays of a mesh, blended.
-    fn data(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<MeshData> {
+    /// Arrays of a mesh with morph targets applied.
+    fn data(&self, mesh: &Mesh, path: &PathRef<'_>, findings: &mut Vec<Finding>) -> Option<MeshData> {
         let mut base = self.base(mesh, path, findings)?;
         base.morphs.clone_from(&mesh.morphs);
         let mut targets: Vec<Vec<Vec3>> = Vec::new();
@@ -214,8 +219,8 @@ impl Files<'_> {
         }
     }
 
-    /// The mesh without its morphs.
-    fn base(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
+    /// Mesh without morph targets.
+    fn base(&self, mesh: &Mesh, path: &PathRef<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
         let Some(file) = &mesh.file else {
             return Some(mesh.clone());
         };
@@ -227,9 +232,9 @@ impl Files<'_> {
         self.file(file, &path, findings)
     }
 
-    /// The mesh of a file that is named at `path`.
+    /// Mesh of a file named at `path`.
     fn file(&self, file: &str, path: &Path, findings: &mut Vec<Finding>) -> Option<Mesh> {
-        match &self.library.get(&self.locate(path, file)).mesh {
+        match &self.asset_cache.get(&self.locate(path, file)).mesh {
             Ok((mesh, warnings)) => {
                 findings.extend(warnings.iter().map(|warning| Finding::warning(warning.clone()).at(path)));
                 Some(mesh.clone())
@@ -254,13 +259,13 @@ mod tests {
         std::fs::create_dir(folder.path().join("sub")).unwrap();
         let file = folder.path().join("a.obj");
         std::fs::write(&file, TRIANGLE).unwrap();
-        let library = Library::default();
-        let first = library.get(&file);
+        let asset_cache = AssetCache::default();
+        let first = asset_cache.get(&file);
         assert_eq!(first.digest, *blake3::hash(TRIANGLE.as_bytes()).as_bytes());
-        // What is loaded is not looked at again.
+        // Loaded files are not read again.
         std::fs::write(&file, "v 0 0 0\n").unwrap();
         for name in [file.clone(), folder.path().join("sub/../a.obj"), folder.path().join("./a.obj")] {
-            assert!(Arc::ptr_eq(&library.clone().get(&name), &first), "{}", name.display());
+            assert!(Arc::ptr_eq(&asset_cache.clone().get(&name), &first), "{}", name.display());
         }
         std::fs::write(folder.path().join("b.obj"), TRIANGLE).unwrap();
         let names = ["b.obj", "sub/../b.obj"].map(|name| folder.path().join(name));
@@ -268,8 +273,8 @@ mod tests {
             let threads: Vec<_> = (0..8)
                 .map(|i| {
                     let name = &names[i % 2];
-                    let library = &library;
-                    scope.spawn(move || library.get(name))
+                    let asset_cache = &asset_cache;
+                    scope.spawn(move || asset_cache.get(name))
                 })
                 .collect();
             threads.into_iter().map(|thread| thread.join().unwrap()).collect()
@@ -283,8 +288,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.obj");
         std::fs::write(&file, "v 0 0\n").unwrap();
-        let library = Library::default();
-        let broken = library.get(&file);
+        let asset_cache = AssetCache::default();
+        let broken = asset_cache.get(&file);
         assert_eq!(broken.digest, *blake3::hash(b"v 0 0\n").as_bytes());
         assert!(
             broken
@@ -293,7 +298,7 @@ mod tests {
                 .unwrap_err()
                 .ends_with("a.obj`: line 1: expected a number for z, found the end of the line")
         );
-        assert_eq!(library.digest(&folder.path().join("none.obj")), [0; 32]);
-        assert_eq!(library.digest(folder.path()), [0; 32]);
+        assert_eq!(asset_cache.digest(&folder.path().join("none.obj")), [0; 32]);
+        assert_eq!(asset_cache.digest(folder.path()), [0; 32]);
     }
 }

@@ -1,24 +1,25 @@
-//! Description → world: names looked up, groups placed, shapes prepared, gaps filled with defaults.
+//! Compiles a scene description to a world: resolves names, places groups, prepares shapes and adds
+//! defaults.
 
 use crate::description::{Description, Render};
 use crate::integrator::IntegratorChoice;
 use crate::motion::Tracks;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
-use juggler_camera::{AnyCamera, InvalidCamera, Perspective, Shot};
+use juggler_camera::{AnyCamera, InvalidCamera, Perspective, ShutterCamera};
 use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
-use juggler_world::{Labels, Lamp, Object, World};
+use juggler_world::{Labels, Object, SceneLight, World};
 use std::sync::Arc;
 
-pub(crate) mod areas;
+pub(crate) mod area_lights;
 mod count;
-mod course;
 mod defaults;
-mod emitting;
+mod emitter_count;
 mod facing;
+mod file_cache;
 mod illuminance;
 mod images;
 mod labels;
@@ -29,60 +30,61 @@ mod meshes;
 mod needs;
 mod placing;
 mod settings;
-mod shelf;
+mod shutter_motion;
 
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub use illuminance::Illuminance;
-pub(crate) use images::pictures;
+pub(crate) use images::image_files;
 pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
 pub use labels::{Names, REST};
 pub(crate) use lighting::files as light_files;
 pub use lighting::{Purpose, estimate as estimate_panorama};
-pub use locate::Part;
-pub use meshes::{Files, Library};
+pub use locate::ShapePlace;
+pub use meshes::{AssetCache, Files};
 pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 
-/// A scene ready to be rendered.
+/// Scene that is ready to render.
 #[derive(Clone)]
 pub struct Compiled {
-    /// What can be seen.
+    /// World: geometry, materials, lights and background.
     pub world: Arc<World>,
-    /// The cameras with their names, the one to render with first. There is always one.
+    /// Cameras with their names, the selected one first. At least one.
     pub cameras: Vec<(String, AnyCamera)>,
-    /// The first camera at even times from opening to closing of the shutter; nothing when it stays as it is.
-    pub course: Vec<AnyCamera>,
-    /// Size, samples and the like, as the scene says.
+    /// Selected camera at even times from the opening to the closing of the shutter; empty if the
+    /// camera is static.
+    pub camera_keys: Vec<AnyCamera>,
+    /// Render settings of the scene.
     pub settings: Render,
-    /// What the scene is rendered with.
+    /// Integrator, and the reason for its choice.
     pub integrator: IntegratorChoice,
-    /// A box around all objects that have an end, area lights left out.
+    /// World-space bounding box of all bounded objects except area lights.
     pub bounds: Aabb,
-    /// What people should know about the scene.
+    /// Warnings about the scene.
     pub warnings: Problems,
-    /// Names of what masks and layers tell apart.
+    /// Names of objects, materials and light groups, for masks and AOVs.
     pub names: Arc<Names>,
-    /// The light that brings the most to the middle of the scene.
+    /// Light of the highest illuminance at the center of the scene.
     pub illuminance: Option<Illuminance>,
-    /// The materials of the objects, in the order in which objects are placed.
-    pub(crate) given: Arc<Vec<MaterialId>>,
+    /// Materials of the objects, in the order of placement.
+    pub(crate) object_materials: Arc<Vec<MaterialId>>,
 }
 
-/// Everything of a [`World`] but its hierarchy, which takes time to build.
+/// Parts of a [`World`] before its bounding volume hierarchies are built.
 pub struct Assembly {
-    /// Every object in its place.
+    /// Placed objects.
     pub objects: Vec<Object>,
-    /// What they are made of.
+    /// Compiled materials.
     pub materials: MaterialTable,
-    /// The lights.
-    pub lights: Vec<Lamp>,
-    /// What lies behind everything.
+    /// Lights.
+    pub lights: Vec<SceneLight>,
+    /// Background.
     pub background: AnyBackground,
-    /// Cameras by name, the chosen one first.
+    /// Cameras by name, the selected one first.
     pub cameras: Vec<(String, AnyCamera)>,
-    /// As [`Compiled::course`].
-    pub course: Vec<AnyCamera>,
-    /// What belongs together.
+    /// As [`Compiled::camera_keys`].
+    pub camera_keys: Vec<AnyCamera>,
+    /// Scene entries of shapes, and light groups.
     pub labels: Labels,
     /// As [`Compiled::names`].
     pub names: Names,
@@ -92,42 +94,42 @@ pub struct Assembly {
     pub integrator: IntegratorChoice,
     /// As [`Compiled::bounds`].
     pub bounds: Aabb,
-    pub(crate) given: Arc<Vec<MaterialId>>,
+    pub(crate) object_materials: Arc<Vec<MaterialId>>,
 }
 
 impl Compiled {
-    /// The first camera for pictures of `size` pixels, while the shutter is open.
-    pub fn shot(&self, size: UVec2) -> Result<Shot, InvalidCamera> {
-        let keys: Result<Vec<_>, _> = self.course.iter().map(|camera| camera.project(size)).collect();
+    /// Selected camera for images of `size` pixels, over the shutter interval.
+    pub fn shutter_camera(&self, size: UVec2) -> Result<ShutterCamera, InvalidCamera> {
+        let keys: Result<Vec<_>, _> = self.camera_keys.iter().map(|camera| camera.projection(size)).collect();
         let mut keys = keys?.into_iter();
         match (keys.next(), self.cameras.first()) {
-            (Some(first), _) => Ok(Shot::moving(first, keys.collect())),
-            (None, Some((_, camera))) => Ok(camera.project(size)?.into()),
-            // There is always one.
-            (None, None) => Ok(AnyCamera::from(Perspective::default()).project(size)?.into()),
+            (Some(first), _) => Ok(ShutterCamera::from_keys(first, keys.collect())),
+            (None, Some((_, camera))) => Ok(camera.projection(size)?.into()),
+            // `cameras` has at least one element.
+            (None, None) => Ok(AnyCamera::from(Perspective::default()).projection(size)?.into()),
         }
     }
 }
 
 impl Assembly {
-    /// Puts everything together; what cannot be is left out and reported. `tracks` are what moves
-    /// while the shutter is open.
-    pub fn of(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
+    /// Assembles a scene. Reports invalid parts and leaves them out. `tracks` holds the items that
+    /// move while the shutter is open.
+    pub fn from_scene(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
         let SceneInputs { integrator, sources, background, mut materials, mut names } =
-            SceneInputs::of(scene, files, &mut findings);
+            SceneInputs::from_scene(scene, files, &mut findings);
         let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
-        let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
-        let glows = materials.glows();
-        areas::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
+        let (bounds, farthest_object) = (bounds(&placed.0), farthest_object(&placed.0, &placed.1));
+        let has_emission = materials.has_emission();
+        area_lights::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
-        let (cameras, course) = cameras(scene, tracks, &bounds, &farthest, &mut findings);
-        let light =
+        let (cameras, camera_keys) = cameras(scene, tracks, &bounds, &farthest_object, &mut findings);
+        let inputs =
             LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
-        let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
+        let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
         let labels = names.labels(scene, entries);
-        let (materials, given) = materials.finish(&mut names, &mut findings);
-        facing::Scenery { scene, objects: &objects, entries: &labels.entries, materials: &materials }
+        let (materials, object_materials) = materials.finish(&mut names, &mut findings);
+        facing::SceneObjects { scene, objects: &objects, entries: &labels.entries, materials: &materials }
             .check(&mut findings);
         let assembly = Self {
             objects,
@@ -135,27 +137,38 @@ impl Assembly {
             lights,
             background,
             cameras,
-            course,
+            camera_keys,
             labels,
             names,
             illuminance,
             integrator,
             bounds,
-            given,
+            object_materials,
         };
         (assembly, findings)
     }
 
-    /// Builds the world.
+    /// Builds the world with its bounding volume hierarchies.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
-        let Self { cameras, course, names, integrator, bounds, illuminance, given, .. } = self;
+        let Self { cameras, camera_keys, names, integrator, bounds, illuminance, object_materials, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
-        Compiled { world, cameras, course, settings, integrator, bounds, warnings, names, illuminance, given }
+        Compiled {
+            world,
+            cameras,
+            camera_keys,
+            settings,
+            integrator,
+            bounds,
+            warnings,
+            names,
+            illuminance,
+            object_materials,
+        }
     }
 }
 
-/// What is known of a scene before its objects are placed.
+/// Parts of a scene that are compiled before its objects are placed.
 struct SceneInputs {
     integrator: IntegratorChoice,
     sources: Vec<AnyLight>,
@@ -165,19 +178,19 @@ struct SceneInputs {
 }
 
 impl SceneInputs {
-    fn of(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
-        let integrator = IntegratorChoice::of(scene);
+    fn from_scene(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
+        let integrator = IntegratorChoice::for_scene(scene);
         settings::check(&scene.render, findings);
         let sources = lighting::lights(&scene.lights, files, findings);
         settings::check_lights(scene, &sources, findings);
         settings::check_fit(scene, &integrator, findings);
         let background = lighting::background(scene, files, findings);
         let materials = materials::Materials::new(scene, files, findings);
-        Self { integrator, sources, background, materials, names: Names::of(scene) }
+        Self { integrator, sources, background, materials, names: Names::from_scene(scene) }
     }
 }
 
-/// What the lights of a world follow from.
+/// Inputs that determine the lights of a world.
 struct LightingInputs<'s> {
     scene: &'s Description,
     integrator: &'s IntegratorChoice,
@@ -188,28 +201,29 @@ struct LightingInputs<'s> {
 }
 
 impl LightingInputs<'_> {
-    /// The lights, the brightest of them and the background, of a scene that `glows` or not.
-    fn lit(
+    /// Lights, the brightest of them, and the background; `has_emission` tells whether materials
+    /// emit light.
+    fn compile_lights(
         &self,
-        glows: bool,
+        has_emission: bool,
         background: Option<AnyBackground>,
         names: &Names,
         findings: &mut Vec<Finding>,
-    ) -> (Vec<Lamp>, Option<Illuminance>, AnyBackground) {
+    ) -> (Vec<SceneLight>, Option<Illuminance>, AnyBackground) {
         let Self { scene, integrator, bounds, sources, tracks, files } = *self;
-        let glows = glows || background.as_ref().is_some_and(|b| lights(integrator, b));
-        let lit = glows || !scene.lights.is_empty();
-        let default = || defaults::lights(bounds, scene, integrator).into_iter().map(Lamp::from).collect();
-        let lights = if lit { lamps(sources, tracks, files, names) } else { default() };
-        let illuminance = illuminance::at_the_middle(&lights, lit, bounds);
-        findings.extend((lit && !glows).then(|| illuminance::warning(scene, &lights, bounds)).flatten());
-        (lights, illuminance, background.unwrap_or_else(|| defaults::background(lit)))
+        let has_emission = has_emission || background.as_ref().is_some_and(|b| is_light_source(integrator, b));
+        let has_lights = has_emission || !scene.lights.is_empty();
+        let default = || defaults::lights(bounds, scene, integrator).into_iter().map(SceneLight::from).collect();
+        let lights = if has_lights { compile_sources(sources, tracks, files, names) } else { default() };
+        let illuminance = illuminance::at_center(&lights, has_lights, bounds);
+        findings.extend((has_lights && !has_emission).then(|| illuminance::warning(scene, &lights, bounds)).flatten());
+        (lights, illuminance, background.unwrap_or_else(|| defaults::background(has_lights)))
     }
 }
 
-/// A scene whose objects are those of an earlier compilation, with materials, lights and a background of its own: nothing is
-/// placed, prepared or sorted again. Nothing where that is not enough: objects would get other materials than they have, or
-/// other objects shine.
+/// Compiles materials, lights and background for the objects of an earlier compilation, without
+/// placing or preparing them or building hierarchies. Returns `None` if that does not suffice:
+/// objects would get other materials, or other objects emit light.
 pub fn with_shading(
     scene: &Description,
     tracks: &Tracks,
@@ -218,30 +232,29 @@ pub fn with_shading(
 ) -> Option<(Compiled, Vec<Finding>)> {
     let mut findings = Vec::new();
     let SceneInputs { integrator, sources, background, mut materials, mut names } =
-        SceneInputs::of(scene, files, &mut findings);
-    materials.get_all(scene, &mut findings);
-    let glows = materials.glows();
-    areas::ask(scene, &mut materials, &mut names, &mut findings);
+        SceneInputs::from_scene(scene, files, &mut findings);
+    materials.request_all(scene, &mut findings);
+    let has_emission = materials.has_emission();
+    area_lights::request_materials(scene, &mut materials, &mut names, &mut findings);
     let bounds = earlier.bounds;
-    let (cameras, course) = cameras(scene, tracks, &bounds, &Path::root().key("objects"), &mut findings);
-    let light = LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
-    let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
+    let (cameras, camera_keys) = cameras(scene, tracks, &bounds, &Path::root().key("objects"), &mut findings);
+    let inputs = LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
+    let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
     let labels = names.labels(scene, earlier.world.labels().entries.clone());
-    let (materials, given) = materials.finish(&mut names, &mut findings);
-    let shines = |table: &MaterialTable, id: &MaterialId| table.glow(*id).is_some();
-    let fits = given == earlier.given
-        && given.iter().all(|id| shines(&materials, id) == shines(earlier.world.materials(), id));
+    let (materials, object_materials) = materials.finish(&mut names, &mut findings);
+    let emits = |table: &MaterialTable, id: &MaterialId| table.emission(*id).is_some();
+    let fits = object_materials == earlier.object_materials
+        && object_materials.iter().all(|id| emits(&materials, id) == emits(earlier.world.materials(), id));
     fits.then(|| {
         let world = Arc::new(earlier.world.with_shading(materials, lights, background).with_labels(labels));
         let (settings, names) = ((*scene.render).clone(), Arc::new(names));
-        let changed =
-            Compiled { world, cameras, course, settings, integrator, names, illuminance, given, ..earlier.clone() };
-        (changed, findings)
+        let base = Compiled { world, cameras, camera_keys, settings, integrator, ..earlier.clone() };
+        (Compiled { names, illuminance, object_materials, ..base }, findings)
     })
 }
 
-/// Every object in its place, and the number of the first shape of each of the scene's objects. Too many objects are
-/// reported, and none of them is placed.
+/// Places all objects. Returns them with the index of the first shape of each scene entry. If there
+/// are too many objects, reports that and places none.
 fn placed(
     scene: &Description,
     tracks: &Tracks,
@@ -259,46 +272,47 @@ fn placed(
 }
 
 /// The scene's lights, which may change while the shutter is open.
-fn lamps(sources: &[AnyLight], tracks: &Tracks, files: Files<'_>, names: &Names) -> Vec<Lamp> {
-    let mut lamps = course::lamps(sources, tracks, files);
-    names.mark(&mut lamps, sources);
-    lamps
+fn compile_sources(sources: &[AnyLight], tracks: &Tracks, files: Files<'_>, names: &Names) -> Vec<SceneLight> {
+    let mut lights = shutter_motion::lights(sources, tracks, files);
+    names.assign_groups(&mut lights, sources);
+    lights
 }
 
-/// Cameras by name, the chosen one first, and what that one does while the shutter is open.
+/// Cameras by name, the selected one first, and the selected camera over the shutter interval.
 type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
 
-/// How a scene looks at its world, which is there already; `bounds` are those of its objects.
-pub fn look_at(
+/// Cameras of a scene whose world is compiled already; `bounds` is the bounding box of its objects.
+pub fn cameras_of(
     scene: &Description,
     tracks: &Tracks,
     bounds: &Aabb,
 ) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let (cameras, course) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
-    (cameras, course, findings)
+    let (cameras, camera_keys) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
+    (cameras, camera_keys, findings)
 }
 
-/// Whether a background lights the scene: panoramas and skies are made for it, and paths find every one.
-fn lights(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
+/// Whether a background lights the scene: environments and skies do, and with path tracing every
+/// background that is not black.
+fn is_light_source(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
     let is_light = matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_));
-    is_light || integrator.follows_paths() && !background.mean().is_black()
+    is_light || integrator.follows_paths() && !background.mean_radiance().is_black()
 }
 
-/// A box around all objects that have an end.
+/// Bounding box of all bounded objects; the box of [`or_some`] if there are none.
 fn bounds(objects: &[Object]) -> Aabb {
     or_some(objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union))
 }
 
-/// Some box where there is none.
+/// Replaces an empty box by the cube from −1 to 1.
 fn or_some(bounds: Aabb) -> Aabb {
     if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
 }
 
-/// Where the object is described that reaches farthest from the origin; `entries` are the numbers of the first shapes of
-/// the scene's objects.
-fn farthest(objects: &[Object], entries: &[u32]) -> Path {
+/// Path of the object that extends farthest from the origin; `entries` holds the index of the first
+/// shape of each scene entry.
+fn farthest_object(objects: &[Object], entries: &[u32]) -> Path {
     let reach = |bounds: Aabb| match bounds.is_empty() {
         true => 0.0,
         false => bounds.min.abs().max(bounds.max.abs()).max_element(),
@@ -315,13 +329,13 @@ fn farthest(objects: &[Object], entries: &[u32]) -> Path {
     Path::root().key("objects").index(entry)
 }
 
-/// The scene's cameras or the default one, each tried once; the chosen one first. That the default one cannot be is the
-/// fault of the object that reaches `farthest`.
+/// Cameras of the scene or the default camera, each of them checked, the selected one first.
+/// Reports an invalid default camera at `farthest_object`, the object that makes it invalid.
 fn cameras(
     scene: &Description,
     tracks: &Tracks,
     bounds: &Aabb,
-    farthest: &Path,
+    farthest_object: &Path,
     findings: &mut Vec<Finding>,
 ) -> Cameras {
     let [width, height] = scene.render.size;
@@ -340,36 +354,37 @@ fn cameras(
         cameras.push((name.clone(), (**camera).clone()));
     }
     if cameras.is_empty() {
-        cameras.push(("default".into(), default_camera(bounds, size, farthest, findings)));
+        cameras.push(("default".into(), default_camera(bounds, size, farthest_object, findings)));
     }
     if let Some(chosen) = &scene.render.camera
         && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
     {
         cameras[..=at].rotate_right(1);
     }
-    let course = cameras.first().map(|(name, _)| course::camera(tracks, name, scene)).unwrap_or_default();
-    for camera in &course {
-        // The same mistake at the frame itself has been reported.
-        if let (Err(invalid), true) = (camera.project(size), !findings.iter().any(Finding::is_error)) {
+    let camera_keys = cameras.first().map(|(name, _)| shutter_motion::camera(tracks, name, scene)).unwrap_or_default();
+    for camera in &camera_keys {
+        // The same error at the frame itself is reported already.
+        if let (Err(invalid), true) = (camera.projection(size), !findings.iter().any(Finding::is_error)) {
             let path = Path::root().key(if scene.camera.is_some() { "camera" } else { "cameras" });
             let message = format!("while the shutter is open, {}", invalid.message);
             findings.push(Finding::error(message).at(path.join(invalid.field)));
         }
     }
-    (cameras, course)
+    (cameras, camera_keys)
 }
 
-fn default_camera(bounds: &Aabb, size: UVec2, farthest: &Path, findings: &mut Vec<Finding>) -> AnyCamera {
+fn default_camera(bounds: &Aabb, size: UVec2, farthest_object: &Path, findings: &mut Vec<Finding>) -> AnyCamera {
     let camera = defaults::camera(bounds, size);
-    if camera.project(size).is_err() {
-        let problem = Finding::error("this object reaches too far for the default camera to see all of the scene");
-        findings.push(problem.at(farthest).help("make it smaller, or write a `camera`"));
+    if camera.projection(size).is_err() {
+        let problem =
+            Finding::error("this object is too large or too far away for the default camera to see the whole scene");
+        findings.push(problem.at(farthest_object).help("make it smaller, move it closer, or add a `camera`"));
     }
     camera
 }
 
 fn try_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {
-    if let Err(invalid) = camera.project(size) {
+    if let Err(invalid) = camera.projection(size) {
         let path = path.key(crate::kind::name_of(camera)).join(invalid.field);
         findings.push(Finding::error(invalid.message).at(&path));
     }

@@ -1,74 +1,74 @@
-//! What a scene will need memory for, told before its files are read and its world is built.
+//! Memory requirements of a scene, known before its files are read and its world is built.
 
-use super::areas;
+use super::area_lights;
 use super::count::{count, stored};
-use super::emitting::emitters;
-use super::images::pictures;
+use super::emitter_count::emitters;
+use super::images::image_files;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::item::Item;
-use crate::path::Trail;
+use crate::path::PathRef;
 use juggler_light::background::Panorama;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_shape::AnyShape;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// What a scene will need memory for.
+/// Quantities that determine the memory of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
-    /// Bytes of the scene itself: its texts as trees and types.
+    /// Memory of the scene description in bytes, as JSON trees and types.
     pub text: u64,
-    /// Mesh files that exist, each once.
+    /// Existing mesh files, each once.
     pub files: BTreeSet<PathBuf>,
-    /// Picture files that exist, each once.
+    /// Existing image files, each once.
     pub pictures: BTreeSet<PathBuf>,
-    /// Pictures of everything around that exist, each once.
+    /// Existing environment maps, each once.
     pub panoramas: BTreeSet<PathBuf>,
-    /// Bytes of textures and panoramas that are made of images in memory.
+    /// Memory in bytes of textures and environment maps from images in memory.
     pub images: u64,
-    /// Triangles of meshes that stand in the scene itself.
+    /// Triangles of inline meshes.
     pub triangles: u64,
-    /// Objects that are stored, those of groups that are stored once counted once.
+    /// Stored objects; objects of a shared group count once.
     pub objects: u64,
-    /// Shapes that emit light, those of groups counted as often as they are placed.
+    /// Emissive shapes; shapes of a group count once per placement.
     pub emitters: u64,
-    /// Most rays that go on from one point.
+    /// Maximum number of secondary rays from one point.
     pub rays: u64,
-    /// Most shadow rays from one point.
+    /// Maximum number of shadow rays from one point.
     pub shadows: u64,
 }
 
 impl Needs {
-    /// Of a scene whose files lie there.
-    pub fn of(scene: &Description, files: Files<'_>) -> Self {
-        // Too many objects are refused when they are to be placed.
-        let areas = areas::of(&scene.lights).count() as u64;
+    /// Determines the needs of a scene with these files.
+    pub fn from_scene(scene: &Description, files: Files<'_>) -> Self {
+        // Placement reports too many objects.
+        let areas = area_lights::iter(&scene.lights).count() as u64;
         let counts = count(scene).ok();
         let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts).saturating_add(areas));
         let emitters = counts.as_ref().map_or(0, |_| emitters(scene).saturating_add(areas));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.sources.bytes_to_read();
         let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };
-        let pictures: Vec<PathBuf> = pictures(scene, &files).into_iter().map(|(file, _)| file).collect();
+        let images: Vec<PathBuf> = image_files(scene, &files).into_iter().map(|(file, _)| file).collect();
         let panoramas = lighting::files(scene, &files).into_iter();
         let panoramas: Vec<PathBuf> =
             panoramas.filter(|(_, p)| *p == Purpose::Panorama).map(|(file, _)| file).collect();
-        // An image is copied to floats with smaller copies, or to a panorama with its table.
+        // An image in memory becomes a pyramid of floats, or an environment map with its table.
         needs.images = files
-            .image_bytes(&pictures, |pixels| 16 * pixels)
+            .image_bytes(&images, |pixels| 16 * pixels)
             .saturating_add(files.image_bytes(&panoramas, Panorama::bytes));
-        needs.pictures = pictures.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
+        needs.pictures = images.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         needs.panoramas = panoramas.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         scene.materials.values().for_each(|material| needs.material(material));
-        let groups = Trail::Root.key("groups");
+        let groups = PathRef::Root.key("groups");
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));
-        needs.add(&scene.objects, files, &Trail::Root.key("objects"));
+        needs.add(&scene.objects, files, &PathRef::Root.key("objects"));
         needs
     }
 
-    fn add(&mut self, objects: &[Item<Object>], files: Files<'_>, path: &Trail<'_>) {
+    fn add(&mut self, objects: &[Item<Object>], files: Files<'_>, path: &PathRef<'_>) {
         for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let path = path.index(i);
             if let Some(MaterialRef::Inline(material)) = &object.material {

@@ -1,21 +1,24 @@
-//! Animation: how many pictures, how fast, and the numbers that change from one to the next.
+//! Animation settings, variables and paths of a scene.
 //!
 //! ```json
-//! {"animation": {"frames": 30, "frames_per_second": 30}, "variables": {"phi": "2*pi*frame/frames"}}
+//! {
+//!   "animation": {"frames": 30, "frames_per_second": 30},
+//!   "variables": {"phi": "2*pi*frame/frames"}
+//! }
 //! ```
 
 use crate::animate::ValueForm;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Length and pace of an animation.
+/// Length and frame rate of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Animation {
-    /// Number of pictures.
+    /// Number of frames. The default of 1 describes a still image.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub frames: u32,
-    /// Pictures per second.
+    /// Frame rate: playback speed, and the ratio of `frame` to `seconds` in expressions.
     #[schemars(range(max = 1000), extend("exclusiveMinimum" = 0))]
     pub frames_per_second: f64,
 }
@@ -27,48 +30,52 @@ impl Default for Animation {
 }
 
 impl Animation {
-    /// Whether it says nothing beyond the default.
+    /// Whether the settings equal the defaults, which describe a still image.
     pub fn is_still(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// A variable: a number, an expression such as `2*pi*frame/frames`, a value form, or an array of 1 to 4 of these.
+/// Variable: a number, an expression such as `2*pi*frame/frames`, a value form, or an array of 1 to
+/// 4 of these.
 ///
-/// The numbers of an array called `ball` are `ball.x`, `ball.y`, `ball.z` and `ball.w` in expressions; `"=ball"` alone is
-/// the whole array.
+/// The components of an array named `ball` are `ball.x`, `ball.y`, `ball.z` and `ball.w` in
+/// expressions; `"=ball"` alone is the whole array.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Variable {
-    /// One number.
+    /// One value.
     One(Component),
-    /// Several.
+    /// Array of 1 to 4 values.
     Several(#[schemars(length(min = 1, max = 4))] Vec<Component>),
 }
 
-/// A number, or what gives one.
+/// Number, expression or value form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Component {
-    /// The number.
+    /// Number.
     Number(f64),
-    /// The expression, with or without a `=` in front.
+    /// Expression, with or without a leading `=`.
     Expression(String),
-    /// What becomes a number or, alone, several.
+    /// Value form that yields a number or, outside of an array, up to 4 numbers.
     Form(ValueForm),
 }
 
-/// A curve through points, to move things along it: `{"along": {"path": NAME, "at": SHARE}}`.
+/// Curve through points, for the value form `along`: `{"along": {"path": NAME, "at": SHARE}}`.
 ///
-/// It is a centripetal Catmull-Rom spline: it goes through all points in order, without corners, and comes near to straight
-/// lines where points lie close. Two equal points in a row count as one.
+/// The curve is a centripetal Catmull-Rom spline. It passes through all points in order with a
+/// continuous tangent and stays close to straight lines between points that are close to each
+/// other. Consecutive equal points count as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Path")]
 pub struct ScenePath {
-    /// The points that it goes through.
+    /// Points `[x, y, z]` that the curve passes through, in the space of the value that uses the
+    /// path.
     #[schemars(length(min = 1, max = 10_000))]
     pub points: Vec<[f32; 3]>,
-    /// Whether it leads from the last point back to the first.
+    /// Whether the curve continues from the last point back to the first. Set it for cyclic motion:
+    /// a closed path can be followed any number of times.
     #[serde(default)]
     pub closed: bool,
 }

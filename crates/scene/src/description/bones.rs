@@ -1,47 +1,59 @@
-//! Two bones that meet in a joint (Birken 2010, step 16): for limbs of spheres and for anything else.
+//! Two bones that meet in a joint (Birken 2010, step 16): inverse kinematics of limbs and of the
+//! value form `joint`.
 
-use super::Misplaced;
+use super::PlacementError;
 use juggler_math::DVec3;
 use schemars::Schema;
 
-/// Two bones between two ends.
+/// Two bones between two end points.
 #[derive(Clone, Copy, Debug)]
 pub struct Bones {
-    /// One end: a hand or a foot.
+    /// End of the first bone: a hand or a foot.
     pub from: DVec3,
-    /// The other end: a shoulder or a hip.
+    /// End of the second bone: a shoulder or a hip.
     pub to: DVec3,
-    /// Lengths of the bone at `from` and of the bone at `to`.
+    /// Lengths of the bones at `from` and at `to`.
     pub lengths: [f64; 2],
-    /// Normal of the plane in which they bend; need not be unit.
+    /// Normal of the plane in which the bones bend, of any length except zero.
     pub plane_normal: DVec3,
-    /// Whether they keep their lengths although the normal is not perpendicular to the line between the ends.
+    /// Whether the bones keep their lengths if the normal is not perpendicular to `to − from`.
     pub keep_lengths: bool,
 }
 
 impl Bones {
-    /// Where they meet: with D = |to − from|, V the unit vector that way and U = V × normal, it is
-    /// from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²). U is shorter than 1 when the normal is not
-    /// perpendicular to V, and made 1 long to keep the lengths.
-    pub fn joint(&self) -> Result<DVec3, Misplaced> {
-        let whole = |message: String| Misplaced::new("", message);
+    /// Position of the joint: with D = |to − from|, V = (to − from) / D, the unit normal n and
+    /// U = V × n, the joint is from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²).
+    /// |U| < 1 if n is not perpendicular to V; `keep_lengths` normalizes U.
+    ///
+    /// Returns an error if the ends coincide, are too far apart or too close together, or if the
+    /// normal is zero or parallel to V.
+    pub fn joint(&self) -> Result<DVec3, PlacementError> {
+        let whole = |message: String| PlacementError::new("", message);
         let Self { from, to, lengths: [a, b], .. } = *self;
         let distance = (to - from).length();
         if distance.is_nan() || distance <= 0.0 {
-            return Err(Misplaced::new("to", "`from` and `to` must not be the same point"));
+            return Err(PlacementError::new("to", "`from` and `to` must not be the same point"));
         }
         if distance > (a + b) * (1.0 + 1e-6) {
-            return Err(whole(format!("out of reach: the ends are {distance} apart, the bones only {} long", a + b)));
+            return Err(whole(format!(
+                "out of reach: the ends are {distance} apart, but the bones are only {} long",
+                a + b
+            )));
         }
         if distance < (a - b).abs() * (1.0 - 1e-6) {
             return Err(whole(format!(
-                "the ends are only {distance} apart, bones of {a} and {b} cannot bend that far"
+                "the ends are only {distance} apart, but bones of {a} and {b} cannot bend that far"
             )));
         }
         let v = (to - from) / distance;
         let normal = self.plane_normal.try_normalize();
         let u = normal.map(|normal| v.cross(normal)).filter(|u| u.length_squared() > 1e-12);
-        let wrong = || Misplaced::new("plane_normal", "`plane_normal` must not be zero or point along the limb");
+        let wrong = || {
+            PlacementError::new(
+                "plane_normal",
+                "`plane_normal` must not be zero or parallel to the line from `from` to `to`",
+            )
+        };
         let u = u.ok_or_else(wrong)?;
         let u = if self.keep_lengths { u.normalize() } else { u };
         let y = (a * a - b * b + distance * distance) / (2.0 * distance);
@@ -50,7 +62,7 @@ impl Bones {
     }
 }
 
-/// Every number of an array must be greater than 0.
+/// Adds the constraint to an array's schema that every element is greater than 0.
 pub(crate) fn positive_items(schema: &mut Schema) {
     if let Some(items) = schema.get_mut("items").and_then(|items| items.as_object_mut()) {
         items.insert("exclusiveMinimum".into(), 0.into());

@@ -1,5 +1,5 @@
-//! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder
-//! all come from here and from the families of kinds (`juggler_shape`, `juggler_material`,
+//! Types of a scene file. The JSON format, its schema, its documentation and the Rust builder are
+//! derived from these types and from the families of kinds (`juggler_shape`, `juggler_material`,
 //! `juggler_light`, ...).
 
 use crate::animate::Programs;
@@ -25,69 +25,75 @@ mod bones;
 mod object;
 mod read;
 mod render;
+mod source_section;
 mod spheres;
 mod transform;
-mod written;
 
 pub use animation::{Animation, Component, ScenePath, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
 pub use object::{GroupName, Object, Visible};
-pub(crate) use read::described;
+pub(crate) use read::deserialize_scene;
 pub use render::{CameraName, Render};
-pub use spheres::{Bead, Chain, ControlSphere, Limb};
-pub use transform::{Axes, LookAt, Rotate, TransformStep};
-pub(crate) use written::Written;
+pub(crate) use source_section::SourceSection;
+pub use spheres::{Chain, ChainSphere, ControlSphere, Limb};
+pub use transform::{LookAt, Rotate, ScaleFactors, TransformStep};
 
-/// Objects in order.
+/// List of objects.
 pub type Objects = Shared<Vec<Item<Object>>>;
-/// Items by name, in the order in which they were added.
+/// Items by name, in insertion order.
 pub type Named<T> = Shared<IndexMap<String, Item<T>>>;
 
-/// A scene: everything that decides a picture.
+/// Scene: everything that determines the rendered image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Scene")]
 pub struct Description {
-    /// Version of the format: 1.
+    /// Version of the format. Must be 1.
     #[schemars(range(min = 1, max = 1))]
     pub version: u32,
-    /// Name of the scene.
+    /// Title of the scene, for people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub title: String,
-    /// What is to be seen, in a sentence.
+    /// Description of the scene in one sentence, for people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
-    /// Other scene files, relative to this one, whose textures, materials, groups, cameras, variables, paths, lights
-    /// and objects belong to this scene too. Each file comes in once; the same name twice is an error.
+    /// Other scene files, relative to this one, whose textures, materials, groups, cameras,
+    /// variables, paths, lights and objects are added to this scene. A file that is included twice
+    /// is added once. A name that two files define is an error.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub include: Vec<String>,
-    /// Length and pace of an animation.
+    /// Length and frame rate of an animation.
     #[serde(default, skip_serializing_if = "Animation::is_still")]
     pub animation: Animation,
-    /// Named numbers and vectors for `"=expressions"`, in order: each may use those before it.
-    #[serde(default, skip_serializing_if = "Written::is_empty")]
+    /// Named numbers and vectors for expressions such as `"=2 * radius"`. A variable may refer to
+    /// variables above it.
+    #[serde(default, skip_serializing_if = "SourceSection::is_empty")]
     #[schemars(with = "IndexMap<String, Variable>")]
-    pub(crate) variables: Written,
-    /// Curves by name, for the value form `along`. A scene that is written at one frame has none any more.
-    #[serde(default, skip_serializing_if = "Written::is_empty")]
+    pub(crate) variables: SourceSection,
+    /// Named curves for the value form `along`. A scene that is saved at a single frame has none.
+    #[serde(default, skip_serializing_if = "SourceSection::is_empty")]
     #[schemars(with = "IndexMap<String, ScenePath>")]
-    pub(crate) paths: Written,
-    /// How the picture is made.
+    pub(crate) paths: SourceSection,
+    /// Render settings: image size, samples, shutter, integrator, sampler and filter.
     #[serde(default)]
     pub render: Item<Render>,
-    /// How linear light becomes the levels of a picture file.
+    /// Tone mapping from linear radiance to the pixel values of an image file.
     #[serde(default)]
     pub tone: Item<Tone>,
-    /// The camera, when there is one. Without any, one is placed that sees all objects.
+    /// Camera of a scene with a single camera. Without `camera` and `cameras`, a default camera
+    /// sees all objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<Item<AnyCamera>>,
-    /// Cameras by name; the first is used unless `render.camera` or the command line names another.
+    /// Cameras by name, in place of `camera`. The first is used unless `render.camera` or the
+    /// command line selects another.
     #[serde(default, skip_serializing_if = "is_empty_map")]
     pub cameras: Named<AnyCamera>,
-    /// What rays see that leave the world. Black, or a soft sky when the scene has no light of its own.
+    /// Radiance of rays that leave the scene. Defaults to black, or to a uniform gray of 0.25 in a
+    /// scene without lights and emissive materials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub background: Option<Item<Backdrop>>,
-    /// The group of lights that the background's light is kept apart with in layers.
+    pub background: Option<Item<BackgroundInput>>,
+    /// Light group of the background; each light group is written to an AOV of its own. Without it,
+    /// the background belongs to the group `rest`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_light_group: Option<String>,
     /// Textures by name.
@@ -96,24 +102,26 @@ pub struct Description {
     /// Materials by name.
     #[serde(default, skip_serializing_if = "is_empty_map")]
     pub materials: Named<AnyMaterial>,
-    /// Groups of objects by name, to be placed any number of times, groups within groups too. What repeats often is
-    /// stored once.
+    /// Groups of objects by name, which objects place any number of times. Groups may place other
+    /// groups. Large groups with many placements are stored once and instanced.
     #[serde(default, skip_serializing_if = "is_empty_map")]
     pub groups: Shared<IndexMap<String, Objects>>,
-    /// The lights. A scene without lights, without emissive materials and without a background that lights it (an
-    /// `environment`, a `sky`, and under `path` every other) gets a soft light above the camera.
+    /// Lights. A scene without lights, without emissive materials and without a background that
+    /// lights it gets a default light above the camera. An `environment` and a `sky` light the
+    /// scene; with the integrators `path` and `direct`, so does every other background that is not
+    /// black.
     #[serde(default, skip_serializing_if = "is_empty_list")]
     pub lights: Shared<Vec<Item<AnyLight>>>,
-    /// What is to be seen.
+    /// Objects of the scene, in world space.
     #[serde(default)]
     pub objects: Objects,
-    /// Lists that are written as one value form, with what the form gives at the scene's frame.
+    /// Lists that are written as a single value form, with the form's value at the scene's frame.
     #[serde(skip)]
     pub(crate) list_forms: Shared<Vec<ListForm>>,
-    /// Names of textures that value forms give in place.
+    /// Names of textures that value forms produce inline.
     #[serde(skip)]
     pub(crate) form_textures: Shared<BTreeSet<String>>,
-    /// Compiled expressions, for the scene's other frames.
+    /// Compiled expressions, shared with the scene's other frames.
     #[serde(skip)]
     pub(crate) programs: Programs,
 }
@@ -126,8 +134,8 @@ impl Default for Description {
             description: String::new(),
             include: Vec::new(),
             animation: Animation::default(),
-            variables: Written::default(),
-            paths: Written::default(),
+            variables: SourceSection::default(),
+            paths: SourceSection::default(),
             render: Item::default(),
             tone: Item::default(),
             camera: None,
@@ -146,48 +154,49 @@ impl Default for Description {
     }
 }
 
-/// Why something cannot be placed.
+/// Error of geometry that cannot be placed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
-pub struct Misplaced {
-    /// Path of the field at fault, as in the scene file; empty when several are.
+pub struct PlacementError {
+    /// Path of the invalid field, as in the scene file; empty if several fields are involved.
     pub field: &'static str,
-    /// What is wrong.
+    /// Error message.
     pub message: String,
 }
 
-impl Misplaced {
+impl PlacementError {
     fn new(field: &'static str, message: impl Into<String>) -> Self {
         Self { field, message: message.into() }
     }
 }
 
-/// A background, or a colour that is short for the same colour everywhere.
+/// Background, or a color as shorthand for a uniform background.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Backdrop {
-    /// The same colour everywhere.
+#[schemars(rename = "Backdrop")]
+pub enum BackgroundInput {
+    /// Uniform color: linear radiance in all directions.
     Color(Rgb),
-    /// A background.
+    /// Background of any kind.
     Kind(AnyBackground),
 }
 
-impl From<Backdrop> for AnyBackground {
-    fn from(backdrop: Backdrop) -> Self {
+impl From<BackgroundInput> for AnyBackground {
+    fn from(backdrop: BackgroundInput) -> Self {
         match backdrop {
-            Backdrop::Color(color) => Solid { color }.into(),
-            Backdrop::Kind(kind) => kind,
+            BackgroundInput::Color(color) => Solid { color }.into(),
+            BackgroundInput::Kind(kind) => kind,
         }
     }
 }
 
-impl From<Rgb> for Backdrop {
+impl From<Rgb> for BackgroundInput {
     fn from(color: Rgb) -> Self {
         Self::Color(color)
     }
 }
 
-impl From<AnyBackground> for Backdrop {
+impl From<AnyBackground> for BackgroundInput {
     fn from(kind: AnyBackground) -> Self {
         match kind {
             AnyBackground::Solid(Solid { color }) => Self::Color(color),
@@ -205,10 +214,11 @@ fn is_empty_list<T>(list: &Shared<Vec<T>>) -> bool {
 }
 
 impl Description {
-    /// Lets everything stand as it is.
-    pub(crate) fn stand_still(&mut self) {
-        for wanted in self.templates(|_| true) {
-            if let Some(item) = self.item_mut(&wanted.path) {
+    /// Makes the scene static: values at its frame stay, while expressions, value forms, variables,
+    /// paths and animation settings are removed.
+    pub(crate) fn make_static(&mut self) {
+        for source in self.templates(|_| true) {
+            if let Some(item) = self.item_mut(&source.path) {
                 item.set_template(None);
             }
         }
@@ -216,7 +226,7 @@ impl Description {
         (self.variables, self.paths, self.animation) = Default::default();
     }
 
-    /// What does not fit the schema beside items.
+    /// Findings of schema validation outside of items.
     pub(crate) fn head_findings(&self) -> Vec<Finding> {
         let head = Self {
             version: self.version,
@@ -227,11 +237,11 @@ impl Description {
         validate(&serde_json::to_value(&head).unwrap_or_default().into()).all()
     }
 
-    /// What does not fit the schema in the items that are to be looked at.
-    pub(crate) fn item_findings(&self, is_wanted: impl Fn(&dyn AnyItem) -> bool) -> Vec<Finding> {
+    /// Findings of schema validation in the items that satisfy a predicate.
+    pub(crate) fn item_findings(&self, predicate: impl Fn(&dyn AnyItem) -> bool) -> Vec<Finding> {
         let mut findings = Vec::new();
         self.each_item(&mut |at, item| {
-            if is_wanted(item) {
+            if predicate(item) {
                 findings.extend(
                     validate::item(&item.json_without_arrays().into(), &at.into(), at, NameScope::Scene(self)).all(),
                 );

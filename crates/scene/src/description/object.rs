@@ -1,10 +1,10 @@
-//! Objects: a shape, a group or a row of spheres, in its place.
+//! Objects: a shape, a group, a list of objects, a chain or a limb, with transform and material.
 //!
 //! ```json
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
-use super::{Axes, Chain, Limb, Objects, Rotate, TransformStep, transform};
+use super::{Chain, Limb, Objects, Rotate, ScaleFactors, TransformStep, transform};
 use crate::item::Item;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_math::Vec3;
@@ -12,7 +12,7 @@ use juggler_shape::AnyShape;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Something to be seen: exactly one of `shape`, `group`, `objects`, `chain` and `limb`.
+/// Object of the scene. Requires exactly one of `shape`, `group`, `objects`, `chain` and `limb`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(extend("oneOf" = [
@@ -23,54 +23,58 @@ use serde::{Deserialize, Serialize};
     {"required": ["limb"]}
 ]))]
 pub struct Object {
-    /// A name for people.
+    /// Name of the object. In the scene's own `objects`, it identifies the object in masks; objects
+    /// of equal name share a mask. It does not affect the image.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// One shape.
+    /// Single shape.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<AnyShape>,
-    /// All objects of one of the scene's groups.
+    /// Name of a group of the scene, all of whose objects are placed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<GroupName>,
-    /// Several objects as one.
+    /// Child objects, with this object's transform applied to all of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub objects: Option<Objects>,
-    /// Spheres in a row from one to another.
+    /// Row of spheres between two end spheres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chain: Option<Chain>,
     /// Spheres along two bones that meet in a joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limb: Option<Limb>,
-    /// How it is moved, turned and scaled into place: steps in order, or a single step.
+    /// Transform from the object's space to that of its parent: a list of steps, applied in order,
+    /// or a single step. Defaults to the identity.
     #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "transform::steps")]
-    #[schemars(with = "transform::Steps")]
+    #[schemars(with = "transform::TransformInput")]
     pub transform: Vec<TransformStep>,
-    /// What it is made of: a material, or the name of one of the scene's. Without one it takes that of the group
-    /// that holds it, or else a plain grey.
+    /// Material: inline, or the name of a material of the scene. Defaults to the material of the
+    /// enclosing object or group, or else to a gray diffuse `phong` material.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialRef>,
-    /// The group of lights that the light of what shines in it is kept apart with in layers. It counts where it stands in the
-    /// scene's own `objects`.
+    /// Light group of the emitters inside this object; each light group is written to an AOV of its
+    /// own. It has an effect only in the scene's own `objects`. Without it, the object belongs to
+    /// the group `rest`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
-    /// Whether it is there, with all that it holds: yes, unless this is `false` or 0.
+    /// Whether the scene contains the object with its children. Numbers other than 0 count as
+    /// `true`, so an expression such as `"=seconds >= 1"` can show and hide the object.
     #[serde(skip_serializing_if = "Visible::is_default")]
     pub visible: Visible,
 }
 
-/// Whether something is there.
+/// Whether the scene contains an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(from = "Said", into = "bool")]
+#[serde(from = "VisibleInput", into = "bool")]
 pub struct Visible(pub bool);
 
-/// How it is written: true, or any number but 0, as expressions give them.
+/// Boolean, or a number as expressions yield it, of which 0 means `false`.
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Visible")]
-enum Said {
-    /// Yes or no.
+enum VisibleInput {
+    /// `true` or `false`.
     Flag(bool),
-    /// Not when it is 0.
+    /// 0 hides the object, any other number shows it.
     Number(f64),
 }
 
@@ -80,11 +84,11 @@ impl Default for Visible {
     }
 }
 
-impl From<Said> for Visible {
-    fn from(said: Said) -> Self {
-        Self(match said {
-            Said::Flag(flag) => flag,
-            Said::Number(number) => number != 0.0,
+impl From<VisibleInput> for Visible {
+    fn from(input: VisibleInput) -> Self {
+        Self(match input {
+            VisibleInput::Flag(flag) => flag,
+            VisibleInput::Number(number) => number != 0.0,
         })
     }
 }
@@ -101,93 +105,94 @@ impl Visible {
     }
 }
 
-/// Name of one of the scene's groups.
+/// Name of a group of the scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct GroupName(pub String);
 
 impl Object {
-    /// Whether it is there at all, with what it holds: else it is neither placed nor counted.
+    /// Whether the scene contains the object. Hidden objects and their children are neither placed
+    /// nor counted.
     pub fn is_visible(&self) -> bool {
         self.visible.0
     }
 
-    /// The objects that it holds itself.
+    /// Child objects listed in `objects`; empty for all other kinds of objects.
     pub fn inner(&self) -> &[Item<Self>] {
         self.objects.as_ref().map(|objects| objects.as_slice()).unwrap_or_default()
     }
 
-    /// One shape around the origin.
+    /// Creates an object of a single shape.
     pub fn new(shape: impl Into<AnyShape>) -> Self {
         Self { shape: Some(shape.into()), ..Self::default() }
     }
 
-    /// All objects of one of the scene's groups.
+    /// Creates an object that places a group of the scene.
     pub fn group(name: impl Into<String>) -> Self {
         Self { group: Some(GroupName(name.into())), ..Self::default() }
     }
 
-    /// Several objects as one.
+    /// Creates an object of several child objects.
     pub fn several(objects: impl IntoIterator<Item = Self>) -> Self {
         Self { objects: Some(objects.into_iter().map(Item::from).collect()), ..Self::default() }
     }
 
-    /// Spheres in a row.
+    /// Creates an object of spheres in a row.
     pub fn chain(chain: Chain) -> Self {
         Self { chain: Some(chain), ..Self::default() }
     }
 
-    /// Spheres along two bones.
+    /// Creates an object of spheres along two bones.
     pub fn limb(limb: Limb) -> Self {
         Self { limb: Some(limb), ..Self::default() }
     }
 
-    /// Gives it a name.
+    /// Sets the name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = Some(name.into());
         self
     }
 
-    /// Moves it, after what was done before.
+    /// Appends a translation to the transform.
     #[must_use]
     pub fn at(self, x: f32, y: f32, z: f32) -> Self {
         self.transformed(TransformStep::Translate(Vec3::new(x, y, z)))
     }
 
-    /// Turns it about an axis through the origin, after what was done before.
+    /// Appends a rotation about an axis through the origin, by an angle in degrees.
     #[must_use]
     pub fn rotated(self, axis: impl Into<Vec3>, degrees: f32) -> Self {
         self.transformed(TransformStep::Rotate(Rotate { axis: axis.into(), degrees }))
     }
 
-    /// Scales it about the origin, after what was done before.
+    /// Appends a uniform scaling about the origin.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        self.transformed(TransformStep::Scale(Axes::All(factor)))
+        self.transformed(TransformStep::Scale(ScaleFactors::All(factor)))
     }
 
-    /// Adds any step, after what was done before.
+    /// Appends a transform step.
     #[must_use]
     pub fn transformed(mut self, step: TransformStep) -> Self {
         self.transform.push(step);
         self
     }
 
-    /// Shows it or leaves it out.
+    /// Shows or hides the object.
     #[must_use]
     pub fn visible(mut self, visible: bool) -> Self {
         self.visible = Visible(visible);
         self
     }
 
-    /// Makes it of a material.
+    /// Sets an inline material.
     #[must_use]
     pub fn material(mut self, material: impl Into<AnyMaterial>) -> Self {
         self.material = Some(MaterialRef::Inline(Box::new(material.into())));
         self
     }
 
-    /// Makes it of one of the scene's materials.
+    /// Sets a material of the scene by its name.
     #[must_use]
     pub fn material_named(mut self, name: impl Into<String>) -> Self {
         self.material = Some(MaterialRef::Name(name.into()));

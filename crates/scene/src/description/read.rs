@@ -1,4 +1,4 @@
-//! From the tree of a scene to its types.
+//! Deserializes a scene from its JSON tree.
 
 use super::Description;
 use crate::document::Node;
@@ -8,17 +8,17 @@ use crate::validate::{Plain, validate};
 use serde::Deserialize;
 use std::borrow::Cow;
 
-/// The types of a tree, as far as it fits them, with the names of textures that were written in place; and all that is wrong
-/// with it.
-pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<(Description, Vec<String>)> {
+/// Validates and deserializes a scene's JSON tree. Returns the scene and the names of its inline
+/// textures, or `None` if the tree does not fit the types. Appends all findings.
+pub(crate) fn deserialize_scene(tree: &Node, findings: &mut Vec<Finding>) -> Option<(Description, Vec<String>)> {
     let mut validated = validate(tree);
     let json = validated.json.take();
-    let in_place = std::mem::take(&mut validated.textures).into_iter().map(|(name, _)| name).collect();
+    let inline_names = std::mem::take(&mut validated.textures).into_iter().map(|(name, _)| name).collect();
     findings.append(&mut validated.all());
     let json = json?;
     match Description::deserialize(&json) {
-        Ok(description) => Some((description, in_place)),
-        // The schema allows what the types refuse: only a slip of ours can bring us here.
+        Ok(description) => Some((description, inline_names)),
+        // The types reject what the schema accepts: a bug of this program.
         Err(error) => {
             findings.push(Finding::error(error.to_string()).at(refused_part(&json)));
             None
@@ -26,8 +26,9 @@ pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<(Des
     }
 }
 
-/// The smallest section or item of a description that the types refuse by itself; the root if there is none. The same
-/// deserializer serves as for the whole: each one more would double what this crate takes to build.
+/// Path of the smallest section or item that the types reject by itself; the root if there is none.
+/// Uses the deserializer of the whole scene, since every further one would double the build time of
+/// this crate.
 fn refused_part(json: &Plain) -> Path {
     let refused = |key: &Cow<'static, str>, value: Plain| {
         let only = vec![("version".into(), Plain::Number(1.into())), (key.clone(), value)];

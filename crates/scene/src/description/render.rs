@@ -1,4 +1,4 @@
-//! How the picture is made.
+//! Render settings.
 //!
 //! ```json
 //! {"render": {"size": [640, 360], "samples": 16, "seed": 0, "integrator": "path"}}
@@ -10,34 +10,37 @@ use juggler_integrator::AnyIntegrator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the picture is made.
+/// Render settings: image size, sampling, shutter and integrator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Render {
-    /// Width and height in pixels.
+    /// Width and height of the image in pixels; at most 2³¹ pixels in total.
     #[schemars(inner(range(min = 1, max = 65_536)))]
     pub size: [u32; 2],
-    /// Samples per pixel.
+    /// Samples per pixel. Four times as many samples halve the noise and take four times as long.
     #[schemars(range(min = 1, max = 16_777_216))]
     pub samples: u32,
-    /// Number that all random choices come from: another seed, another noise.
+    /// Seed of the sampler. The same seed reproduces an image bit for bit; another seed gives other
+    /// noise.
     pub seed: u64,
-    /// Name of the camera; the first when absent.
+    /// Name of the camera to render with. Defaults to the first camera.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraName>,
-    /// When the shutter opens and closes, in frames from the frame's own time: what moves meanwhile is blurred.
-    /// `[0, 0.5]` is a film camera's half turn; `[0, 0]`, the default, an instant.
+    /// Times at which the shutter opens and closes, in frames relative to the frame's own time, in
+    /// this order. Motion in between is blurred. `[0, 0.5]` is the 180° shutter of a movie camera;
+    /// the default `[0, 0]` disables motion blur.
     #[serde(skip_serializing_if = "is_instant")]
     #[schemars(inner(range(min = -1000, max = 1000)))]
     pub shutter: [f64; 2],
-    /// How light is followed. Without it, `path` as soon as the scene holds anything that `classic` cannot light
-    /// by or shade: an `emissive` material, an `area` light, an `environment` or a `sky`, a medium, any
-    /// material but `phong` and what is made of it; else `classic`. `juggler info` says which, and why.
+    /// Light transport algorithm. Defaults to `path` if the scene contains anything that `classic`
+    /// does not support: an `emissive` material, an `area` light, an `environment` or a `sky`, a
+    /// medium, any material except `phong` and combinations of it. Otherwise defaults to `classic`.
+    /// `juggler info` prints the choice and its reason.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integrator: Option<AnyIntegrator>,
-    /// How samples are spread.
+    /// Sampler: distribution of the samples in pixel, lens, time and light dimensions.
     pub sampler: AnySampler,
-    /// How samples make a pixel.
+    /// Reconstruction filter, which weights the samples near a pixel.
     pub filter: AnyFilter,
 }
 

@@ -1,11 +1,12 @@
-//! Steps that bring an object into place.
+//! Transform steps, which place an object in the space of its parent.
 //!
 //! ```json
-//! {"transform": [{"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": 30}}, {"translate": [0, 1, 0]}]}
+//! {"transform": [
+//!   {"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": 30}}, {"translate": [0, 1, 0]}]}
 //! {"transform": {"translate": [0, 1, 0]}}
 //! ```
 
-use super::Misplaced;
+use super::PlacementError;
 use glam::{DMat3, Mat3};
 use juggler_math::quaternion;
 use juggler_math::{DVec3, Transform, Vec3};
@@ -15,95 +16,99 @@ use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// One step; the first of a list happens first.
+/// One step of a transform. The first step of a list is applied first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TransformStep {
-    /// Moves by a vector.
+    /// Translates by a vector.
     Translate(#[schemars(with = "[f32; 3]")] Vec3),
-    /// Turns about an axis through the origin.
+    /// Rotates about an axis through the origin.
     Rotate(Rotate),
     /// Scales about the origin.
-    Scale(Axes),
-    /// Turns about the origin by a quaternion x, y, z, w as in glTF, which is made a unit quaternion.
+    Scale(ScaleFactors),
+    /// Rotates about the origin by a quaternion `[x, y, z, w]` as in glTF. It is normalized and
+    /// must not be zero.
     Orient([f32; 4]),
-    /// Turns so that the object faces a point, then moves it to where it stands.
+    /// Turns the object toward a point, then moves its origin to a position.
     LookAt(LookAt),
-    /// Any affine map: 3 or 4 rows of 4 numbers, that multiply points written as columns; a fourth row is 0 0 0 1.
+    /// Applies an affine map: 12 or 16 numbers, the 3 or 4 rows of a matrix that multiplies column
+    /// vectors. The matrix must be invertible; a fourth row must be 0 0 0 1.
     Matrix(#[schemars(length(min = 12, max = 16))] Vec<f32>),
 }
 
-/// A transform as it may be written.
+/// Transform: a list of steps, or a single step.
 #[derive(JsonSchema)]
 #[schemars(untagged, rename = "Transform")]
-pub enum Steps {
-    /// Steps in order; the first happens first.
+pub enum TransformInput {
+    /// Steps, applied in order.
     Several(Vec<TransformStep>),
-    /// A single step.
+    /// Single step.
     One(TransformStep),
 }
 
-impl<'de> Deserialize<'de> for Steps {
+impl<'de> Deserialize<'de> for TransformInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct StepsVisitor;
+        struct TransformInputVisitor;
 
-        impl<'de> Visitor<'de> for StepsVisitor {
-            type Value = Steps;
+        impl<'de> Visitor<'de> for TransformInputVisitor {
+            type Value = TransformInput;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("an array of transform steps, or one step")
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, steps: A) -> Result<Steps, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(steps)).map(Steps::Several)
+            fn visit_seq<A: SeqAccess<'de>>(self, steps: A) -> Result<TransformInput, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(steps)).map(TransformInput::Several)
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, step: A) -> Result<Steps, A::Error> {
-                TransformStep::deserialize(MapAccessDeserializer::new(step)).map(Steps::One)
+            fn visit_map<A: MapAccess<'de>>(self, step: A) -> Result<TransformInput, A::Error> {
+                TransformStep::deserialize(MapAccessDeserializer::new(step)).map(TransformInput::One)
             }
         }
 
-        deserializer.deserialize_any(StepsVisitor)
+        deserializer.deserialize_any(TransformInputVisitor)
     }
 }
 
-/// Steps from an array of them or from one.
+/// Deserializes an array of transform steps or a single step.
 pub fn steps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<TransformStep>, D::Error> {
-    Ok(match Steps::deserialize(deserializer)? {
-        Steps::Several(steps) => steps,
-        Steps::One(step) => vec![step],
+    Ok(match TransformInput::deserialize(deserializer)? {
+        TransformInput::Several(steps) => steps,
+        TransformInput::One(step) => vec![step],
     })
 }
 
-/// A turn about an axis through the origin, right-handed.
+/// Right-handed rotation about an axis through the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rotate {
-    /// The axis; its length does not matter.
+    /// Rotation axis, of any length except zero.
     #[schemars(with = "[f32; 3]")]
     pub axis: Vec3,
-    /// The angle.
+    /// Rotation angle, counterclockwise as seen from the tip of the axis.
     pub degrees: f32,
 }
 
-/// A place to stand and a point to face.
+/// Position of an object and a point that it faces.
 ///
-/// The object's axis `forward` comes to point from `from` to `to`, and its y axis leans to `up` as far as that allows (its
-/// z axis, where `forward` is the y axis). Then its origin is moved to `from`.
+/// A rotation takes the object's axis `forward` to the direction from `from` to `to` and turns the
+/// object's y axis (its z axis if `forward` is the y axis) toward `up` as far as possible. Then the
+/// object's origin moves to `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LookAt {
-    /// Where the object's origin comes to stand.
+    /// Position of the object's origin.
     #[serde(default)]
     #[schemars(with = "[f32; 3]")]
     pub from: Vec3,
-    /// The point that it faces.
+    /// Point that the object faces. Must differ from `from`.
     #[schemars(with = "[f32; 3]")]
     pub to: Vec3,
-    /// Where its top leans to; need not be unit. Where it faces straight along `up`, z takes
-    /// its place.
+    /// Up direction, of any length except zero. If it is parallel to the direction that the object
+    /// faces, the z axis takes its place.
     #[serde(default = "y_axis")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// The axis of the object that comes to point at `to`; need not be unit.
+    /// Axis of the object that faces `to`, of any length except zero. Set it for models whose front
+    /// is not +z.
     #[serde(default = "z_axis")]
     #[schemars(with = "[f32; 3]")]
     pub forward: Vec3,
@@ -118,63 +123,62 @@ fn z_axis() -> Vec3 {
 }
 
 impl LookAt {
-    fn transform(&self) -> Result<Transform, Misplaced> {
-        let zero = |field, message: &str| Misplaced::new(field, message);
-        let sight = (self.to.as_dvec3() - self.from.as_dvec3()).try_normalize();
-        let sight = sight.ok_or_else(|| zero("look_at.to", "`from` and `to` must not be the same point"))?;
+    fn transform(&self) -> Result<Transform, PlacementError> {
+        let zero = |field, message: &str| PlacementError::new(field, message);
+        let direction = (self.to.as_dvec3() - self.from.as_dvec3()).try_normalize();
+        let direction = direction.ok_or_else(|| zero("look_at.to", "`from` and `to` must not be the same point"))?;
         let forward = self.forward.as_dvec3().try_normalize();
         let forward = forward.ok_or_else(|| zero("look_at.forward", "`forward` must not be zero"))?;
         let up = self.up.as_dvec3().try_normalize();
         let up = up.ok_or_else(|| zero("look_at.up", "`up` must not be zero"))?;
-        let turn = frame(sight, up) * frame(forward, DVec3::Y).transpose();
+        let turn = orthonormal_frame(direction, up) * orthonormal_frame(forward, DVec3::Y).transpose();
         Transform::new(turn.as_mat3(), self.from)
-            .ok_or_else(|| zero("look_at", "the points are too far away for 32 bits"))
+            .ok_or_else(|| zero("look_at", "the points are too far away for 32-bit floats"))
     }
 }
 
-/// The frame of unit vectors whose third points along `axis` and whose second leans to `top`; or to z, y or x in this
-/// order, where these two are one line.
-fn frame(axis: DVec3, top: DVec3) -> DMat3 {
+/// Orthonormal frame whose third axis is `axis` and whose second axis leans toward `top`. If these
+/// two are parallel, z or else y replaces `top`.
+fn orthonormal_frame(axis: DVec3, top: DVec3) -> DMat3 {
     let side = |top: DVec3| Some(top.cross(axis)).filter(|side| side.length_squared() > 1e-12);
     let side = [top, DVec3::Z, DVec3::Y].into_iter().find_map(side).unwrap_or(DVec3::X).normalize();
     DMat3::from_cols(side, axis.cross(side), axis)
 }
 
-/// One factor, or one for each axis.
+/// One scale factor, or one for each axis. Factors must not be 0; negative factors mirror the
+/// object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Axes {
-    /// The same along all axes.
+#[schemars(rename = "Axes")]
+pub enum ScaleFactors {
+    /// Factor along all axes.
     All(f32),
-    /// Along x, y and z.
+    /// Factors along x, y and z.
     Each(#[schemars(with = "[f32; 3]")] Vec3),
 }
 
 impl TransformStep {
-    /// The map of this step, or why there is none.
-    pub fn transform(&self) -> Result<Transform, Misplaced> {
+    /// Affine map of this step, or an error if the step is degenerate.
+    pub fn transform(&self) -> Result<Transform, PlacementError> {
         match self {
             Self::Translate(by) => Ok(Transform::translation(*by)),
-            Self::Rotate(Rotate { axis, degrees }) => {
-                Transform::rotation(*axis, degrees.to_radians()).ok_or_else(|| {
-                    Misplaced::new("rotate.axis", "`axis` must not be zero: there is nothing to turn about")
-                })
-            }
+            Self::Rotate(Rotate { axis, degrees }) => Transform::rotation(*axis, degrees.to_radians())
+                .ok_or_else(|| PlacementError::new("rotate.axis", "`axis` must not be zero")),
             Self::Scale(axes) => {
                 let by = match axes {
-                    Axes::All(factor) => Vec3::splat(*factor),
-                    Axes::Each(factors) => *factors,
+                    ScaleFactors::All(factor) => Vec3::splat(*factor),
+                    ScaleFactors::Each(factors) => *factors,
                 };
                 Transform::scale(by)
-                    .ok_or_else(|| Misplaced::new("scale", "`scale` must not be 0: the object would be flat"))
+                    .ok_or_else(|| PlacementError::new("scale", "`scale` must not be 0: the object would be flat"))
             }
             Self::Orient(quaternion) => {
                 let turn = quaternion::matrix(quaternion.map(f64::from));
                 turn.and_then(|turn| Transform::new(turn.as_mat3(), Vec3::ZERO))
-                    .ok_or_else(|| Misplaced::new("orient", "a quaternion must not be all 0: it turns nowhere"))
+                    .ok_or_else(|| PlacementError::new("orient", "a quaternion must not be zero"))
             }
             Self::LookAt(step) => step.transform(),
-            Self::Matrix(rows) => matrix(rows).map_err(|message| Misplaced::new("matrix", message)),
+            Self::Matrix(rows) => matrix(rows).map_err(|message| PlacementError::new("matrix", message)),
         }
     }
 }
@@ -209,13 +213,16 @@ mod tests {
 
     #[test]
     fn orient_turns_as_in_gltf() {
-        // A quarter turn about y, in another length.
+        // Rotation by 90° about y, by a quaternion of length 3√2.
         let quarter = TransformStep::Orient([0.0, 3.0, 0.0, 3.0]).transform().unwrap();
         assert!(near(quarter.point(Vec3::X), [0.0, 0.0, -1.0]) && near(quarter.point(Vec3::Y), [0.0, 1.0, 0.0]));
         assert!(TransformStep::Orient([0.0; 4]).transform().is_err());
         let rotate =
             TransformStep::Rotate(Rotate { axis: Vec3::new(1.0, 2.0, 3.0), degrees: 40.0 }).transform().unwrap();
-        let turn = quaternion::turn(DVec3::new(1.0, 2.0, 3.0), 40.0).unwrap().to_array().map(|number| number as f32);
+        let turn = quaternion::from_axis_degrees(DVec3::new(1.0, 2.0, 3.0), 40.0)
+            .unwrap()
+            .to_array()
+            .map(|number| number as f32);
         let orient = TransformStep::Orient(turn).transform().unwrap();
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             assert!(rotate.point(axis).abs_diff_eq(orient.point(axis), 1e-6));

@@ -1,14 +1,14 @@
-//! Long lists of a document, parsed in chunks. A JSON tree of hundreds of thousands of objects would take several
-//! times the memory of the objects themselves.
+//! Long lists of a document, parsed in chunks. A JSON tree of hundreds of thousands of objects
+//! would take several times the memory of the objects themselves.
 
-use super::guard::{Refused, skip_comment, skip_string};
+use super::limits::{SyntaxError, skip_comment, skip_string};
 use super::parse::parse_part;
 use super::source::FileId;
 use super::tree::Node;
-use crate::path::Trail;
+use crate::path::PathRef;
 use std::ops::Range;
 
-/// Sections that may hold long lists.
+/// Sections of a scene that may be long lists.
 const LISTS: [&str; 2] = ["objects", "lights"];
 /// Minimum number of elements of a long list.
 const MIN_ELEMENTS: usize = 1000;
@@ -17,8 +17,8 @@ const CHUNK: usize = 1 << 17;
 /// Upper estimate of the memory per element in bytes, beside its text: the item and its text range.
 const ELEMENT: u64 = 1000;
 
-/// Parsed elements of a chunk with their findings, or the first syntax error.
-pub type Chunk = Result<(Vec<Node>, Vec<Refused>), Refused>;
+/// Parsed elements of a chunk with their errors, or the first syntax error.
+pub type Chunk = Result<(Vec<Node>, Vec<SyntaxError>), SyntaxError>;
 
 /// List with many elements, kept as text ranges.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,19 +45,19 @@ impl LongList {
     }
 
     fn trees(&self, text: &str, file: FileId, first: usize, chunk: &[Range<usize>]) -> Chunk {
-        let (mut nodes, mut refused) = (Vec::with_capacity(chunk.len()), Vec::new());
-        let section = Trail::Root.key(self.key);
+        let (mut nodes, mut errors) = (Vec::with_capacity(chunk.len()), Vec::new());
+        let section = PathRef::Root.key(self.key);
         for (i, element) in chunk.iter().enumerate() {
             let (node, more) = parse_part(text, element.clone(), file, &section.index(first + i))?;
             nodes.push(node);
-            refused.extend(more);
+            errors.extend(more);
         }
-        Ok((nodes, refused))
+        Ok((nodes, errors))
     }
 }
 
-/// Splits a document into its text with emptied long lists (all byte offsets unchanged) and the lists. `None` for a
-/// document without long lists, or with a syntax error that the scan notices.
+/// Splits a document into its text with emptied long lists (all byte offsets unchanged) and the
+/// lists. `None` for a document without long lists, or with a syntax error that the scan notices.
 pub fn split(text: &str) -> Option<(String, Vec<LongList>)> {
     let bytes = text.as_bytes();
     let (mut depth, mut i) = (0_usize, 0);
@@ -99,7 +99,8 @@ pub fn split(text: &str) -> Option<(String, Vec<LongList>)> {
     Some((String::from_utf8(rest).ok()?, found.into_iter().map(|(list, _)| list).collect()))
 }
 
-/// Byte ranges of the elements of the array whose content starts at `i`, and the offset of its closing bracket.
+/// Byte ranges of the elements of the array whose content starts at `i`, and the offset of its
+/// closing bracket.
 fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
     let (mut depth, mut elements) = (0_usize, Vec::new());
     let (mut start, mut end) = (None, 0);
@@ -111,7 +112,7 @@ fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
                 let is_end = bytes.get(i) == Some(&b']');
                 match start.take() {
                     Some(start) => elements.push(start..end),
-                    // A comma may stand behind the last element, none elsewhere.
+                    // A trailing comma is allowed only after the last element.
                     None if is_end => {}
                     None => return None,
                 }
@@ -139,14 +140,14 @@ fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
 pub fn bytes_to_read(text: &str) -> u64 {
     let whole = |text: &str| super::bytes_to_read(text.as_bytes());
     let Some((rest, lists)) = split(text) else { return whole(text) };
-    // The text without its lists is another text of the same length.
+    // The text with emptied lists is a copy of the same length.
     let mut bytes = whole(&rest) + text.len() as u64;
     for list in lists {
         let longest = list.elements.iter().map(|element| element.len()).max().unwrap_or_default();
         let first = list.elements.first().map_or(0, |element| element.start);
         let end = list.elements.last().map_or(0, |element| element.end);
         let length = end.saturating_sub(first) as u64;
-        // One chunk is a tree at a time.
+        // Only one chunk at a time is held as a tree.
         let share = longest.max(CHUNK) as f64 / length.max(1) as f64;
         let tree = whole(text.get(first..end).unwrap_or_default()) as f64 * share.min(1.0);
         bytes += length + tree as u64 + list.elements.len() as u64 * ELEMENT;

@@ -1,61 +1,63 @@
-//! Several files into one tree: `"include": ["materials.json"]`.
+//! Merging of included files into one tree: `"include": ["materials.json"]`.
 //!
-//! What an included file holds under [`MAPS`] and [`LISTS`] joins what the including file holds; the rest of it
-//! (camera of its own, size, title) is left aside, so that a whole scene can serve as a library. A file that is
-//! named twice comes in once.
+//! The members of an included file's [`MAPS`] and [`LISTS`] are added to those of the including
+//! file. All else in it (cameras, settings, title) is ignored, so that a whole scene can serve as a
+//! library. A file that is included twice is merged once.
 
 use super::chunks::{self, LongList};
-use super::guard::{self, Refused};
-use super::source::{FileId, Place, Sources};
+use super::limits::{self, SyntaxError};
+use super::source::{FileId, SourceSpan, Sources};
 use super::tree::{Member, Node, Value};
 use super::{Unreadable, parse, parse_part};
-use crate::path::Trail;
+use crate::path::PathRef;
 use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
 use crate::store::Store;
-use crate::validate::meant_in_scene;
+use crate::validate::suggest_scene_key;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Named things: one of each name. Variables of included files come first, as later ones may use them.
+/// Sections of named members; names are unique. Variables of included files come first, since later
+/// ones may use them.
 const MAPS: [&str; 6] = ["variables", "paths", "cameras", "textures", "materials", "groups"];
-/// Things in order: those of included files come first.
+/// Sections of ordered elements; those of included files come first.
 const LISTS: [&str; 2] = ["lights", "objects"];
-/// Most files of one scene.
+/// Maximum number of files of a scene: the main file and all included files.
 pub const MAX_FILES: usize = 1000;
-/// Longest chain of files that include each other.
+/// Maximum depth of nested includes.
 const MAX_CHAIN: usize = 32;
 
-/// Reads a scene's files.
+/// Reads the files of a scene.
 pub struct Reader<'s> {
     store: &'s Store,
     sources: Sources,
     findings: Vec<Finding>,
-    /// Every file that came in, in its one true name.
-    seen: Vec<PathBuf>,
-    /// The files that are being read, each included by the one before.
+    /// Canonical names of all files read.
+    read_files: Vec<PathBuf>,
+    /// Canonical names of the files being read; each is included by the one before.
     open: Vec<PathBuf>,
     complete: bool,
 }
 
 impl<'s> Reader<'s> {
-    /// For the scene in this file; the others come from `store`.
+    /// Creates a reader for the scene in the file `main`; other files come from `store`.
     pub fn new(main: &Path, store: &'s Store) -> Self {
-        let main = store.true_name(main);
+        let main = store.canonical_name(main);
         Self {
             store,
             sources: Sources::default(),
             findings: Vec::new(),
-            seen: vec![main.clone()],
+            read_files: vec![main.clone()],
             open: vec![main],
             complete: true,
         }
     }
 
-    /// The merged tree of the main file, as far as there is one, and its long lists, which are left out of the tree.
+    /// Reads the main file. Returns the merged tree, if it can be parsed, and the long lists that
+    /// are left out of the tree.
     pub fn main(&mut self, name: &str, text: String) -> Option<(Node, Vec<LongList>)> {
-        let split = chunks::split(&text).filter(|_| guard::check(&text).is_ok());
-        let parsed = split.and_then(|(rest, lists)| Some((alone(&rest)?, lists)));
+        let split = chunks::split(&text).filter(|_| limits::check(&text).is_ok());
+        let parsed = split.and_then(|(rest, lists)| Some((parse_without_includes(&rest)?, lists)));
         match parsed {
             Some((parsed, lists)) => {
                 let id = self.sources.add(name, text);
@@ -65,9 +67,8 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// What was read, and all that was wrong with it.
-    ///
-    /// The last tells whether every file could be read; without one of them, names would be missing everywhere.
+    /// Returns the texts, all findings, and whether every file could be read. If one is missing,
+    /// further checks would report all names that it defines as unknown.
     pub fn finish(self) -> (Sources, Vec<Finding>, bool) {
         (self.sources, self.findings, self.complete)
     }
@@ -79,21 +80,21 @@ impl<'s> Reader<'s> {
         self.merged(id, parsed)
     }
 
-    /// The tree of a file, what it includes merged.
-    fn merged(&mut self, id: FileId, parsed: Result<(Node, Vec<Refused>), Refused>) -> Option<Node> {
+    /// Checks the root of a parsed file and merges its includes into it.
+    fn merged(&mut self, id: FileId, parsed: Result<(Node, Vec<SyntaxError>), SyntaxError>) -> Option<Node> {
         let mut tree = match parsed {
-            Ok((tree, refused)) => {
-                self.findings.extend(refused.into_iter().map(|refused| finding(id, refused)));
+            Ok((tree, errors)) => {
+                self.findings.extend(errors.into_iter().map(|error| finding(id, error)));
                 tree
             }
-            Err(refused) => {
-                self.findings.push(finding(id, refused));
+            Err(error) => {
+                self.findings.push(finding(id, error));
                 self.complete = false;
                 return None;
             }
         };
         let Value::Object(members) = &mut tree.value else {
-            let message = format!("a scene is an object `{{...}}`, this is {}", tree.kind());
+            let message = format!("a scene must be an object `{{...}}`, found {}", tree.kind());
             self.findings.push(Finding::error(message).on(tree.place));
             self.complete = false;
             return None;
@@ -111,7 +112,8 @@ impl<'s> Reader<'s> {
         Some(tree)
     }
 
-    /// Checks that `$schema`, which tells editors where the scene format's schema is, holds an address.
+    /// Checks that `$schema`, which gives editors the address of the format's JSON Schema, is a
+    /// string.
     fn check_schema(&mut self, schema: &Node) {
         if schema.as_str().is_none() {
             let message = format!("expected the address of the scene format's JSON Schema, found {}", schema.kind());
@@ -119,8 +121,8 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The strings of `include`: one, or an array of them.
-    fn names(&mut self, include: &Node) -> Vec<(String, Option<Place>)> {
+    /// The file names of `include`, which is a string or an array of strings.
+    fn names(&mut self, include: &Node) -> Vec<(String, Option<SourceSpan>)> {
         let named = match &include.value {
             Value::Array(elements) => elements.iter().collect(),
             _ => vec![include],
@@ -138,18 +140,18 @@ impl<'s> Reader<'s> {
         names
     }
 
-    fn included(&mut self, (name, place): (String, Option<Place>), by: FileId) -> Option<Node> {
+    fn included(&mut self, (name, place): (String, Option<SourceSpan>), by: FileId) -> Option<Node> {
         let folder = self.sources.get(by).map(|source| source.folder.clone()).unwrap_or_default();
         let path = folder.join(&name);
-        let identity = self.store.true_name(&path);
+        let identity = self.store.canonical_name(&path);
         let problem = if let Some(at) = self.open.iter().position(|open| *open == identity) {
             let chain: Vec<_> = self.open.iter().skip(at).chain([&identity]).map(|p| file_name(p)).collect();
-            Some(format!("files include each other in a circle: {}", chain.join(" → ")))
-        } else if self.seen.contains(&identity) {
+            Some(format!("files include each other in a cycle: {}", chain.join(" → ")))
+        } else if self.read_files.contains(&identity) {
             return None;
         } else if self.open.len() > MAX_CHAIN {
-            Some(format!("more than {MAX_CHAIN} files include one another"))
-        } else if self.seen.len() > MAX_FILES {
+            Some(format!("includes are nested deeper than the limit of {MAX_CHAIN}"))
+        } else if self.read_files.len() >= MAX_FILES {
             Some(format!("a scene has at most {MAX_FILES} files"))
         } else {
             None
@@ -162,7 +164,7 @@ impl<'s> Reader<'s> {
                 return None;
             }
         };
-        self.seen.push(identity.clone());
+        self.read_files.push(identity.clone());
         self.open.push(identity);
         let tree = self.file(&path.to_string_lossy(), text);
         self.open.pop();
@@ -170,18 +172,18 @@ impl<'s> Reader<'s> {
         tree
     }
 
-    /// What is not merged must still be something that a scene file can hold.
+    /// Checks keys and version of an included file, of which only a part is merged.
     fn check_keys(&mut self, tree: &Node) {
         let known = Schema::get().root().get("properties").and_then(serde_json::Value::as_object);
         let known: Vec<&str> = known.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
         for (key, member) in tree.members().filter(|(key, _)| !known.contains(&key.as_str())) {
-            let finding = Finding::error(format!("`{key}` is not known here")).on(member.key_place);
-            self.findings.push(finding.maybe_help(meant_in_scene(key)));
+            let finding = Finding::error(format!("unknown key `{key}`")).on(member.key_place);
+            self.findings.push(finding.maybe_help(suggest_scene_key(key)));
         }
         if let Some(version) =
             tree.get("version").filter(|version| !matches!(&version.value, Value::Number(n) if n.as_f64() == Some(1.0)))
         {
-            let message = "this program reads version 1 of the format, this file is of another";
+            let message = "unsupported version of the scene format: this program reads version 1";
             self.findings.push(Finding::error(message).on(version.place));
         }
     }
@@ -211,7 +213,7 @@ impl<'s> Reader<'s> {
                 for (at, (name, member)) in Arc::unwrap_or_clone(other).into_iter().enumerate() {
                     if let Some(known) = own.get(&name) {
                         let elsewhere = self.file_name(known.key_place);
-                        let message = format!("`{name}` in `{key}` has been defined before, in {elsewhere}");
+                        let message = format!("`{name}` in `{key}` is already defined in {elsewhere}");
                         self.findings.push(Finding::error(message).on(member.key_place));
                     } else if key == "variables" {
                         first.push((at, name, member));
@@ -221,29 +223,29 @@ impl<'s> Reader<'s> {
                 }
                 own.insert_each(first);
             }
-            // The including file's value has the wrong type: the schema will say so.
+            // The including file's value has the wrong type, which the schema check reports.
             _ => {}
         }
     }
 
-    fn file_name(&self, place: Option<Place>) -> String {
+    fn file_name(&self, place: Option<SourceSpan>) -> String {
         let source = place.and_then(|place| self.sources.get(place.file));
         source.map_or_else(|| "another file".into(), |source| source.name.clone())
     }
 }
 
-/// Tree of the main file, if the scene includes no other file. Elements of included lists come
-/// before those of the main file, so scenes of several files are read as trees.
-fn alone(text: &str) -> Option<(Node, Vec<Refused>)> {
-    let parsed = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).ok()?;
+/// Parses the main file if the scene includes no other file. Elements of included lists come before
+/// those of the main file, so scenes of several files are read as whole trees.
+fn parse_without_includes(text: &str) -> Option<(Node, Vec<SyntaxError>)> {
+    let parsed = parse_part(text, 0..text.len(), FileId::MAIN, &PathRef::Root).ok()?;
     parsed.0.get("include").is_none().then_some(parsed)
 }
 
-pub fn finding(file: FileId, refused: Refused) -> Finding {
+pub fn finding(file: FileId, error: SyntaxError) -> Finding {
     let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
-    let place = Place { file, start: at(refused.at.start), end: at(refused.at.end) };
-    let finding = Finding::error(refused.message).on(Some(place)).maybe_help(refused.help);
-    match refused.path {
+    let place = SourceSpan { file, start: at(error.at.start), end: at(error.at.end) };
+    let finding = Finding::error(error.message).on(Some(place)).maybe_help(error.help);
+    match error.path {
         Some(path) => finding.at(&path),
         None => finding,
     }

@@ -49,23 +49,23 @@ impl Members {
         self.position(key).is_some()
     }
 
-    /// The member with a key.
+    /// Returns the member with a key.
     pub fn get(&self, key: &str) -> Option<&Member> {
         self.get_key_value(key).map(|(_, member)| member)
     }
 
-    /// The member with a key, and the key.
+    /// Returns the member with a key, and the key.
     pub fn get_key_value(&self, key: &str) -> Option<(&String, &Member)> {
         self.entries.get(self.position(key)?).map(|(key, member)| (key, member))
     }
 
-    /// The member with a key.
+    /// Returns the member with a key for modification.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Member> {
         let at = self.position(key)?;
         self.at_mut(at)
     }
 
-    /// The member at a position.
+    /// Returns the member at a position.
     pub fn at_mut(&mut self, at: usize) -> Option<&mut Member> {
         Some(&mut self.entries.get_mut(at)?.1)
     }
@@ -78,7 +78,7 @@ impl Members {
         }
     }
 
-    /// The member with a key. Appends `new` if no member has the key.
+    /// Returns the member with a key and appends `new` if no member has the key.
     pub fn get_or_append(&mut self, key: &str, new: Member) -> Option<&mut Member> {
         let at = self.position(key).unwrap_or(self.entries.len());
         if at == self.entries.len() {

@@ -1,14 +1,14 @@
-//! Parser from text to tree. Comments and trailing commas are the only liberties.
+//! Parser from text to tree, for JSON with comments and trailing commas.
 //!
-//! The parser builds nodes directly from the text. `jsonc-parser` decodes strings with escapes, and
-//! explains the first mistake of a text that this parser refuses; building nodes from its syntax
-//! tree took more than twice the time.
+//! The parser builds nodes directly from the text. `jsonc-parser` decodes strings with escapes and
+//! explains the first error of a text that this parser rejects; building nodes from its syntax tree
+//! took more than twice the time.
 
-use super::guard::{self, Refused};
+use super::limits::{self, SyntaxError};
 use super::members::Members;
-use super::source::{FileId, Place};
+use super::source::{FileId, SourceSpan};
 use super::tree::{Member, Node, Value};
-use crate::path::Trail;
+use crate::path::PathRef;
 use jsonc_parser::errors::ParseErrorKind as Kind;
 use jsonc_parser::tokens::Token;
 use jsonc_parser::{CollectOptions, ParseOptions, ParseResult, Scanner, ScannerOptions, parse_to_ast};
@@ -17,12 +17,12 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The tree of a text with every duplicate key and unreadable number in it, or the first mistake of syntax.
-///
-/// In the tree the first of two equal keys stands, and a 1 for a number that cannot be read.
-pub fn parse(text: &str, file: FileId) -> Result<(Node, Vec<Refused>), Refused> {
-    guard::check(text)?;
-    parse_part(text, 0..text.len(), file, &Trail::Root)
+/// Parses a text. Returns the tree with an error for each duplicate key and unreadable number, or
+/// the first syntax error. The tree keeps the first of two equal keys, and 1 for an unreadable
+/// number.
+pub fn parse(text: &str, file: FileId) -> Result<(Node, Vec<SyntaxError>), SyntaxError> {
+    limits::check(text)?;
+    parse_part(text, 0..text.len(), file, &PathRef::Root)
 }
 
 /// Parses the value in a part of a text whose depth and size were checked. `at` is the path of the
@@ -31,19 +31,19 @@ pub fn parse_part(
     text: &str,
     part: Range<usize>,
     file: FileId,
-    at: &Trail<'_>,
-) -> Result<(Node, Vec<Refused>), Refused> {
+    at: &PathRef<'_>,
+) -> Result<(Node, Vec<SyntaxError>), SyntaxError> {
     let start = part.start;
     let text = text.get(part).unwrap_or_default();
-    let mut reader = Reader { text, next: 0, file, start, refused: Vec::new() };
+    let mut reader = Reader { text, next: 0, file, start, errors: Vec::new() };
     match reader.document(at) {
-        Some(node) => Ok((node, reader.refused)),
-        None => Err(mistake(text, start)),
+        Some(node) => Ok((node, reader.errors)),
+        None => Err(first_error(text, start)),
     }
 }
 
 /// First syntax error in a text that begins at the byte `start` of its file.
-fn mistake(text: &str, start: usize) -> Refused {
+fn first_error(text: &str, start: usize) -> SyntaxError {
     let (at, message, help) = match parse_to_ast(text, &CollectOptions::default(), &strict()) {
         Err(error) => {
             let range = error.range();
@@ -55,10 +55,10 @@ fn mistake(text: &str, start: usize) -> Refused {
             let help = Some("the smallest scene is {\"version\": 1, \"objects\": [{\"shape\": \"sphere\"}]}".into());
             (0..0, "the file is empty".to_owned(), help)
         }
-        // Both parsers accept the same texts: only a slip of ours can bring us here.
-        Ok(_) => (start..start + text.len(), "this is not JSON".to_owned(), None),
+        // Both parsers accept the same texts, so only a bug leads here.
+        Ok(_) => (start..start + text.len(), "invalid JSON".to_owned(), None),
     };
-    Refused { at, path: None, message, help }
+    SyntaxError { at, path: None, message, help }
 }
 
 /// Parser options: strict JSON plus comments and trailing commas.
@@ -87,7 +87,7 @@ const STRICT: ScannerOptions = ScannerOptions {
     allow_extended_string_escapes: false,
 };
 
-/// The parser's complaint about `word` in our words, with what to do.
+/// Explains a syntax error at `word`. Returns the message and a suggestion.
 fn explain(kind: &Kind, word: &str) -> (String, Option<String>) {
     let small = word.to_ascii_lowercase();
     let quoted = format!("write \"{word}\"");
@@ -102,20 +102,22 @@ fn explain(kind: &Kind, word: &str) -> (String, Option<String>) {
         Kind::ExpectedComma => ("a `,` is missing here", ""),
         Kind::ExpectedColonAfterObjectKey => ("a `:` and a value must follow the key", ""),
         Kind::ExpectedObjectValue => ("a value must follow the `:`", ""),
-        Kind::ExpectedStringObjectProperty => ("keys stand in double quotes", quoted.as_str()),
-        Kind::SingleQuotedStringsNotAllowed => ("strings stand in double quotes", ""),
+        Kind::ExpectedStringObjectProperty => ("keys must be in double quotes", quoted.as_str()),
+        Kind::SingleQuotedStringsNotAllowed => ("strings must be in double quotes", ""),
         Kind::NonFiniteNumbersNotAllowed => ("numbers must be finite", ""),
-        Kind::HexadecimalNumbersNotAllowed => ("numbers are decimal", "colours are written \"#rrggbb\", in quotes"),
-        Kind::UnaryPlusNumbersNotAllowed => ("a number has no `+` in front", ""),
-        Kind::BareDecimalPointNumbersNotAllowed => ("digits must stand on both sides of the point", "write 0.5"),
+        Kind::HexadecimalNumbersNotAllowed => ("numbers must be decimal", "colors are written \"#rrggbb\", in quotes"),
+        Kind::UnaryPlusNumbersNotAllowed => ("numbers must not begin with `+`", ""),
+        Kind::BareDecimalPointNumbersNotAllowed => {
+            ("digits are required on both sides of the decimal point", "write 0.5")
+        }
         Kind::UnexpectedWord | Kind::UnexpectedToken if matches!(small.as_str(), "true" | "false" | "null") => {
-            ("true, false and null are written in small letters", "")
+            ("true, false and null must be in lower case", "")
         }
         Kind::UnexpectedWord | Kind::UnexpectedToken => {
-            ("words stand in double quotes", "only true, false and null stand without")
+            ("words must be in double quotes", "only true, false and null have none")
         }
-        Kind::MultipleRootJsonValues => ("a file holds one value, and it ended before this", ""),
-        other => return (format!("this is not JSON: {}", lower_first(&other.to_string())), None),
+        Kind::MultipleRootJsonValues => ("unexpected text after the end of the JSON value", ""),
+        other => return (format!("invalid JSON: {}", lower_first(&other.to_string())), None),
     };
     (message.to_owned(), (!help.is_empty()).then(|| help.to_owned()))
 }
@@ -125,14 +127,14 @@ fn lower_first(text: &str) -> String {
     characters.next().map_or_else(String::new, |first| first.to_lowercase().chain(characters).collect())
 }
 
-/// A range inside the text that cuts no character.
+/// Extends a range to character boundaries within the text.
 fn on_characters(text: &str, range: Range<usize>) -> Range<usize> {
     let start = text.floor_char_boundary(range.start.min(text.len()));
     start..text.ceil_char_boundary(range.end.clamp(start, text.len()))
 }
 
-/// The nearest number that 64 bits can hold.
-fn exact(text: &str) -> Option<Number> {
+/// Parses a number as `i64`, `u64` or else the nearest `f64`; `None` if it is not finite.
+fn parse_number(text: &str) -> Option<Number> {
     if let Ok(whole) = text.parse::<i64>() {
         return Some(whole.into());
     }
@@ -150,12 +152,12 @@ struct Reader<'t> {
     file: FileId,
     /// Offset of the text in its file.
     start: usize,
-    refused: Vec<Refused>,
+    errors: Vec<SyntaxError>,
 }
 
 impl<'t> Reader<'t> {
     /// Parses the text's only value.
-    fn document(&mut self, at: &Trail<'_>) -> Option<Node> {
+    fn document(&mut self, at: &PathRef<'_>) -> Option<Node> {
         self.skip_blanks();
         let node = self.node(at)?;
         self.skip_blanks();
@@ -178,7 +180,7 @@ impl<'t> Reader<'t> {
         while let Some(byte) = self.peek() {
             self.next = match byte {
                 b' ' | b'\t' | b'\n' | b'\r' | b'\x0b' | b'\x0c' => self.next + 1,
-                b'/' => match guard::skip_comment(self.text.as_bytes(), self.next) {
+                b'/' => match limits::skip_comment(self.text.as_bytes(), self.next) {
                     last if last > self.next => last + 1,
                     _ => return,
                 },
@@ -191,17 +193,17 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn place(&self, range: Range<usize>) -> Option<Place> {
+    fn place(&self, range: Range<usize>) -> Option<SourceSpan> {
         let at = |byte: usize| u32::try_from(self.start + byte).unwrap_or(u32::MAX);
-        Some(Place { file: self.file, start: at(range.start), end: at(range.end) })
+        Some(SourceSpan { file: self.file, start: at(range.start), end: at(range.end) })
     }
 
-    fn refuse(&mut self, range: Range<usize>, at: &Trail<'_>, message: String, help: &str) {
+    fn add_error(&mut self, range: Range<usize>, at: &PathRef<'_>, message: String, help: &str) {
         let bytes = self.start + range.start..self.start + range.end;
-        self.refused.push(Refused { at: bytes, path: Some(at.into()), message, help: Some(help.to_owned()) });
+        self.errors.push(SyntaxError { at: bytes, path: Some(at.into()), message, help: Some(help.to_owned()) });
     }
 
-    fn node(&mut self, at: &Trail<'_>) -> Option<Node> {
+    fn node(&mut self, at: &PathRef<'_>) -> Option<Node> {
         let start = self.next;
         let value = match self.peek()? {
             b'{' => Value::Object(Arc::new(self.members(at)?)),
@@ -234,14 +236,14 @@ impl<'t> Reader<'t> {
             self.next += length + 1;
             return Some(Cow::Borrowed(plain));
         }
-        self.next = guard::skip_string(self.text.as_bytes(), start) + 1;
+        self.next = limits::skip_string(self.text.as_bytes(), start) + 1;
         match Scanner::new(self.text.get(start..self.next)?, &STRICT).scan().ok()?? {
             Token::String(text) => Some(text),
             _ => None,
         }
     }
 
-    fn number(&mut self, at: &Trail<'_>) -> Option<Number> {
+    fn number(&mut self, at: &PathRef<'_>) -> Option<Number> {
         let start = self.next;
         self.take(b'-');
         if !self.take(b'0') {
@@ -255,9 +257,9 @@ impl<'t> Reader<'t> {
             self.digits()?;
         }
         let text = self.text.get(start..self.next)?;
-        Some(exact(text).unwrap_or_else(|| {
-            let message = format!("`{text}` is too large a number");
-            self.refuse(start..self.next, at, message, "numbers reach up to 3.4e38");
+        Some(parse_number(text).unwrap_or_else(|| {
+            let message = format!("number `{text}` is too large");
+            self.add_error(start..self.next, at, message, "the largest number is 3.4e38");
             1.into()
         }))
     }
@@ -271,7 +273,7 @@ impl<'t> Reader<'t> {
         (self.next > start).then_some(())
     }
 
-    fn elements(&mut self, at: &Trail<'_>) -> Option<Vec<Node>> {
+    fn elements(&mut self, at: &PathRef<'_>) -> Option<Vec<Node>> {
         let mut elements = Vec::new();
         self.next += 1;
         loop {
@@ -287,7 +289,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn members(&mut self, at: &Trail<'_>) -> Option<Members> {
+    fn members(&mut self, at: &PathRef<'_>) -> Option<Members> {
         let mut members = Members::default();
         self.next += 1;
         loop {
@@ -303,7 +305,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn member(&mut self, members: &mut Members, at: &Trail<'_>) -> Option<()> {
+    fn member(&mut self, members: &mut Members, at: &PathRef<'_>) -> Option<()> {
         let start = self.next;
         let key = self.string()?;
         let range = start..self.next;
@@ -315,8 +317,8 @@ impl<'t> Reader<'t> {
         let at = at.key(&key);
         let node = self.node(&at)?;
         if members.contains_key(&key) {
-            let message = format!("`{key}` stands here a second time");
-            self.refuse(range, &at, message, "join the two, or remove one");
+            let message = format!("duplicate key `{key}`");
+            self.add_error(range, &at, message, "merge the two values or remove one");
         } else {
             let key_place = self.place(range);
             members.append(key.into_owned(), Member { key_place, node });
@@ -342,13 +344,13 @@ mod tests {
     fn expected(value: &ast::Value<'_>) -> Node {
         let place = |range: &dyn Ranged| {
             let at = |byte: usize| u32::try_from(byte).unwrap();
-            Some(Place { file: FileId::MAIN, start: at(range.start()), end: at(range.end()) })
+            Some(SourceSpan { file: FileId::MAIN, start: at(range.start()), end: at(range.end()) })
         };
         let tree = match value {
             ast::Value::NullKeyword(_) => Value::Null,
             ast::Value::BooleanLit(literal) => Value::Bool(literal.value),
             ast::Value::StringLit(literal) => Value::String(literal.value.to_string()),
-            ast::Value::NumberLit(literal) => Value::Number(exact(literal.value).unwrap_or(1.into())),
+            ast::Value::NumberLit(literal) => Value::Number(parse_number(literal.value).unwrap_or(1.into())),
             ast::Value::Array(array) => Value::Array(Arc::new(array.elements.iter().map(expected).collect())),
             ast::Value::Object(object) => {
                 let mut members = Members::default();
@@ -365,13 +367,13 @@ mod tests {
 
     fn check(text: &str) -> bool {
         let parsed = parse_to_ast(text, &CollectOptions::default(), &strict());
-        let found = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root);
+        let found = parse_part(text, 0..text.len(), FileId::MAIN, &PathRef::Root);
         match (parsed.ok().and_then(|parsed| parsed.value), found) {
             (Some(value), Ok((node, _))) => assert_eq!(node, expected(&value), "{text:?}"),
-            (None, Err(refused)) => assert_ne!(refused.message, "this is not JSON", "{text:?}"),
+            (None, Err(error)) => assert_ne!(error.message, "invalid JSON", "{text:?}"),
             (value, found) => panic!("{text:?}: {value:?}, {found:?}"),
         }
-        parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).is_ok()
+        parse_part(text, 0..text.len(), FileId::MAIN, &PathRef::Root).is_ok()
     }
 
     #[test]

@@ -1,30 +1,30 @@
-//! JSON in which every value knows where it was written.
+//! JSON values with their positions in the text.
 
 use super::members::Members;
-use super::source::Place;
+use super::source::SourceSpan;
 use crate::path::{Path, Step};
 use serde_json::Number;
 use std::sync::Arc;
 
-/// One value and its place; values that were not read from a file have none.
+/// A value and its position. Values that were not read from a file have no position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Where it stands.
-    pub place: Option<Place>,
-    /// What stands there.
+    /// Range of the value in its text.
+    pub place: Option<SourceSpan>,
+    /// The value.
     pub value: Value,
 }
 
-/// One entry of an object.
+/// A member of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
-    /// Where the key stands.
-    pub key_place: Option<Place>,
-    /// What the key names.
+    /// Range of the key in its text.
+    pub key_place: Option<SourceSpan>,
+    /// Value of the member.
     pub node: Node,
 }
 
-/// What a file of JSON can hold.
+/// A JSON value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// `null`
@@ -33,18 +33,18 @@ pub enum Value {
     Bool(bool),
     /// Any number that fits into 64 bits.
     Number(Number),
-    /// Text.
+    /// A string.
     String(String),
-    /// Values in order; shared, so that the trees of many frames are one but for what moves.
+    /// Elements in order. Shared, so that the trees of many frames differ only in what moves.
     Array(Arc<Vec<Node>>),
-    /// Named values in the order of the file; shared likewise.
+    /// Members in the order of the file. Shared as arrays are.
     Object(Arc<Members>),
-    /// A mistake that has been reported: checks pass over it.
-    Wrong,
+    /// An invalid value whose error has been reported; checks skip it.
+    Invalid,
 }
 
 impl Node {
-    /// The entry of an object.
+    /// Returns the value of an object's member.
     pub fn get(&self, key: &str) -> Option<&Self> {
         match &self.value {
             Value::Object(members) => members.get(key).map(|member| &member.node),
@@ -52,7 +52,7 @@ impl Node {
         }
     }
 
-    /// The entries of an object; none for anything else.
+    /// The members of an object; empty for all other values.
     pub fn members(&self) -> impl Iterator<Item = (&String, &Member)> {
         match &self.value {
             Value::Object(members) => Some(members.iter()),
@@ -62,7 +62,7 @@ impl Node {
         .flatten()
     }
 
-    /// The elements of an array; none for anything else.
+    /// The elements of an array; empty for all other values.
     pub fn elements(&self) -> &[Self] {
         match &self.value {
             Value::Array(elements) => elements,
@@ -70,7 +70,7 @@ impl Node {
         }
     }
 
-    /// The text of a string.
+    /// Returns the text of a string.
     pub fn as_str(&self) -> Option<&str> {
         match &self.value {
             Value::String(text) => Some(text),
@@ -78,7 +78,7 @@ impl Node {
         }
     }
 
-    /// "a number", "a string": what stands here, for messages.
+    /// Name of the value's type for messages, such as "a number" or "a string".
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Null => "null",
@@ -87,19 +87,19 @@ impl Node {
             Value::String(_) => "a string",
             Value::Array(_) => "an array",
             Value::Object(_) => "an object",
-            Value::Wrong => "a mistake",
+            Value::Invalid => "an invalid value",
         }
     }
 
-    /// The place of what `path` names, or of the last value on the way that was written down (a key that was
-    /// left out has no place of its own), and how many steps lead there.
-    pub fn place_of(&self, path: &Path) -> (Option<Place>, usize) {
+    /// Finds the value at `path`. Returns its position, or that of its innermost existing ancestor,
+    /// and the number of steps that lead there.
+    pub fn place_of(&self, path: &Path) -> (Option<SourceSpan>, usize) {
         let mut node = self;
         let mut place = self.place;
         for (depth, step) in path.steps().iter().enumerate() {
             let next = match step {
                 Step::Key(key) => node.get(key),
-                // What may be an array of one may be that one alone.
+                // Where an array is expected, a lone object stands for an array of one element.
                 Step::Index(0) if matches!(node.value, Value::Object(_)) => Some(node),
                 Step::Index(index) => node.elements().get(*index),
             };
@@ -110,11 +110,11 @@ impl Node {
         (place, path.steps().len())
     }
 
-    /// The path of the innermost value or key that holds `place`.
-    pub fn path_of(&self, place: Place) -> Path {
+    /// Path of the innermost value or key that contains `place`.
+    pub fn path_of(&self, place: SourceSpan) -> Path {
         let mut node = self;
         let mut path = Path::root();
-        let holds = |outer: Option<Place>| outer.is_some_and(|outer| outer.contains(place));
+        let holds = |outer: Option<SourceSpan>| outer.is_some_and(|outer| outer.contains(place));
         loop {
             let inner = match &node.value {
                 Value::Array(elements) => {
@@ -132,10 +132,10 @@ impl Node {
         }
     }
 
-    /// The plain JSON of it.
+    /// Converts the value to JSON without positions.
     pub fn to_json(&self) -> serde_json::Value {
         match &self.value {
-            Value::Null | Value::Wrong => serde_json::Value::Null,
+            Value::Null | Value::Invalid => serde_json::Value::Null,
             Value::Bool(value) => (*value).into(),
             Value::Number(number) => serde_json::Value::Number(number.clone()),
             Value::String(text) => text.as_str().into(),

@@ -1,43 +1,44 @@
-//! From what a reader collected to a mesh: polygons cut, missing normals and surface coordinates settled.
+//! Assembly of a mesh from the data of a reader: triangulates polygons and removes invalid normals.
 
 use super::Imported;
-use super::error::Fault;
+use super::error::ImportErrorKind;
 use super::faces::Faces;
 use juggler_math::{Vec2, Vec3};
 use juggler_shape::MeshData;
 
-/// What a reader collected. Indices of `faces` are in range.
+/// Data of a mesh as a reader collects them. Indices of `faces` are in range.
 #[derive(Default)]
-pub(super) struct Parts {
+pub(super) struct MeshParts {
     /// Finite positions.
     pub positions: Vec<Vec3>,
-    /// None at all, or one per position; one that is zero or not finite counts as missing.
+    /// Empty, or one normal per position; a normal that is zero or not finite counts as missing.
     pub normals: Vec<Vec3>,
-    /// None at all, or one per position.
+    /// Texture coordinates: empty, or one per position.
     pub uvs: Vec<Vec2>,
     /// The faces.
     pub faces: Faces,
-    /// What was left out, in words.
+    /// Warnings about ignored content.
     pub warnings: Vec<String>,
 }
 
-impl Parts {
-    /// The mesh.
-    pub fn assemble(self) -> Result<Imported, Fault> {
+impl MeshParts {
+    /// Builds the mesh; an error if it has no triangles.
+    pub fn assemble(self) -> Result<Imported, ImportErrorKind> {
         let mut warnings = self.warnings;
-        let triangles = self.faces.settle(&self.positions, &mut warnings);
+        let triangles = self.faces.triangulate(&self.positions, &mut warnings);
         if triangles.is_empty() {
             let note = if warnings.is_empty() { String::new() } else { format!(" ({})", warnings.join("; ")) };
-            return Err(Fault::NoTriangles { note });
+            return Err(ImportErrorKind::NoTriangles { note });
         }
-        let normals = settle_normals(self.normals, &mut warnings);
+        let normals = clean_normals(self.normals, &mut warnings);
         let mesh = MeshData { positions: self.positions, triangles, normals, uvs: self.uvs };
         Ok(Imported { mesh, warnings })
     }
 }
 
-/// Normals that are not finite become zero, which means none; when none is left there are no normals at all.
-fn settle_normals(mut normals: Vec<Vec3>, warnings: &mut Vec<String>) -> Vec<Vec3> {
+/// Sets normals that are not finite to zero, which means no normal. Returns no normals if all are
+/// zero.
+fn clean_normals(mut normals: Vec<Vec3>, warnings: &mut Vec<String>) -> Vec<Vec3> {
     for normal in normals.iter_mut().filter(|normal| !normal.is_finite()) {
         *normal = Vec3::ZERO;
     }
@@ -60,7 +61,7 @@ mod tests {
         let mut faces = Faces::default();
         faces.push_triangle([0, 1, 2], &Limits::default()).unwrap();
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
-        Parts { positions, normals: normals.to_vec(), faces, ..Parts::default() }.assemble().unwrap()
+        MeshParts { positions, normals: normals.to_vec(), faces, ..MeshParts::default() }.assemble().unwrap()
     }
 
     #[test]
@@ -76,9 +77,9 @@ mod tests {
 
     #[test]
     fn nothing_to_show_is_a_fault_that_says_what_was_left_out() {
-        let mut parts = Parts { warnings: vec!["2 lines".into()], ..Parts::default() };
+        let mut parts = MeshParts { warnings: vec!["2 lines".into()], ..MeshParts::default() };
         parts.faces.push(&[1], &Limits::default()).unwrap();
-        let fault = parts.assemble().unwrap_err();
-        assert_eq!(fault.to_string(), "holds no triangle (2 lines; 1 faces with fewer than 3 corners left out)");
+        let error = parts.assemble().unwrap_err();
+        assert_eq!(error.to_string(), "contains no triangles (2 lines; 1 faces with fewer than 3 vertices ignored)");
     }
 }

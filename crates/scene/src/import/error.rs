@@ -1,68 +1,68 @@
-//! Why a mesh file could not be loaded: which file, where in it, and what was expected there.
+//! Errors of loading a mesh file: the file, the position in it, and the expected content.
 
-use super::foreign::Foreign;
+use super::unsupported::UnsupportedFormat;
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A mesh file that could not be loaded.
+/// Error of loading a mesh file.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {fault}", path.display())]
+#[error("{}: {kind}", path.display())]
 pub struct ImportError {
     /// The file, as the caller named it.
     pub path: PathBuf,
-    /// What is wrong with it.
-    pub fault: Fault,
+    /// Cause of the error.
+    pub kind: ImportErrorKind,
 }
 
-/// What is wrong with a mesh file.
+/// Cause of an [`ImportError`].
 #[derive(Debug, thiserror::Error)]
-pub enum Fault {
+pub enum ImportErrorKind {
     /// The file cannot be opened or read.
     #[error("cannot be read: {0}")]
     Read(#[from] io::Error),
-    /// Neither the content nor the ending says what it is.
+    /// Neither the content nor the extension determines a format.
     #[error("not a known mesh format: expected a file named .obj, .ply or .stl")]
     UnknownFormat,
-    /// The file is of a format that is known, but not read yet.
+    /// The file is of a known format that is not supported yet.
     #[error("{0}")]
-    Foreign(Foreign),
-    /// The content breaks the rules of its format.
+    Unsupported(UnsupportedFormat),
+    /// The content violates the rules of its format.
     #[error("{place}: {message}")]
     Malformed {
-        /// Where.
-        place: Place,
-        /// What was found and what was expected.
+        /// Position of the error.
+        place: FilePosition,
+        /// Description of the found and the expected content.
         message: String,
     },
-    /// More of something than [`Limits`](super::Limits) allows.
+    /// The file exceeds one of the [`Limits`](super::Limits).
     #[error("at least {found} {quantity}, the limit is {limit}")]
     TooMany {
-        /// Of what: `bytes`, `vertices`, `triangles`.
+        /// The limited quantity: `bytes`, `vertices` or `triangles`.
         quantity: &'static str,
-        /// How many were found or announced before reading stopped.
+        /// Number found or declared before reading stopped.
         found: u64,
-        /// How many are allowed.
+        /// Maximum number allowed.
         limit: u64,
     },
-    /// The file is well formed but shows nothing.
-    #[error("holds no triangle{note}")]
+    /// The file is well formed but contains no triangle.
+    #[error("contains no triangles{note}")]
     NoTriangles {
-        /// What was left out on the way, in brackets; often empty.
+        /// List of ignored content in parentheses; empty if nothing was ignored.
         note: String,
     },
 }
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// A line of a text, counted from 1.
     Line(u64),
     /// A byte of a binary file, counted from 0.
     Byte(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(formatter, "line {line}"),
@@ -71,27 +71,27 @@ impl fmt::Display for Place {
     }
 }
 
-impl Place {
-    /// A fault at this place.
-    pub(super) fn fault(self, message: impl Into<String>) -> Fault {
-        Fault::Malformed { place: self, message: message.into() }
+impl FilePosition {
+    /// Creates an error at this position.
+    pub(super) fn error(self, message: impl Into<String>) -> ImportErrorKind {
+        ImportErrorKind::Malformed { place: self, message: message.into() }
     }
 }
 
-impl Fault {
-    /// The same fault in a text with this many more lines before it.
-    pub(super) fn further_down(mut self, lines: u64) -> Self {
-        if let Self::Malformed { place: Place::Line(line), .. } = &mut self {
+impl ImportErrorKind {
+    /// Moves the error down by a number of lines.
+    pub(super) fn offset_lines(mut self, lines: u64) -> Self {
+        if let Self::Malformed { place: FilePosition::Line(line), .. } = &mut self {
             *line += lines;
         }
         self
     }
 }
 
-/// A piece of a file as it may stand in a message: printable, short, in quotes.
+/// Formats a part of a file for a message: printable, at most 40 characters, in quotes.
 pub(super) fn quote(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
-    // No character has more than four bytes; one more character shows that there is more.
+    // A character has at most four bytes. Decode one character more, to know whether to add dots.
     let text = String::from_utf8_lossy(bytes.get(..4 * (LONGEST + 1)).unwrap_or(bytes));
     let shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
@@ -104,8 +104,8 @@ mod tests {
 
     #[test]
     fn says_file_place_and_expectation() {
-        let fault = Place::Line(7).fault("expected a number");
-        let error = ImportError { path: "models/cow.obj".into(), fault };
+        let kind = FilePosition::Line(7).error("expected a number");
+        let error = ImportError { path: "models/cow.obj".into(), kind };
         assert_eq!(error.to_string(), "models/cow.obj: line 7: expected a number");
     }
 

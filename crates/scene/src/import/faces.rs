@@ -1,19 +1,21 @@
-//! Polygons into triangles: a strictly convex polygon becomes a fan around its first corner, any other is
-//! cut ear by ear (Meisters, "Polygons have ears", 1975) in its own plane, seen along Newell's normal
-//! (Sutherland, Sproull and Schumacker, 1974). A polygon of n corners always gives n - 2 triangles, so one
-//! that is read before its positions are known is stored as a fan and cut again in place.
+//! Triangulation of polygons. A strictly convex polygon becomes a fan around its first corner; any
+//! other polygon is triangulated by ear clipping (Meisters, "Polygons have ears", 1975) in its own
+//! plane, projected along Newell's normal (Sutherland, Sproull and Schumacker, 1974). A polygon of
+//! n corners always gives n - 2 triangles, so a polygon that is read before its positions are known
+//! is stored as a fan and triangulated later in place.
 
 use super::Limits;
-use super::error::Fault;
+use super::error::ImportErrorKind;
 use juggler_math::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Corner tests that all concave polygons of a file may take together: about a second of work, enough for
-/// a hundred thousand outlines of fifty corners. What comes after is left as fans, and counted.
+/// Maximum number of corner tests for all concave polygons of a file: about a second of work,
+/// enough for a hundred thousand outlines of fifty corners. Polygons beyond it stay fans and are
+/// counted.
 const EAR_TESTS: u64 = 1 << 28;
 
-/// The faces of a mesh or of a piece of one, in the order of the file.
+/// The faces of a mesh or of a piece of a file, in the order of the file.
 #[derive(Default)]
 pub(super) struct Faces {
     triangles: Vec<[u32; 3]>,
@@ -21,7 +23,7 @@ pub(super) struct Faces {
     skipped: u64,
 }
 
-/// A run of triangles that is the fan of one polygon with more than three corners.
+/// The run of triangles that forms the fan of a polygon with more than three corners.
 struct Polygon {
     first: usize,
     count: usize,
@@ -34,13 +36,13 @@ impl Polygon {
 }
 
 impl Faces {
-    /// Room for this many triangles.
+    /// Creates an empty list with room for this number of triangles.
     pub fn with_capacity(triangles: usize) -> Self {
         Self { triangles: Vec::with_capacity(triangles), ..Self::default() }
     }
 
-    /// Adds the faces of the next piece of the file, whose corners count from `first`.
-    pub fn append(&mut self, piece: &Self, first: u32, limits: &Limits) -> Result<(), Fault> {
+    /// Appends the faces of the next piece of the file and adds `first` to their vertex indices.
+    pub fn append(&mut self, piece: &Self, first: u32, limits: &Limits) -> Result<(), ImportErrorKind> {
         let start = self.triangles.len();
         limits.check_triangles(start.saturating_add(piece.triangles.len()))?;
         self.triangles.extend(piece.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
@@ -49,20 +51,20 @@ impl Faces {
         Ok(())
     }
 
-    /// Gives every corner another number.
+    /// Replaces all vertex indices.
     pub fn renumber(&mut self, number: impl Fn(u32) -> u32 + Sync) {
         self.triangles.par_iter_mut().for_each(|corners| *corners = corners.map(&number));
     }
 
     /// Adds a triangle.
-    pub fn push_triangle(&mut self, corners: [u32; 3], limits: &Limits) -> Result<(), Fault> {
+    pub fn push_triangle(&mut self, corners: [u32; 3], limits: &Limits) -> Result<(), ImportErrorKind> {
         limits.check_triangles(self.triangles.len().saturating_add(1))?;
         self.triangles.push(corners);
         Ok(())
     }
 
-    /// Adds a polygon; one of fewer than three corners is counted and left out.
-    pub fn push(&mut self, corners: &[u32], limits: &Limits) -> Result<(), Fault> {
+    /// Adds a polygon; polygons of fewer than three corners are counted and left out.
+    pub fn push(&mut self, corners: &[u32], limits: &Limits) -> Result<(), ImportErrorKind> {
         let [start, second, rest @ ..] = corners else {
             self.skipped += 1;
             return Ok(());
@@ -82,10 +84,11 @@ impl Faces {
         Ok(())
     }
 
-    /// The triangles, now that all positions are known. Indices must be in range.
-    pub fn settle(mut self, positions: &[Vec3], warnings: &mut Vec<String>) -> Vec<[u32; 3]> {
+    /// Triangulates the concave polygons and returns all triangles. Vertex indices must be in
+    /// range.
+    pub fn triangulate(mut self, positions: &[Vec3], warnings: &mut Vec<String>) -> Vec<[u32; 3]> {
         if self.skipped > 0 {
-            warnings.push(format!("{} faces with fewer than 3 corners left out", self.skipped));
+            warnings.push(format!("{} faces with fewer than 3 vertices ignored", self.skipped));
         }
         let fan_of = |polygon: &Polygon| self.triangles.get(polygon.range());
         let is_concave = |polygon: &&Polygon| fan_of(polygon).is_some_and(|fan| !is_convex(&outline(fan, positions)));
@@ -99,24 +102,24 @@ impl Faces {
             }
         }
         if fans > 0 {
-            warnings.push(format!("{fans} concave polygons have too many corners and were cut as if convex"));
+            warnings.push(format!("{fans} concave polygons have too many vertices and were triangulated as if convex"));
         }
         self.triangles
     }
 }
 
-/// The corners of the polygon that this fan describes.
+/// Vertex indices of the polygon that this fan represents.
 fn corners(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> {
     fan.iter().take(1).flat_map(|first| [first[0], first[1]]).chain(fan.iter().map(|corners| corners[2]))
 }
 
-/// The polygon that this fan describes, in its plane.
+/// The polygon that this fan represents, projected to its plane.
 fn outline(fan: &[[u32; 3]], positions: &[Vec3]) -> Vec<DVec2> {
     let point = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default().as_dvec3();
     in_plane(&corners(fan).map(point).collect::<Vec<DVec3>>())
 }
 
-/// Cuts the concave polygon that this fan describes; `false` when no tests are left.
+/// Triangulates the concave polygon that this fan represents; `false` if no tests are left.
 fn cut(fan: &mut [[u32; 3]], positions: &[Vec3], tests: &mut u64) -> bool {
     let Some(ears) = ears(&outline(fan, positions), tests) else { return false };
     let corners: Vec<u32> = corners(fan).collect();
@@ -126,8 +129,7 @@ fn cut(fan: &mut [[u32; 3]], positions: &[Vec3], tests: &mut u64) -> bool {
     true
 }
 
-/// The polygon seen along its normal, running counter-clockwise: the coordinate in which the normal is
-/// longest is left away.
+/// Projects the polygon along the dominant axis of its normal, oriented counter-clockwise.
 fn in_plane(points: &[DVec3]) -> Vec<DVec2> {
     let origin = points.first().copied().unwrap_or_default();
     let following = points.iter().cycle().skip(1);
@@ -146,18 +148,18 @@ fn in_plane(points: &[DVec3]) -> Vec<DVec2> {
     points.iter().map(flatten).collect()
 }
 
-/// Twice the signed area of a triangle; positive when it runs counter-clockwise.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+/// Twice the signed area of a triangle; positive if it is oriented counter-clockwise.
+fn signed_area2(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
 fn is_convex(points: &[DVec2]) -> bool {
     let next = points.iter().cycle().skip(1);
     let after = points.iter().cycle().skip(2);
-    points.iter().zip(next).zip(after).all(|((a, b), c)| turn(*a, *b, *c) > 0.0)
+    points.iter().zip(next).zip(after).all(|((a, b), c)| signed_area2(*a, *b, *c) > 0.0)
 }
 
-/// Indices of the corners of n - 2 triangles; `None` when the tests run out.
+/// Clips ears. Returns the corner indices of n - 2 triangles; `None` if the tests run out.
 fn ears(points: &[DVec2], tests: &mut u64) -> Option<Vec<[usize; 3]>> {
     let mut left: Vec<usize> = (0..points.len()).collect();
     let mut found = Vec::with_capacity(points.len());
@@ -168,7 +170,7 @@ fn ears(points: &[DVec2], tests: &mut u64) -> Option<Vec<[usize; 3]>> {
         *tests = tests.checked_sub(count as u64)?;
         at %= count;
         let ear = [left[(at + count - 1) % count], left[at], left[(at + 1) % count]];
-        // An outline that crosses itself may have no ear left; whatever is cut then is as good as another.
+        // A self-intersecting outline may have no ear left; clip any corner then.
         if refused == count || is_ear(ear, points, &left) {
             found.push(ear);
             left.remove(at);
@@ -182,12 +184,15 @@ fn ears(points: &[DVec2], tests: &mut u64) -> Option<Vec<[usize; 3]>> {
     Some(found)
 }
 
-/// Whether the middle corner turns left and no other corner lies in the triangle. A corner at the very
-/// place of one of the three does not count: outlines with holes pass such bridges twice.
+/// Whether the middle corner is convex and no other corner lies in the triangle. Corners at the
+/// position of one of the three do not count, since outlines with holes traverse their bridges
+/// twice.
 fn is_ear(ear: [usize; 3], points: &[DVec2], left: &[usize]) -> bool {
     let [a, b, c] = ear.map(|corner| points[corner]);
-    let inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-    turn(a, b, c) > 0.0 && left.iter().map(|corner| points[*corner]).all(|p| p == a || p == b || p == c || !inside(p))
+    let inside =
+        |p: DVec2| signed_area2(a, b, p) >= 0.0 && signed_area2(b, c, p) >= 0.0 && signed_area2(c, a, p) >= 0.0;
+    signed_area2(a, b, c) > 0.0
+        && left.iter().map(|corner| points[*corner]).all(|p| p == a || p == b || p == c || !inside(p))
 }
 
 #[cfg(test)]
@@ -201,15 +206,17 @@ mod tests {
         let mut faces = Faces::default();
         let mut warnings = Vec::new();
         faces.push(&corners, &Limits::default()).unwrap();
-        (faces.settle(&positions, &mut warnings), positions, warnings)
+        (faces.triangulate(&positions, &mut warnings), positions, warnings)
     }
 
-    /// Signed areas in the xy plane: all of one sign, and together the outline's area by the shoelace rule.
+    /// Asserts that the signed areas in the xy plane are positive and add up to the outline's area
+    /// (shoelace formula).
     fn assert_exact_cover(outline: &[(f32, f32)]) {
         let (triangles, positions, _) = triangulate(outline);
         assert_eq!(triangles.len(), outline.len() - 2);
         let flat = |index: u32| positions[index as usize].truncate().as_dvec2();
-        let areas: Vec<f64> = triangles.iter().map(|[a, b, c]| 0.5 * turn(flat(*a), flat(*b), flat(*c))).collect();
+        let areas: Vec<f64> =
+            triangles.iter().map(|[a, b, c]| 0.5 * signed_area2(flat(*a), flat(*b), flat(*c))).collect();
         let next = outline.iter().cycle().skip(1);
         let shoelace: f32 = outline.iter().zip(next).map(|(a, b)| 0.5 * (a.0 * b.1 - b.0 * a.1)).sum();
         assert!(areas.iter().all(|area| area * f64::from(shoelace) >= 0.0), "{areas:?}");
@@ -266,7 +273,7 @@ mod tests {
             (0..60_000_u16).map(|i| (f32::from(i % 2) * 3.0 - f32::from(i), f32::from(i % 7))).collect();
         let (triangles, _, warnings) = triangulate(&outline);
         assert_eq!(triangles.len(), outline.len() - 2);
-        assert_eq!(warnings, ["1 concave polygons have too many corners and were cut as if convex"]);
+        assert_eq!(warnings, ["1 concave polygons have too many vertices and were triangulated as if convex"]);
     }
 
     #[test]
@@ -276,7 +283,7 @@ mod tests {
         for corners in [&[][..], &[0], &[0, 1], &[0, 1, 2]] {
             faces.push(corners, &Limits::default()).unwrap();
         }
-        assert_eq!(faces.settle(&[Vec3::ZERO; 3], &mut warnings), [[0, 1, 2]]);
-        assert_eq!(warnings, ["3 faces with fewer than 3 corners left out"]);
+        assert_eq!(faces.triangulate(&[Vec3::ZERO; 3], &mut warnings), [[0, 1, 2]]);
+        assert_eq!(warnings, ["3 faces with fewer than 3 vertices ignored"]);
     }
 }

@@ -1,39 +1,39 @@
-//! Mesh file formats: a closed family, each format in a file or folder of its own.
+//! Mesh file formats: a closed set, each format in its own file or folder.
 
-use super::estimate::{Counts, Survey};
-use super::{Fault, Imported, Limits, obj, ply, stl};
+use super::estimate::{Counts, FileSampler};
+use super::{ImportErrorKind, Imported, Limits, obj, ply, stl};
 use std::io;
 use std::path::Path;
 
 /// A format of mesh files.
 pub(super) trait MeshFormat: Sync {
-    /// Name as people write it, such as "OBJ".
+    /// Display name, such as "OBJ".
     fn name(&self) -> &'static str;
 
-    /// Extension of file names, in lower case, without a dot.
+    /// File name extension, in lower case, without a dot.
     fn extension(&self) -> &'static str;
 
-    /// Whether the height lies along z, as 3D printers have it, instead of along y.
+    /// Whether the up axis is z, as usual for 3D printing, instead of y.
     fn is_z_up(&self) -> bool {
         false
     }
 
-    /// Whether the content of a file cannot be of another format.
+    /// Whether the content of a file is certainly of this format.
     fn is_content(&self, bytes: &[u8]) -> bool;
 
-    /// Whether the first bytes of a file of `size` bytes cannot be of another format.
+    /// Whether the first bytes of a file of `size` bytes are certainly of this format.
     fn is_head(&self, head: &[u8], _size: u64) -> bool {
         self.is_content(head)
     }
 
     /// Reads a whole file, in pieces of about `piece` bytes.
-    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault>;
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind>;
 
-    /// Estimates what a file holds, without reading it as a whole.
-    fn counts(&self, file: &mut Survey) -> io::Result<Counts>;
+    /// Estimates the counts of a file without reading all of it.
+    fn counts(&self, file: &mut FileSampler) -> io::Result<Counts>;
 }
 
-/// All formats. A binary STL may begin with the words of another format, so it is asked first.
+/// All formats. STL comes first, since a binary STL may begin with the words of another format.
 const FORMATS: &[&dyn MeshFormat] = &[
     &stl::Stl, //
     &obj::Obj,
@@ -46,12 +46,12 @@ pub(super) fn of_name(path: &Path) -> Option<&'static dyn MeshFormat> {
     FORMATS.iter().copied().find(|format| extension.eq_ignore_ascii_case(format.extension()))
 }
 
-/// Format of a file by its content, where that is unambiguous.
+/// Format of a file by its content, if that is unambiguous.
 pub(super) fn of_content(bytes: &[u8]) -> Option<&'static dyn MeshFormat> {
     FORMATS.iter().copied().find(|format| format.is_content(bytes))
 }
 
-/// Format of a file of `size` bytes by its first bytes, where these are unambiguous.
+/// Format of a file of `size` bytes by its first bytes, if these are unambiguous.
 pub(super) fn of_head(head: &[u8], size: u64) -> Option<&'static dyn MeshFormat> {
     FORMATS.iter().copied().find(|format| format.is_head(head, size))
 }

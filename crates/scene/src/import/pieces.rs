@@ -1,38 +1,41 @@
-//! Reading a file in pieces, side by side. A file is cut by its content and the size of a piece alone, and what was
-//! read is taken over in the order of the file: neither a mesh nor a fault depends on how many threads there are.
+//! Parallel reading of a file in pieces. The cuts depend only on the file's content and the size of
+//! a piece, and results are taken in the order of the file, so neither the mesh nor an error
+//! depends on the number of threads.
 
-use super::error::Fault;
+use super::error::ImportErrorKind;
 use memchr::{memchr2, memchr2_iter};
 use rayon::prelude::*;
 
-/// Bytes of a piece, about.
+/// Approximate size of a piece, in bytes.
 pub(super) const PIECE: usize = 1 << 22;
 
-/// Pieces a thread that are read before the first of them is taken over: little is held twice.
+/// Pieces per thread that are read before their results are taken. A small number keeps few results
+/// in memory beside the mesh.
 const BATCH: usize = 4;
 
-/// Reads the pieces and takes over the results in their order, up to the first fault.
+/// Reads the pieces in parallel and passes the results to `take` in order, up to the first error.
 pub(super) fn read_pieces<P: Sync, R: Send>(
     pieces: &[P],
-    read: impl Fn(&P) -> Result<R, Fault> + Sync,
-    mut take: impl FnMut(R) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    read: impl Fn(&P) -> Result<R, ImportErrorKind> + Sync,
+    mut take: impl FnMut(R) -> Result<(), ImportErrorKind>,
+) -> Result<(), ImportErrorKind> {
     for batch in pieces.chunks(BATCH * rayon::current_num_threads()) {
-        let found: Vec<Result<R, Fault>> = batch.par_iter().map(&read).collect();
+        let found: Vec<Result<R, ImportErrorKind>> = batch.par_iter().map(&read).collect();
         found.into_iter().try_for_each(|piece| take(piece?))?;
     }
     Ok(())
 }
 
-/// Where the first line starts that begins `from` bytes into the text or later, and of which `fits` holds: it is
-/// given what stands before the end of the line before, and what stands from there on.
+/// Finds the start of the first line that begins at byte `from` or later and for which
+/// `fits(before, after)` holds, where `before` is the text before the previous line's end and
+/// `after` the text from the line's start.
 pub(super) fn next_line_start(text: &[u8], from: usize, fits: impl Fn(&[u8], &[u8]) -> bool) -> Option<usize> {
     let mut at = from.max(1) - 1;
     loop {
         let end = at + memchr2(b'\n', b'\r', text.get(at..)?)?;
         let (before, rest) = text.split_at_checked(end)?;
         let start = end + line_break(rest);
-        // A break that the search began in the middle of.
+        // Step back if the search began between `\r` and `\n`.
         let before = if rest.starts_with(b"\n") { before.strip_suffix(b"\r").unwrap_or(before) } else { before };
         if start >= from && fits(before, text.get(start..)?) {
             return Some(start);
@@ -41,7 +44,7 @@ pub(super) fn next_line_start(text: &[u8], from: usize, fits: impl Fn(&[u8], &[u
     }
 }
 
-/// Length of the line's end that stands here; 0 when none does.
+/// Length of the line ending at the start of `bytes`, in bytes; 0 if there is none.
 pub(super) fn line_break(bytes: &[u8]) -> usize {
     match bytes {
         [b'\r', b'\n', ..] => 2,
@@ -50,7 +53,7 @@ pub(super) fn line_break(bytes: &[u8]) -> usize {
     }
 }
 
-/// Lines' ends in a text.
+/// Number of line endings in a text.
 pub(super) fn line_breaks(text: &[u8]) -> u64 {
     let ends = memchr2_iter(b'\n', b'\r', text);
     ends.filter(|&at| text.get(at) == Some(&b'\n') || text.get(at + 1) != Some(&b'\n')).count() as u64

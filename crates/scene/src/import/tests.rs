@@ -1,4 +1,4 @@
-//! Loading files: names, contents that belie them, limits.
+//! Tests of mesh loading: file names, contents that contradict their names, limits.
 
 use super::*;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ fn the_three_formats_are_one_mesh_whatever_their_name_says() {
     ] {
         let found = parse(Path::new(name), text.as_bytes(), &Limits::default()).unwrap();
         assert_eq!(found.mesh, expected.mesh, "{name}");
-        let warning = is.map(|is| format!("the name does not say so, but the content is {is}"));
+        let warning = is.map(|is| format!("the file's extension does not match its content, which is {is}"));
         assert_eq!(found.warnings, Vec::from_iter(warning), "{name}");
     }
 }
@@ -47,29 +47,30 @@ fn files_are_loaded_and_their_size_is_limited() {
 fn what_cannot_be_read_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let missing = load(&folder.path().join("none.ply"), &Limits::default()).unwrap_err();
-    assert!(matches!(missing.fault, Fault::Read(_)));
+    assert!(matches!(missing.kind, ImportErrorKind::Read(_)));
     assert!(missing.to_string().contains("none.ply: cannot be read: "), "{missing}");
     let directory = folder.path().join("folder.ply");
     std::fs::create_dir(&directory).unwrap();
-    assert!(matches!(load(&directory, &Limits::default()).unwrap_err().fault, Fault::Read(_)));
+    assert!(matches!(load(&directory, &Limits::default()).unwrap_err().kind, ImportErrorKind::Read(_)));
     let unknown = parse(Path::new("cow.moo"), b"\0\x01cow", &Limits::default()).unwrap_err();
     assert_eq!(unknown.to_string(), "cow.moo: not a known mesh format: expected a file named .obj, .ply or .stl");
     let foreign = parse(Path::new("cow.fbx"), b"Kaydara FBX", &Limits::default()).unwrap_err();
-    assert_eq!(foreign.to_string(), "cow.fbx: FBX is not read yet; meshes in OBJ, PLY and STL are");
+    assert_eq!(foreign.to_string(), "cow.fbx: FBX is not supported; supported mesh formats: OBJ, PLY and STL");
 }
 
 #[test]
 fn an_error_names_file_and_line() {
     let error = parse(Path::new("models/cow.obj"), b"v 0 0 0\nv 1 0\n", &Limits::default()).unwrap_err();
     assert_eq!(error.to_string(), "models/cow.obj: line 2: expected a number for z, found the end of the line");
-    assert!(matches!(error.fault, Fault::Malformed { place: Place::Line(2), .. }));
+    assert!(matches!(error.kind, ImportErrorKind::Malformed { place: FilePosition::Line(2), .. }));
 }
 
-type Read = fn(&[u8], &Limits, usize) -> Result<Imported, Fault>;
+type Read = fn(&[u8], &Limits, usize) -> Result<Imported, ImportErrorKind>;
 
-/// A file in pieces of every size, on one thread and on three, is what it is in one piece: mesh, warnings or fault.
+/// Asserts that a file read in pieces of every size, on one thread and on three, gives the same
+/// mesh, warnings or error as the file read in one piece.
 fn assert_pieces_do_not_show(read: Read, bytes: &[u8]) {
-    let outcome = |piece| read(bytes, &Limits::default(), piece).map_err(|fault| fault.to_string());
+    let outcome = |piece| read(bytes, &Limits::default(), piece).map_err(|error| error.to_string());
     let whole = outcome(usize::MAX);
     let [alone, three] = [1, 3].map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap());
     for piece in (1..bytes.len().min(300)).chain([bytes.len()]) {
@@ -78,7 +79,7 @@ fn assert_pieces_do_not_show(read: Read, bytes: &[u8]) {
     }
 }
 
-/// The text with each of its lines' ends, and each of the changes made to it.
+/// The text, the text with each kind of line ending, and the text with each of the replacements.
 fn variants(text: &str, changes: &[(&str, &str)]) -> Vec<String> {
     let changed = changes.iter().map(|(old, new)| {
         assert!(text.contains(old), "{old}");
@@ -162,7 +163,7 @@ fn pieces_of_an_stl_do_not_show() {
     let mut text = String::from("solid facet\nfacet\n");
     for i in 0..9 {
         let name = ["  FACET", "facet", "\t facet"][i % 3];
-        // The third word of a normal is not read, whatever it is and wherever it stands.
+        // The third word of a normal is not parsed, so it may be anything and stand on any line.
         let normal = ["0 0 1", "0 0\nfacet", "0 0 -nan(ind)"][(i / 2) % 3];
         let start = if i == 0 { " " } else { name };
         writeln!(text, "{start} normal {normal}\nouter loop\nvertex {i} 0 0\n vertex 1 {i} 0 vertex").unwrap();

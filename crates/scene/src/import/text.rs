@@ -1,68 +1,70 @@
-//! Words, lines and numbers of a text file: what the readers of OBJ, ASCII PLY and ASCII STL share.
+//! Scanner of words, lines and numbers, shared by the readers of OBJ, text PLY and text STL.
 //!
-//! Every byte up to the space separates words. A line ends with `\n`, `\r\n` or a lone `\r`.
+//! Every byte up to and including the space (0x20) separates words. A line ends with `\n`, `\r\n`
+//! or a lone `\r`.
 
-use super::error::{Fault, Place, quote};
+use super::error::{FilePosition, ImportErrorKind, quote};
 use super::pieces::line_break;
 use memchr::memchr2;
 
-/// Walks through a text word by word and knows the line it is on.
+/// Reads a text word by word and tracks the line number.
 #[derive(Clone)]
 pub(super) struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
     line: u64,
-    wavefront: bool,
+    obj_rules: bool,
 }
 
 impl<'a> Scanner<'a> {
-    /// Starts at the first byte, on line 1.
+    /// Creates a scanner at the first byte, on line 1.
     pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, line: 1, wavefront: false }
+        Self { bytes, at: 0, line: 1, obj_rules: false }
     }
 
-    /// Has the first line count as this one.
+    /// Sets the number of the first line.
     pub fn starting_at_line(self, line: u64) -> Self {
         Self { line, ..self }
     }
 
-    /// As [`Scanner::new`] by the rules of OBJ: `#` starts a comment, `\` at a line's end continues it.
-    pub fn wavefront(bytes: &'a [u8]) -> Self {
-        Self { wavefront: true, ..Self::new(bytes) }
+    /// Creates a scanner with the rules of OBJ: `#` starts a comment, and `\` at the end of a line
+    /// continues the line.
+    pub fn with_obj_rules(bytes: &'a [u8]) -> Self {
+        Self { obj_rules: true, ..Self::new(bytes) }
     }
 
-    /// Number of this line.
+    /// Number of the current line.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// The line of the word read last.
-    pub fn place(&self) -> Place {
-        Place::Line(self.line)
+    /// Line of the last word read.
+    pub fn place(&self) -> FilePosition {
+        FilePosition::Line(self.line)
     }
 
-    /// Bytes walked past so far.
+    /// Number of bytes scanned.
     pub fn position(&self) -> usize {
         self.at
     }
 
-    /// What has not been walked past.
+    /// The text not scanned yet.
     pub fn rest(&self) -> &'a [u8] {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
-    /// The next word on this line; `None` at the line's end.
+    /// Returns the next word of this line; `None` at the end of the line.
     pub fn word(&mut self) -> Option<&'a [u8]> {
         loop {
             self.skip_blanks();
             let rest = self.rest();
             let length = rest.iter().position(|&byte| byte <= b' ').unwrap_or(rest.len());
             let (word, after) = rest.split_at_checked(length)?;
-            if self.wavefront && word.first() == Some(&b'#') {
+            if self.obj_rules && word.first() == Some(&b'#') {
                 self.skip_to_line_end();
                 return None;
             }
-            if self.wavefront
+            if self.obj_rules
                 && let Some(before) = word.strip_suffix(b"\\")
                 && line_break(after) > 0
             {
@@ -79,7 +81,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The next word on this line or a later one; `None` at the end of the text.
+    /// Returns the next word of this line or a later one; `None` at the end of the text.
     pub fn word_anywhere(&mut self) -> Option<&'a [u8]> {
         loop {
             if let Some(word) = self.word() {
@@ -91,12 +93,13 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Whether no word is left on this line.
+    /// Whether this line has no more words.
     pub fn at_line_end(&self) -> bool {
         Scanner { bytes: self.bytes, ..*self }.word().is_none()
     }
 
-    /// Goes to the start of the next line that has a word on it; `false` at the end of the text.
+    /// Advances to the first word of the next line that has one, or of this line; `false` at the
+    /// end of the text.
     pub fn skip_empty_lines(&mut self) -> bool {
         loop {
             self.skip_blanks();
@@ -109,12 +112,12 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Passes what is left of this line, and its end; `false` when there is no next line.
+    /// Skips the rest of this line and its end; `false` if there is no next line.
     pub fn next_line(&mut self) -> bool {
         let start = self.at;
         self.skip_to_line_end();
-        if self.wavefront && self.bytes.get(start..self.at).is_some_and(|line| line.ends_with(b"\\")) {
-            // The line goes on, unless a comment ends like this.
+        if self.obj_rules && self.bytes.get(start..self.at).is_some_and(|line| line.ends_with(b"\\")) {
+            // The line continues, unless the `\` ends a comment.
             self.at = start;
             while self.word().is_some() {}
             self.skip_to_line_end();
@@ -122,29 +125,30 @@ impl<'a> Scanner<'a> {
         self.break_line()
     }
 
-    /// What is left of this line, without its end.
+    /// Returns the rest of this line without its end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = self.rest();
         self.skip_to_line_end();
         rest.get(..rest.len() - self.rest().len()).unwrap_or_default()
     }
 
-    /// The next word on this line as a number, which may be infinite or NaN.
-    pub fn real(&mut self, what: &str) -> Result<f32, Fault> {
+    /// Parses the next word of this line as a number, which may be infinite or NaN. `what` names it
+    /// in errors.
+    pub fn real(&mut self, what: &str) -> Result<f32, ImportErrorKind> {
         let word = self.word();
         word.and_then(real).ok_or_else(|| self.expected(&format!("a number for {what}"), word))
     }
 
-    /// The next word on this line as a finite number.
-    pub fn finite(&mut self, what: &str) -> Result<f32, Fault> {
+    /// Parses the next word of this line as a finite number.
+    pub fn finite(&mut self, what: &str) -> Result<f32, ImportErrorKind> {
         finite(self.real(what)?, self.place(), what)
     }
 
-    /// The fault of having met this word (`None`: the line's end) where something else should stand.
-    pub fn expected(&self, what: &str, found: Option<&[u8]>) -> Fault {
+    /// Creates an error: `what` was expected, `found` (`None`: the end of the line) was found.
+    pub fn expected(&self, what: &str, found: Option<&[u8]>) -> ImportErrorKind {
         let end = if self.rest().is_empty() { "the end of the file" } else { "the end of the line" };
         let found = found.map_or_else(|| end.to_owned(), quote);
-        self.place().fault(format!("expected {what}, found {found}"))
+        self.place().error(format!("expected {what}, found {found}"))
     }
 
     fn skip_blanks(&mut self) {
@@ -165,12 +169,12 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// A word as a number, rounded once to the nearest `f32`; `inf` and `nan` are numbers here.
+/// Parses a word as a number, rounded once to the nearest `f32`. Accepts `inf` and `nan`.
 pub(super) fn real(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A word as a whole number.
+/// Parses a word as an integer.
 pub(super) fn integer(word: &[u8]) -> Option<i64> {
     let (digits, negative) = match word {
         [b'-', digits @ ..] => (digits, true),
@@ -191,21 +195,22 @@ pub(super) fn integer(word: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// The value, or a fault when it is infinite or NaN.
-pub(super) fn finite(value: f32, place: Place, what: &str) -> Result<f32, Fault> {
+/// Returns the value, or an error if it is infinite or NaN.
+pub(super) fn finite(value: f32, place: FilePosition, what: &str) -> Result<f32, ImportErrorKind> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(place.fault(format!("expected a finite number for {what}, found {value}")))
+    Err(place.error(format!("expected a finite number for {what}, found {value}")))
 }
 
-/// A floating-point number as the whole one that it is.
-pub(super) fn whole(value: f64, place: Place, what: &str) -> Result<i64, Fault> {
+/// Converts an integral floating-point number to an integer; an error if it has a fraction or
+/// exceeds 2^53.
+pub(super) fn whole(value: f64, place: FilePosition, what: &str) -> Result<i64, ImportErrorKind> {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     if value.trunc() == value && value.abs() <= EXACT {
         return Ok(value as i64);
     }
-    Err(place.fault(format!("expected {what}, found {value}")))
+    Err(place.error(format!("expected {what}, found {value}")))
 }
 
 #[cfg(test)]
@@ -215,7 +220,7 @@ mod tests {
     fn words(mut scanner: Scanner<'_>) -> Vec<(u64, String)> {
         let mut found = Vec::new();
         while let Some(word) = scanner.word_anywhere() {
-            let Place::Line(line) = scanner.place() else { panic!("a text has lines") };
+            let FilePosition::Line(line) = scanner.place() else { panic!("a text has lines") };
             found.push((line, String::from_utf8_lossy(word).into_owned()));
         }
         found
@@ -234,7 +239,7 @@ mod tests {
     #[test]
     fn comments_and_continuations_only_in_wavefront() {
         let text = b"f 1 \\\r\n 2\\\n3 # not 4 \\\nv #x\n\\";
-        let found = words(Scanner::wavefront(text));
+        let found = words(Scanner::with_obj_rules(text));
         let expected = [(1, "f"), (1, "1"), (2, "2"), (3, "3"), (4, "v"), (5, "\\")];
         assert_eq!(found, pairs(&expected));
         assert_eq!(words(Scanner::new(b"a \\\n#b")), pairs(&[(1, "a"), (1, "\\"), (2, "#b")]));
@@ -242,11 +247,11 @@ mod tests {
 
     #[test]
     fn next_line_follows_continuations() {
-        let mut scanner = Scanner::wavefront(b"g a \\\nb c\nv");
+        let mut scanner = Scanner::with_obj_rules(b"g a \\\nb c\nv");
         assert_eq!(scanner.word(), Some(&b"g"[..]));
         assert!(scanner.next_line());
         assert_eq!(scanner.word(), Some(&b"v"[..]));
-        assert_eq!(scanner.place(), Place::Line(3));
+        assert_eq!(scanner.place(), FilePosition::Line(3));
         assert!(!scanner.next_line());
     }
 

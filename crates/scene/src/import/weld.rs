@@ -1,11 +1,12 @@
-//! Equal keys become one vertex: corners of an OBJ with equal index triples, of an STL with equal positions.
+//! Welding: corners with equal keys become one vertex. The key is the index triple of an OBJ corner
+//! or the position of an STL corner.
 //!
-//! Vertices are numbered in the order of their first corner. Each piece of a file is welded by itself (a [`Welder`]
-//! whose table stays in the cache), then the keys of all pieces among each other ([`Welded`]), shared out by their
-//! bits. Tables are only asked, never walked through, so their random seeds (which no crafted file can foresee) do
-//! not show in the result.
+//! Vertices are numbered in the order of their first corner. Each piece of a file is welded by
+//! itself, by a [`Welder`] whose hash table fits into the cache; [`Welded`] then welds the keys of
+//! all pieces in parallel, in shards by hash. The hash tables are only looked up, never iterated,
+//! so their random seeds, which protect against crafted files, do not affect the result.
 
-use super::error::Fault;
+use super::error::ImportErrorKind;
 use super::faces::Faces;
 use super::{Limits, too_many};
 use foldhash::fast::RandomState;
@@ -14,13 +15,13 @@ use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 use std::hash::BuildHasher;
 
-/// What makes a vertex this vertex.
+/// Key of a vertex: index triple or bits of the position.
 pub(super) type Key = [u32; 3];
 
-/// Shares that the keys of all pieces are welded in, side by side.
-const SHARES: u32 = 8;
+/// Number of shards into which the keys of all pieces are divided for parallel welding.
+const PARTITIONS: u32 = 8;
 
-/// Gives equal keys equal indices.
+/// Maps equal keys to equal vertex indices.
 #[derive(Default)]
 pub(super) struct Welder {
     indices: HashTable<u32>,
@@ -29,8 +30,9 @@ pub(super) struct Welder {
 }
 
 impl Welder {
-    /// The vertex of this key, a new one when the key is new.
-    pub fn index(&mut self, key: Key, limits: &Limits) -> Result<u32, Fault> {
+    /// Returns the vertex index of this key and adds a vertex if the key is new. Fails beyond the
+    /// limit of vertices.
+    pub fn index(&mut self, key: Key, limits: &Limits) -> Result<u32, ImportErrorKind> {
         let Self { indices, keys, state } = self;
         let known = |index: &u32| keys.get(*index as usize).copied();
         let entry = indices.entry(
@@ -50,16 +52,16 @@ impl Welder {
     }
 }
 
-/// Faces with corners that are welded: of a piece of a file.
+/// Faces of a piece of a file, with welded corners.
 #[derive(Default)]
-pub(super) struct Piece {
-    /// Their keys.
+pub(super) struct WeldedPiece {
+    /// Keys of the vertices.
     pub corners: Welder,
     /// The faces.
     pub faces: Faces,
 }
 
-/// The pieces of a file, put together.
+/// The concatenated pieces of a file.
 #[derive(Default)]
 pub(super) struct Welded {
     keys: Vec<Key>,
@@ -68,13 +70,13 @@ pub(super) struct Welded {
 }
 
 impl Welded {
-    /// For this many triangles.
+    /// Creates an empty collection with room for this number of triangles.
     pub fn with_capacity(triangles: usize) -> Self {
         Self { faces: Faces::with_capacity(triangles), ..Self::default() }
     }
 
-    /// Takes over the next piece of the file.
-    pub fn append(&mut self, piece: Piece, limits: &Limits) -> Result<(), Fault> {
+    /// Appends the next piece of the file.
+    pub fn append(&mut self, piece: WeldedPiece, limits: &Limits) -> Result<(), ImportErrorKind> {
         let all = self.keys.len().saturating_add(piece.corners.keys.len());
         let (Ok(first), Ok(_)) = (u32::try_from(self.keys.len()), u32::try_from(all)) else {
             return Err(too_many("vertices", all as u64, limits.vertices.into()));
@@ -84,10 +86,11 @@ impl Welded {
         self.faces.append(&piece.faces, first, limits)
     }
 
-    /// The different keys in the order of their first corner, and the faces.
-    pub fn finish(mut self, limits: &Limits) -> Result<(Vec<Key>, Faces), Fault> {
+    /// Welds the pieces. Returns the distinct keys in the order of their first corner, and the
+    /// faces.
+    pub fn finish(mut self, limits: &Limits) -> Result<(Vec<Key>, Faces), ImportErrorKind> {
         if self.pieces > 1 {
-            let numbers = number(&mut self.keys);
+            let numbers = deduplicate(&mut self.keys);
             self.faces.renumber(|corner| numbers.get(corner as usize).copied().unwrap_or_default());
         }
         limits.check_vertices(self.keys.len() as u64)?;
@@ -95,10 +98,12 @@ impl Welded {
     }
 }
 
-/// The number of each key's vertex; keys that were there before are taken out.
-fn number(keys: &mut Vec<Key>) -> Vec<u32> {
-    let again: Vec<Vec<(u32, u32)>> = (0..SHARES).into_par_iter().map(|share| repeated(keys, share)).collect();
-    // First the place of the equal key before, for a new one its own; then their numbers.
+/// Removes repeated keys and returns the vertex index of each former key.
+fn deduplicate(keys: &mut Vec<Key>) -> Vec<u32> {
+    let again: Vec<Vec<(u32, u32)>> =
+        (0..PARTITIONS).into_par_iter().map(|partition| find_repeated(keys, partition)).collect();
+    // Initialize each entry with the position of the first equal key, then replace it by its vertex
+    // index.
     let mut numbers: Vec<u32> = (0..keys.len() as u32).collect();
     for (place, first) in again.into_iter().flatten() {
         numbers[place as usize] = first;
@@ -118,12 +123,13 @@ fn number(keys: &mut Vec<Key>) -> Vec<u32> {
     numbers
 }
 
-/// Places of keys that stood before, with their first place, among the keys of a share.
-fn repeated(keys: &[Key], share: u32) -> Vec<(u32, u32)> {
+/// Finds the repeated keys of a shard: pairs of the key's position and the position of the first
+/// equal key.
+fn find_repeated(keys: &[Key], partition: u32) -> Vec<(u32, u32)> {
     let state = RandomState::default();
-    let mut firsts = HashTable::with_capacity(keys.len() / SHARES as usize);
+    let mut firsts = HashTable::with_capacity(keys.len() / PARTITIONS as usize);
     let mut again = Vec::new();
-    for (place, key) in (0..).zip(keys).filter(|(_, key)| share_of(key) == share) {
+    for (place, key) in (0..).zip(keys).filter(|(_, key)| partition_of(key) == partition) {
         let equal = |first: &u32| keys.get(*first as usize) == Some(key);
         match firsts
             .entry(state.hash_one(key), equal, |i| state.hash_one(keys.get(*i as usize).copied().unwrap_or_default()))
@@ -135,9 +141,9 @@ fn repeated(keys: &[Key], share: u32) -> Vec<(u32, u32)> {
     again
 }
 
-/// The share of a key (Knuth's multiplicative hashing).
-fn share_of(key: &Key) -> u32 {
-    key.iter().fold(0_u32, |mixed, word| (mixed ^ word).wrapping_mul(0x9e37_79b1)) >> 16 & (SHARES - 1)
+/// Shard of a key (Knuth's multiplicative hashing).
+fn partition_of(key: &Key) -> u32 {
+    key.iter().fold(0_u32, |mixed, word| (mixed ^ word).wrapping_mul(0x9e37_79b1)) >> 16 & (PARTITIONS - 1)
 }
 
 #[cfg(test)]
@@ -151,11 +157,12 @@ mod tests {
         let keys = [[7, 0, 0], [1, 2, 3], [7, 0, 0], [3, 2, 1], [1, 2, 3]];
         let indices: Vec<u32> = keys.iter().map(|key| welder.index(*key, &limits).unwrap()).collect();
         assert_eq!(indices, [0, 1, 0, 2, 1]);
-        assert!(matches!(welder.index([9, 9, 9], &limits), Err(Fault::TooMany { found: 4, limit: 3, .. })));
+        assert!(matches!(welder.index([9, 9, 9], &limits), Err(ImportErrorKind::TooMany { found: 4, limit: 3, .. })));
         assert_eq!(welder.keys, [[7, 0, 0], [1, 2, 3], [3, 2, 1]]);
     }
 
-    /// Triangles of few different corners, cut into pieces anywhere, against all of them in one piece.
+    /// Welds triangles of few distinct corners in pieces of several sizes and compares with one
+    /// piece.
     #[test]
     fn pieces_are_welded_as_the_whole() {
         let limits = Limits::default();
@@ -164,7 +171,7 @@ mod tests {
             let triangles: Vec<u32> = (0..2000).collect();
             let mut welded = Welded::default();
             for piece in triangles.chunks(size) {
-                let mut local = Piece::default();
+                let mut local = WeldedPiece::default();
                 for i in piece {
                     let corners = [0, 1, 2].map(|c| local.corners.index(corner(i * 3 + c), &limits).unwrap());
                     local.faces.push_triangle(corners, &limits).unwrap();
@@ -172,7 +179,7 @@ mod tests {
                 welded.append(local, &limits).unwrap();
             }
             let (keys, faces) = welded.finish(&limits).unwrap();
-            (keys, faces.settle(&[], &mut Vec::new()))
+            (keys, faces.triangulate(&[], &mut Vec::new()))
         };
         let whole = weld(2000);
         assert_eq!(whole.0.len(), 500);

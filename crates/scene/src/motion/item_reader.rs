@@ -1,12 +1,12 @@
-//! Reads items from JSON in batches: evaluates expressions for a frame, validates against the schema, and
-//! deserializes all items of the batch together.
+//! Reads items from JSON in batches: evaluates expressions for a frame, validates against the
+//! schema, and deserializes all items of the batch together.
 
-use super::{ItemValue, attach_items, with_trail};
+use super::{ItemValue, attach_items, with_path_ref};
 use crate::animate::Resolver;
 use crate::description::{Description, Object, Objects};
-use crate::document::{Node, Place, Sources};
+use crate::document::{Node, SourceSpan, Sources};
 use crate::item::{Item, Template};
-use crate::path::{Path, Step, Trail};
+use crate::path::{Path, PathRef, Step};
 use crate::report::Finding;
 use crate::validate::{self, NameScope, Plain};
 use serde::Deserialize;
@@ -21,10 +21,10 @@ pub(crate) struct ItemSource {
     /// JSON of the item, with unevaluated expressions and value forms.
     pub template: Arc<Template>,
     /// Whether the item keeps its template.
-    pub moves: bool,
-    /// Whether the scene holds the item's value at another time, so that only what animates need be set.
+    pub keeps_template: bool,
+    /// Whether the scene holds the item's value at another time, so that setters suffice.
     pub value_is_known: bool,
-    pub place: Option<Place>,
+    pub place: Option<SourceSpan>,
 }
 
 impl ItemSource {
@@ -32,7 +32,7 @@ impl ItemSource {
     pub fn unread(path: Path, node: Node) -> Self {
         let place = node.place;
         let template = Arc::new(Template { node, depends_on_time: true, setters: None });
-        Self { path, template, moves: false, value_is_known: false, place }
+        Self { path, template, keeps_template: false, value_is_known: false, place }
     }
 }
 
@@ -50,7 +50,7 @@ enum Kind {
     Objects,
     /// Number of lights in the list.
     Lights(usize),
-    Label,
+    LightGroup,
     /// Object whose numbers were set.
     SetObject,
 }
@@ -69,7 +69,7 @@ impl Kind {
             ("lights", []) => Self::Lights(0),
             ("objects", []) | ("groups", [_]) => Self::Objects,
             ("objects", _) | ("groups", [_, ..]) => Self::Object,
-            ("background_light_group", []) => Self::Label,
+            ("background_light_group", []) => Self::LightGroup,
             _ => return None,
         })
     }
@@ -78,34 +78,34 @@ impl Kind {
 /// Value of each item with its path.
 pub(crate) type ItemValues<'w> = Vec<(Cow<'w, Path>, ItemValue)>;
 
-/// Reads items of `scene` for a frame. `head` holds the scene's `animation`, `variables` and `paths`. Returns the
-/// values, or `None` after an error, and all findings.
+/// Reads items of `scene` for a frame. `head` holds the scene's `animation`, `variables` and
+/// `paths`. Returns the values, or `None` after an error, and all findings.
 pub(crate) fn read_items<'w>(
     scene: &Description,
     head: &Node,
     sources: &Sources,
     frame: f64,
-    wanted: &'w [ItemSource],
+    items: &'w [ItemSource],
 ) -> (Option<ItemValues<'w>>, Vec<Finding>) {
     let mut reader = ItemReader::new(Resolver::new(head, sources, &scene.programs, frame), scene);
-    wanted.iter().for_each(|wanted| reader.add(wanted));
+    items.iter().for_each(|source| reader.add(source));
     reader.finish()
 }
 
-/// Reads items that are new or were edited, stores them in the scene, and attaches their templates. Returns whether the
-/// items were stored, and all findings.
+/// Reads items that are new or were edited, stores them in the scene, and attaches their templates.
+/// Returns whether the items were stored, and all findings.
 pub(crate) fn replace_items(
     scene: &mut Description,
     head: &Node,
     sources: &Sources,
     frame: f64,
-    wanted: &[ItemSource],
+    items: &[ItemSource],
 ) -> (bool, Vec<Finding>) {
-    let (parts, findings) = read_items(scene, head, sources, frame, wanted);
+    let (parts, findings) = read_items(scene, head, sources, frame, items);
     let Some(parts) = parts else { return (false, findings) };
-    let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
+    let inline_names: Vec<String> = parts.iter().filter_map(|(path, part)| part.inline_texture_name(path)).collect();
     parts.into_iter().for_each(|(path, part)| scene.put(&path, part));
-    attach_items(scene, head, wanted, &in_place);
+    attach_items(scene, head, items, &inline_names);
     (true, findings)
 }
 
@@ -136,43 +136,44 @@ impl<'s, 'w> ItemReader<'s, 'w> {
         }
     }
 
-    /// The object with its animated numbers set, if that is all there is to do.
-    fn set(&mut self, wanted: &ItemSource) -> Option<Item<Object>> {
-        let setters = wanted.template.setters.as_ref().filter(|_| wanted.value_is_known)?;
-        setters.apply(self.scene.object_at(&wanted.path)?, &mut self.resolver)
+    /// Applies the setters of an animated object; `None` if the item must be read.
+    fn set(&mut self, source: &ItemSource) -> Option<Item<Object>> {
+        let setters = source.template.setters.as_ref().filter(|_| source.value_is_known)?;
+        setters.apply(self.scene.object_at(&source.path)?, &mut self.resolver)
     }
 
     /// Evaluates and validates an item.
-    fn add(&mut self, wanted: &'w ItemSource) {
-        if let Some(object) = self.set(wanted) {
+    fn add(&mut self, source: &'w ItemSource) {
+        if let Some(object) = self.set(source) {
             self.set.push(object);
-            self.read.push((wanted, Kind::SetObject, Plain::Null));
+            self.read.push((source, Kind::SetObject, Plain::Null));
             return;
         }
-        let Some(kind) = Kind::of(&wanted.path) else { return };
-        let stands = written_at(&wanted.path);
+        let Some(kind) = Kind::of(&source.path) else { return };
+        let message_path = message_path(&source.path);
         let before = self.findings.len();
-        let checked = with_trail(stands.steps(), &Trail::Root, &mut |at: &Trail<'_>| {
-            let node = self.resolver.value(&wanted.template.node, at);
-            validate::item(&node, &wanted.path, at, NameScope::Scene(self.scene))
+        let checked = with_path_ref(message_path.steps(), &PathRef::Root, &mut |at: &PathRef<'_>| {
+            let node = self.resolver.value(&source.template.node, at);
+            validate::item(&node, &source.path, at, NameScope::Scene(self.scene))
         });
         self.textures.extend(checked.textures);
         self.findings.extend(checked.findings);
         self.findings.extend(checked.warnings);
         match checked.json {
             Some(Plain::Array(list)) if kind == Kind::Lights(0) => {
-                self.read.push((wanted, Kind::Lights(list.len()), Plain::Array(list)));
+                self.read.push((source, Kind::Lights(list.len()), Plain::Array(list)));
             }
-            Some(json) => self.read.push((wanted, kind, json)),
+            Some(json) => self.read.push((source, kind, json)),
             None if self.findings.len() == before => {
-                let message = "this has no value at every time that is asked for";
-                self.unresolved.push(Finding::error(message).at(&*stands).on(wanted.place));
+                let message = "this value is not defined at all requested times";
+                self.unresolved.push(Finding::error(message).at(&*message_path).on(source.place));
             }
             None => {}
         }
     }
 
-    /// Deserializes the batch. Returns the items with their paths, or `None` after an error, and all findings.
+    /// Deserializes the batch. Returns the items with their paths, or `None` after an error, and
+    /// all findings.
     fn finish(self) -> (Option<ItemValues<'w>>, Vec<Finding>) {
         let mut findings = self.resolver.finish();
         if findings.is_empty() {
@@ -182,11 +183,11 @@ impl<'s, 'w> ItemReader<'s, 'w> {
         if findings.iter().any(Finding::is_error) {
             return (None, findings);
         }
-        let read: Vec<(&'w ItemSource, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
+        let read: Vec<(&'w ItemSource, Kind)> = self.read.iter().map(|(source, kind, _)| (*source, *kind)).collect();
         let json = combine(self.read, self.textures);
         match Description::deserialize(&json) {
             Ok(scene) => (Some(split(scene, &read, self.set)), findings),
-            // The schema allows what the types refuse: only a slip of ours can bring us here.
+            // The types reject what the schema accepts: a bug of this program.
             Err(error) => {
                 findings.push(Finding::error(error.to_string()));
                 (None, findings)
@@ -196,7 +197,7 @@ impl<'s, 'w> ItemReader<'s, 'w> {
 }
 
 /// Path of an item for messages; an inline texture is reported where it is written.
-fn written_at(path: &Path) -> Cow<'_, Path> {
+fn message_path(path: &Path) -> Cow<'_, Path> {
     match path.steps() {
         [Step::Key(section), Step::Key(name)] if section == "textures" && name.starts_with('/') => {
             Cow::Owned(Path::from_pointer(name))
@@ -205,8 +206,8 @@ fn written_at(path: &Path) -> Cow<'_, Path> {
     }
 }
 
-/// Combines all items of a batch into the JSON of one scene. Items of maps are keyed by their number in the
-/// batch; a list of objects becomes a group.
+/// Combines all items of a batch into the JSON of one scene. Items of maps are keyed by their
+/// number in the batch; a list of objects becomes a group.
 fn combine(read: Vec<(&ItemSource, Kind, Plain)>, textures: Vec<(String, Plain)>) -> Plain {
     let mut sections: [Vec<(Cow<'static, str>, Plain)>; 4] = Default::default();
     let (mut lights, mut objects) = (Vec::new(), Vec::new());
@@ -224,7 +225,7 @@ fn combine(read: Vec<(&ItemSource, Kind, Plain)>, textures: Vec<(String, Plain)>
             Kind::Render => scene.push(("render".into(), json)),
             Kind::Tone => scene.push(("tone".into(), json)),
             Kind::Background => scene.push(("background".into(), json)),
-            Kind::Label => scene.push(("background_light_group".into(), json)),
+            Kind::LightGroup => scene.push(("background_light_group".into(), json)),
             Kind::SetObject => {}
         }
     }
@@ -245,28 +246,28 @@ fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)], set: Vec<Item<
     let (mut lights, mut objects) = (scene.lights.into_inner().into_iter(), scene.objects.into_inner().into_iter());
     let mut set = set.into_iter();
     let mut parts = Vec::with_capacity(read.len());
-    for (i, (wanted, kind)) in read.iter().enumerate() {
+    for (i, (source, kind)) in read.iter().enumerate() {
         let key = || i.to_string();
         let part = match kind {
-            Kind::Render => Some(ItemValue::Render(wanted.item(render.clone()))),
-            Kind::Tone => Some(ItemValue::Tone(wanted.item(tone.clone()))),
-            Kind::Background => background.take().map(|item| ItemValue::Background(wanted.item(item))),
-            Kind::Camera => cameras.swap_remove(&key()).map(|item| ItemValue::Camera(wanted.item(item))),
-            Kind::Texture => textures.shift_remove(&key()).map(|item| ItemValue::Texture(wanted.item(item))),
-            Kind::Material => materials.swap_remove(&key()).map(|item| ItemValue::Material(wanted.item(item))),
-            Kind::Light => lights.next().map(|item| ItemValue::Light(wanted.item(item))),
+            Kind::Render => Some(ItemValue::Render(source.item(render.clone()))),
+            Kind::Tone => Some(ItemValue::Tone(source.item(tone.clone()))),
+            Kind::Background => background.take().map(|item| ItemValue::Background(source.item(item))),
+            Kind::Camera => cameras.swap_remove(&key()).map(|item| ItemValue::Camera(source.item(item))),
+            Kind::Texture => textures.shift_remove(&key()).map(|item| ItemValue::Texture(source.item(item))),
+            Kind::Material => materials.swap_remove(&key()).map(|item| ItemValue::Material(source.item(item))),
+            Kind::Light => lights.next().map(|item| ItemValue::Light(source.item(item))),
             Kind::Lights(count) => {
-                let items = lights.by_ref().take(*count).map(|light| light.with_source(wanted.place, None));
+                let items = lights.by_ref().take(*count).map(|light| light.with_source(source.place, None));
                 Some(ItemValue::Lights(items.collect()))
             }
-            Kind::Object => objects.next().map(|item| ItemValue::Object(wanted.object(item))),
-            Kind::Objects => groups.swap_remove(&key()).map(|list| ItemValue::Objects(wanted.list(list))),
-            Kind::Label => background_light_group.clone().map(ItemValue::Label),
+            Kind::Object => objects.next().map(|item| ItemValue::Object(source.object(item))),
+            Kind::Objects => groups.swap_remove(&key()).map(|list| ItemValue::Objects(source.list(list))),
+            Kind::LightGroup => background_light_group.clone().map(ItemValue::LightGroup),
             Kind::SetObject => set.next().map(ItemValue::Object),
         };
-        parts.extend(part.map(|part| (Cow::Borrowed(&wanted.path), part)));
+        parts.extend(part.map(|part| (Cow::Borrowed(&source.path), part)));
     }
-    // What is left are textures that value forms have written in place.
+    // The remaining textures are inline textures that value forms produced.
     for (name, texture) in textures {
         let path = Path::root().key("textures").key(name);
         parts.push((Cow::Owned(path), ItemValue::FormTexture(texture.with_source(None, None))));
@@ -276,21 +277,23 @@ fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)], set: Vec<Item<
 
 impl ItemSource {
     fn item<T: Clone>(&self, item: Item<T>) -> Item<T> {
-        item.with_source(self.place, self.moves.then(|| Arc::clone(&self.template)))
+        item.with_source(self.place, self.keeps_template.then(|| Arc::clone(&self.template)))
     }
 
     fn object(&self, item: Item<Object>) -> Item<Object> {
-        self.item(within(item, &self.template.node, self.place))
+        self.item(mark_children_read(item, &self.template.node, self.place))
     }
 
     fn list(&self, list: Objects) -> Objects {
-        let item = |item: Item<Object>| within(item, &self.template.node, self.place).with_source(self.place, None);
+        let item = |item: Item<Object>| {
+            mark_children_read(item, &self.template.node, self.place).with_source(self.place, None)
+        };
         list.into_inner().into_iter().map(item).collect()
     }
 }
 
 /// Marks the child objects of an object as read; they have no templates of their own.
-fn within(mut object: Item<Object>, node: &Node, place: Option<Place>) -> Item<Object> {
+fn mark_children_read(mut object: Item<Object>, node: &Node, place: Option<SourceSpan>) -> Item<Object> {
     if object.objects.is_none() {
         return object;
     }
@@ -298,7 +301,7 @@ fn within(mut object: Item<Object>, node: &Node, place: Option<Place>) -> Item<O
     let inner = |(i, item): (usize, Item<Object>)| {
         let node = nodes.get(i);
         let place = node.and_then(|node| node.place).or(place);
-        let item = if let Some(node) = node { within(item, node, place) } else { item };
+        let item = if let Some(node) = node { mark_children_read(item, node, place) } else { item };
         item.with_source(place, None)
     };
     let objects = object.value_mut_unmarked().objects.take();

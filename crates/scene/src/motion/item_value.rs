@@ -1,7 +1,7 @@
-//! Value of one item of a scene, of any kind, as it is read, stored, and written.
+//! Value of an item of a scene, of any kind, to be stored in the scene or serialized.
 
 use super::FormValue;
-use crate::description::{Backdrop, Description, Object, Objects, Render};
+use crate::description::{BackgroundInput, Description, Object, Objects, Render};
 use crate::item::Item;
 use crate::path::{Path, Step};
 use crate::shared::Shared;
@@ -17,7 +17,7 @@ use serde_json::Value;
 pub(crate) enum ItemValue {
     Render(Item<Render>),
     Tone(Item<Tone>),
-    Background(Item<Backdrop>),
+    Background(Item<BackgroundInput>),
     Camera(Item<AnyCamera>),
     Texture(Item<AnyTexture>),
     /// Inline texture that a value form produces.
@@ -27,12 +27,12 @@ pub(crate) enum ItemValue {
     Object(Item<Object>),
     Objects(Objects),
     Lights(Shared<Vec<Item<AnyLight>>>),
-    Label(String),
+    LightGroup(String),
 }
 
 impl ItemValue {
     /// Name of the inline texture, if the value is one.
-    pub fn name_in_place(&self, path: &Path) -> Option<String> {
+    pub fn inline_texture_name(&self, path: &Path) -> Option<String> {
         match (self, path.steps()) {
             (Self::FormTexture(_), [_, Step::Key(name)]) => Some(name.clone()),
             _ => None,
@@ -52,7 +52,7 @@ impl ItemValue {
             Self::Object(item) => serde_json::to_value(item),
             Self::Objects(list) => serde_json::to_value(list),
             Self::Lights(list) => serde_json::to_value(list),
-            Self::Label(label) => serde_json::to_value(label),
+            Self::LightGroup(label) => serde_json::to_value(label),
         };
         json.unwrap_or_default()
     }
@@ -88,12 +88,12 @@ impl Description {
                     set(objects, i, item);
                 }
             }
-            ItemValue::Objects(_) | ItemValue::Lights(_) | ItemValue::Label(_) => self.put_given(path, part),
+            ItemValue::Objects(_) | ItemValue::Lights(_) | ItemValue::LightGroup(_) => self.put_list_value(path, part),
         }
     }
 
     /// Stores the value of a list form.
-    fn put_given(&mut self, path: &Path, part: ItemValue) {
+    fn put_list_value(&mut self, path: &Path, part: ItemValue) {
         let given = match part {
             ItemValue::Objects(objects) => {
                 match path.steps() {
@@ -106,9 +106,9 @@ impl Description {
                 self.lights = lights.clone();
                 FormValue::Lights(lights)
             }
-            ItemValue::Label(label) => {
+            ItemValue::LightGroup(label) => {
                 self.background_light_group = Some(label.clone());
-                FormValue::Label(label)
+                FormValue::LightGroup(label)
             }
             _ => return,
         };

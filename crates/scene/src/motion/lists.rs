@@ -1,4 +1,5 @@
-//! Reads long lists of a document in chunks, so that only one chunk exists as a JSON tree at a time.
+//! Reads long lists of a document in chunks, so that only one chunk exists as a JSON tree at a
+//! time.
 
 use super::{ItemSource, head, replace_items};
 use crate::description::Description;
@@ -9,19 +10,19 @@ use crate::report::Finding;
 /// Maximum number of errors reported per list.
 const MAX_FINDINGS: usize = 200;
 
-/// Reads the items of a long list into a scene at frame 0, whose other sections are already read. Returns all
-/// findings; after an error the scene's list is empty.
+/// Reads the items of a long list into a scene at frame 0, whose other sections are already read.
+/// Returns all findings; after an error the scene's list is empty.
 pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: &Sources) -> Vec<Finding> {
     let text = sources.get(FileId::MAIN).map(|source| source.text.as_str()).unwrap_or_default();
     let head = head(scene);
     let mut findings = Vec::new();
     for (first, chunk) in list.chunks(text, FileId::MAIN) {
         match chunk {
-            Ok((nodes, refused)) => {
-                findings.extend(refused.into_iter().map(|refused| finding(FileId::MAIN, refused)));
+            Ok((nodes, errors)) => {
+                findings.extend(errors.into_iter().map(|error| finding(FileId::MAIN, error)));
                 read_chunk(scene, &head, sources, list.key, first, nodes, &mut findings);
             }
-            Err(refused) => findings.push(finding(FileId::MAIN, refused)),
+            Err(error) => findings.push(finding(FileId::MAIN, error)),
         }
         if findings.iter().filter(|finding| finding.is_error()).count() >= MAX_FINDINGS {
             break;
@@ -46,7 +47,7 @@ fn read_chunk(
     findings: &mut Vec<Finding>,
 ) {
     let section = Path::root().key(key);
-    let wanted = nodes.into_iter().enumerate().map(|(i, node)| ItemSource::unread(section.index(first + i), node));
-    let (_, more) = replace_items(scene, head, sources, 0.0, &wanted.collect::<Vec<_>>());
+    let items = nodes.into_iter().enumerate().map(|(i, node)| ItemSource::unread(section.index(first + i), node));
+    let (_, more) = replace_items(scene, head, sources, 0.0, &items.collect::<Vec<_>>());
     findings.extend(more);
 }

@@ -1,11 +1,12 @@
-//! Animation of a scene's items. An animated item has a template: its JSON with unevaluated expressions and value
-//! forms. For another frame, only items with time-dependent templates are read again; all other items are shared
-//! between frames.
+//! Animation of a scene's items. An animated item has a template: its JSON with unevaluated
+//! expressions and value forms. For another frame, only items with time-dependent templates are
+//! read again; all other items are shared between frames.
 //!
-//! 1. [`attach`] attaches templates and source locations after a document was read; [`lists`] reads long lists.
-//! 2. [`settle`] merges edits by programs into templates.
-//! 3. [`item_reader`] evaluates templates at a frame; [`item_value`] is what it reads. [`setters`] replace reading for
-//!    numbers of transforms.
+//! 1. [`attach`] attaches templates and source locations after a document was read; [`lists`] reads
+//!    long lists.
+//! 2. [`merge_edits`] merges edits by programs into templates.
+//! 3. [`item_reader`] evaluates templates at a frame and returns [`item_value`]s. [`setters`]
+//!    replace reading for numbers of transforms.
 //! 4. [`tracks`] samples animated items at even times while the shutter is open.
 //! 5. [`write`](mod@write) writes a scene with its animation as JSON.
 
@@ -13,8 +14,8 @@ mod attach;
 mod item_reader;
 mod item_value;
 mod lists;
+mod merge_edits;
 mod setters;
-mod settle;
 mod tracks;
 mod write;
 
@@ -24,16 +25,16 @@ use item_reader::ItemValues;
 pub(crate) use item_reader::{ItemSource, read_items, replace_items};
 pub(crate) use item_value::ItemValue;
 pub(crate) use lists::read_list;
+pub(crate) use merge_edits::{animated_values, edits_merged};
 pub(crate) use setters::TransformSetters;
-pub(crate) use settle::edits_merged;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};
 pub(crate) use write::{head, node, object_node, written};
 
 use crate::Object;
-use crate::description::{Backdrop, Description, Objects, Render};
-use crate::document::{Node, Place};
+use crate::description::{BackgroundInput, Description, Objects, Render};
+use crate::document::{Node, SourceSpan};
 use crate::item::{Item, Template};
-use crate::path::{Path, Step, Trail};
+use crate::path::{Path, PathRef, Step};
 use crate::shared::Shared;
 use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
@@ -51,8 +52,8 @@ pub(crate) struct ListForm {
     pub path: Path,
     /// JSON of the form.
     pub template: Arc<Template>,
-    /// Value of the form at the scene's frame. If the scene holds another value, a program has replaced it, and
-    /// the replacement stays.
+    /// Value of the form at the scene's frame. If the scene holds another value, a program has
+    /// replaced it, and the replacement stays.
     pub given: FormValue,
 }
 
@@ -64,7 +65,7 @@ pub(crate) enum FormValue {
     /// Lights.
     Lights(Shared<Vec<Item<AnyLight>>>),
     /// The name of a group of lights.
-    Label(String),
+    LightGroup(String),
 }
 
 impl PartialEq for ListForm {
@@ -78,15 +79,16 @@ pub(crate) trait AnyItem {
     /// As [`Item::template`].
     fn template(&self) -> Option<&Arc<Template>>;
     /// As [`Item::place`].
-    fn place(&self) -> Option<Place>;
+    fn place(&self) -> Option<SourceSpan>;
     /// As [`Item::is_changed`].
     fn is_changed(&self) -> bool;
     /// JSON of the value.
     fn json(&self) -> serde_json::Value;
-    /// JSON of the value without mesh arrays, for validation; arrays are checked when a mesh is prepared.
+    /// JSON of the value without mesh arrays, for validation; arrays are checked when a mesh is
+    /// prepared.
     fn json_without_arrays(&self) -> serde_json::Value;
     /// As [`Item::set_source`].
-    fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>);
+    fn set_source(&mut self, place: Option<SourceSpan>, template: Option<Arc<Template>>);
     /// As [`Item::set_template`].
     fn set_template(&mut self, template: Option<Arc<Template>>);
 }
@@ -101,7 +103,7 @@ pub(crate) trait ItemContent: Serialize + Clone {
 
 impl ItemContent for Render {}
 impl ItemContent for Tone {}
-impl ItemContent for Backdrop {}
+impl ItemContent for BackgroundInput {}
 impl ItemContent for AnyCamera {}
 impl ItemContent for AnyTexture {}
 impl ItemContent for AnyMaterial {}
@@ -113,7 +115,7 @@ impl ItemContent for Object {
         if let Some(AnyShape::Mesh(mesh)) = &mut json_without_arrays.shape {
             mesh.clear_arrays();
         }
-        // The objects within are checked by themselves.
+        // Child objects are validated by themselves.
         json_without_arrays.objects = json_without_arrays.objects.map(|_| Objects::default());
         serde_json::to_value(json_without_arrays).unwrap_or_default()
     }
@@ -124,7 +126,7 @@ impl<T: ItemContent> AnyItem for Item<T> {
         self.template()
     }
 
-    fn place(&self) -> Option<Place> {
+    fn place(&self) -> Option<SourceSpan> {
         self.place()
     }
 
@@ -140,7 +142,7 @@ impl<T: ItemContent> AnyItem for Item<T> {
         ItemContent::json_without_arrays(&**self)
     }
 
-    fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>) {
+    fn set_source(&mut self, place: Option<SourceSpan>, template: Option<Arc<Template>>) {
         self.set_source(place, template);
     }
 
@@ -151,8 +153,8 @@ impl<T: ItemContent> AnyItem for Item<T> {
 
 impl Description {
     /// Visits every item with its path, child objects before their parents.
-    pub(crate) fn each_item(&self, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
-        let root = Trail::Root;
+    pub(crate) fn each_item(&self, visit: &mut dyn FnMut(&PathRef<'_>, &dyn AnyItem)) {
+        let root = PathRef::Root;
         visit(&root.key("render"), &self.render);
         visit(&root.key("tone"), &self.tone);
         self.camera.iter().for_each(|camera| visit(&root.key("camera"), camera));
@@ -171,7 +173,7 @@ impl Description {
     }
 
     /// Innermost item on a path, and the number of steps from the root to the item.
-    pub(crate) fn item_of(&self, path: &Path) -> Option<(&dyn AnyItem, usize)> {
+    pub(crate) fn innermost_item(&self, path: &Path) -> Option<(&dyn AnyItem, usize)> {
         fn any<T: ItemContent>(item: &Item<T>) -> &dyn AnyItem {
             item
         }
@@ -239,7 +241,7 @@ impl Description {
     }
 
     /// Whether both scenes share all animated items (by pointer) and have the same shutter times.
-    pub(crate) fn moves_as(&self, other: &Self) -> bool {
+    pub(crate) fn has_same_motion(&self, other: &Self) -> bool {
         fn same<T>(a: Option<&Item<T>>, b: Option<&Item<T>>) -> bool {
             match (a, b) {
                 (Some(a), Some(b)) => a.is_same(b),
@@ -262,7 +264,7 @@ impl Description {
     }
 }
 
-fn each_object(objects: &[Item<Object>], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
+fn each_object(objects: &[Item<Object>], at: &PathRef<'_>, visit: &mut dyn FnMut(&PathRef<'_>, &dyn AnyItem)) {
     for (i, object) in objects.iter().enumerate() {
         let at = at.index(i);
         if let Some(inner) = &object.objects {
@@ -296,26 +298,26 @@ fn object_of<'s>(objects: &'s [Item<Object>], steps: &[Step], depth: usize) -> O
     Some(inner.unwrap_or((object, depth + 1)))
 }
 
-/// Calls `visit` with the trail of a path.
-pub(crate) fn with_trail<R>(steps: &[Step], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>) -> R) -> R {
+/// Calls `visit` with the borrowed path of `steps`.
+pub(crate) fn with_path_ref<R>(steps: &[Step], at: &PathRef<'_>, visit: &mut dyn FnMut(&PathRef<'_>) -> R) -> R {
     match steps.split_first() {
         None => visit(at),
-        Some((Step::Key(key), rest)) => with_trail(rest, &at.key(key), visit),
-        Some((Step::Index(i), rest)) => with_trail(rest, &at.index(*i), visit),
+        Some((Step::Key(key), rest)) => with_path_ref(rest, &at.key(key), visit),
+        Some((Step::Index(i), rest)) => with_path_ref(rest, &at.index(*i), visit),
     }
 }
 
 /// Node at a relative path; `None` if the path leads through a value form.
-pub(crate) fn inside<'n>(node: &'n Node, steps: &[Step]) -> Option<&'n Node> {
+pub(crate) fn node_at<'n>(node: &'n Node, steps: &[Step]) -> Option<&'n Node> {
     use crate::document::Value;
     let Some((step, rest)) = steps.split_first() else { return Some(node) };
     let next = match (&node.value, step) {
         (Value::Object(members), _) if crate::animate::is_form(members) => None,
         (Value::Object(members), Step::Key(key)) => members.get(key).map(|member| &member.node),
-        // What may be an array of one may be that one alone.
-        (Value::Object(_), Step::Index(0)) => return inside(node, rest),
+        // A single element may replace an array of one element.
+        (Value::Object(_), Step::Index(0)) => return node_at(node, rest),
         (Value::Array(elements), Step::Index(i)) => elements.get(*i),
         _ => None,
     };
-    inside(next?, rest)
+    node_at(next?, rest)
 }

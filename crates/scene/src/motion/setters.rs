@@ -2,9 +2,9 @@
 //! kind; at another time the setters store the numbers in a copy of the object, whose JSON is not
 //! read again.
 
-use super::settle::sources_in;
+use super::merge_edits::sources_in;
 use crate::animate::{Programs, Resolver};
-use crate::description::{Axes, Object, TransformStep};
+use crate::description::{Object, ScaleFactors, TransformStep};
 use crate::document::Node;
 use crate::item::Item;
 use crate::path::{Path, Step};
@@ -29,7 +29,7 @@ struct NumberSetter {
 impl TransformSetters {
     /// Returns setters for an object's JSON, or `None` if the object has expressions or value forms
     /// elsewhere than in single numbers of its transform.
-    pub fn of(object: &Node, programs: &Programs) -> Option<Self> {
+    pub fn from_object_json(object: &Node, programs: &Programs) -> Option<Self> {
         let mut sources = Vec::new();
         sources_in(object, &mut Path::root(), &mut sources);
         let setter = |(path, source): (Path, &Node)| {
@@ -68,8 +68,8 @@ fn number_mut<'t>(step: &'t mut TransformStep, path: &[Step]) -> Option<&'t mut 
             [Step::Key(key), rest @ ..] if key == "axis" => component_mut(&mut rotate.axis, rest),
             _ => None,
         },
-        TransformStep::Scale(Axes::All(factor)) => path.is_empty().then_some(factor),
-        TransformStep::Scale(Axes::Each(factors)) => component_mut(factors, path),
+        TransformStep::Scale(ScaleFactors::All(factor)) => path.is_empty().then_some(factor),
+        TransformStep::Scale(ScaleFactors::Each(factors)) => component_mut(factors, path),
         TransformStep::Orient(quaternion) => element_mut(quaternion, path),
         TransformStep::LookAt(look_at) => {
             let (Step::Key(key), rest) = path.split_first()? else { return None };

@@ -1,4 +1,4 @@
-//! Animated items while the shutter is open, sampled at even times from opening to closing.
+//! Tracks of animated items, sampled at even times from the opening to the closing of the shutter.
 
 use super::{ItemSource, ItemValue, ItemValues, read_items, write};
 use crate::Object;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Number of sampled times. Motion is linear between samples; rotations are subdivided further.
-const MOMENTS: usize = 17;
+const SHUTTER_SAMPLES: usize = 17;
 
 /// Animated items at 17 even times while the shutter is open. Items without a track are static.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,37 +44,37 @@ pub enum ObjectTrack {
 }
 
 impl Tracks {
-    /// Samples all animated items of a scene at `frame` over its shutter interval. Returns empty tracks and the
-    /// findings if a sample is invalid.
-    pub(crate) fn of(scene: &Description, sources: &Sources, frame: f64) -> (Self, Vec<Finding>) {
+    /// Samples all animated items of a scene at `frame` over its shutter interval. Returns empty
+    /// tracks and the findings if a sample is invalid.
+    pub(crate) fn sample(scene: &Description, sources: &Sources, frame: f64) -> (Self, Vec<Finding>) {
         let [open, close] = scene.render.shutter;
         let is_open = open < close && open.is_finite() && close.is_finite();
-        let wanted = if is_open { moving(scene) } else { Vec::new() };
-        if wanted.is_empty() {
+        let items = if is_open { moving_items(scene) } else { Vec::new() };
+        if items.is_empty() {
             return Default::default();
         }
         let head = write::head(scene);
-        let mut moments: Vec<ItemValues<'_>> = Vec::with_capacity(MOMENTS);
-        for moment in 0..MOMENTS {
-            let share = moment as f64 / (MOMENTS - 1) as f64;
+        let mut moments: Vec<ItemValues<'_>> = Vec::with_capacity(SHUTTER_SAMPLES);
+        for moment in 0..SHUTTER_SAMPLES {
+            let share = moment as f64 / (SHUTTER_SAMPLES - 1) as f64;
             let time = frame + open + (close - open) * share;
-            match read_items(scene, &head, sources, time, &wanted) {
+            match read_items(scene, &head, sources, time, &items) {
                 (Some(parts), _) => moments.push(parts),
-                // What is wrong at one time is likely to be so at the next: once is enough.
+                // Report the findings of the first invalid sample only.
                 (None, findings) => return (Self::default(), findings),
             }
         }
-        (Self::through(scene, &wanted, moments), Vec::new())
+        (Self::from_samples(scene, &items, moments), Vec::new())
     }
 
     /// Collects the samples of each item.
-    fn through(scene: &Description, wanted: &[ItemSource], moments: Vec<ItemValues<'_>>) -> Self {
+    fn from_samples(scene: &Description, items: &[ItemSource], moments: Vec<ItemValues<'_>>) -> Self {
         let mut tracks = Self::default();
         let mut moments: Vec<_> = moments.into_iter().map(Vec::into_iter).collect();
-        for ItemSource { path, .. } in wanted {
+        for ItemSource { path, .. } in items {
             let keys: Vec<ItemValue> =
                 moments.iter_mut().filter_map(|parts| parts.next().map(|(_, part)| part)).collect();
-            if keys.len() == MOMENTS {
+            if keys.len() == SHUTTER_SAMPLES {
                 tracks.add(scene, path.steps(), keys);
             }
         }
@@ -135,7 +135,7 @@ fn add_objects(tracks: &mut ListTracks, objects: &[Item<Object>], steps: &[Step]
         }
     };
     match steps {
-        // A list that is a form.
+        // The list is a single value form.
         [] => {
             let lists = all(keys, |part| if let ItemValue::Objects(objects) = part { Some(objects) } else { None });
             if lists.iter().all(|list| list.len() == objects.len()) {
@@ -155,43 +155,44 @@ fn add_objects(tracks: &mut ListTracks, objects: &[Item<Object>], steps: &[Step]
     }
 }
 
-/// Values of one kind.
+/// Extracts the values of one kind.
 fn all<T>(keys: Vec<ItemValue>, part: impl Fn(ItemValue) -> Option<T>) -> Vec<T> {
     keys.into_iter().filter_map(part).collect()
 }
 
 /// Objects, lights and cameras with time-dependent templates.
-fn moving(scene: &Description) -> Vec<ItemSource> {
+fn moving_items(scene: &Description) -> Vec<ItemSource> {
     let moves = |path: &[Step]| matches!(path.first(), Some(Step::Key(s)) if ["objects", "groups", "lights", "camera", "cameras"].contains(&s.as_str()));
-    scene.time_dependent().into_iter().filter(|wanted| moves(wanted.path.steps())).collect()
+    scene.time_dependent().into_iter().filter(|source| moves(source.path.steps())).collect()
 }
 
 impl Description {
-    /// Sources of all items and lists that depend on time, to be read at other times of the same scene.
+    /// Sources of all items and lists that depend on time, to be read at other times of the same
+    /// scene.
     pub(crate) fn time_dependent(&self) -> Vec<ItemSource> {
         let sources = self.templates(|template| template.depends_on_time).into_iter();
         sources.map(|source| ItemSource { value_is_known: true, ..source }).collect()
     }
 
     /// Sources of all items and lists whose templates satisfy a predicate.
-    pub(crate) fn templates(&self, is_wanted: impl Fn(&Template) -> bool) -> Vec<ItemSource> {
+    pub(crate) fn templates(&self, predicate: impl Fn(&Template) -> bool) -> Vec<ItemSource> {
         let mut found = Vec::new();
         self.each_item(&mut |at, item| {
-            if let Some(template) = item.template().filter(|template| is_wanted(template)) {
+            if let Some(template) = item.template().filter(|template| predicate(template)) {
                 found.push(ItemSource {
                     path: at.into(),
                     template: Arc::clone(template),
-                    moves: true,
+                    keeps_template: true,
                     value_is_known: false,
                     place: item.place(),
                 });
             }
         });
-        let forms = self.list_forms.iter().filter(|form| is_wanted(&form.template));
+        let forms = self.list_forms.iter().filter(|form| predicate(&form.template));
         found.extend(forms.map(|form| ItemSource {
             path: form.path.clone(),
             template: Arc::clone(&form.template),
-            moves: true,
+            keeps_template: true,
             value_is_known: false,
             place: form.template.node.place,
         }));
@@ -201,13 +202,13 @@ impl Description {
     /// Updates the time dependence of all templates; `head` holds the scene's variables and paths.
     pub(crate) fn update_time_dependence(&mut self, head: &Node) {
         let programs = self.programs.clone();
-        let mut changing = TimeDependence::of(head, &programs);
+        let mut time_dependence = TimeDependence::from_tree(head, &programs);
         for form in self.list_forms.iter_mut() {
-            let depends_on_time = changing.holds(&form.template.node);
+            let depends_on_time = time_dependence.depends_on_time(&form.template.node);
             form.template = Arc::new(Template::new(form.template.node.clone(), depends_on_time, &programs));
         }
         for ItemSource { path, template, .. } in self.templates(|_| true) {
-            let depends_on_time = changing.holds(&template.node);
+            let depends_on_time = time_dependence.depends_on_time(&template.node);
             if depends_on_time != template.depends_on_time {
                 let template = Arc::new(Template::new(template.node.clone(), depends_on_time, &programs));
                 if let Some(item) = self.item_mut(&path) {

@@ -45,13 +45,13 @@ pub(crate) fn object_node(object: &Item<Object>) -> Node {
 /// ([`edits_merged`](super::edits_merged)).
 pub(crate) fn written(scene: &Description) -> Json {
     let mut json = serde_json::to_value(scene).unwrap_or_default();
-    schema::tidy(&mut json);
+    schema::shorten_numbers(&mut json);
     schema::drop_nulls(&mut json);
-    for wanted in scene.templates(|_| true) {
-        put(&mut json, wanted.path.steps(), wanted.template.node.to_json());
+    for source in scene.templates(|_| true) {
+        put(&mut json, source.path.steps(), source.template.node.to_json());
     }
     if let Some(textures) = json.get_mut("textures").and_then(Json::as_object_mut) {
-        // Reading the scene will name them again.
+        // Reading the scene names inline textures again.
         scene.form_textures.iter().for_each(|name| drop(textures.shift_remove(name)));
     }
     json

@@ -1,6 +1,6 @@
-//! Problems: what is wrong with a scene, where, and what was probably meant.
+//! Problems of a scene: description, location and suggested fix.
 
-use crate::document::{Node, Place, Sources, parse};
+use crate::document::{Node, SourceSpan, Sources, parse};
 use crate::path::Path;
 use juggler_math::message;
 use std::collections::BTreeSet;
@@ -8,104 +8,105 @@ use std::{fmt, io};
 
 mod text;
 
-/// How bad it is.
+/// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// There is no picture.
+    /// The scene cannot be rendered.
     Error,
-    /// There is a picture, perhaps not the one that was meant.
+    /// The scene can be rendered, but the result may not be the intended one.
     Warning,
 }
 
-/// Something wrong, as the step that notices it knows it: by path, by place, or both.
+/// A problem as the check that detects it reports it: located by path, by place, or by both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     severity: Severity,
     path: Option<Path>,
-    place: Option<Place>,
+    place: Option<SourceSpan>,
     message: String,
     help: Option<String>,
 }
 
 impl Finding {
-    /// Something that leaves no picture.
+    /// Creates an error, which prevents rendering.
     pub fn error(message: impl Into<String>) -> Self {
         let message = message::line(&message.into());
         Self { severity: Severity::Error, path: None, place: None, message, help: None }
     }
 
-    /// Something that people should know.
+    /// Creates a warning.
     pub fn warning(message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(message) }
     }
 
-    /// At a path in the merged scene.
+    /// Sets the path in the merged scene.
     #[must_use]
     pub fn at(mut self, path: impl Into<Path>) -> Self {
         self.path = Some(path.into());
         self
     }
 
-    /// At a place in a file.
+    /// Sets the place in a file.
     #[must_use]
-    pub fn on(mut self, place: Option<Place>) -> Self {
+    pub fn on(mut self, place: Option<SourceSpan>) -> Self {
         self.place = place;
         self
     }
 
-    /// What was probably meant.
+    /// Sets the suggested fix.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         self.maybe_help(Some(help.into()))
     }
 
-    /// What was probably meant, when something was.
+    /// Sets the suggested fix, if there is one.
     #[must_use]
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help.map(|help| message::line(&help)).or(self.help);
         self
     }
 
-    /// Whether both are about the same value, or one about a part of the other's.
-    pub fn covers(&self, other: &Self) -> bool {
+    /// Whether the paths of both are equal or one path contains the other.
+    pub fn concerns_same_value(&self, other: &Self) -> bool {
         let (Some(a), Some(b)) = (&self.path, &other.path) else { return false };
         let shared = a.steps().len().min(b.steps().len());
         shared > 0 && a.steps().iter().zip(b.steps()).all(|(a, b)| a == b)
     }
 
-    /// The value that it is about.
+    /// Path of the value that the finding is about.
     pub(crate) fn path(&self) -> Option<&Path> {
         self.path.as_ref()
     }
 
-    /// Whether there is no picture.
+    /// Whether the finding is an error.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
 
-    /// Whether the message holds these words.
+    /// Whether the message contains `words`.
     #[cfg(test)]
-    pub(crate) fn says(&self, words: &str) -> bool {
+    pub(crate) fn message_contains(&self, words: &str) -> bool {
         self.message.contains(words)
     }
 }
 
-/// Something wrong with a scene.
+/// A located problem of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// How bad it is.
+    /// Severity of the problem.
     pub severity: Severity,
-    /// The value at fault: `objects[0].shape.sphere.radius`, counted in the file that holds it.
+    /// Path of the value, such as `objects[0].shape.sphere.radius`, relative to the file that
+    /// contains it.
     pub path: String,
-    /// Where it stands; nowhere for scenes made by programs.
-    pub place: Option<Place>,
-    /// What is wrong.
+    /// Place in a file; `None` for scenes that were not read from a file.
+    pub place: Option<SourceSpan>,
+    /// Description of the problem.
     pub message: String,
-    /// What was probably meant.
+    /// Suggested fix.
     pub help: Option<String>,
 }
 
-/// All that is wrong with a scene, errors first, in the order of the files.
+/// All problems of a scene, errors first, in the order of the files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problems {
     list: Vec<Problem>,
@@ -113,9 +114,10 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Works out places from paths and paths from places. `written` gives the place of the value at a path in the merged
-    /// scene, or of the last value on the way to it, and how many steps lead there; nothing when there is no scene yet.
-    pub(crate) fn new(findings: Vec<Finding>, sources: Sources, written: &Written<'_>) -> Self {
+    /// Locates findings: derives places from paths and paths from places. `written` returns the
+    /// place of the value at a path in the merged scene, or of its innermost existing ancestor, and
+    /// the number of steps that lead there; `None` if there is no scene.
+    pub(crate) fn new(findings: Vec<Finding>, sources: Sources, written: &SpanLookup<'_>) -> Self {
         let mut files: Vec<Option<Option<Node>>> = vec![None; sources.len()];
         let mut list: Vec<Problem> = Vec::with_capacity(findings.len());
         for finding in findings {
@@ -124,33 +126,34 @@ impl Problems {
             list.push(Problem { severity, path, place, message, help });
         }
         list.sort_by_key(|problem| (problem.severity, problem.place));
-        // Two steps may notice the same; the first knows better what was meant.
+        // Two checks may report the same problem; keep the first, which has the better suggestion.
         let mut seen = BTreeSet::new();
         list.retain(|problem| seen.insert((problem.path.clone(), problem.message.clone())));
         Self { list, sources }
     }
 
-    /// The problems.
+    /// All problems.
     pub fn list(&self) -> &[Problem] {
         &self.list
     }
 
-    /// The texts that their places lie in.
+    /// The texts that the places refer to.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
 
-    /// How many leave no picture.
+    /// Number of errors.
     pub fn errors(&self) -> usize {
         self.list.iter().filter(|problem| problem.severity == Severity::Error).count()
     }
 
-    /// How many people should know about.
+    /// Number of warnings.
     pub fn warnings(&self) -> usize {
         self.list.len() - self.errors()
     }
 
-    /// All of them for a terminal: file, line, column, the text with a caret, the path, what was meant.
+    /// Formats the problems for a terminal: file, line, column, excerpt with a caret, path and
+    /// suggested fix.
     pub fn render(&self, color: bool) -> String {
         text::render(self, color)
     }
@@ -164,16 +167,16 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// Where values of a scene were written.
-type Written<'w> = dyn Fn(&Path) -> Option<(Option<Place>, usize)> + 'w;
+/// Returns the place of a path in the merged scene, as [`Problems::new`] describes.
+type SpanLookup<'w> = dyn Fn(&Path) -> Option<(Option<SourceSpan>, usize)> + 'w;
 
-/// Where a finding is, and its path inside the file that holds it.
+/// Place of a finding, and its path relative to the file that contains it.
 fn locate(
     finding: &Finding,
     sources: &Sources,
-    written: &Written<'_>,
+    written: &SpanLookup<'_>,
     files: &mut [Option<Option<Node>>],
-) -> (Option<Place>, String) {
+) -> (Option<SourceSpan>, String) {
     let found = finding.path.as_ref().and_then(written);
     let place = finding.place.or(found.and_then(|(place, _)| place));
     let own_file = sources.len() <= 1;
@@ -187,7 +190,8 @@ fn locate(
         None => None,
     };
     let Some(local) = local else {
-        // A file that cannot be parsed has no part in the merged scene: the path is its own.
+        // A file that cannot be parsed is not part of the merged scene, so the path is already
+        // relative to it.
         return (Some(place), finding.path.as_ref().map(Path::to_string).unwrap_or_default());
     };
     let mut path = local.path_of(place);
@@ -197,13 +201,13 @@ fn locate(
     (Some(place), path.to_string())
 }
 
-/// The system's error in plain words.
+/// Describes an I/O error in plain words.
 pub(crate) fn plain_io(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         io::ErrorKind::IsADirectory => "this is a folder, not a file".into(),
-        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidFilename => "this cannot be the name of a file".into(),
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidFilename => "this is not a valid file name".into(),
         _ => error.to_string(),
     }
 }

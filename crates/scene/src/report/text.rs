@@ -1,17 +1,17 @@
-//! Problems as text for people.
+//! Formatting of problems as text.
 
 use super::{Problem, Problems, Severity};
-use crate::document::{Place, Sources};
+use crate::document::{SourceSpan, Sources};
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use juggler_math::message::{MAX_QUOTE, excerpt};
 use std::fmt::Write;
 
-/// Most problems that are written out in full.
+/// Maximum number of problems that are written in full.
 const MAX_SHOWN: usize = 50;
-/// Widest excerpt of a line, in bytes on each side of the fault; what a terminal shows is less.
+/// Maximum length of an excerpt on each side of the error, in bytes; terminals show less.
 const MARGIN: usize = 500;
 
-/// All problems, with a line that counts them when there are several.
+/// Formats the problems, followed by their number if there are several.
 pub fn render(problems: &Problems, color: bool) -> String {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
     let mut text = String::new();
@@ -47,7 +47,7 @@ fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
         let annotation = AnnotationKind::Primary.span(excerpt.start..excerpt.end);
         let snippet = Snippet::source(excerpt.text).line_start(excerpt.line).annotation(annotation);
         if excerpt.cut {
-            // The column in the file is not that in the excerpt.
+            // The column in the file differs from the column in the excerpt.
             elements.push(Origin::path(excerpt.file).line(excerpt.line).char_column(excerpt.column).into());
             elements.push(snippet.into());
         } else {
@@ -63,23 +63,23 @@ fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
     level.primary_title(problem.message.as_str()).elements(elements)
 }
 
-/// The line of a fault, cut to a readable width.
+/// Excerpt of the line with the error.
 struct Excerpt<'p> {
     file: &'p str,
-    /// Counted from 1.
+    /// Line number, counted from 1.
     line: usize,
-    /// In characters, counted from 1.
+    /// Column in characters, counted from 1.
     column: usize,
     text: String,
-    /// Whether the beginning of the line is missing.
+    /// Whether the start of the line is cut off.
     cut: bool,
-    /// Bytes of `text` at fault.
+    /// Byte range of the error in `text`.
     start: usize,
     end: usize,
 }
 
 impl<'p> Excerpt<'p> {
-    fn of(place: Place, sources: &'p Sources) -> Option<Self> {
+    fn of(place: SourceSpan, sources: &'p Sources) -> Option<Self> {
         let source = sources.get(place.file)?;
         let start = source.text.floor_char_boundary(place.start as usize);
         let (before, after) = source.text.split_at_checked(start)?;
@@ -101,7 +101,7 @@ impl<'p> Excerpt<'p> {
 }
 
 impl Problem {
-    /// Line and column of the fault, both counted from 1, the column in characters.
+    /// Line and column of the problem, both counted from 1; the column is in characters.
     pub fn line_and_column(&self, sources: &Sources) -> Option<(usize, usize)> {
         let excerpt = Excerpt::of(self.place?, sources)?;
         Some((excerpt.line, excerpt.column))

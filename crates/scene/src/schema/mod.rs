@@ -1,7 +1,8 @@
-//! The format as a JSON Schema, generated from the Rust types.
+//! The JSON Schema of the scene format, generated from the Rust types.
 //!
-//! Two forms: the [`Schema`] that [`crate::validate`] walks (expressions are numbers by then), and the one that
-//! is [`published`] for editors, where a text `"=..."` may stand for a number and a kind's name for the kind.
+//! There are two forms: the [`Schema`] for [`crate::validate`], where expressions are already
+//! evaluated to numbers, and the [`published`] schema for editors, which also allows strings
+//! `"=..."` for numbers and bare names for kinds.
 
 use crate::description::Description;
 use schemars::generate::SchemaSettings;
@@ -12,21 +13,21 @@ mod numbers;
 mod publish;
 mod reference;
 
-pub use numbers::{drop_nulls, tidy};
+pub use numbers::{drop_nulls, shorten_numbers};
 pub use publish::{published, schema_json};
 pub use reference::reference;
 
-/// The format's schema: every object closed.
+/// Schema of the format, without additional properties.
 #[derive(Debug)]
 pub struct Schema {
     root: Value,
 }
 
-/// Generated once: it is a constant, only too long to write down.
+/// The schema, generated on first use.
 static SCHEMA: LazyLock<Schema> = LazyLock::new(Schema::generate);
 
 impl Schema {
-    /// The schema of the format.
+    /// Returns the schema of the format.
     pub fn get() -> &'static Self {
         &SCHEMA
     }
@@ -36,7 +37,7 @@ impl Schema {
         let mut root = settings.into_generator().into_root_schema_for::<Description>().to_value();
         allow_textures(&mut root);
         each_schema(&mut root, &mut close);
-        tidy(&mut root);
+        shorten_numbers(&mut root);
         Self { root }
     }
 
@@ -45,12 +46,13 @@ impl Schema {
         &self.root
     }
 
-    /// The definitions by name.
+    /// The definitions with their names.
     pub fn definitions(&self) -> impl Iterator<Item = (&String, &Value)> {
         self.root.get("$defs").and_then(Value::as_object).into_iter().flatten()
     }
 
-    /// The definition that `schema` refers to, with its name; itself when it refers to none.
+    /// Resolves a reference. Returns the definition with its name, or `schema` itself if it is no
+    /// reference.
     pub fn follow<'s>(&'s self, schema: &'s Value) -> (Option<&'s str>, &'s Value) {
         let name = schema.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
         let target = name.and_then(|name| self.root.get("$defs")?.get(name));
@@ -60,7 +62,8 @@ impl Schema {
         }
     }
 
-    /// The kinds of a family with their schemas: the variants of an externally tagged enum.
+    /// The kinds of a family with their schemas, which are the variants of an externally tagged
+    /// enum.
     pub fn kinds<'s>(&'s self, family: &'s Value) -> impl Iterator<Item = (&'s str, &'s Value)> {
         variants(family).filter_map(|variant| {
             let properties = variant.get("properties")?.as_object()?;
@@ -69,7 +72,7 @@ impl Schema {
         })
     }
 
-    /// Whether a kind's name alone says everything: all its fields have defaults.
+    /// Whether all fields of a kind have defaults, so that its bare name suffices.
     pub fn is_all_default(&self, content: &Value) -> bool {
         let content = self.follow(content).1;
         let object = content.get("type").and_then(Value::as_str) == Some("object");
@@ -77,13 +80,13 @@ impl Schema {
     }
 }
 
-/// The members of `oneOf`, unless they only say which keys must stand together.
+/// The members of `oneOf`, except those that only declare required keys.
 pub fn variants(schema: &Value) -> impl Iterator<Item = &Value> {
     let variants = schema.get("oneOf").and_then(Value::as_array).into_iter().flatten();
     variants.filter(|variant| variant.get("type").is_some() || variant.get("const").is_some())
 }
 
-/// The keys of which exactly one must stand, from a `oneOf` of `required`.
+/// The keys of which exactly one is required, from a `oneOf` of `required`.
 pub fn exactly_one(schema: &Value) -> Vec<&str> {
     let groups = schema.get("oneOf").and_then(Value::as_array).into_iter().flatten();
     let keys = groups.filter(|group| group.get("type").is_none()).filter_map(|group| group.get("required")?.as_array());
@@ -106,18 +109,18 @@ fn each_schema(schema: &mut Value, change: &mut impl FnMut(&mut Map<String, Valu
     change(members);
 }
 
-/// Where the name of a texture may stand, the texture itself may.
+/// Allows an inline texture wherever the name of a texture is allowed.
 fn allow_textures(root: &mut Value) {
     let definitions = root.get_mut("$defs").and_then(Value::as_object_mut);
     for (name, definition) in definitions.into_iter().flatten() {
         let branches = definition.get_mut("anyOf").and_then(Value::as_array_mut);
         if let Some(branches) = branches.filter(|_| crate::validate::definition_family(name) == "Input") {
-            branches.push(json!({"$ref": "#/$defs/AnyTexture", "description": "The texture itself."}));
+            branches.push(json!({"$ref": "#/$defs/AnyTexture", "description": "Inline texture."}));
         }
     }
 }
 
-/// No keys but those that are known.
+/// Disallows additional properties of an object.
 fn close(schema: &mut Map<String, Value>) {
     let object = schema.get("type").is_some_and(|t| t == "object");
     if object && !schema.contains_key("additionalProperties") {
@@ -129,7 +132,7 @@ fn close(schema: &mut Map<String, Value>) {
 mod tests {
     use super::*;
 
-    /// A value form is known by its key alone.
+    /// Value forms are recognized by their key alone, so no field or kind may have the same name.
     #[test]
     fn nothing_else_is_called_as_a_value_form() {
         let schema = Schema::get();

@@ -1,23 +1,23 @@
-//! Numbers as people write them.
+//! Shortening of numbers and objects for output.
 
 use serde_json::{Number, Value};
 
-/// Writes 32-bit numbers with the digits they need: 0.8, not 0.800000011920929. What reads them as 32-bit numbers
-/// gets the same bits.
-pub fn tidy(json: &mut Value) {
+/// Shortens 32-bit numbers to the digits that they need: 0.8, not 0.800000011920929. Parsed as
+/// 32-bit numbers, they have the same bits.
+pub fn shorten_numbers(json: &mut Value) {
     match json {
         Value::Number(number) if number.is_f64() => {
             if let Some(shorter) = number.as_f64().and_then(shorter) {
                 *number = shorter;
             }
         }
-        Value::Array(elements) => elements.iter_mut().for_each(tidy),
-        Value::Object(members) => members.values_mut().for_each(tidy),
+        Value::Array(elements) => elements.iter_mut().for_each(shorten_numbers),
+        Value::Object(members) => members.values_mut().for_each(shorten_numbers),
         _ => {}
     }
 }
 
-/// Leaves out what is null: in a scene file that means the same as nothing.
+/// Removes members that are null, which scene files treat as absent.
 pub fn drop_nulls(json: &mut Value) {
     match json {
         Value::Array(elements) => elements.iter_mut().for_each(drop_nulls),
@@ -49,7 +49,7 @@ mod tests {
     fn digits_that_say_nothing_go_and_bits_stay() {
         let numbers = [0.8_f32, 1.0, f32::MAX, f32::MIN_POSITIVE, 1.0e-45, -0.0, 16_777_216.0, 0.1 + 0.2];
         let mut json = serde_json::json!(numbers.map(f64::from));
-        tidy(&mut json);
+        shorten_numbers(&mut json);
         let text = json.to_string();
         assert!(text.starts_with("[0.8,1,3.4028235e") && text.contains(",-0.0,16777216,"), "{text}");
         let read: Vec<f32> = serde_json::from_str(&text).unwrap();
@@ -61,7 +61,7 @@ mod tests {
     fn other_numbers_stay_as_they_are() {
         let mut json = serde_json::json!([0.1, 7, u64::MAX, 1.0e300, {"deep": [0.3]}]);
         let before = json.clone();
-        tidy(&mut json);
+        shorten_numbers(&mut json);
         assert_eq!(json, before);
     }
 }

@@ -1,11 +1,11 @@
-//! The schema for editors and other programs.
+//! The published schema, for editors and other programs.
 
 use super::{Schema, each_schema};
 use serde_json::{Map, Value, json};
 
-/// Definitions whose numbers come before all expressions, or that say themselves where these may stand.
+/// Definitions whose numbers are read before expressions, or that declare their own expressions.
 const PLAIN: [&str; 3] = ["Animation", "Variable", "Component"];
-/// Fields of a scene whose keys are names, and others where no value form may stand.
+/// Fields of a scene that cannot be a value form, such as those whose keys are names.
 const NAMED: [&str; 12] = [
     "$schema",
     "version",
@@ -20,11 +20,11 @@ const NAMED: [&str; 12] = [
     "materials",
     "groups",
 ];
-/// How another definition refers to the family of value forms.
+/// Reference to the family of value forms.
 const FORM: &str = "#/$defs/ValueForm";
 
-/// The published schema: numbers and arrays may be expressions, anything a value form, kinds may be names, null is left
-/// out.
+/// Generates the published schema. Unlike [`Schema`], it allows expressions for numbers and arrays,
+/// value forms for any value, and bare names for kinds, and it omits null.
 pub fn published() -> Value {
     let schema = Schema::get();
     let mut root = schema.root().clone();
@@ -43,9 +43,9 @@ pub fn published() -> Value {
     });
     if let Some(root) = root.as_object_mut() {
         let version = json!({"description": "Version of the format.", "const": 1});
-        let schema_address = json!({"description": "Address of this schema, for editors; the program does not read it.",
+        let schema_address = json!({"description": "Location of this schema, for editors; rendering ignores it.",
             "type": "string"});
-        let include = json!({"description": "Other scene files, relative to this one.",
+        let include = json!({"description": "Paths of other scene files, relative to this one.",
             "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]});
         if let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) {
             properties.insert("$schema".into(), schema_address);
@@ -56,7 +56,7 @@ pub fn published() -> Value {
     root
 }
 
-/// The published schema as a file.
+/// The published schema as the text of a JSON file.
 pub fn schema_json() -> String {
     let mut text = serde_json::to_string_pretty(&published()).unwrap_or_default();
     text.push('\n');
@@ -69,14 +69,14 @@ fn definitions<T: Default>(root: &mut Value, change: impl FnOnce(&mut Map<String
 
 fn expression() -> Value {
     json!({
-        "description": "A number as an expression, such as `=2*pi*frame/frames`.",
+        "description": "Number as an expression, such as `=2*pi*frame/frames`.",
         "type": "string",
         "pattern": "^=",
         "maxLength": juggler_expression::MAX_LENGTH + 1,
     })
 }
 
-/// What may be absent need not be null.
+/// Removes null from types, since optional members can be omitted.
 fn drop_null(schema: &mut Map<String, Value>) {
     if let Some(Value::Array(types)) = schema.get_mut("type") {
         types.retain(|t| t != "null");
@@ -97,20 +97,20 @@ fn drop_null(schema: &mut Map<String, Value>) {
     }
 }
 
-/// A kind whose fields all have defaults may be written as its name.
+/// Allows the bare name of kinds whose fields all have defaults.
 fn allow_names(schema: &Schema, members: &mut Map<String, Value>) {
     let family = Value::Object(members.clone());
     let names: Vec<&str> =
         schema.kinds(&family).filter(|(_, content)| schema.is_all_default(content)).map(|(name, _)| name).collect();
     if let Some(Value::Array(variants)) = members.get_mut("oneOf").filter(|_| !names.is_empty()) {
-        variants.push(json!({"description": "A kind with all its defaults.", "type": "string", "enum": names}));
+        variants.push(json!({"description": "Name of a kind, with all settings at their defaults.", "type": "string", "enum": names}));
     }
 }
 
-/// Where a number or an array of numbers stands, an expression may stand.
+/// Allows an expression in place of a number or an array of numbers.
 fn allow_expression(members: &mut Map<String, Value>) {
     let kind = members.get("type").and_then(Value::as_str);
-    // Innermost first: elements that are numbers have become choices.
+    // The walk is innermost first, so elements that are numbers have become choices.
     let numbers = || members.get("items").is_some_and(|items| items.get("anyOf").is_some_and(has_expression));
     if matches!(kind, Some("number" | "integer")) || kind == Some("array") && numbers() {
         alternative(members, "#/$defs/Expression");
@@ -125,12 +125,13 @@ fn has_expression(branches: &Value) -> bool {
         .any(|branch| branch.get("$ref").is_some_and(|to| to == "#/$defs/Expression"))
 }
 
-/// Lets a value form stand at every field, every element and every definition that is no part of one.
+/// Allows a value form for every field, every element and every definition except those of value
+/// forms.
 fn allow_forms(root: &mut Value) {
     let Some(root) = root.as_object_mut() else { return };
     if let Some(Value::Object(fields)) = root.get_mut("properties") {
         for (name, field) in fields {
-            inside(field);
+            allow_forms_inside(field);
             if !NAMED.contains(&name.as_str()) {
                 allow_form(field);
             }
@@ -138,39 +139,39 @@ fn allow_forms(root: &mut Value) {
     }
     let Some(Value::Object(definitions)) = root.get_mut("$defs") else { return };
     for (name, definition) in definitions.iter_mut() {
-        inside(definition);
+        allow_forms_inside(definition);
         if name != "ValueForm" {
             allow_form(definition);
         }
     }
 }
 
-/// The same for what a schema holds, not for itself.
-fn inside(schema: &mut Value) {
+/// Allows a value form for everything inside a schema, but not for the schema itself.
+fn allow_forms_inside(schema: &mut Value) {
     let Some(members) = schema.as_object_mut() else { return };
     for (key, inner) in members.iter_mut() {
         match (key.as_str(), inner) {
-            ("properties", Value::Object(fields)) => fields.values_mut().for_each(place),
-            ("oneOf" | "anyOf" | "prefixItems", Value::Array(list)) => list.iter_mut().for_each(inside),
-            ("items" | "additionalProperties", inner) => place(inner),
+            ("properties", Value::Object(fields)) => fields.values_mut().for_each(allow_form_within),
+            ("oneOf" | "anyOf" | "prefixItems", Value::Array(list)) => list.iter_mut().for_each(allow_forms_inside),
+            ("items" | "additionalProperties", inner) => allow_form_within(inner),
             _ => {}
         }
     }
 }
 
-fn place(schema: &mut Value) {
-    inside(schema);
+fn allow_form_within(schema: &mut Value) {
+    allow_forms_inside(schema);
     allow_form(schema);
 }
 
 fn allow_form(schema: &mut Value) {
-    // What a reference leads to allows it itself.
+    // The target of a reference allows value forms itself.
     if let Some(members) = schema.as_object_mut().filter(|members| !members.contains_key("$ref")) {
         alternative(members, FORM);
     }
 }
 
-/// Makes a schema a choice between what it says and another definition.
+/// Turns a schema into a choice between itself and another definition.
 fn alternative(members: &mut Map<String, Value>, definition: &str) {
     let reference = json!({"$ref": definition});
     if let Some(Value::Array(branches)) = members.get_mut("anyOf") {

@@ -1,42 +1,46 @@
-//! Values that may be written in several ways: a colour or the name of a texture, a material or its name.
+//! Checks of values with several forms: a color or the name of a texture, a material or its name.
 
-use super::names::Family;
-use super::rule::{Rule, Way};
-use super::{MAX_WARNINGS, Plain, Walk, inline, words};
-use crate::document::{Node, Value as Written};
-use crate::path::Trail;
+use super::names::NamedFamily;
+use super::rule::{Alternative, Rule};
+use super::{MAX_WARNINGS, Plain, Validator, inline, wording};
+use crate::document::{Node, Value as NodeValue};
+use crate::path::PathRef;
 use crate::report::Finding;
 use juggler_math::Rgb;
 
-impl Walk<'_> {
-    pub(super) fn choice(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Plain> {
-        let way = match &node.value {
-            Written::String(text) => way_of_text(text, &rule.ways),
-            _ => rule.ways.iter().find(|way| fits(node, &way.rule)),
+impl Validator<'_> {
+    pub(super) fn choice(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule) -> Option<Plain> {
+        let alternative = match &node.value {
+            NodeValue::String(text) => alternative_of_text(text, &rule.alternatives),
+            _ => rule.alternatives.iter().find(|alternative| fits(node, &alternative.rule)),
         };
-        let Some(way) = way else {
-            return self.mismatch(node, at, &words::allowed(self.schema, rule));
+        let Some(alternative) = alternative else {
+            return self.mismatch(node, at, &wording::allowed(self.schema, rule));
         };
         match &node.value {
-            Written::Array(channels) if way.owner == Some("Color") && channels.len() != 3 => {
-                let message = format!("a colour is [red, green, blue], this array has {} elements", channels.len());
+            NodeValue::Array(channels) if alternative.owner == Some("Color") && channels.len() != 3 => {
+                let message = format!("a color is [red, green, blue], this array has {} elements", channels.len());
                 return self.report(node, at, Finding::error(message));
             }
-            Written::Array(channels) if way.owner == Some("Color") => self.check_range(node, at, channels),
-            Written::String(text) if way.rule.types.string => match way.owner.map(words::family) {
-                Some("Input") => self.refer(Family::Texture, node, text, at),
-                Some("MaterialRef") => self.refer(Family::Material, node, text, at),
+            NodeValue::Array(channels) if alternative.owner == Some("Color") => self.check_range(node, at, channels),
+            NodeValue::String(text) if alternative.rule.types.string => match alternative.owner.map(wording::family) {
+                Some("Input") => self.check_reference(NamedFamily::Texture, node, text, at),
+                Some("MaterialRef") => self.check_reference(NamedFamily::Material, node, text, at),
                 _ => {}
             },
             _ => {}
         }
-        if inline::is_texture(way) { self.texture(node, at, way) } else { self.value(node, at, way.rule.get()) }
+        if inline::is_texture(alternative) {
+            self.texture(node, at, alternative)
+        } else {
+            self.value(node, at, alternative.rule.get())
+        }
     }
 }
 
-impl Walk<'_> {
-    /// Warns of a color that looks like the levels of a picture, 0 to 255.
-    fn check_range(&mut self, node: &Node, at: &Trail<'_>, channels: &[Node]) {
+impl Validator<'_> {
+    /// Warns if a color looks like 8-bit levels from 0 to 255.
+    fn check_range(&mut self, node: &Node, at: &PathRef<'_>, channels: &[Node]) {
         let key = at.last_key().unwrap_or_default();
         let Some(levels) = levels(channels).filter(|levels| levels.iter().any(|level| *level >= least_level(key)))
         else {
@@ -45,25 +49,25 @@ impl Walk<'_> {
         if self.warnings.len() < MAX_WARNINGS {
             let [r, g, b] = levels;
             let message =
-                format!("[{r}, {g}, {b}] is very bright: colors are linear, from 0 to 1 for what surfaces reflect");
+                format!("[{r}, {g}, {b}] is very bright: colors are linear, and reflectances are between 0 and 1");
             let help = format!("did you mean \"#{r:02x}{g:02x}{b:02x}\"?");
             self.warnings.push(Finding::warning(message).help(help).at(at).on(node.place));
         }
     }
 }
 
-/// Three whole numbers from 0 to 255.
+/// Reads three integers from 0 to 255.
 fn levels(channels: &[Node]) -> Option<[u8; 3]> {
     let level = |node: &Node| match &node.value {
-        Written::Number(number) => number.as_u64().and_then(|level| u8::try_from(level).ok()),
+        NodeValue::Number(number) => number.as_u64().and_then(|level| u8::try_from(level).ok()),
         _ => None,
     };
     let [r, g, b] = channels else { return None };
     Some([level(r)?, level(g)?, level(b)?])
 }
 
-/// The least level that a color of this key is warned of: light may be far brighter than what
-/// surfaces reflect.
+/// Smallest level that causes a warning for a color of this key. Emitted light may exceed 1, unlike
+/// reflectances.
 fn least_level(key: &str) -> u8 {
     match key {
         "radiance" | "emission" | "emissive" | "scattering" | "absorption" | "eta" | "k" => u8::MAX,
@@ -72,24 +76,29 @@ fn least_level(key: &str) -> u8 {
     }
 }
 
-/// Whether a value of this JSON type may stand there.
+/// Whether a rule allows the JSON type of a value that is not a string.
 fn fits(node: &Node, rule: &Rule) -> bool {
     match &node.value {
-        Written::Null => rule.types.null,
-        Written::Bool(_) => rule.types.boolean,
-        Written::Number(_) => rule.allows_number(),
-        Written::Array(_) => rule.types.array,
-        Written::Object(_) => rule.types.object || !rule.kinds.is_empty(),
-        Written::String(_) | Written::Wrong => false,
+        NodeValue::Null => rule.types.null,
+        NodeValue::Bool(_) => rule.types.boolean,
+        NodeValue::Number(_) => rule.allows_number(),
+        NodeValue::Array(_) => rule.types.array,
+        NodeValue::Object(_) => rule.types.object || !rule.kinds.is_empty(),
+        NodeValue::String(_) | NodeValue::Invalid => false,
     }
 }
 
-/// A text is a colour when it begins with `#`, else a name, else a kind by its name, else whatever allows texts.
-fn way_of_text<'w>(text: &str, ways: &'w [Way]) -> Option<&'w Way> {
-    let is_text = |way: &&Way| way.rule.types.string && !way.rule.color;
-    let color = ways.iter().find(|way| way.rule.color);
+/// Chooses the form of a string: a color if it is one or begins with `#`, else a name, else a kind,
+/// else any form that allows strings.
+fn alternative_of_text<'w>(text: &str, alternatives: &'w [Alternative]) -> Option<&'w Alternative> {
+    let is_text = |alternative: &&Alternative| alternative.rule.types.string && !alternative.rule.is_color;
+    let color = alternatives.iter().find(|alternative| alternative.rule.is_color);
     if Rgb::from_hex(text).is_some() || text.starts_with('#') && color.is_some() {
-        return color.or_else(|| ways.iter().find(is_text));
+        return color.or_else(|| alternatives.iter().find(is_text));
     }
-    ways.iter().find(is_text).or_else(|| ways.iter().find(|way| way.rule.is_family())).or(color)
+    alternatives
+        .iter()
+        .find(is_text)
+        .or_else(|| alternatives.iter().find(|alternative| alternative.rule.is_family()))
+        .or(color)
 }

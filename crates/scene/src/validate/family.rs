@@ -1,38 +1,39 @@
-//! Families: `{"sphere": {...}}`, or `"sphere"` where all fields have defaults; and lists of fixed words.
+//! Checks of families: `{"sphere": {...}}`, or `"sphere"` if all fields have defaults; and of fixed
+//! words.
 
 use super::rule::Rule;
-use super::{Plain, Walk, foreign, words};
-use crate::document::{Members, Node, Value as Written};
-use crate::path::Trail;
+use super::{Plain, Validator, other_programs, wording};
+use crate::document::{Members, Node, Value as NodeValue};
+use crate::path::PathRef;
 use crate::report::Finding;
-use crate::suggest::meant_or_all;
+use crate::suggest::did_you_mean_or_list;
 
-/// Most keys that the right form of an object repeats.
+/// Maximum number of keys in the suggested form of an object.
 const MAX_SHOWN: usize = 8;
 
-impl Walk<'_> {
-    pub(super) fn family(&mut self, node: &Node, at: &Trail<'_>, family: &'static Rule) -> Option<Plain> {
+impl Validator<'_> {
+    pub(super) fn family(&mut self, node: &Node, at: &PathRef<'_>, family: &'static Rule) -> Option<Plain> {
         match &node.value {
-            Written::Object(members) if !family.kinds.is_empty() => self.kind(node, at, members, family),
-            Written::String(text) => self.word(node, at, text, family),
+            NodeValue::Object(members) if !family.kinds.is_empty() => self.kind(node, at, members, family),
+            NodeValue::String(text) => self.word(node, at, text, family),
             _ => {
                 let noun = noun(family);
                 let example = family.kinds.first().map(|(kind, _)| format!(" such as {{\"{kind}\": ...}}"));
-                let words = || format!(": {}", words::list(family.words.iter().copied(), "or"));
+                let words = || format!(": {}", wording::list(family.words.iter().copied(), "or"));
                 let example = example.unwrap_or_else(words);
-                self.mismatch(node, at, &format!("{} {noun}{example}", words::article(&noun)))
+                self.mismatch(node, at, &format!("{} {noun}{example}", wording::article(&noun)))
             }
         }
     }
 
-    fn kind(&mut self, node: &Node, at: &Trail<'_>, members: &Members, family: &'static Rule) -> Option<Plain> {
+    fn kind(&mut self, node: &Node, at: &PathRef<'_>, members: &Members, family: &'static Rule) -> Option<Plain> {
         let mut entries = members.iter();
         let (Some((key, member)), None) = (entries.next(), entries.next()) else {
             return self.not_one_kind(node, at, members, family);
         };
         let Some((kind, content)) = family.kinds.iter().find(|(kind, _)| kind == key) else {
             let finding = Finding::error(format!("unknown kind of {} `{key}`", noun(family))).on(member.key_place);
-            let help = foreign::kind(key, family).or_else(|| meant_or_all(key, kinds(family)));
+            let help = other_programs::suggest_kind(key, family).or_else(|| did_you_mean_or_list(key, kinds(family)));
             self.findings.push(finding.maybe_help(help).at(&at.key(key)));
             return None;
         };
@@ -40,37 +41,43 @@ impl Walk<'_> {
         Some(Plain::member(*kind, value))
     }
 
-    /// Complains of no key or several where the name of one kind should stand.
-    fn not_one_kind<T>(&mut self, node: &Node, at: &Trail<'_>, members: &Members, family: &'static Rule) -> Option<T> {
+    /// Reports an object with no key or several keys in place of the name of one kind.
+    fn not_one_kind<T>(
+        &mut self,
+        node: &Node,
+        at: &PathRef<'_>,
+        members: &Members,
+        family: &'static Rule,
+    ) -> Option<T> {
         let (noun, kinds) = (noun(family), kinds(family).collect::<Vec<_>>());
         let mut named = members.keys().filter(|key| kinds.contains(&key.as_str()));
-        let a = words::article(&noun);
+        let a = wording::article(&noun);
         if let (Some(kind), None) = (named.next(), named.next()) {
-            let others = words::list(members.keys().filter(|key| *key != kind).map(String::as_str), "and");
-            let message = format!("{others} cannot stand beside `{kind}`: {a} {noun} is of exactly one kind");
-            let help = format!("settings of the {noun} belong inside {{\"{kind}\": {{...}}}}, others outside of it");
+            let others = wording::list(members.keys().filter(|key| *key != kind).map(String::as_str), "and");
+            let message = format!("unexpected {others} beside `{kind}`: {a} {noun} has exactly one kind");
+            let help = format!("write settings of the {noun} inside {{\"{kind}\": {{...}}}}, all other keys outside");
             return self.report(node, at, Finding::error(message).help(help));
         }
         let found =
-            if members.is_empty() { "none".into() } else { words::list(members.keys().map(String::as_str), "and") };
-        let message = format!("{a} {noun} is of exactly one kind, found {found}");
+            if members.is_empty() { "none".into() } else { wording::list(members.keys().map(String::as_str), "and") };
+        let message = format!("{a} {noun} must have exactly one kind, found {found}");
         let several = members.len() > 1 && members.keys().all(|key| kinds.contains(&key.as_str()));
         let is_step = family.name == Some("TransformStep");
         let other = || {
             if several && is_step {
-                "write an array of steps, [{...}, {...}]: the first happens first".into()
+                "write an array of steps, [{...}, {...}], applied in order".into()
             } else if several {
                 "choose one".into()
             } else {
-                format!("kinds: {}", words::list(kinds, "and"))
+                format!("kinds: {}", wording::list(kinds, "and"))
             }
         };
         let help = tagged(members, family).unwrap_or_else(other);
         self.report(node, at, Finding::error(message).help(help))
     }
 
-    /// A kind by its name alone, or one of a list of words.
-    fn word(&mut self, node: &Node, at: &Trail<'_>, text: &str, family: &'static Rule) -> Option<Plain> {
+    /// Checks a kind given by its name alone, or a fixed word.
+    fn word(&mut self, node: &Node, at: &PathRef<'_>, text: &str, family: &'static Rule) -> Option<Plain> {
         if family.words.contains(&text) {
             return Some(Plain::String(text.to_owned()));
         }
@@ -79,7 +86,7 @@ impl Walk<'_> {
                 Some(Plain::member(*kind, Plain::Object(Vec::new())))
             }
             Some((kind, content)) => {
-                let needed = words::list(content.required.iter().copied(), "and");
+                let needed = wording::list(content.required.iter().copied(), "and");
                 let needed = if needed.is_empty() { "a value" } else { &needed };
                 let message = format!("the {} `{kind}` needs {needed}", noun(family));
                 self.report(node, at, Finding::error(message).help(format!("write {{\"{kind}\": {{...}}}}")))
@@ -88,21 +95,23 @@ impl Walk<'_> {
                 let known: Vec<&str> = kinds(family).chain(family.words.iter().copied()).collect();
                 let what = if family.words.is_empty() { "kind of " } else { "" };
                 let finding = Finding::error(format!("unknown {what}{} `{text}`", noun(family)));
-                let help = foreign::kind(text, family).or_else(|| meant_or_all(text, known.iter().copied()));
+                let help = other_programs::suggest_kind(text, family)
+                    .or_else(|| did_you_mean_or_list(text, known.iter().copied()));
                 self.report(node, at, finding.maybe_help(help))
             }
         }
     }
 }
 
-/// The right form of `{"type": "diffuse", "reflectance": 0.5}`: the kind as a key, with the other
-/// keys inside.
+/// Suggests the correct form of `{"type": "diffuse", "reflectance": 0.5}`: the kind as a key, with
+/// the other keys inside.
 fn tagged(members: &Members, family: &Rule) -> Option<String> {
     let tag = members.get("type")?.node.as_str()?;
     let known = kinds(family).find(|kind| *kind == tag);
-    let Some(kind) = known.or_else(|| foreign::kind_name(tag, family)) else {
-        let all = || format!("kinds stand as keys, {{\"KIND\": {{...}}}}: {}", words::list(kinds(family), "and"));
-        return Some(foreign::kind(tag, family).unwrap_or_else(all));
+    let Some(kind) = known.or_else(|| other_programs::kind_name(tag, family)) else {
+        let all =
+            || format!("kinds are written as keys, {{\"KIND\": {{...}}}}: {}", wording::list(kinds(family), "and"));
+        return Some(other_programs::suggest_kind(tag, family).unwrap_or_else(all));
     };
     let inside = members.keys().filter(|key| *key != "type").take(MAX_SHOWN).map(|key| format!("\"{key}\": ..."));
     let inside = inside.collect::<Vec<_>>().join(", ");
@@ -110,7 +119,7 @@ fn tagged(members: &Members, family: &Rule) -> Option<String> {
 }
 
 fn noun(family: &Rule) -> String {
-    words::noun(family.name.unwrap_or("kind"))
+    wording::noun(family.name.unwrap_or("kind"))
 }
 
 fn kinds(family: &Rule) -> impl Iterator<Item = &'static str> + Clone {

@@ -1,29 +1,29 @@
-//! Textures that are written where a name may stand: each gets a name, its place as a JSON pointer such as
-//! `/materials/red/phong/diffuse`, and joins the scene's textures.
+//! Inline textures, which are written in place of a texture's name. Each is added to the scene's
+//! textures under its JSON pointer as its name, such as `/materials/red/phong/diffuse`.
 
-use super::rule::Way;
-use super::{Plain, Walk, words};
+use super::rule::Alternative;
+use super::{Plain, Validator, wording};
 use crate::document::Node;
-use crate::path::{Path, Trail};
+use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-/// Whether a way to write a value is a texture written in place.
-pub fn is_texture(way: &Way) -> bool {
-    way.rule.name == Some("AnyTexture") && way.owner.map(words::family) == Some("Input")
+/// Whether a form of a value is an inline texture.
+pub fn is_texture(alternative: &Alternative) -> bool {
+    alternative.rule.name == Some("AnyTexture") && alternative.owner.map(wording::family) == Some("Input")
 }
 
-impl Walk<'_> {
-    /// The name that a texture written in place gets.
-    pub(super) fn texture(&mut self, node: &Node, at: &Trail<'_>, way: &Way) -> Option<Plain> {
-        let texture = self.value(node, at, way.rule.get())?;
+impl Validator<'_> {
+    /// Checks an inline texture. Returns the name that it gets.
+    pub(super) fn texture(&mut self, node: &Node, at: &PathRef<'_>, alternative: &Alternative) -> Option<Plain> {
+        let texture = self.value(node, at, alternative.rule.get())?;
         let name = Path::from(at).pointer();
         self.textures.push((name.clone(), texture));
         Some(Plain::String(name))
     }
 
-    /// Adds the textures that were written in place to those of a scene, and returns their names.
+    /// Adds the inline textures to those of a scene. Returns their names, each with `Null`.
     pub(super) fn add_textures(&mut self, scene: &mut Vec<(Cow<'static, str>, Plain)>) -> Vec<(String, Plain)> {
         if self.textures.is_empty() {
             return Vec::new();
@@ -38,9 +38,8 @@ impl Walk<'_> {
         for (name, texture) in std::mem::take(&mut self.textures) {
             if known.contains(name.as_str()) {
                 let finding =
-                    Finding::error(format!("a texture written in place is called `{name}`, as one of `textures` is"));
-                self.findings
-                    .push(finding.at(Path::from_pointer(&name)).help("give the texture in `textures` another name"));
+                    Finding::error(format!("the name `{name}` of the inline texture is already used in `textures`"));
+                self.findings.push(finding.at(Path::from_pointer(&name)).help("rename the texture in `textures`"));
                 continue;
             }
             added.push((name.clone(), Plain::Null));

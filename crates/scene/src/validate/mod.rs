@@ -1,83 +1,85 @@
-//! Tree against schema: every mistake at once, each with its path, its place and what was probably meant.
+//! Validation of a tree against the schema. It reports all errors at once, each with its path,
+//! position and probable meaning.
 //!
-//! The walk also writes the plain JSON that the types are read from: a kind's name becomes the kind, whole numbers
-//! written `8.0` become whole. What is wrong is left out, so that the rest can still be checked.
+//! The walk also builds the plain JSON from which the types are deserialized: the bare name of a
+//! kind becomes the kind with defaults, and integers written as `8.0` become integers. Invalid
+//! values are left out, so that the rest can still be checked.
 
-use crate::document::{Node, Value as Written};
-use crate::path::{Path, Step, Trail};
+use crate::document::{Node, Value as NodeValue};
+use crate::path::{Path, PathRef, Step};
 use crate::report::Finding;
 use crate::schema::Schema;
 use crate::suggest::did_you_mean;
 use rule::{Rule, RuleId};
 
 mod choice;
+mod declared_names;
 mod family;
-mod foreign;
-mod given;
 mod inline;
 mod names;
+mod other_programs;
 mod plain;
 mod rule;
 mod scalar;
 mod structure;
-mod words;
+mod wording;
 
-pub use foreign::page as names_page;
-pub(crate) use given::DeclaredNames;
-pub use names::Family;
+pub(crate) use declared_names::DeclaredNames;
 pub(crate) use names::NameScope;
+pub use names::NamedFamily;
+pub use other_programs::page as names_page;
 pub(crate) use plain::Plain;
-pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
+pub(crate) use wording::{family as definition_family, list, noun as family_noun, plural};
 
-/// Most warnings that are collected.
+/// Maximum number of warnings.
 const MAX_WARNINGS: usize = 20;
-/// Most mistakes that are collected; a file of numbers where objects should be makes one for each.
+/// Maximum number of errors; a file of numbers in place of objects has one for each.
 const MAX_FINDINGS: usize = 200;
 
-/// What a walk brought.
+/// Result of a validation.
 #[derive(Debug, Default)]
 pub struct Validated {
-    /// The scene as plain JSON, without what is wrong; nothing when hardly anything is right.
+    /// The scene as plain JSON without its invalid parts; `None` if almost nothing is valid.
     pub json: Option<Plain>,
     /// Inline textures by name. The inline textures of a whole scene are part of `json`, and `Null`
     /// here.
     pub textures: Vec<(String, Plain)>,
-    /// All that is wrong.
+    /// All errors.
     pub findings: Vec<Finding>,
-    /// What is allowed and probably not meant.
+    /// Warnings about content that is allowed but probably not intended.
     pub warnings: Vec<Finding>,
 }
 
 impl Validated {
-    /// Mistakes, then warnings.
+    /// Errors, then warnings.
     pub fn all(mut self) -> Vec<Finding> {
         self.findings.append(&mut self.warnings);
         self.findings
     }
 }
 
-/// Checks a scene whose expressions are resolved.
+/// Validates a scene whose expressions are evaluated.
 pub fn validate(tree: &Node) -> Validated {
-    let mut walk = Walk::new(NameScope::Tree(tree));
-    let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
+    let mut validator = Validator::new(NameScope::Tree(tree));
+    let mut json = Rule::root().and_then(|scene| validator.value(tree, &PathRef::Root, scene));
     let textures = match &mut json {
-        Some(Plain::Object(scene)) => walk.add_textures(scene),
+        Some(Plain::Object(scene)) => validator.add_textures(scene),
         _ => Vec::new(),
     };
-    Validated { json, textures, findings: walk.findings, warnings: walk.warnings }
+    Validated { json, textures, findings: validator.findings, warnings: validator.warnings }
 }
 
-/// Checks one item of a scene, or one list of items, whose expressions are resolved. `belongs` is its path in the scene
-/// and `at` where messages say that it stands.
-pub(crate) fn item(node: &Node, belongs: &Path, at: &Trail<'_>, known: NameScope<'_>) -> Validated {
+/// Validates an item of a scene, or a list of items, whose expressions are evaluated. `belongs` is
+/// its path in the scene, and `at` its path in messages.
+pub(crate) fn item(node: &Node, belongs: &Path, at: &PathRef<'_>, known: NameScope<'_>) -> Validated {
     let Some(rule) = rule_of(belongs) else { return Validated::default() };
-    let mut walk = Walk::new(known);
-    let json = walk.value(node, at, rule);
-    let textures = std::mem::take(&mut walk.textures);
-    Validated { json, textures, findings: walk.findings, warnings: walk.warnings }
+    let mut validator = Validator::new(known);
+    let json = validator.value(node, at, rule);
+    let textures = std::mem::take(&mut validator.textures);
+    Validated { json, textures, findings: validator.findings, warnings: validator.warnings }
 }
 
-/// What may stand at the path of an item or of a list of items.
+/// Rule of an item or of a list of items by its path.
 fn rule_of(path: &Path) -> Option<&'static Rule> {
     let scene = Rule::root()?;
     let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
@@ -87,87 +89,87 @@ fn rule_of(path: &Path) -> Option<&'static Rule> {
         ((_, rule), []) => Some(rule),
         (("groups", _), [_]) => objects(),
         (("groups" | "objects", _), _) => objects()?.items.map(RuleId::get),
-        ((_, rule), _) => rule.items.or(rule.others).map(RuleId::get),
+        ((_, rule), _) => rule.items.or(rule.additional).map(RuleId::get),
     }
 }
 
-/// Checks a value that stands at `at` against the definition of this name.
-pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
+/// Validates a value at the path `at` against the definition of this name.
+pub(crate) fn part(node: &Node, definition: &str, at: &PathRef<'_>) -> Validated {
     match Rule::named(definition) {
         Some(rule) => by_rule(node, rule, at),
         None => Validated::default(),
     }
 }
 
-fn by_rule(node: &Node, rule: &'static Rule, at: &Trail<'_>) -> Validated {
-    let mut walk = Walk::new(NameScope::Tree(node));
-    let json = walk.value(node, at, rule);
-    Validated { json, textures: Vec::new(), findings: walk.findings, warnings: walk.warnings }
+fn by_rule(node: &Node, rule: &'static Rule, at: &PathRef<'_>) -> Validated {
+    let mut validator = Validator::new(NameScope::Tree(node));
+    let json = validator.value(node, at, rule);
+    Validated { json, textures: Vec::new(), findings: validator.findings, warnings: validator.warnings }
 }
 
-/// What an unknown key of a scene probably means.
-pub(crate) fn meant_in_scene(key: &str) -> Option<String> {
-    Rule::root().and_then(|scene| structure::meant(key, scene))
+/// Suggests a replacement for an unknown key of a scene.
+pub(crate) fn suggest_scene_key(key: &str) -> Option<String> {
+    Rule::root().and_then(|scene| structure::suggest_key(key, scene))
 }
 
-struct Walk<'t> {
+struct Validator<'t> {
     schema: &'static Schema,
-    /// Where names are looked up.
+    /// Names that references are looked up in.
     known: NameScope<'t>,
     findings: Vec<Finding>,
-    /// Textures that are written in place, by the names that they get.
+    /// Inline textures by name.
     textures: Vec<(String, Plain)>,
     warnings: Vec<Finding>,
 }
 
-impl<'t> Walk<'t> {
+impl<'t> Validator<'t> {
     fn new(known: NameScope<'t>) -> Self {
         Self { schema: Schema::get(), known, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
     }
 }
 
-impl Walk<'_> {
-    /// The plain JSON of a value, or nothing when it is wrong and must be left out.
-    fn value(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Plain> {
+impl Validator<'_> {
+    /// Validates a value. Returns its plain JSON; `None` if it is invalid and must be left out.
+    fn value(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule) -> Option<Plain> {
         if self.findings.len() >= MAX_FINDINGS {
             return None;
         }
-        if rule.anything {
+        if rule.allows_anything {
             return Some(Plain::Null);
         }
-        if matches!(node.value, Written::Wrong) {
+        if matches!(node.value, NodeValue::Invalid) {
             return None;
         }
-        if !rule.ways.is_empty() {
+        if !rule.alternatives.is_empty() {
             return self.choice(node, at, rule);
         }
         if rule.is_family() {
             return self.family(node, at, rule);
         }
         match &node.value {
-            Written::Null if rule.types.null => Some(Plain::Null),
-            Written::Number(number) if rule.allows_number() => self.number(node, at, number, rule),
-            Written::String(text) if rule.types.string => self.string(node, at, text, rule),
-            Written::Bool(value) if rule.types.boolean => Some(Plain::Bool(*value)),
-            Written::Array(elements) if rule.types.array => self.array(node, at, elements, rule),
-            Written::Object(members) if rule.types.object => self.object(node, at, members, rule),
-            _ => self.mismatch(node, at, &words::allowed(self.schema, rule)),
+            NodeValue::Null if rule.types.null => Some(Plain::Null),
+            NodeValue::Number(number) if rule.allows_number() => self.number(node, at, number, rule),
+            NodeValue::String(text) if rule.types.string => self.string(node, at, text, rule),
+            NodeValue::Bool(value) if rule.types.boolean => Some(Plain::Bool(*value)),
+            NodeValue::Array(elements) if rule.types.array => self.array(node, at, elements, rule),
+            NodeValue::Object(members) if rule.types.object => self.object(node, at, members, rule),
+            _ => self.mismatch(node, at, &wording::allowed(self.schema, rule)),
         }
     }
 
-    /// The wrong type of value stands here.
-    fn mismatch(&mut self, node: &Node, at: &Trail<'_>, expected: &str) -> Option<Plain> {
+    /// Reports a value of the wrong type.
+    fn mismatch(&mut self, node: &Node, at: &PathRef<'_>, expected: &str) -> Option<Plain> {
         let finding = match &node.value {
-            Written::Null if node.place.is_none() => {
-                Finding::error(format!("expected {expected}, found one that is not finite"))
+            NodeValue::Null if node.place.is_none() => {
+                Finding::error(format!("expected {expected}, found a value that is not finite"))
             }
-            Written::String(text) if expected.contains("number") && crate::animate::looks_like_expression(text) => {
+            NodeValue::String(text) if expected.contains("number") && crate::animate::looks_like_expression(text) => {
                 Finding::error(format!("expected {expected}, found a string"))
                     .help(format!("an expression begins with `=`: \"={text}\""))
             }
-            Written::Object(members) => {
+            NodeValue::Object(members) => {
                 let form = members.keys().next().filter(|_| members.len() == 1);
-                let form = form.and_then(|key| crate::animate::nearest_form(key)).map(did_you_mean);
+                let form = form.and_then(|key| crate::animate::closest_form(key)).map(did_you_mean);
                 Finding::error(format!("expected {expected}, found {}", node.kind())).maybe_help(form)
             }
             _ => Finding::error(format!("expected {expected}, found {}", node.kind())),
@@ -175,8 +177,8 @@ impl Walk<'_> {
         self.report(node, at, finding)
     }
 
-    /// Something is wrong with this value.
-    fn report<T>(&mut self, node: &Node, at: &Trail<'_>, finding: Finding) -> Option<T> {
+    /// Reports an error about a value.
+    fn report<T>(&mut self, node: &Node, at: &PathRef<'_>, finding: Finding) -> Option<T> {
         self.findings.push(finding.at(at).on(node.place));
         None
     }

@@ -1,16 +1,16 @@
-//! Names: whatever is referred to must be there.
+//! Checks that the names in references exist.
 
 use super::rule::Rule;
-use super::{Walk, foreign};
+use super::{Validator, other_programs};
 use crate::description::Description;
 use crate::document::Node;
-use crate::path::Trail;
+use crate::path::PathRef;
 use crate::report::Finding;
-use crate::suggest::{closest, did_you_mean, meant_or_all};
+use crate::suggest::{closest, did_you_mean, did_you_mean_or_list};
 
-/// Things that a scene gives names to.
+/// Families of named items of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
+pub enum NamedFamily {
     /// In `materials`.
     Material,
     /// In `textures`.
@@ -21,8 +21,8 @@ pub enum Family {
     Camera,
 }
 
-impl Family {
-    /// The part of the scene that defines it, and what one is called.
+impl NamedFamily {
+    /// Section of the scene that defines the items, and the noun for one of them.
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Material => ("materials", "material"),
@@ -33,12 +33,12 @@ impl Family {
     }
 }
 
-/// The names of a scene.
+/// Set of the names that a scene defines.
 #[derive(Clone, Copy)]
 pub enum NameScope<'t> {
-    /// Those of a whole scene as a tree.
+    /// Names in the tree of a whole scene.
     Tree(&'t Node),
-    /// Those of a scene.
+    /// Names in a scene description.
     Scene(&'t Description),
 }
 
@@ -68,29 +68,29 @@ impl<'t> NameScope<'t> {
     }
 }
 
-impl Walk<'_> {
-    /// Reports a name that nothing in the scene has.
-    pub(super) fn refer(&mut self, family: Family, node: &Node, name: &str, at: &Trail<'_>) {
+impl Validator<'_> {
+    /// Reports an error if the scene does not define a name.
+    pub(super) fn check_reference(&mut self, family: NamedFamily, node: &Node, name: &str, at: &PathRef<'_>) {
         let (part, noun) = family.words();
         if self.known.has(part, name) {
             return;
         }
         let names = self.known.all(part);
         let near = closest(name, names.iter().copied()).map(did_you_mean);
-        let kind = || kind_of_material(name).filter(|_| family == Family::Material);
-        let known = || meant_or_all(name, names.iter().copied());
+        let kind = || kind_of_material(name).filter(|_| family == NamedFamily::Material);
+        let known = || did_you_mean_or_list(name, names.iter().copied());
         let help = near.or_else(kind).or_else(known).unwrap_or_else(|| match family {
-            Family::Texture => "the scene has no `textures`; a colour is written [r, g, b] or \"#rrggbb\"".into(),
+            NamedFamily::Texture => "the scene has no `textures`; a color is written [r, g, b] or \"#rrggbb\"".into(),
             _ => format!("the scene has no `{part}`"),
         });
         self.report::<()>(node, at, Finding::error(format!("no {noun} is called `{name}`")).help(help));
     }
 }
 
-/// What to write where a material's kind stands for its name.
+/// Suggests the correct form if a material's name is a kind of material.
 fn kind_of_material(name: &str) -> Option<String> {
     let family = Rule::named("AnyMaterial")?;
     let own = family.kinds.iter().any(|(kind, _)| *kind == name);
     let own = own.then(|| format!("`{name}` is a kind of material: write {{\"{name}\": {{...}}}}"));
-    own.or_else(|| foreign::kind(name, family))
+    own.or_else(|| other_programs::suggest_kind(name, family))
 }

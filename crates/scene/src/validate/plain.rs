@@ -92,7 +92,7 @@ impl<'de> Deserializer<'de> for &'de Plain {
             Plain::Object(members) => visitor.visit_enum(MapAccessDeserializer::new(MapDeserializer::new(
                 members.iter().map(|(key, value)| (&**key, value)),
             ))),
-            _ => Err(Error::invalid_type(Unexpected::Other("a value of no kind"), &"a kind")),
+            _ => Err(Error::invalid_type(Unexpected::Other("a value without a kind"), &"a kind")),
         }
     }
 

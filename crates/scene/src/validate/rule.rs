@@ -1,73 +1,74 @@
-//! The schema as the walk over a scene asks for it: every look-up by a text done once, ahead of all scenes.
+//! The schema compiled to rules for validation. All lookups by text are done once, ahead of all
+//! scenes.
 
-use super::words;
+use super::wording;
 use crate::schema::{Schema, exactly_one, variants};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// What may stand at one place.
+/// Constraints on a value.
 #[derive(Debug)]
 pub struct Rule {
-    /// The name of the definition, when it has one.
+    /// Name of the schema's definition, if it has one.
     pub name: Option<&'static str>,
-    /// The same as a schema, for messages.
+    /// Schema of the value, for messages.
     pub schema: &'static Value,
-    /// Whether everything may stand there, to be checked by others.
-    pub anything: bool,
-    /// Several ways to write a value; empty when there is one.
-    pub ways: Vec<Way>,
+    /// Whether any value is allowed, because it is checked elsewhere.
+    pub allows_anything: bool,
+    /// Alternative forms of the value; empty if there is only one.
+    pub alternatives: Vec<Alternative>,
     /// The kinds of a family.
     pub kinds: Vec<(&'static str, RuleId)>,
-    /// A list of fixed words.
+    /// Fixed words.
     pub words: Vec<&'static str>,
-    /// JSON types that may stand there.
+    /// Allowed JSON types.
     pub types: Types,
-    /// Whether texts are colours.
-    pub color: bool,
+    /// Whether strings are colors.
+    pub is_color: bool,
     /// Limits of a number.
     pub numbers: Numbers,
-    /// Fewest and most elements of an array.
+    /// Minimum and maximum number of elements of an array.
     pub length: (Option<usize>, Option<usize>),
     /// The elements of an array.
     pub items: Option<RuleId>,
-    /// The keys of an object that has fixed ones.
+    /// Fixed keys of an object, with the rules of their values.
     pub fields: Option<Vec<(&'static str, RuleId)>>,
-    /// Values of an object whose keys are names.
-    pub others: Option<RuleId>,
-    /// Keys that must stand.
+    /// Rule of the values of an object whose keys are names.
+    pub additional: Option<RuleId>,
+    /// Required keys.
     pub required: Vec<&'static str>,
-    /// Keys of which exactly one must stand.
+    /// Keys of which exactly one is required.
     pub exactly_one: Vec<&'static str>,
 }
 
-/// A rule's place in the list of all.
+/// Index of a rule in the list of all rules.
 #[derive(Clone, Copy, Debug)]
 pub struct RuleId(usize);
 
-/// One way to write a value.
+/// An alternative form of a value.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
-    /// The definition that offers it.
+pub struct Alternative {
+    /// Name of the definition that offers the form.
     pub owner: Option<&'static str>,
-    /// What may stand there: never itself a choice.
+    /// Rule of the form; never itself a choice of forms.
     pub rule: RuleId,
 }
 
-/// JSON types.
+/// Set of JSON types.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "a set")]
 pub struct Types {
-    /// null
+    /// `null`.
     pub null: bool,
-    /// true or false
+    /// `true` or `false`.
     pub boolean: bool,
     /// Any number.
     pub number: bool,
-    /// Whole numbers.
+    /// Integers.
     pub integer: bool,
-    /// Texts.
+    /// Strings.
     pub string: bool,
     /// Arrays.
     pub array: bool,
@@ -78,58 +79,59 @@ pub struct Types {
 /// Limits of a number.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers {
-    /// Whether it is kept in 32 bits.
+    /// Whether the number is stored as `f32`.
     pub single: bool,
-    /// Not less than this.
-    pub least: Option<f64>,
-    /// Not more than this.
-    pub most: Option<f64>,
-    /// More than this.
-    pub above: Option<f64>,
-    /// Less than this.
-    pub below: Option<f64>,
+    /// Inclusive minimum.
+    pub min: Option<f64>,
+    /// Inclusive maximum.
+    pub max: Option<f64>,
+    /// Exclusive minimum.
+    pub exclusive_min: Option<f64>,
+    /// Exclusive maximum.
+    pub exclusive_max: Option<f64>,
 }
 
-/// Largest double below 2^64. It stands for all whole numbers from there to 2^64 - 1, which doubles do not tell apart.
-pub const MOST_U64: f64 = 18_446_744_073_709_549_568.0;
+/// Largest double below 2^64. It stands for all integers from there to 2^64 - 1, which doubles do
+/// not distinguish.
+pub const MAX_U64: f64 = 18_446_744_073_709_549_568.0;
 
-/// Every rule; the first is that of a whole scene.
+/// All rules; the first is the rule of a whole scene.
 static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| {
     let mut builder = Builder { schema: Schema::get(), rules: Vec::new(), known: BTreeMap::new() };
     builder.rule(Schema::get().root());
-    // Some definitions are only checked by themselves.
+    // Add the definitions that the scene does not refer to.
     for (name, definition) in Schema::get().definitions() {
         builder.add(Some(name), definition);
     }
     builder.rules.into_iter().flatten().collect()
 });
 
-/// Those of definitions, by name.
+/// Rules of definitions by name.
 static NAMED: LazyLock<BTreeMap<&'static str, &'static Rule>> =
     LazyLock::new(|| RULES.iter().filter_map(|rule| Some((rule.name?, rule))).collect());
 
 impl Rule {
-    /// What a whole scene must be.
+    /// Rule of a whole scene.
     pub fn root() -> Option<&'static Self> {
         RULES.first()
     }
 
-    /// Every rule.
+    /// All rules.
     pub fn all() -> &'static [Self] {
         &RULES
     }
 
-    /// What a definition says.
+    /// Rule of a definition.
     pub fn named(name: &str) -> Option<&'static Self> {
         NAMED.get(name).copied()
     }
 
-    /// Whether any number may stand there.
+    /// Whether numbers are allowed.
     pub fn allows_number(&self) -> bool {
         self.types.number || self.types.integer
     }
 
-    /// Whether it is one of several kinds or words.
+    /// Whether the value is one of several kinds or words.
     pub fn is_family(&self) -> bool {
         !self.kinds.is_empty() || !self.words.is_empty()
     }
@@ -142,7 +144,7 @@ impl Rule {
     /// The rule of a key, and the key itself, borrowed from the schema if it is fixed there.
     pub fn member(&self, key: &str) -> Option<(Cow<'static, str>, RuleId)> {
         let field = self.fields.iter().flatten().find(|(name, _)| *name == key);
-        let other = || self.others.map(|rule| (key.to_owned().into(), rule));
+        let other = || self.additional.map(|rule| (key.to_owned().into(), rule));
         field.map(|(name, rule)| ((*name).into(), *rule)).or_else(other)
     }
 }
@@ -150,13 +152,13 @@ impl Rule {
 impl std::ops::Deref for RuleId {
     type Target = Rule;
     fn deref(&self) -> &Rule {
-        // Ids are places in the list, which never changes.
+        // Ids are indices into the list, which never changes.
         &RULES[self.0]
     }
 }
 
 impl RuleId {
-    /// The rule, for good.
+    /// Returns the rule with a static lifetime.
     pub fn get(self) -> &'static Rule {
         &RULES[self.0]
     }
@@ -188,25 +190,25 @@ impl Builder {
 
     fn read(&mut self, name: Option<&'static str>, schema: &'static Value) -> Rule {
         let length = |key: &str| schema.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
-        let (properties, others) = (schema.get("properties"), schema.get("additionalProperties"));
+        let (properties, additional) = (schema.get("properties"), schema.get("additionalProperties"));
         let fields = properties.and_then(Value::as_object);
-        let mut ways = Vec::new();
-        self.ways(name, schema, &mut ways);
+        let mut alternatives = Vec::new();
+        self.alternatives(name, schema, &mut alternatives);
         let family = self.schema;
         Rule {
             name,
             schema,
-            anything: schema.as_bool() == Some(true),
-            ways,
+            allows_anything: schema.as_bool() == Some(true),
+            alternatives,
             kinds: family.kinds(schema).map(|(kind, content)| (kind, self.rule(content))).collect(),
-            words: words::fixed(schema).collect(),
+            words: wording::fixed(schema).collect(),
             types: Types::of(schema),
-            color: schema.get("pattern").is_some(),
+            is_color: schema.get("pattern").is_some(),
             numbers: Numbers::of(schema),
             length: (length("minItems"), length("maxItems")),
             items: schema.get("items").map(|items| self.rule(items)),
             fields: fields.map(|fields| fields.iter().map(|(key, field)| (key.as_str(), self.rule(field))).collect()),
-            others: others.filter(|others| others.is_object()).map(|others| self.rule(others)),
+            additional: additional.filter(|schema| schema.is_object()).map(|schema| self.rule(schema)),
             required: schema
                 .get("required")
                 .and_then(Value::as_array)
@@ -218,14 +220,19 @@ impl Builder {
         }
     }
 
-    /// All ways to write a value, choices inside choices opened.
-    fn ways(&mut self, owner: Option<&'static str>, schema: &'static Value, ways: &mut Vec<Way>) {
+    /// Collects all alternative forms of a value and flattens nested choices.
+    fn alternatives(
+        &mut self,
+        owner: Option<&'static str>,
+        schema: &'static Value,
+        alternatives: &mut Vec<Alternative>,
+    ) {
         for branch in schema.get("anyOf").and_then(Value::as_array).into_iter().flatten() {
             let (name, target) = self.schema.follow(branch);
             if target.get("anyOf").is_some() {
-                self.ways(name.or(owner), target, ways);
+                self.alternatives(name.or(owner), target, alternatives);
             } else {
-                ways.push(Way { owner, rule: self.rule(branch) });
+                alternatives.push(Alternative { owner, rule: self.rule(branch) });
             }
         }
     }
@@ -233,7 +240,7 @@ impl Builder {
 
 impl Types {
     fn of(schema: &Value) -> Self {
-        let allows = |json_type| words::allows(schema, json_type);
+        let allows = |json_type| wording::allows(schema, json_type);
         Self {
             null: allows("null"),
             boolean: allows("boolean"),
@@ -250,36 +257,37 @@ impl Numbers {
     fn of(schema: &Value) -> Self {
         let format = schema.get("format").and_then(Value::as_str).unwrap_or_default();
         let single = format == "float";
-        // A limit of a 32-bit number is rounded as the number itself is, so that the limit's own value is allowed.
+        // Round the limit of a 32-bit number as the number itself, so that the limit's own value is
+        // allowed.
         let rounded = |bound: f64| if single { f64::from(bound as f32) } else { bound };
         let bound = |key: &str| schema.get(key).and_then(Value::as_f64).map(rounded);
-        // The largest number of an integer type is left to the format's name.
+        // The maximum of an integer type follows from its format.
         let largest = match format {
             "uint32" => Some(u32::MAX.into()),
-            "uint64" => Some(MOST_U64),
+            "uint64" => Some(MAX_U64),
             "int32" => Some(i32::MAX.into()),
             _ => None,
         };
         Self {
             single,
-            least: bound("minimum"),
-            most: bound("maximum").or(largest),
-            above: bound("exclusiveMinimum"),
-            below: bound("exclusiveMaximum"),
+            min: bound("minimum"),
+            max: bound("maximum").or(largest),
+            exclusive_min: bound("exclusiveMinimum"),
+            exclusive_max: bound("exclusiveMaximum"),
         }
     }
 
-    /// The limit that a value breaks, in words.
-    pub fn broken_by(&self, value: f64) -> Option<String> {
-        if let (Some(least), Some(most)) = (self.least, self.most) {
-            let broken = value < least || value > most;
-            return broken.then(|| format!("between {} and {}", shown(least), shown(most)));
+    /// Describes the limit that a value violates; `None` if it violates none.
+    pub fn violated_limit(&self, value: f64) -> Option<String> {
+        if let (Some(min), Some(max)) = (self.min, self.max) {
+            let broken = value < min || value > max;
+            return broken.then(|| format!("between {} and {}", shown(min), shown(max)));
         }
         let rules = [
-            (self.above.filter(|b| value <= *b), "greater than"),
-            (self.below.filter(|b| value >= *b), "less than"),
-            (self.least.filter(|b| value < *b), "at least"),
-            (self.most.filter(|b| value > *b), "at most"),
+            (self.exclusive_min.filter(|b| value <= *b), "greater than"),
+            (self.exclusive_max.filter(|b| value >= *b), "less than"),
+            (self.min.filter(|b| value < *b), "at least"),
+            (self.max.filter(|b| value > *b), "at most"),
         ];
         rules.into_iter().find_map(|(broken, words)| broken.map(|bound| format!("{words} {}", shown(bound))))
     }
@@ -289,8 +297,8 @@ fn shown(bound: f64) -> String {
     let single = bound as f32;
     let is_large = bound.abs() >= 1.0e16;
     match f64::from(single) == bound {
-        _ if bound == MOST_U64 => u64::MAX.to_string(),
-        // The digits that a 32-bit number needs: 0.01, not 0.009999999776482582.
+        _ if bound == MAX_U64 => u64::MAX.to_string(),
+        // Print the digits that a 32-bit number needs: 0.01, not 0.009999999776482582.
         true if is_large => format!("{single:e}"),
         true => single.to_string(),
         false if is_large => format!("{bound:e}"),

@@ -1,19 +1,19 @@
-//! Numbers and strings.
+//! Checks of numbers and strings.
 
-use super::names::Family;
-use super::rule::{MOST_U64, Rule};
-use super::{Plain, Walk};
+use super::names::NamedFamily;
+use super::rule::{MAX_U64, Rule};
+use super::{Plain, Validator};
 use crate::document::Node;
-use crate::path::Trail;
+use crate::path::PathRef;
 use crate::report::Finding;
 use juggler_math::Rgb;
 use serde_json::{Number, Value};
 
-impl Walk<'_> {
+impl Validator<'_> {
     pub(super) fn number(
         &mut self,
         node: &Node,
-        at: &Trail<'_>,
+        at: &PathRef<'_>,
         number: &Number,
         rule: &'static Rule,
     ) -> Option<Plain> {
@@ -22,22 +22,22 @@ impl Walk<'_> {
         if whole && written != written.trunc() {
             return self.wrong_number(node, at, "a whole number", number);
         }
-        // Limits are meant for the number that will be used: 1e-60 is 0 in 32 bits.
+        // Check limits against the number as it is used: 1e-60 is 0 in 32 bits.
         let value = if rule.numbers.single { f64::from(written as f32) } else { written };
-        // Whole numbers up to 2^64 - 1 are kept exactly; as a double the largest of them would be 2^64.
-        let value = if whole && number.is_u64() { value.min(MOST_U64) } else { value };
+        // Integers up to 2^64 - 1 are kept exactly; as a double the largest of them would be 2^64.
+        let value = if whole && number.is_u64() { value.min(MAX_U64) } else { value };
         if !value.is_finite() {
             return self.wrong_number(node, at, "between -3.4e38 and 3.4e38", number);
         }
-        if matches!(at, Trail::Key(Trail::Root, "version")) && value != 1.0 {
-            let message = format!("this is version {number} of the format, this program reads version 1");
+        if matches!(at, PathRef::Key(PathRef::Root, "version")) && value != 1.0 {
+            let message = format!("unsupported version {number} of the scene format: this program reads version 1");
             self.report::<()>(node, at, Finding::error(message));
-            // The rest may be right all the same.
+            // Continue with version 1, since the rest may be valid.
             return Some(Plain::Number(1.into()));
         }
-        if let Some(bound) = rule.numbers.broken_by(value) {
+        if let Some(bound) = rule.numbers.violated_limit(value) {
             if value == 0.0 && written != 0.0 {
-                let message = format!("`{number}` is too small a number: in 32 bits it is 0");
+                let message = format!("`{number}` is too small: it rounds to 0 in 32 bits");
                 return self.report(node, at, Finding::error(message).help(format!("it must be {bound}")));
             }
             return self.wrong_number(node, at, &bound, number);
@@ -49,29 +49,29 @@ impl Walk<'_> {
         Some(Plain::Number(number.clone()))
     }
 
-    fn wrong_number(&mut self, node: &Node, at: &Trail<'_>, wanted: &str, number: &Number) -> Option<Plain> {
+    fn wrong_number(&mut self, node: &Node, at: &PathRef<'_>, expected: &str, number: &Number) -> Option<Plain> {
         let subject = match (at, at.last_key()) {
-            (Trail::Key(..), Some(key)) => format!("`{key}`"),
+            (PathRef::Key(..), Some(key)) => format!("`{key}`"),
             (_, Some(key)) => format!("each number of `{key}`"),
             (_, None) => "the number".into(),
         };
         let mut shown = Value::Number(number.clone());
-        crate::schema::tidy(&mut shown);
-        self.report(node, at, Finding::error(format!("{subject} must be {wanted}, is {shown}")))
+        crate::schema::shorten_numbers(&mut shown);
+        self.report(node, at, Finding::error(format!("{subject} must be {expected}, is {shown}")))
     }
 
-    pub(super) fn string(&mut self, node: &Node, at: &Trail<'_>, text: &str, rule: &'static Rule) -> Option<Plain> {
+    pub(super) fn string(&mut self, node: &Node, at: &PathRef<'_>, text: &str, rule: &'static Rule) -> Option<Plain> {
         let family = match rule.name {
-            Some("GroupName") => Some(Family::Group),
-            Some("CameraName") => Some(Family::Camera),
+            Some("GroupName") => Some(NamedFamily::Group),
+            Some("CameraName") => Some(NamedFamily::Camera),
             _ => None,
         };
         if let Some(family) = family {
-            self.refer(family, node, text, at);
+            self.check_reference(family, node, text, at);
         }
-        if rule.color && Rgb::from_hex(text).is_none() {
-            let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\"";
-            return self.report(node, at, Finding::error(format!("`{text}` is not a colour")).help(help));
+        if rule.is_color && Rgb::from_hex(text).is_none() {
+            let help = "a color is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\"";
+            return self.report(node, at, Finding::error(format!("`{text}` is not a color")).help(help));
         }
         Some(Plain::String(text.to_owned()))
     }

@@ -1,34 +1,34 @@
-//! Arrays and objects.
+//! Checks of arrays and objects.
 
 use super::rule::Rule;
-use super::{MAX_FINDINGS, Plain, Walk, foreign, words};
+use super::{MAX_FINDINGS, Plain, Validator, other_programs, wording};
 use crate::document::{Member, Members, Node};
-use crate::path::Trail;
+use crate::path::PathRef;
 use crate::report::Finding;
-use crate::suggest::meant_or_all;
+use crate::suggest::did_you_mean_or_list;
 
-/// Objects that stay when one of their members is wrong: the others can still be checked. In all others (a
-/// camera, a shape) members hang together.
-const LOOSE: [&str; 2] = ["Object", "Render"];
+/// Objects that are kept when one of their members is invalid, so that the others can still be
+/// checked. Members of all other objects (such as cameras and shapes) depend on each other.
+const INDEPENDENT: [&str; 2] = ["Object", "Render"];
 
-impl Walk<'_> {
+impl Validator<'_> {
     pub(super) fn array(
         &mut self,
         node: &Node,
-        at: &Trail<'_>,
+        at: &PathRef<'_>,
         elements: &[Node],
         rule: &'static Rule,
     ) -> Option<Plain> {
         let found = elements.len();
-        let wanted = match rule.length {
+        let expected = match rule.length {
             (Some(least), Some(most)) if least == most && found != least => Some(least.to_string()),
             (Some(least), _) if found < least => Some(format!("at least {least}")),
             (_, Some(most)) if found > most => Some(format!("at most {most}")),
             _ => None,
         };
-        if let Some(wanted) = wanted {
-            let what = words::elements(self.schema, rule.schema);
-            let message = format!("expected {wanted} {what} in this array, found {found}");
+        if let Some(expected) = expected {
+            let what = wording::elements(self.schema, rule.schema);
+            let message = format!("expected {expected} {what} in this array, found {found}");
             return self.report(node, at, Finding::error(message));
         }
         let items = rule.items?.get();
@@ -45,14 +45,14 @@ impl Walk<'_> {
     pub(super) fn object(
         &mut self,
         node: &Node,
-        at: &Trail<'_>,
+        at: &PathRef<'_>,
         members: &Members,
         rule: &'static Rule,
     ) -> Option<Plain> {
         let root = at.is_root();
-        let loose = root || rule.name.is_some_and(|name| LOOSE.contains(&name)) || rule.fields.is_none();
+        let is_loose = root || rule.name.is_some_and(|name| INDEPENDENT.contains(&name)) || rule.fields.is_none();
         let mut json = Vec::with_capacity(members.len());
-        let mut sound = true;
+        let mut is_valid = true;
         for (key, member) in members.iter() {
             if self.findings.len() >= MAX_FINDINGS {
                 return None;
@@ -60,12 +60,12 @@ impl Walk<'_> {
             let Some((name, field)) = rule.member(key) else {
                 let finding = unknown_key(key, member, rule, at).on(member.key_place);
                 self.findings.push(finding.at(&at.key(key)));
-                sound = false;
+                is_valid = false;
                 continue;
             };
             match self.value(&member.node, &at.key(key), field.get()) {
                 Some(value) => json.push((name, value)),
-                None => sound = false,
+                None => is_valid = false,
             }
         }
         let complete = self.required(node, at, members, rule);
@@ -73,73 +73,73 @@ impl Walk<'_> {
         if root && !json.iter().any(|(key, _)| key == "version") {
             json.push(("version".into(), Plain::Number(1.into())));
         }
-        ((complete || root) && (sound || loose)).then_some(Plain::Object(json))
+        ((complete || root) && (is_valid || is_loose)).then_some(Plain::Object(json))
     }
 
-    /// Whether all keys stand that must stand.
-    fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) -> bool {
+    /// Checks that all required keys are present.
+    fn required(&mut self, node: &Node, at: &PathRef<'_>, members: &Members, rule: &'static Rule) -> bool {
         let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(key)).collect();
         if missing.is_empty() {
             return true;
         }
         let verb = if missing.len() == 1 { "is" } else { "are" };
         let mut finding =
-            Finding::error(format!("{} {verb} missing here", words::list(missing.iter().copied(), "and")));
+            Finding::error(format!("{} {verb} missing here", wording::list(missing.iter().copied(), "and")));
         if missing == ["version"] {
             finding = finding.help("a scene file begins with {\"version\": 1, ...");
         }
         self.report::<()>(node, at, finding).is_some()
     }
 
-    /// Complains when not exactly one of some keys stands.
-    fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) {
+    /// Reports an error unless exactly one of some keys is present.
+    fn exactly_one(&mut self, node: &Node, at: &PathRef<'_>, members: &Members, rule: &'static Rule) {
         let keys = rule.exactly_one.iter().copied();
         let found = keys.clone().filter(|key| members.contains_key(key));
         let count = found.clone().count();
         if rule.exactly_one.is_empty() || count == 1 {
             return;
         }
-        let found = if count == 0 { "none".into() } else { words::list(found, "and") };
-        let message = format!("exactly one of {} must stand here, found {found}", words::list(keys, "and"));
-        // A misspelt one is its own message.
+        let found = if count == 0 { "none".into() } else { wording::list(found, "and") };
+        let message = format!("exactly one of {} is required, found {found}", wording::list(keys, "and"));
+        // A misspelled key has its own message.
         let misspelt = members.keys().any(|key| rule.field(key).is_none());
         let help = match found.as_str() {
             "none" if misspelt => return,
-            "none" => "write for example \"shape\": \"sphere\"",
-            _ => "make it several objects, one for each",
+            "none" => "write, for example, \"shape\": \"sphere\"",
+            _ => "write several objects, one for each",
         };
         self.report::<()>(node, at, Finding::error(message).help(help));
     }
 }
 
-fn unknown_key(key: &str, member: &Member, rule: &'static Rule, at: &Trail<'_>) -> Finding {
+fn unknown_key(key: &str, member: &Member, rule: &'static Rule, at: &PathRef<'_>) -> Finding {
     let has_settings = rule.fields.iter().flatten().next().is_some();
     if let (false, Some(owner)) = (has_settings, at.last_key()) {
-        let help = foreign::key(key, rule).unwrap_or_else(|| format!("write \"{owner}\": {{}}"));
-        return Finding::error(format!("`{owner}` has no setting `{key}`, nor any other")).help(help);
+        let help = other_programs::suggest_key(key, rule).unwrap_or_else(|| format!("write \"{owner}\": {{}}"));
+        return Finding::error(format!("`{owner}` has no settings, so `{key}` is not allowed")).help(help);
     }
-    let tagged = member.node.as_str().filter(|_| key == "type").and_then(|kind| home_of(kind, rule));
-    Finding::error(format!("`{key}` is not known here")).maybe_help(tagged.or_else(|| meant(key, rule)))
+    let tagged = member.node.as_str().filter(|_| key == "type").and_then(|kind| parent_key(kind, rule));
+    Finding::error(format!("unknown key `{key}`")).maybe_help(tagged.or_else(|| suggest_key(key, rule)))
 }
 
-/// What an unknown key of an object probably means: a kind of what stands in one of its keys, a word
-/// of another program, or a known key.
-pub(super) fn meant(key: &str, rule: &'static Rule) -> Option<String> {
+/// Suggests a replacement for an unknown key: the key that takes a kind of this name, the name here
+/// of another program's word, or a similar known key.
+pub(super) fn suggest_key(key: &str, rule: &'static Rule) -> Option<String> {
     let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
-    let foreign = || foreign::key(key, rule);
-    home_of(key, rule).or_else(foreign).or_else(|| meant_or_all(key, known.iter().copied()))
+    let other = || other_programs::suggest_key(key, rule);
+    parent_key(key, rule).or_else(other).or_else(|| did_you_mean_or_list(key, known.iter().copied()))
 }
 
-/// Where a kind by this name belongs in an object: `sphere` is a kind of shape, which stands under
-/// `shape`.
-fn home_of(kind: &str, rule: &'static Rule) -> Option<String> {
+/// Suggests the key of an object under which a kind of this name belongs: `sphere` is a kind of
+/// shape and belongs under `shape`.
+fn parent_key(kind: &str, rule: &'static Rule) -> Option<String> {
     rule.fields.iter().flatten().find_map(|(field, content)| {
-        let ways = content.ways.iter().map(|way| way.rule.get());
-        let families = std::iter::once(content.get()).chain(ways);
+        let alternatives = content.alternatives.iter().map(|alternative| alternative.rule.get());
+        let families = std::iter::once(content.get()).chain(alternatives);
         families.into_iter().find_map(|family| {
             let own = family.kinds.iter().map(|(name, _)| *name).find(|name| *name == kind);
-            let name = own.or_else(|| foreign::kind_name(kind, family).filter(|_| *field == "shape"))?;
-            let noun = words::noun(family.name?);
+            let name = own.or_else(|| other_programs::kind_name(kind, family).filter(|_| *field == "shape"))?;
+            let noun = wording::noun(family.name?);
             let called = if name == kind {
                 format!("`{kind}` is a kind of {noun}")
             } else {

@@ -1,4 +1,4 @@
-//! What moves, against closed forms: tracks, paths, joints, vector variables, visibility.
+//! Motion compared with closed forms: tracks, paths, joints, vector variables, visibility.
 
 #![expect(clippy::needless_pass_by_value, reason = "values are written where they are passed")]
 
@@ -9,7 +9,7 @@ use juggler_shape::Sphere;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-/// What `form` is at a second, in a scene with what `more` says.
+/// Value of `form` at a time in seconds, in a scene with the members `more`.
 fn value_in(more: Value, form: Value, seconds: f64) -> Value {
     let mut tree = json!({"version": 1, "animation": {"frames": 100, "frames_per_second": 4}, "here": form});
     tree.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
@@ -118,7 +118,7 @@ fn ease_is_that_of_css() {
     assert!((number(&own, 3.0) - 6.846_431_9).abs() < 1e-6, "a key's own ease goes before that of all");
 }
 
-/// In the middle of even keys: Catmull and Rom's own matrix.
+/// Halfway between evenly spaced keys, against the matrix of Catmull and Rom.
 #[test]
 fn smooth_is_catmull_rom() {
     let values = [0.0, 1.0, -2.0, 5.0, 3.0];
@@ -140,7 +140,7 @@ fn smooth_is_catmull_rom() {
     }
 }
 
-/// One-sided speeds, by differences.
+/// One-sided derivatives by finite differences.
 fn speeds(form: &Value, seconds: f64) -> [f64; 2] {
     let step = 1e-5;
     let at = |seconds: f64| number(form, seconds);
@@ -206,13 +206,13 @@ fn joints_keep_the_lengths_of_bones() {
         near(distance(&joint, &[0.0, seconds, 0.0]), 3.0);
         near(distance(&joint, &[1.0, 4.0, 1.0]), 2.0);
     }
-    // The limb of spheres meets there, too.
+    // The limb's spheres meet at the joint too.
     let limb = r#"{"version": 1, "objects": [{"limb": {"from": [0, 1, 0], "to": [1, 4, 1], "lengths": [3, 2],
         "plane_normal": [1, 0, 3], "radii": [1, 1, 1]}}]}"#;
     let limb = Scene::from_json(limb, "a.json").unwrap().description.objects[0].limb.unwrap();
     let joint = vector(&value(json!({"joint": bones}), 1.0));
-    let bead = limb.beads().unwrap()[8].center.as_dvec3().to_array();
-    assert!(distance(&joint, &bead) < 1e-6);
+    let sphere = limb.spheres().unwrap()[8].center.as_dvec3().to_array();
+    assert!(distance(&joint, &sphere) < 1e-6);
 }
 
 #[test]
@@ -259,14 +259,14 @@ fn what_is_not_visible_is_not_there() {
             {"objects": [{"shape": "sphere"}, {"group": "pair"}], "visible": {"animate": {
                 "keys": [[0, true], [3, false]], "interpolation": "step"}}}]}"#;
     let scene = Scene::from_json(text, "a.json").unwrap();
-    let shapes = |frame: f64| scene.at_frame(frame).unwrap().compile().unwrap().world.geometry().shapes;
+    let shapes = |frame: f64| scene.at_frame(frame).unwrap().compile().unwrap().world.geometry_stats().shapes;
     assert_eq!([0.0, 1.0, 2.0, 3.0].map(shapes), [3, 4, 3, 1]);
     assert_eq!(scene.at_frame(2.0).unwrap().needs().objects, 3);
     let built = Scene::new().add(Object::new(Sphere::default())).add(Object::new(Sphere::default()).visible(false));
-    assert_eq!(built.compile().unwrap().world.geometry().shapes, 1);
+    assert_eq!(built.compile().unwrap().world.geometry_stats().shapes, 1);
 }
 
-/// What is not there is not expanded: a billion objects that nobody sees are none.
+/// Invisible objects are not expanded: a billion of them cost nothing.
 #[test]
 fn what_is_not_visible_costs_nothing() -> Result<(), SceneError> {
     let ten = |group: &str| Value::from(vec![json!({"group": group, "visible": 0}); 10]);
@@ -276,7 +276,7 @@ fn what_is_not_visible_costs_nothing() -> Result<(), SceneError> {
     groups.insert("me".into(), json!([{"group": "me", "visible": false}]));
     let scene =
         json!({"version": 1, "groups": groups, "objects": [{"group": "g39"}, {"group": "me"}, {"shape": "sphere"}]});
-    assert_eq!(Scene::from_json(scene.to_string(), "a.json")?.compile()?.world.geometry().shapes, 1);
+    assert_eq!(Scene::from_json(scene.to_string(), "a.json")?.compile()?.world.geometry_stats().shapes, 1);
     Ok(())
 }
 
@@ -326,14 +326,14 @@ fn a_survey_tells_what_moves() {
             "repeat": "ping_pong", "at": "=t"}}}}, "transform": [{"translate": {"along": {"path": "way", "at": "=t"}}}]}]}"#;
     let survey = Scene::from_json(text, "a.json").unwrap().survey();
     assert_eq!(survey.expressions, 4);
-    let told: Vec<_> = survey.tracks.iter().map(|track| (track.path.to_string(), track.kind.as_str())).collect();
+    let forms: Vec<_> = survey.forms.iter().map(|track| (track.path.to_string(), track.kind.as_str())).collect();
     assert_eq!(
-        told,
+        forms,
         [("objects[0].shape.sphere.radius".into(), "animate"), ("objects[0].transform[0].translate".into(), "along")]
     );
-    let track = &survey.tracks[0];
-    assert_eq!((track.keys, track.span), (Some(2), Some([1.0, 4.0])));
-    assert_eq!(survey.tracks[1].along.as_deref(), Some("way"));
+    let track = &survey.forms[0];
+    assert_eq!((track.keys, track.time_range), (Some(2), Some([1.0, 4.0])));
+    assert_eq!(survey.forms[1].along.as_deref(), Some("way"));
 }
 
 #[test]
@@ -350,7 +350,7 @@ fn paths_of_included_files_belong_to_the_scene() {
     };
     assert_eq!(main("").unwrap().still().to_value()["objects"][0]["transform"][0]["translate"], json!([2, 0, 0]));
     let twice = main(r#""paths": {"way": {"points": [[0, 0, 0]]}},"#).unwrap_err().to_string();
-    assert!(twice.contains("`way` in `paths` has been defined before"), "{twice}");
+    assert!(twice.contains("`way` in `paths` is already defined"), "{twice}");
 }
 
 #[test]
@@ -364,7 +364,7 @@ fn a_number_of_visibility_is_yes_or_no() {
     assert_ne!(scene("true"), scene("false"));
 }
 
-/// Tracks move what they move while the shutter is open, too; what looks up one time only does not.
+/// Tracks move items while the shutter is open; tracks evaluated at a constant time do not move.
 #[test]
 fn tracks_are_seen_by_an_open_shutter() {
     let moves = |at: &str, shutter: &str| {
@@ -381,7 +381,7 @@ fn tracks_are_seen_by_an_open_shutter() {
     assert!(!moves("", "[0, 0]") && !moves(", \"at\": 0.5", "[0, 0.5]"));
 }
 
-/// Far more than anybody writes, still in bounded time.
+/// Extreme numbers of keys and points are evaluated in bounded time.
 #[test]
 fn many_keys_and_points_are_read_at_each_frame() {
     let keys: Vec<Value> = (0..50_000).map(|i| json!([i, [i, 0, 0]])).collect();

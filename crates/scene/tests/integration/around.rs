@@ -1,4 +1,4 @@
-//! Mesh files given as scenes, and files of other programs.
+//! Mesh files loaded as scenes, and files of other programs.
 
 use crate::import_files::asset;
 use juggler_integrator::AnyIntegrator;
@@ -6,10 +6,10 @@ use juggler_scene::{Bundle, Scene, SceneError};
 use std::fs;
 use std::path::Path;
 
-/// A tetrahedron with its base on y = 0.
+/// A tetrahedron with its base in the plane y = 0.
 const TETRAHEDRON: &str = "v 0 0 0\nv 2 0 0\nv 0 0 2\nv 0 2 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
 
-/// A tower along z, as printers have it, of one triangle in the plane x = 0.
+/// A tower along z, as in 3D printing: one triangle in the plane x = 0.
 const TOWER: &str = "solid tower\nfacet normal 1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 0 0 8\n\
                      endloop\nendfacet\nendsolid tower\n";
 
@@ -21,7 +21,7 @@ fn message(name: &str, content: &[u8]) -> String {
     error.replace(&format!("{}/", folder.path().display()), "")
 }
 
-/// The scene of a file or around a mesh, without mistakes or warnings.
+/// Loads the scene of a file or around a mesh and asserts that it has no errors and no warnings.
 fn around(path: &Path) -> Scene {
     let scene = Scene::load(path).unwrap();
     assert!(scene.check().list().is_empty(), "{}: {}", path.display(), scene.check());
@@ -39,7 +39,7 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
     assert!(matches!(description.render.integrator, Some(AnyIntegrator::Path(_))));
     assert_eq!((description.objects.len(), description.lights.len()), (2, 1));
     let compiled = scene.compile().unwrap();
-    assert_eq!(compiled.world.geometry().triangles, 4);
+    assert_eq!(compiled.world.geometry_stats().triangles, 4);
     assert_eq!(scene.paths(), std::slice::from_ref(&path), "the mesh is watched");
     // Edits and other frames work as for scene files.
     let edited = scene.with_value("/materials/model/plastic/roughness", 0.1.into()).unwrap();
@@ -57,7 +57,7 @@ fn printers_have_z_up() {
     assert!((bounds.max.y - 8.0).abs() < 1e-5 && bounds.max.z < 1e-5, "{bounds:?}");
 }
 
-/// A scene that is written to another folder still finds its files.
+/// A scene that is written to another folder still refers to its files.
 #[test]
 fn files_are_named_from_the_folder_that_a_scene_is_written_to() {
     let folder = tempfile::tempdir().unwrap();
@@ -77,16 +77,16 @@ fn files_are_named_from_the_folder_that_a_scene_is_written_to() {
         assert!(json.contains(&format!("\"file\": \"{name}\"")), "{json}");
         let file = folder.join("second.json");
         fs::write(&file, json).unwrap();
-        assert_eq!(around(&file).compile().unwrap().world.geometry().triangles, 4);
+        assert_eq!(around(&file).compile().unwrap().world.geometry_stats().triangles, 4);
     }
 }
 
 #[test]
 fn formats_that_are_not_read_yet_are_named() {
     let gltf = message("car.glb", b"glTF\x02\0\0\0");
-    assert_eq!(gltf, "`car.glb`: glTF is not read yet; meshes in OBJ, PLY and STL are");
+    assert_eq!(gltf, "`car.glb`: glTF is not supported; supported mesh formats: OBJ, PLY and STL");
     assert_eq!(message("car.gltf", br#"{"asset": {"version": "2.0"}}"#), gltf.replace("glb", "gltf"));
-    assert!(message("car.obj", b"Kaydara FBX Binary  \0").contains("FBX is not read yet"));
+    assert!(message("car.obj", b"Kaydara FBX Binary  \0").contains("FBX is not supported"));
     assert!(message("room.pov", b"// a room\nsphere { 0, 1 }").contains("docs/names.md"));
     let in_scene = br#"{"version": 1, "objects": [{"shape": {"mesh": {"file": "car.glb"}}}]}"#;
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +94,7 @@ fn formats_that_are_not_read_yet_are_named() {
     let path = folder.path().join("scene.json");
     fs::write(&path, in_scene).unwrap();
     let scene = Scene::load(&path).unwrap();
-    assert!(scene.check().to_string().contains("car.glb`: glTF is not read yet"), "{}", scene.check());
+    assert!(scene.check().to_string().contains("car.glb`: glTF is not supported"), "{}", scene.check());
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn broken_meshes_say_where() {
     assert!(matches!(Scene::load("none.obj"), Err(SceneError::Read { .. })));
 }
 
-/// Real models, as far as they are there.
+/// Tests real models, if they are available.
 #[test]
 fn models_of_the_assets_get_scenes() {
     for name in ["obj/teapot.obj", "obj/spot/spot_triangulated.obj", "ply/suzanne.ply", "stl/featuretype.STL"] {

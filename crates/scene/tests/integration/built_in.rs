@@ -1,4 +1,4 @@
-//! The scenes that are part of the program.
+//! The built-in scenes.
 
 use juggler_scene::{BuiltIn, Scene, SceneError, built_in_scenes};
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ fn every_built_in_scene_is_sound() {
             let frame = scene.at_frame(f64::from(frame)).unwrap_or_else(|error| panic!("{name}\n{error}"));
             let compiled = frame.compile().unwrap_or_else(|error| panic!("{name}\n{error}"));
             assert!(compiled.warnings.list().is_empty(), "{name}\n{}", compiled.warnings);
-            assert!(compiled.world.geometry().shapes > 0, "{name} is empty");
+            assert!(compiled.world.geometry_stats().shapes > 0, "{name} is empty");
         }
         assert!(json.ends_with("}\n"), "{name} must end with one newline");
     }
@@ -44,13 +44,13 @@ fn every_built_in_scene_says_what_it_is() {
         let description = Scene::built_in(name).unwrap().description;
         assert_eq!(built_in.description(), description.description, "{name}");
         assert!(!description.title.is_empty(), "{name} has no title");
-        let told = description.description;
-        assert!((20..=140).contains(&told.chars().count()), "{name}: the description should be one line: {told}");
-        assert!(!told.contains('\n') && !told.ends_with('.'), "{name}: a line without a full stop, not: {told}");
+        let text = description.description;
+        assert!((20..=140).contains(&text.chars().count()), "{name}: the description should be one line: {text}");
+        assert!(!text.contains('\n') && !text.ends_with('.'), "{name}: a line without a full stop, not: {text}");
     }
 }
 
-/// They are rendered where no files are.
+/// Built-in scenes are rendered without a file system.
 #[test]
 fn no_built_in_scene_needs_another_file() {
     for BuiltIn { name, .. } in built_in_scenes() {

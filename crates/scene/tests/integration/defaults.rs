@@ -1,10 +1,10 @@
-//! What a scene gets that leaves things open: an integrator, lights, and warnings of lights that light nothing.
+//! Defaults of incomplete scenes: integrator, lights, and warnings about lights without effect.
 
 use juggler_math::Vec3;
-use juggler_scene::compile::Part;
+use juggler_scene::compile::ShapePlace;
 use juggler_scene::{IntegratorReason, Scene};
 
-/// A scene of these members.
+/// A scene with these members.
 fn scene(members: &str) -> Scene {
     let separator = if members.is_empty() { "" } else { "," };
     Scene::from_json(format!(r#"{{"version": 1{separator} {members}}}"#), "s.json").unwrap()
@@ -14,7 +14,7 @@ fn sphere(material: &str) -> String {
     format!(r#""objects": [{{"shape": "sphere", "material": {material}}}]"#)
 }
 
-/// The warnings of a scene that has nothing worse: paths and messages.
+/// Paths and messages of a scene's warnings; the scene must have no errors.
 fn warnings(scene: &Scene) -> Vec<(String, String)> {
     let problems = scene.check();
     assert_eq!(problems.errors(), 0, "{problems}");
@@ -36,39 +36,39 @@ fn scenes_of_the_classic_kind_stay_classic() {
     ] {
         let choice = scene(members).integrator_choice();
         assert_eq!((choice.integrator.name(), &choice.reason), ("classic", &IntegratorReason::Classic), "{members}");
-        assert_eq!(choice.reason.to_string(), "chosen because all lights and materials are of the classic kind");
+        assert_eq!(
+            choice.reason.to_string(),
+            "chosen because `classic` supports all lights and materials of the scene"
+        );
     }
 }
 
 #[test]
 fn what_classic_cannot_do_asks_for_paths() {
     for (members, says) in [
-        (sphere(r#"{"emissive": {}}"#), "light a scene by `emissive`, which `objects[0].material` holds"),
+        (sphere(r#"{"emissive": {}}"#), "`emissive` at `objects[0].material`"),
         (
             r#""materials": {"lamp": {"emissive": {}}}, "objects": [{"shape": "sphere", "material": "lamp"}]"#.into(),
-            "light a scene by `emissive`, which `materials.lamp` holds",
+            "`emissive` at `materials.lamp`",
         ),
-        (
-            sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"dielectric": {}}}}"#),
-            "shade a surface by `dielectric`, which `objects[0].material` holds",
-        ),
-        (sphere(r#"{"principled": {}}"#), "shade a surface by `principled`"),
-        (sphere(r#"{"boundary": {"medium": {"scattering": 0.1}}}"#), "shade a surface by `boundary`"),
-        (r#""background": {"sky": {}}, "objects": []"#.into(), "light a scene by `sky`, which `background` holds"),
+        (sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"dielectric": {}}}}"#), "`dielectric` at `objects[0].material`"),
+        (sphere(r#"{"principled": {}}"#), "`principled` at `objects[0].material`"),
+        (sphere(r#"{"boundary": {"medium": {"scattering": 0.1}}}"#), "`boundary` at `objects[0].material`"),
+        (r#""background": {"sky": {}}, "objects": []"#.into(), "`sky` at `background`"),
         (
             r#""groups": {"pair": [{"objects": [{"shape": "cuboid", "material": {"diffuse": {}}}]}]}, "objects": []"#
                 .into(),
-            "shade a surface by `diffuse`, which `groups.pair[0].objects[0].material` holds",
+            "`diffuse` at `groups.pair[0].objects[0].material`",
         ),
         (
             r#""lights": [{"point": {}}, {"area": {}}], "materials": {"a": {"diffuse": {}}}, "objects": []"#.into(),
-            "light a scene by `area`, which `lights[1]` holds",
+            "`area` at `lights[1]`",
         ),
     ] {
         let choice = scene(&members).integrator_choice();
         let reason = choice.reason.to_string();
         assert_eq!(choice.integrator.name(), "path", "{members}");
-        assert!(reason.starts_with("chosen because `classic` cannot ") && reason.contains(says), "{reason}");
+        assert!(reason.starts_with("chosen because `classic` does not support ") && reason.contains(says), "{reason}");
         let named = scene(&format!(r#""render": {{"integrator": "classic"}}, {members}"#)).integrator_choice();
         assert_eq!((named.integrator.name(), named.reason), ("classic", IntegratorReason::Scene));
     }
@@ -95,9 +95,9 @@ fn a_chosen_integrator_counts_as_one_that_is_named() {
 fn unlit_scenes_get_light_that_their_integrator_finds() {
     let key = |members: &str| {
         let world = scene(members).compile().unwrap().world;
-        let lamp = world.lamps()[0].at(0.0).light.sample(Vec3::ZERO, juggler_math::Vec2::ZERO).unwrap();
-        assert_eq!(world.lamps().len(), 1);
-        (lamp.radiance.g, world.ambient().g)
+        let light = world.lights()[0].at(0.0).light.sample(Vec3::ZERO, juggler_math::Vec2::ZERO).unwrap();
+        assert_eq!(world.lights().len(), 1);
+        (light.radiance.g, world.ambient().g)
     };
     let (classic, ambient) = key(r#""objects": [{"shape": "sphere"}]"#);
     assert!((classic - 0.6).abs() < 0.01 && ambient == 0.15, "{classic} {ambient}");
@@ -117,19 +117,22 @@ fn lights_that_light_nothing_are_warned_of() {
     assert_eq!(
         warnings(&path),
         [
-            ("lights[0]".to_owned(), "an `ambient` light lights nothing under `path`".to_owned()),
-            ("lights[1].point.samples".into(), "`samples` of a light has no effect under `path`".into()),
+            ("lights[0]".to_owned(), "an `ambient` light has no effect with the integrator `path`".to_owned()),
+            ("lights[1].point.samples".into(), "`samples` of a light has no effect with the integrator `path`".into()),
         ]
     );
     assert_eq!(warnings(&scene(&format!(r#"{lights}, "objects": []"#))), []);
     let classic = |more: &str| scene(&format!(r#""render": {{"integrator": "classic"}}, {more}"#));
-    let lamp = sphere(r#"{"emissive": {}}"#);
-    let said = |message: &str, path: &str| vec![(path.to_owned(), message.to_owned())];
-    let emits = said("`emissive` lights nothing under `classic`", "objects[0].material");
-    assert_eq!(warnings(&classic(&lamp)), emits);
-    assert_eq!(warnings(&scene(&lamp)), []);
+    let light = sphere(r#"{"emissive": {}}"#);
+    let warning = |message: &str, path: &str| vec![(path.to_owned(), message.to_owned())];
+    let emits = warning("`emissive` does not light the scene with the integrator `classic`", "objects[0].material");
+    assert_eq!(warnings(&classic(&light)), emits);
+    assert_eq!(warnings(&scene(&light)), []);
     let sky = r#""background": {"sky": {}}, "objects": []"#;
-    assert_eq!(warnings(&classic(sky)), said("`sky` lights nothing under `classic`", "background"));
+    assert_eq!(
+        warnings(&classic(sky)),
+        warning("`sky` does not light the scene with the integrator `classic`", "background")
+    );
     assert_eq!(warnings(&classic(&format!(r#"{sky}, "lights": [{{"point": {{}}}}]"#))), []);
 }
 
@@ -141,13 +144,13 @@ fn an_area_light_is_a_shape_behind_all_objects() {
     let scene = scene(&format!(r#""lights": [{{"point": {{}}}}, {AREA}], "objects": [{{"shape": "sphere"}}]"#));
     let compiled = scene.compile().unwrap();
     let (world, names) = (&compiled.world, &compiled.names);
-    assert_eq!((world.geometry().shapes, world.entry_of(1)), (2, 1));
+    assert_eq!((world.geometry_stats().shapes, world.entry_of(1)), (2, 1));
     assert_eq!((names.entries, names.object(0), names.object(1)), (2, "objects[0]".into(), "lights[1]".into()));
     assert_eq!(names.light_groups[usize::from(world.shape_group(1).0)], "top");
     assert_eq!(names.light_groups[usize::from(world.shape_group(0).0)], "rest");
-    assert_eq!(Part::of(&scene.description, 1).unwrap().path, "lights[1]");
+    assert_eq!(ShapePlace::find(&scene.description, 1).unwrap().path, "lights[1]");
     assert!(world.shape_bounds(1).center().abs_diff_eq(Vec3::new(0.0, 3.0, 0.0), 1e-5));
-    // The default camera sees the objects, and stays when the world is used again.
+    // The default camera frames the objects, also when the world is reused.
     let again = scene.compile_after(&scene, &compiled).unwrap();
     assert!(compiled.bounds.max.y <= 1.0 && again.cameras == compiled.cameras);
     assert_eq!(scene.needs().objects, 2);
@@ -164,7 +167,7 @@ fn an_area_light_moves_while_the_shutter_is_open() {
     assert!(world.moves() && (bounds.min.x + 0.5).abs() < 1e-3 && (bounds.max.x - 1.5).abs() < 1e-3, "{bounds:?}");
 }
 
-/// A room of a floor and a ceiling at height 3, and in it this light.
+/// A room with a floor and a ceiling at height 3, with the given object and lights.
 fn room(object: &str, lights: &str) -> Scene {
     let camera = r#"{"perspective": {"eye": [0, 1.5, 6], "look_at": [0, 1.5, 0]}}"#;
     let ceiling = r#"{"shape": {"rectangle": {"size": [8, 8]}}, "transform": [{"translate": [0, 3, 0]}]}"#;
@@ -174,7 +177,7 @@ fn room(object: &str, lights: &str) -> Scene {
     ))
 }
 
-fn lamp(height: f32, turn: &str, sides: &str) -> String {
+fn light(height: f32, turn: &str, sides: &str) -> String {
     format!(
         r#", {{"shape": "rectangle", "material": {{"emissive": {{"sides": "{sides}"}}}},
             "transform": [{turn} {{"translate": [0, {height}, 0]}}]}}"#
@@ -186,19 +189,19 @@ const TURN: &str = r#"{"rotate": {"axis": [1, 0, 0], "degrees": 180}},"#;
 #[test]
 fn emitters_whose_light_goes_nowhere_are_warned_of() {
     let touching = "the front of this rectangle, which emits light along [0, 1, 0], lies on `objects[1]`";
-    // The first ceiling light: it shines up, into the ceiling or beyond it.
+    // The ceiling light emits upwards, into the ceiling or above it.
     for height in [3.0, 2.995] {
-        assert_eq!(warnings(&room(&lamp(height, "", "front"), "")), [("objects[2]".into(), touching.to_owned())]);
+        assert_eq!(warnings(&room(&light(height, "", "front"), "")), [("objects[2]".into(), touching.to_owned())]);
     }
     let away = "this rectangle emits light along [0, 1, 0], away from everything in the scene";
-    assert_eq!(warnings(&room(&lamp(3.5, "", "front"), "")), [("objects[2]".into(), away.to_owned())]);
+    assert_eq!(warnings(&room(&light(3.5, "", "front"), "")), [("objects[2]".into(), away.to_owned())]);
     let area = |more: &str| room("", &format!(r#"{{"area": {{"position": [0, 3.5, 0], {more}}}}}"#));
     let up = area(r#""direction": [0, 2, 0]"#);
     assert_eq!(warnings(&up), [("lights[0]".into(), away.to_owned())]);
     assert!(up.check().to_string().contains("turn it with `direction` or `look_at`"));
-    // Turned, two-sided, at a distance: nothing is wrong.
+    // Rotated, two-sided and distant lights cause no warnings.
     for (height, turn, sides) in [(2.99, TURN, "front"), (2.0, "", "front"), (3.5, "", "both"), (3.5, TURN, "front")] {
-        assert_eq!(warnings(&room(&lamp(height, turn, sides), "")), [], "{height} {turn} {sides}");
+        assert_eq!(warnings(&room(&light(height, turn, sides), "")), [], "{height} {turn} {sides}");
     }
     assert_eq!(warnings(&area(r#""radiance": 1"#)), []);
     // A screen that only the camera sees.

@@ -1,4 +1,4 @@
-//! What the format promises, by example.
+//! Promises of the scene format, by example.
 
 use juggler_scene::schema::Schema;
 use juggler_scene::{Scene, SceneError, names_page, reference, schema_json};
@@ -26,12 +26,12 @@ fn scene(text: &str) -> Scene {
 #[test]
 fn the_skeleton_compiles() -> Result<(), SceneError> {
     let compiled = scene(SKELETON).compile()?;
-    assert_eq!(compiled.world.geometry().shapes, 3);
+    assert_eq!(compiled.world.geometry_stats().shapes, 3);
     assert_eq!(compiled.cameras.len(), 1);
     Ok(())
 }
 
-/// Metals stand in the schema by all names that scenes may give them, and aluminum in both spellings.
+/// The schema lists metals by all names that scenes may use, and aluminum in both spellings.
 #[test]
 fn scenes_name_metals() {
     let metals = ["aluminum", "aluminium", "brass", "chromium", "cobalt", "copper", "gold", "iron", "nickel"];
@@ -43,7 +43,7 @@ fn scenes_name_metals() {
     }
 }
 
-/// The published files say what this program does.
+/// The published files are up to date.
 #[test]
 fn schema_and_reference_are_current() {
     let files = [
@@ -61,7 +61,7 @@ fn schema_and_reference_are_current() {
     }
 }
 
-/// Whatever the reference shows as a whole scene is one, and every link in it leads somewhere.
+/// The reference's whole scenes are valid and its links lead somewhere.
 #[test]
 fn the_reference_holds_true() {
     let text = reference();
@@ -91,7 +91,7 @@ fn the_reference_holds_true() {
     assert!(!text.contains("any value") && !text.contains("[`crate"));
 }
 
-/// What may be written shorter is the same scene, and is written out in full.
+/// Short forms give the same scene and are written out in full.
 #[test]
 fn short_forms_mean_the_same() {
     let sphere = |transform: &str, color: &str| {
@@ -109,7 +109,7 @@ fn short_forms_mean_the_same() {
     assert_eq!(moving.at_frame(1.0).unwrap().description, long.description);
 }
 
-/// Colors that look like levels of a picture are allowed and warned of; bright light is not.
+/// Colors that look like 8-bit levels are allowed with a warning; bright lights cause none.
 #[test]
 fn levels_of_a_picture_are_warned_of() {
     let warned = |text: &str| {
@@ -130,7 +130,7 @@ fn levels_of_a_picture_are_warned_of() {
     }
 }
 
-/// Numeric limits of single-precision and of 64-bit numbers are allowed themselves.
+/// The limits of 32-bit and 64-bit numbers are allowed values themselves.
 #[test]
 fn limits_allow_their_own_values() {
     let allowed = [
@@ -178,4 +178,23 @@ fn included_files_name_their_schema() {
     assert_eq!(included(r#""./scene.schema.json""#).unwrap().description, plain.description);
     let error = included("7").map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("JSON Schema") && error.contains("ball.json:1:13"), "{error}");
+}
+
+/// The main file is one of the 1,000 files that a scene may consist of.
+#[test]
+fn a_scene_has_at_most_1000_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let with_included = |count: usize| {
+        let names: Vec<String> = (0..count).map(|i| format!("{i}.json")).collect();
+        for name in &names {
+            fs::write(folder.path().join(name), r#"{"version": 1}"#).unwrap();
+        }
+        let main = folder.path().join("main.json");
+        let text = format!(r#"{{"version": 1, "include": {names:?}, "objects": [{{"shape": "sphere"}}]}}"#);
+        fs::write(&main, text).unwrap();
+        Scene::load(main).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(with_included(999), Ok(()));
+    let error = with_included(1000).unwrap_err();
+    assert!(error.contains("a scene has at most 1000 files"), "{error}");
 }

@@ -1,8 +1,8 @@
-//! Image textures from files: what their numbers mean, how often they are read, what wrong ones say.
+//! Image textures from files: color spaces, how often they are read, errors of invalid ones.
 
-use juggler_imaging::{Format, Header, Options, Tone, create};
+use juggler_imaging::{Header, ImageFormat, Options, Tone, create};
 use juggler_math::{Image, Rgb, color::srgb_decode};
-use juggler_scene::compile::{Library, estimate_picture};
+use juggler_scene::compile::{AssetCache, estimate_picture};
 use juggler_scene::{Bundle, Scene};
 use juggler_texture::ColorSpace;
 use std::fs;
@@ -10,13 +10,13 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-/// A folder with a picture of two colours in every format, a 16-bit PNG, and a scene beside them.
+/// A folder with an image of two colors in every format, a 16-bit PNG, and a scene.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let pixels = [Rgb::splat(0.25), Rgb::new(0.5, 0.5, 0.25)];
     let image = Image::from_pixels(16, 16, (0..256).map(|i| pixels[usize::from(i % 16 >= 8)]).collect()).unwrap();
-    for format in Format::ALL {
-        save(&folder.path().join(format!("a.{}", format.ending())), &image, Options::default());
+    for format in ImageFormat::ALL {
+        save(&folder.path().join(format!("a.{}", format.extension())), &image, Options::default());
     }
     save(&folder.path().join("deep.png"), &image, Options { png_16_bit: true, ..Options::default() });
     folder
@@ -25,7 +25,7 @@ fn folder() -> TempDir {
 fn save(path: &Path, image: &Image, options: Options) {
     let tone = Tone { dither: false, ..Tone::default() };
     let header = Header { options, tone, ..Header::new(image.width(), image.height()) };
-    let mut writer = create(path, Format::from_path(path).unwrap(), &header).unwrap();
+    let mut writer = create(path, ImageFormat::from_path(path).unwrap(), &header).unwrap();
     writer.write_rows(image.pixels()).unwrap();
     writer.finish().unwrap();
 }
@@ -50,11 +50,11 @@ fn complaint(folder: &TempDir, file: &str) -> String {
 }
 
 #[test]
-fn levels_are_srgb_and_floats_linear_unless_told_otherwise() {
+fn levels_are_srgb_and_floats_linear_by_default() {
     let folder = folder();
     let red =
-        |name: &str, space| Library::default().picture(&folder.path().join(name), space).unwrap().texel(0, 0, 0)[0];
-    // Files with levels were written by the curve of sRGB.
+        |name: &str, space| AssetCache::default().image(&folder.path().join(name), space).unwrap().texel(0, 0, 0)[0];
+    // Integer formats are encoded with the sRGB transfer function.
     for (name, tolerance) in [("a.png", 0.002), ("a.jpg", 0.01), ("a.webp", 0.002), ("deep.png", 1e-5)] {
         assert!((red(name, ColorSpace::Auto) - 0.25).abs() < tolerance, "{name} {}", red(name, ColorSpace::Auto));
         assert_eq!(red(name, ColorSpace::Auto), red(name, ColorSpace::Srgb));
@@ -72,11 +72,14 @@ fn pictures_are_kept_in_as_few_bytes_as_hold_them() {
     let folder = folder();
     for (name, bytes_a_sample) in [("a.png", 1), ("a.jpg", 1), ("a.exr", 2), ("a.hdr", 2), ("deep.png", 4)] {
         let path = folder.path().join(name);
-        let pixels = Library::default().picture(&path, ColorSpace::Auto).unwrap();
+        let pixels = AssetCache::default().image(&path, ColorSpace::Auto).unwrap();
         assert_eq!(pixels.bytes(), 341 * 3 * bytes_a_sample, "{name}");
         let estimate = estimate_picture(&path);
-        assert!(estimate.kept >= pixels.bytes() as u64 && estimate.peak > estimate.kept, "{name}: {estimate:?}");
-        assert!(estimate.kept <= 4 * pixels.bytes() as u64 + 64, "{name}: {estimate:?}");
+        assert!(
+            estimate.resident_bytes >= pixels.bytes() as u64 && estimate.peak_bytes > estimate.resident_bytes,
+            "{name}: {estimate:?}"
+        );
+        assert!(estimate.resident_bytes <= 4 * pixels.bytes() as u64 + 64, "{name}: {estimate:?}");
     }
     assert_eq!(estimate_picture(Path::new("none.png")), Default::default());
 }
@@ -86,12 +89,12 @@ fn a_picture_is_read_once_and_is_part_of_the_fingerprint() {
     let folder = folder();
     let scene = load(&folder, "a.png", "");
     let world = scene.compile().unwrap().world;
-    assert_eq!(world.geometry().texture_bytes, 341 * 3);
+    assert_eq!(world.geometry_stats().texture_bytes, 341 * 3);
     assert_eq!(scene.needs().pictures.len(), 1);
     let before = scene.fingerprint();
     assert!(before.parts().contains_key("file a.png"));
     assert!(scene.paths().contains(&folder.path().join("a.png")));
-    // The file is another, but was read before; a scene that is loaded again sees it.
+    // The file changes, but was read already; a scene that is loaded again uses the new file.
     fs::copy(folder.path().join("a.webp"), folder.path().join("a.png")).unwrap();
     assert_eq!(scene.at_frame(1.0).unwrap().fingerprint(), before);
     let again = load(&folder, "a.png", "");
@@ -127,16 +130,16 @@ fn wrong_files_say_what_is_wrong_and_where() {
     let path = |name: &str| folder.path().join(name);
     fs::write(path("text.png"), "no picture").unwrap();
     fs::write(path("empty.png"), "").unwrap();
-    for format in Format::ALL {
-        let bytes = fs::read(path(&format!("a.{}", format.ending()))).unwrap();
-        let cut = format!("cut.{}", format.ending());
+    for format in ImageFormat::ALL {
+        let bytes = fs::read(path(&format!("a.{}", format.extension()))).unwrap();
+        let cut = format!("cut.{}", format.extension());
         fs::write(path(&cut), &bytes[..bytes.len() / 2]).unwrap();
         let text = complaint(&folder, &cut);
         assert!(text.contains(&format!("cannot read `{cut}`: unexpected end of file at byte ")), "{text}");
         assert!(text.contains("at: textures.a.image.file"), "{text}");
     }
     assert!(Command::new("mkfifo").arg(path("pipe.png")).status().unwrap().success());
-    // A head that promises 100,000 × 100,000 pixels.
+    // A header that declares 100,000 × 100,000 pixels.
     let mut huge = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n".to_vec();
     huge.extend([0; 64]);
     fs::write(path("huge.hdr"), huge).unwrap();
@@ -148,13 +151,10 @@ fn wrong_files_say_what_is_wrong_and_where() {
         (".", "cannot read `.`: this is a folder, not a file"),
         ("pipe.png", "cannot read `pipe.png`: this is a named pipe (FIFO), not a regular file"),
         ("/dev/zero", "cannot read `/dev/zero`: this is a device, not a regular file"),
-        (
-            "text.png",
-            "`text.png`: its first bytes are those of no known picture format (.png .jpg .exr .hdr .webp .pfm)",
-        ),
-        ("empty.png", "`empty.png`: its first bytes are those of no known picture format"),
+        ("text.png", "`text.png`: its first bytes match no supported format (.png .jpg .exr .hdr .webp .pfm)"),
+        ("empty.png", "`empty.png`: its first bytes match no supported format"),
         ("huge.hdr", "`huge.hdr`: 100000 × 100000 pixels are more than a Radiance HDR file of 119 bytes can hold"),
-        ("long.pfm", "`long.pfm`: 70000 × 1 pixels, a side is 65536 pixels at most"),
+        ("long.pfm", "`long.pfm`: 70000 × 1 pixels; the limit is 65536 pixels per side"),
         ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
     ] {
         let text = complaint(&folder, file);

@@ -1,16 +1,17 @@
-//! Real files of other people's making, and large ones of our own.
+//! Real mesh files of other programs, and large generated ones.
 //!
-//! The real ones stand in the folder that `JUGGLER_ASSETS` names (`../shared/assets` beside the workspace
-//! by default); without it those tests say so and pass. `JUGGLER_IMPORT_TRIANGLES=1000000 cargo test
-//! --release -p juggler-scene --test integration -- --nocapture import_files::` measures how fast files load.
+//! The real files are in the folder `JUGGLER_ASSETS` (by default `../shared/assets` beside the
+//! workspace); without it, the tests report that and pass. `JUGGLER_IMPORT_TRIANGLES=1000000 cargo
+//! test --release -p juggler-scene --test integration -- --nocapture import_files::` measures the
+//! speed of loading.
 use juggler_math::testing::skipped;
 use juggler_math::{DVec3, Vec3, hash};
-use juggler_scene::import::{Fault, Imported, Limits, Place, load, parse};
+use juggler_scene::import::{FilePosition, ImportErrorKind, Imported, Limits, load, parse};
 use juggler_shape::MeshData;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The file of this name among the assets, if they are there.
+/// Path of an asset, if the assets are available.
 pub fn asset(name: &str) -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
     let folder = std::env::var_os("JUGGLER_ASSETS").map_or_else(beside, PathBuf::from);
@@ -21,7 +22,7 @@ pub fn asset(name: &str) -> Option<PathBuf> {
     Some(folder.join(name))
 }
 
-/// The mesh of an asset, or a return from the test.
+/// Loads the mesh of an asset, or returns from the test if it is not available.
 macro_rules! loaded {
     ($name:expr) => {
         match asset($name) {
@@ -78,7 +79,7 @@ fn text_and_binary_spheres_are_the_same() {
         let (binary, text) = (loaded!(binary).mesh, loaded!(text).mesh);
         assert_eq!((binary.positions.len(), binary.triangles.len()), (114, 224));
         assert_eq!(binary.triangles, text.triangles);
-        // The texts have six digits.
+        // The text files have six digits.
         let apart = binary.positions.iter().zip(&text.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(apart < 2e-6, "{apart}");
     }
@@ -107,7 +108,7 @@ fn spot_is_closed_and_the_same_from_triangles_and_quads() {
     }
 }
 
-/// Edges (of welded positions) that are not used once in each direction.
+/// Number of edges (of welded positions) that are not used exactly once in each direction.
 fn open_edges(mesh: &MeshData) -> usize {
     let mut edges = std::collections::BTreeMap::<_, i32>::new();
     let key = |corner: u32| mesh.positions[corner as usize].to_array().map(f32::to_bits);
@@ -120,7 +121,7 @@ fn open_edges(mesh: &MeshData) -> usize {
     edges.values().filter(|sum| **sum != 0).count()
 }
 
-/// How often a ray from far outside towards the middle crosses the surface.
+/// Number of intersections of the surface with a ray from far outside towards the center.
 fn crossings(mesh: &MeshData, case: u32) -> usize {
     let random = |index| f64::from(hash::unit_f32(hash::combine(case, index))) - 0.5;
     let origin = DVec3::new(random(0), random(1), random(2)).normalize() * 50.0;
@@ -141,11 +142,13 @@ fn malformed_objs_name_file_and_line() {
         let Some(path) = asset(name) else { return };
         let error = load(&path, &Limits::default()).unwrap_err();
         assert!(error.to_string().starts_with(&format!("{}: line {line}: ", path.display())), "{error}");
-        assert!(matches!(error.fault, Fault::Malformed { place: Place::Line(found), .. } if found == line));
+        assert!(
+            matches!(error.kind, ImportErrorKind::Malformed { place: FilePosition::Line(found), .. } if found == line)
+        );
     }
 }
 
-/// A wavy sheet of this many triangles or a few more.
+/// A wavy sheet of at least this number of triangles.
 fn sheet(triangles: usize) -> MeshData {
     let side = ((triangles as f64 / 2.0).sqrt().ceil() as u32).max(1);
     let point = |index: u32| {
@@ -216,7 +219,7 @@ fn text_stl(mesh: &MeshData) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// The corners of every triangle, which do not depend on the order of the vertices.
+/// Corner positions of every triangle, which do not depend on the order of the vertices.
 fn corners(mesh: &MeshData) -> Vec<[Vec3; 3]> {
     mesh.triangles.iter().map(|triangle| triangle.map(|corner| mesh.positions[corner as usize])).collect()
 }

@@ -1,11 +1,12 @@
-//! Broken mesh files of every format: an error or a sound mesh, never a panic, never memory for numbers
-//! that only a header claims. This test has a process of its own because it looks at the process's memory.
+//! Malformed mesh files of every format give an error or a valid mesh, never a panic, and never an
+//! allocation for counts that only a header declares. This test is a process of its own because it
+//! measures the process's memory.
 
 use juggler_math::hash::{combine, mix};
 use juggler_scene::import::{Imported, Limits, parse};
 use std::path::Path;
 
-/// Words that numbers are replaced with.
+/// Replacements for numbers.
 const NUMBERS: [&str; 12] = [
     "-1",
     "0",
@@ -72,7 +73,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// What every mesh that is returned must keep, whatever the file was.
+/// Asserts the invariants of an imported mesh.
 fn assert_sound(found: &Imported, bytes: &[u8], what: &str) {
     let mesh = &found.mesh;
     let count = mesh.positions.len();
@@ -90,7 +91,7 @@ fn assert_sound(found: &Imported, bytes: &[u8], what: &str) {
     assert!(found.warnings.iter().map(String::len).sum::<usize>() <= 2000, "{what}");
 }
 
-/// Reads it; whether there was a mesh.
+/// Parses a file and returns whether it gives a mesh.
 fn read(name: &str, bytes: &[u8], what: &str) -> bool {
     match parse(Path::new(name), bytes, &Limits::default()) {
         Ok(found) => {
@@ -105,7 +106,7 @@ fn read(name: &str, bytes: &[u8], what: &str) -> bool {
     }
 }
 
-/// One to four changes of a file, all drawn from the number of the case.
+/// Applies one to four random changes, determined by the number of the case.
 fn mutate(original: &[u8], case: u32) -> Vec<u8> {
     let mut bytes = original.to_vec();
     let mut draw = (0_u32..).map(|index| combine(mix(case), index) as usize);
@@ -143,7 +144,7 @@ fn replace_word(bytes: &mut Vec<u8>, at: usize, word: &[u8]) {
     }
 }
 
-/// The most address space that this process ever had, in KiB, where the system says so.
+/// Peak address space of this process in KiB, if the system reports it.
 fn peak_address_space() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmPeak:"))?.split_whitespace().next()?.parse().ok()

@@ -1,10 +1,10 @@
-//! Textures that are written in place, where the name of one may stand.
+//! Inline textures, which are written in place of a texture's name.
 
 use juggler_material::AnyMaterial;
 use juggler_scene::{Problems, Scene, SceneError};
 use juggler_texture::{AnyTexture, Input};
 
-/// A scene with this for the color of its only material.
+/// A scene with `diffuse` as the color of its only material.
 fn scene(diffuse: &str, more: &str) -> String {
     format!(
         r#"{{"version": 1{more},
@@ -30,7 +30,7 @@ fn a_texture_in_place_is_that_texture_under_a_name() {
     let AnyMaterial::Phong(wall) = &*scene.description.materials["wall"] else { panic!("another material") };
     assert_eq!(wall.diffuse, Input::Texture(name.into()));
     assert_eq!(scene.compile().unwrap().warnings.list(), []);
-    // Written out, it is one of the scene's textures, and reads as such.
+    // The written scene names the texture and reads as the same scene.
     let again = Scene::from_json(scene.to_json(), "again.json").unwrap();
     assert_eq!(again.description, scene.description);
 }
@@ -51,7 +51,7 @@ fn textures_lie_in_textures_and_in_objects_materials() {
 }
 
 #[test]
-fn mistakes_are_told_where_they_stand() {
+fn errors_are_reported_at_their_place() {
     for (diffuse, path, message) in [
         (r#"{"noise": {"scale": 0}}"#, "materials.wall.phong.diffuse.noise.scale", "must not be 0"),
         (r#"{"noise": {"scael": 1}}"#, "materials.wall.phong.diffuse.noise.scael", "scael"),
@@ -72,5 +72,8 @@ fn mistakes_are_told_where_they_stand() {
     }
     let taken = r#", "textures": {"/materials/wall/phong/diffuse": {"noise": {}}}"#;
     let problems = problems(scene(r#"{"dots": {}}"#, taken));
-    assert!(problems.to_string().contains("is called `/materials/wall/phong/diffuse`"), "{problems}");
+    assert!(
+        problems.to_string().contains("the name `/materials/wall/phong/diffuse` of the inline texture"),
+        "{problems}"
+    );
 }

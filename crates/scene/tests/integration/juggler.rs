@@ -1,9 +1,9 @@
-//! The Juggler's poses against the closed forms of "Project Amiga Juggler" (Michael Birken, 2010, step 27) and
-//! numbers computed from them by hand.
+//! The Juggler's poses compared with the closed forms of "Project Amiga Juggler" (Michael Birken,
+//! 2010, step 27) and with numbers computed from them by hand.
 
 use juggler_light::background::AnyBackground;
 use juggler_math::{DVec3, Vec3};
-use juggler_scene::compile::{Assembly, Files, Library};
+use juggler_scene::compile::{Assembly, AssetCache, Files};
 use juggler_scene::document::Sources;
 use juggler_scene::{Scene, Tracks};
 use juggler_shape::AnyShape;
@@ -12,13 +12,13 @@ use std::f64::consts::TAU;
 
 const NEAR: f64 = 2e-4;
 
-/// The spheres of a frame in the order of the scene file: centre and radius.
+/// Center and radius of the spheres of a frame, in the order of the scene file.
 fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let scene = Scene::built_in("juggler").unwrap().at_frame(frame).unwrap();
-    let library = Library::default();
+    let asset_cache = AssetCache::default();
     let sources = Sources::default();
-    let files = Files { scene: &scene.description, sources: &sources, library: &library };
-    let (assembly, findings) = Assembly::of(&scene.description, &Tracks::default(), files);
+    let files = Files { scene: &scene.description, sources: &sources, asset_cache: &asset_cache };
+    let (assembly, findings) = Assembly::from_scene(&scene.description, &Tracks::default(), files);
     assert!(findings.is_empty(), "{findings:?}");
     let shape = |object: &Object| object.content.as_shape().unwrap().as_ref().clone();
     let ground = assembly.objects.iter().filter(|object| matches!(shape(object), AnyShape::Plane(_))).count();
@@ -35,7 +35,7 @@ fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     placed.collect()
 }
 
-/// What the article says about an instant.
+/// Pose at an instant by the article's formulas.
 struct Pose {
     origin: DVec3,
     up: DVec3,
@@ -71,7 +71,8 @@ impl Pose {
         [above(30.0 + self.t), above(self.t), below(self.t)]
     }
 
-    /// Ends, plane normals and bones of the limbs in the order of the file: left leg, right leg, left arm, right arm.
+    /// Ends, plane normal and bone lengths of the limbs in the order of the file: left leg, right
+    /// leg, left arm, right arm.
     fn limbs(&self) -> [(DVec3, DVec3, DVec3, [f64; 2]); 4] {
         let (leg, arm) = ([42.58, 34.07], [44.294, 46.098]);
         let hand = |z| DVec3 { z, ..self.hand };
@@ -85,7 +86,7 @@ impl Pose {
     }
 }
 
-/// Where two bones meet (step 16 of the article).
+/// Joint of two bones (step 16 of the article).
 fn joint(p: DVec3, q: DVec3, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
     let distance = p.distance(q);
     let v = (q - p) / distance;
@@ -183,7 +184,8 @@ fn joints_bend_the_right_way() {
     }
 }
 
-/// Known places, for the closed forms themselves: the top of the high arc, throw and catch, the low arc's top.
+/// Known positions that test the closed forms: the top of the high arc, throw and catch, the top of
+/// the low arc.
 #[test]
 fn balls_meet_hands_and_heights() {
     let at = |frame: f64| -> Vec<DVec3> { spheres(frame)[..3].iter().map(|ball| ball.0).collect() };
@@ -198,7 +200,7 @@ fn balls_meet_hands_and_heights() {
     }
 }
 
-/// After 30 frames each ball stands where another was, and all else where it was itself.
+/// After 30 frames each ball is in the position of another, and all else is in its own.
 #[test]
 fn the_animation_repeats_without_a_seam() {
     let (first, last) = (spheres(0.0), spheres(30.0));
@@ -210,8 +212,8 @@ fn the_animation_repeats_without_a_seam() {
     }
 }
 
-/// For each frame, half way through it: y and z of balls C, B and A, height of the hips, y and z of the trunk's direction,
-/// x and y of the hands, to the digits given.
+/// Values halfway through each frame: y and z of balls C, B and A, height of the hips, y and z of
+/// the trunk's direction, x and y of the hands, to the digits given.
 const FRAMES: [[f64; 11]; 30] = [
     [89.573, -180.767, 91.173, -108.617, 183.973, -145.617, 84.9890, 0.99998, -0.00597, 107.5277, 74.0219],
     [92.560, -178.300, 97.360, -109.850, 183.760, -146.850, 84.9021, 0.99984, -0.01766, 107.6333, 73.7284],
@@ -256,7 +258,7 @@ fn all_thirty_frames_are_those_of_the_table() {
         assert!([ball_a, ball_b, ball_c].iter().all(|ball| ball.x == 110.0) && left.truncate() == right.truncate());
         let places = [ball_c.y, ball_c.z, ball_b.y, ball_b.z, ball_a.y, ball_a.z, hips.y, up.y, up.z, left.x, left.y];
         for ((place, expected), digits) in places.into_iter().zip(expected).zip(DIGITS) {
-            // Half of the last digit, and single precision.
+            // Half a unit of the last digit, plus the error of single precision.
             let tolerance = 0.5 * 10_f64.powi(-digits) + 1.2e-5;
             assert!((place - expected).abs() <= tolerance, "frame {frame}: {place} for {expected}");
         }

@@ -1,6 +1,6 @@
-//! Files that light comes from: how often they are read, what they are part of, what wrong ones say.
+//! Light files: how often they are read, their part in the fingerprint, errors of invalid ones.
 
-use juggler_imaging::{Format, Header, create};
+use juggler_imaging::{Header, ImageFormat, create};
 use juggler_light::AnyLight;
 use juggler_math::{Image, Ray, Rgb, Vec3};
 use juggler_scene::compile::estimate_panorama;
@@ -13,7 +13,8 @@ use tempfile::TempDir;
 
 const LAMP: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n100 50\n";
 
-/// A folder with a panorama whose left half is twice as bright as the other, and a lamp.
+/// A folder with a panorama whose left half is twice as bright as its right, and a photometric
+/// file.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.exr", "a.hdr", "a.png"] {
@@ -26,7 +27,7 @@ fn folder() -> TempDir {
 fn save(path: &Path, right: f32) {
     let image =
         Image::from_pixels(8, 4, (0..32).map(|i| Rgb::splat(if i % 8 < 4 { 0.5 } else { 0.25 * right })).collect());
-    let mut writer = create(path, Format::from_path(path).unwrap(), &Header::new(8, 4)).unwrap();
+    let mut writer = create(path, ImageFormat::from_path(path).unwrap(), &Header::new(8, 4)).unwrap();
     writer.write_rows(image.unwrap().pixels()).unwrap();
     writer.finish().unwrap();
 }
@@ -42,7 +43,7 @@ fn panorama(file: &str, more: &str) -> String {
     scene(&format!(r#"{{"environment": {{"file": "{file}"{more}}}}}"#), "")
 }
 
-fn lamp(file: &str, more: &str) -> String {
+fn light(file: &str, more: &str) -> String {
     scene(r##""#000000""##, &format!(r#"{{"point": {{"position": [0, 5, 0], "ies": {{"file": "{file}"{more}}}}}}}"#))
 }
 
@@ -60,7 +61,7 @@ fn complaint(folder: &TempDir, text: &str) -> String {
 }
 
 fn towards(world: &World, direction: Vec3) -> f32 {
-    world.background(&Ray::new(Vec3::ZERO, direction)).g
+    world.background_radiance(&Ray::new(Vec3::ZERO, direction)).g
 }
 
 #[test]
@@ -72,12 +73,15 @@ fn a_panorama_is_seen_and_read_once() {
         let seen = [Vec3::X, Vec3::NEG_X].map(|direction| towards(&world, direction));
         assert!((seen[0] - 2.0).abs() < 0.02 && (seen[1] - 1.0).abs() < 0.02, "{file}: {seen:?}");
         assert_eq!(scene.needs().panoramas.len(), 1);
-        let (path, bytes) = (folder.path().join(file), world.geometry().background_bytes as u64);
+        let (path, bytes) = (folder.path().join(file), world.geometry_stats().background_bytes as u64);
         let estimate = estimate_panorama(&path);
-        assert!(bytes > 0 && estimate.kept >= bytes && estimate.peak > estimate.kept, "{file}: {estimate:?}");
+        assert!(
+            bytes > 0 && estimate.resident_bytes >= bytes && estimate.peak_bytes > estimate.resident_bytes,
+            "{file}: {estimate:?}"
+        );
         assert!(scene.fingerprint().parts().contains_key(&format!("file {file}")));
         assert!(scene.paths().contains(&path));
-        // Another file by now, but it was read.
+        // The file changes, but was read already.
         save(&path, 2.0);
         let later = scene.at_frame(1.0).unwrap();
         assert_eq!(later.fingerprint(), scene.fingerprint());
@@ -112,24 +116,24 @@ fn skies_are_prepared() {
     let first = up(&scene);
     let others: Vec<f32> = (1..7).map(|frame| up(&scene.at_frame(f64::from(frame)).unwrap())).collect();
     assert!(first > 0.0 && others.iter().all(|other| *other > first), "{first} {others:?}");
-    // What was prepared before is the same as what is prepared now.
+    // A sky that was prepared before equals one that is prepared now.
     assert_eq!((up(&scene), up(&scene.at_frame(6.0).unwrap())), (first, others[5]));
 }
 
 #[test]
 fn lamps_keep_their_files_when_they_move() {
     let folder = folder();
-    let text = lamp("lamp.ies", "").replace("[0, 5, 0]", r#"["=4 * frame", 5, 0]"#);
+    let text = light("lamp.ies", "").replace("[0, 5, 0]", r#"["=4 * frame", 5, 0]"#);
     let scene = load(&folder, &text);
     let compiled = scene.compile().unwrap();
     assert!(compiled.warnings.to_string().is_empty(), "{}", compiled.warnings);
-    let lamp = &compiled.world.lamps()[0];
-    assert!(lamp.moves());
+    let light = &compiled.world.lights()[0];
+    assert!(light.moves());
     for time in [0.0, 0.5, 1.0] {
-        let AnyLight::Point(point) = &lamp.at(time).light else { unreachable!() };
+        let AnyLight::Point(point) = &light.at(time).light else { unreachable!() };
         assert!((point.position.x - 4.0 * time).abs() < 0.02);
         let under = point.position - Vec3::Y;
-        assert!(lamp.at(time).light.sample(under, Default::default()).is_some(), "{time}");
+        assert!(light.at(time).light.sample(under, Default::default()).is_some(), "{time}");
     }
     assert!(scene.fingerprint().parts().contains_key("file lamp.ies"));
     assert!(scene.paths().contains(&folder.path().join("lamp.ies")));
@@ -151,9 +155,9 @@ fn wrong_files_say_what_is_wrong_and_where() {
         ("pipe.exr", "cannot read `pipe.exr`: this is a named pipe (FIFO), not a regular file"),
         ("nowhere.exr", "cannot read `nowhere.exr`: there is no such file"),
         (".", "cannot read `.`: this is a folder, not a file"),
-        ("text.hdr", "`text.hdr`: its first bytes are those of no known picture format"),
+        ("text.hdr", "`text.hdr`: its first bytes match no supported format"),
         ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
-        ("endless.pfm", "`endless.pfm` has pixels without end"),
+        ("endless.pfm", "`endless.pfm` has infinite pixels"),
     ] {
         let text = complaint(&folder, &panorama(file, ""));
         assert!(text.contains(message), "{file}: {text}");
@@ -175,7 +179,7 @@ fn wrong_files_say_what_is_wrong_and_where() {
         ("word.ies", "cannot read `word.ies`: line 7: "),
         ("long.ies", "bytes"),
     ] {
-        let text = complaint(&folder, &lamp(file, ""));
+        let text = complaint(&folder, &light(file, ""));
         assert!(text.contains(message), "{file}: {text}");
         assert!(text.contains("at: lights[0].point.ies.file") && !text.contains("no light"), "{text}");
     }

@@ -1,10 +1,11 @@
-//! Every numeric limit that the schema states is allowed itself: a scene for each minimum and each maximum, checked.
+//! Every numeric limit of the schema is an allowed value: a scene is checked for each minimum and
+//! each maximum.
 
 use juggler_scene::Scene;
 use juggler_scene::schema::Schema;
 use serde_json::{Value, json};
 
-/// Limits that other fields narrow: the end of the path to the field, and what narrows it.
+/// Limits that other fields narrow: the end of the field's path, and the narrower limit.
 const NARROWED: &[(&str, &str)] = &[
     ("spot.cutoff_degrees", "no less than `beam_degrees`"),
     ("spot.beam_degrees", "no more than `cutoff_degrees`"),
@@ -12,7 +13,7 @@ const NARROWED: &[(&str, &str)] = &[
     ("render.size", "the pixels of both edges"),
 ];
 
-/// A limit: where it stands, and a scene with the number there.
+/// A limit: the path of the field, and a scene with the limit as its value.
 struct Case {
     path: String,
     scene: Value,
@@ -21,17 +22,17 @@ struct Case {
 struct Walk<'s> {
     definitions: &'s Value,
     cases: Vec<Case>,
-    /// Definitions on the way down, so that materials within materials end.
+    /// Definitions above the current node, to stop at recursive materials.
     open: Vec<String>,
 }
 
 type Wrap<'w> = &'w dyn Fn(Value) -> Value;
 
 impl Walk<'_> {
-    /// All limits below a node; `wrap` puts a value of it into a scene.
+    /// Adds all limits below a node; `wrap` puts a value of the node into a scene.
     fn node(&mut self, node: &Value, path: &str, wrap: Wrap) {
         if let Some(name) = node["$ref"].as_str().and_then(|name| name.strip_prefix("#/$defs/")) {
-            // Textures in place are those of the scene, which have been tried.
+            // Inline textures have the limits of named textures, which are tested.
             let is_inline = name == "AnyTexture" && path != "textures";
             if is_inline || self.open.iter().any(|open| open == name) {
                 return;
@@ -64,7 +65,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A small value that fits a node.
+    /// A minimal value that fits a node.
     fn least(&self, node: &Value) -> Value {
         if let Some(name) = node["$ref"].as_str().and_then(|name| name.strip_prefix("#/$defs/")) {
             return self.least(&self.definitions[name]);
@@ -113,7 +114,7 @@ fn cases() -> Vec<Case> {
     walk.cases
 }
 
-/// The last key of a path, without places in arrays.
+/// Last key of a path, without array indices.
 fn last_key(path: &str) -> &str {
     path.rsplit('.').next().and_then(|last| last.split('[').next()).unwrap_or_default()
 }
@@ -133,12 +134,12 @@ fn every_limit_of_the_schema_is_allowed_itself() {
             Err(error) => panic!("{error}"),
         };
         let field = path.rsplit('.').next().unwrap_or_default();
-        // Files that are not there, corners on a line and the like are other fields' faults.
+        // Ignore errors of other fields, such as missing files and collinear vertices.
         let about =
             |message: &str| message.contains("must be") || message.contains("limit") || message.contains("between");
-        let faults =
+        let problems =
             problems.list().iter().filter(|problem| last_key(&problem.path) == field && about(&problem.message));
-        refused.extend(faults.map(|problem| format!("{path}: {} in {text}", problem.message)));
+        refused.extend(problems.map(|problem| format!("{path}: {} in {text}", problem.message)));
     }
     assert!(cases.len() > 150, "only {} limits were found", cases.len());
     assert!(refused.is_empty(), "{}", refused.join("\n"));
@@ -152,7 +153,7 @@ fn whole_numbers_keep_all_their_digits() {
 
 #[test]
 fn a_message_names_the_limit_that_was_exceeded() {
-    let told = |more: &str| {
+    let message_of = |more: &str| {
         let text = format!(r#"{{"version": 1, {more}, "objects": [{{"shape": "sphere", "material": "m"}}]}}"#);
         match Scene::from_json(text, "wrong.json") {
             Ok(scene) => scene.check().to_string(),
@@ -160,22 +161,23 @@ fn a_message_names_the_limit_that_was_exceeded() {
         }
     };
     let medium = |field: &str| {
-        told(&format!(r#""materials": {{"m": {{"dielectric": {{"medium": {{"{field}": [1e30, 0, 0]}}}}}}}}"#))
+        message_of(&format!(r#""materials": {{"m": {{"dielectric": {{"medium": {{"{field}": [1e30, 0, 0]}}}}}}}}"#))
     };
     for field in ["absorption", "scattering"] {
         let message = medium(field);
         assert!(message.contains(&format!("`{field}` must be between 0 and 1e12, it is 1e30")), "{message}");
     }
     let plain = r#""materials": {"m": {"phong": {}}}"#;
-    let message = told(&format!(r#"{plain}, "background": {{"solid": {{"color": [3.4e38, 0, 0]}}}}"#));
+    let message = message_of(&format!(r#"{plain}, "background": {{"solid": {{"color": [3.4e38, 0, 0]}}}}"#));
     assert!(message.contains("`color` must be between 0 and 1e30, it is 3.4e38"), "{message}");
-    let message = told(&format!(r#"{plain}, "lights": [{{"point": {{"color": [1e20, 0, 0], "intensity": 1e20}}}}]"#));
+    let message =
+        message_of(&format!(r#"{plain}, "lights": [{{"point": {{"color": [1e20, 0, 0], "intensity": 1e20}}}}]"#));
     assert!(message.contains("`color` times `intensity` must not exceed 1e30"), "{message}");
-    let message = told(r#""materials": {"m": {"emissive": {"radiance": [3e38, 1, 1]}}}"#);
+    let message = message_of(r#""materials": {"m": {"emissive": {"radiance": [3e38, 1, 1]}}}"#);
     assert!(message.contains("`radiance` must be between 0 and 1e30, it is 3e38"), "{message}");
 }
 
-/// What `render` refuses, `check` refuses, and says where: whatever a scene is scaled by.
+/// `check` reports everything that `render` rejects, with its place, at all scales of a scene.
 #[test]
 fn a_scene_that_passes_the_check_has_a_camera() {
     let (mut passed, mut refused) = (0, 0);
@@ -189,7 +191,7 @@ fn a_scene_that_passes_the_check_has_a_camera() {
         match scene.compile() {
             Ok(compiled) => {
                 assert_eq!(problems.errors(), 0, "1e{exponent}");
-                let shot = compiled.shot(juggler_math::UVec2::new(64, 36));
+                let shot = compiled.shutter_camera(juggler_math::UVec2::new(64, 36));
                 assert!(shot.is_ok(), "1e{exponent}: {:?}", shot.err());
                 passed += 1;
             }

@@ -1,4 +1,4 @@
-//! Scene files: what they say, what they import, and what people read about wrong ones.
+//! Tests of scene files: format, imports, and error reports.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,8 +1,8 @@
-//! Ten thousand broken scenes: whatever the file, the program answers with a message.
+//! Ten thousand mutated scenes: each either compiles or gives an error message.
 
 use juggler_scene::{BuiltIn, Scene, built_in_scenes};
 
-/// Scenes that together use much of the format; the built-in ones are added.
+/// Scenes that together use most of the format, to which the built-in scenes are added.
 const SEEDS: [&str; 5] = [
     r##"{"version": 1, "title": "a", "animation": {"frames": 30, "frames_per_second": 25},
  "variables": {"phi": "2*pi*frame/frames", "s": "(1+cos(phi))/2"},
@@ -27,7 +27,7 @@ const SEEDS: [&str; 5] = [
     r##"{"version": 1, "include": ["missing.json"], "objects": [{"shape": {"mesh": {"file": "cow.ply"}}}]}"##,
 ];
 
-/// A scene that moves in all ways there are.
+/// A scene with every form of motion.
 const ANIMATED: &str = r##"{"version": 1, "animation": {"frames": 30, "frames_per_second": 25},
  "paths": {"ring": {"points": [[1, 0, 0], [0, "=1+frames/30", 1], [-1, 0, 0]], "closed": true}, "line": {"points": [[0, 0, 0], [0, 5, 0]]}},
  "variables": {"bird": {"along": {"path": "ring", "at": "=seconds / 2"}}, "t": "seconds * 2"},
@@ -37,7 +37,7 @@ const ANIMATED: &str = r##"{"version": 1, "animation": {"frames": 30, "frames_pe
   {"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1, [0.2, 0, 0.5, 1]], [1, 2, "step"], [3, 1], [4, 1.5]], "interpolation": "smooth", "at": "=t", "ease": "out"}}}},
    "transform": [{"translate": {"along": {"path": "line", "at": {"animate": {"keys": [[0, 0], [1, 1]]}}}}}]}]}"##;
 
-/// Numbers and words at the edge of what is possible.
+/// Numbers and words at the limits of the format.
 const EXTREMES: [&str; 24] = [
     "0",
     "-0",
@@ -65,7 +65,7 @@ const EXTREMES: [&str; 24] = [
     "\"\\ud800\"",
 ];
 
-/// A small generator of numbers that look random (SplitMix64; Steele, Lea, Flood 2014).
+/// Random number generator SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Numbers(pub u64);
 
 impl Numbers {
@@ -78,7 +78,7 @@ impl Numbers {
     }
 }
 
-/// The parts of a JSON text: strings, numbers, words, signs and blanks.
+/// Splits a JSON text into tokens: strings, numbers, words, punctuation and white space.
 fn tokens(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let mut in_string = false;
@@ -129,7 +129,7 @@ fn mutated(numbers: &mut Numbers, seeds: &[Vec<String>]) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// What a broken scene does: a picture's world, or a message.
+/// Compiles a mutated scene, or returns its error message.
 fn outcome(text: String) -> Result<(), String> {
     let scene = Scene::from_json(text, "mutated.json").map_err(|error| error.to_string())?;
     let frames = [(7.25, scene.at_frame(7.25)), (0.0, Ok(scene))];
@@ -137,7 +137,7 @@ fn outcome(text: String) -> Result<(), String> {
         let scene = scene.map_err(|error| error.to_string())?;
         let compiled = scene.compile().map_err(|error| error.to_string())?;
         assert!(!compiled.cameras.is_empty() && compiled.warnings.errors() == 0);
-        // What compiles can be written, and read again: as it moves, and as it stands still.
+        // A scene that compiles can be written and read again, both moving and frozen.
         let read = |json: String| Scene::from_json(json, "mutated.json");
         let again = read(scene.to_json()).and_then(|again| again.at_frame(frame)).map_err(|error| error.to_string());
         assert_eq!(again.map(|again| again.fingerprint()), Ok(scene.fingerprint()));
@@ -150,11 +150,11 @@ fn outcome(text: String) -> Result<(), String> {
 
 /// Whether a scene can be built thousands of times in a test.
 fn is_small(scene: &BuiltIn) -> bool {
-    let objects = || Some(Scene::built_in(scene.name).ok()?.compile().ok()?.world.geometry().shapes);
+    let objects = || Some(Scene::built_in(scene.name).ok()?.compile().ok()?.world.geometry_stats().shapes);
     scene.name == "juggler" || scene.json.len() < 4000 && objects().is_some_and(|objects| objects < 50)
 }
 
-/// The same of scenes that move alone.
+/// The same test for mutations of animated scenes only.
 #[test]
 fn no_broken_animation_breaks_the_program() {
     assert_eq!([ANIMATED, SEEDS[3]].map(|seed| outcome(seed.to_owned())), [Ok(()), Ok(())]);
@@ -190,6 +190,6 @@ fn no_broken_scene_breaks_the_program() {
             Err(_) => panic!("round {round} panics: {text}"),
         }
     }
-    // Both happen often, or the mutations would test little.
+    // Both outcomes must be frequent for the mutations to test much.
     assert!(rendered > 500 && refused > 4000, "{rendered} rendered, {refused} refused");
 }

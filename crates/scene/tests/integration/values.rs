@@ -1,4 +1,5 @@
-//! A scene is a value: what a program changes is checked, seen at every frame, written and read again.
+//! Scenes as values: changes by programs are checked, take effect at every frame, and survive
+//! writing and reading.
 
 use super::mutations::Numbers;
 use juggler_material::{AnyMaterial, MaterialRef, Phong};
@@ -30,14 +31,14 @@ fn moving() -> Scene {
     Scene::from_json(MOVING, "moving.json").unwrap()
 }
 
-/// The scene written, read again and brought to a frame.
+/// The scene written, read again and advanced to a frame.
 fn again(scene: &Scene, frame: f64) -> Scene {
     Scene::from_json(scene.to_json(), "again.json").and_then(|scene| scene.at_frame(frame)).unwrap_or_else(|error| {
         panic!("{error}\n{}", scene.to_json());
     })
 }
 
-/// The same scene, as far as a picture can tell, at three frames, however the frame was reached.
+/// Asserts that a scene and its written and reread copy have equal fingerprints at three frames.
 fn assert_is_one(scene: &Scene, what: &str) {
     for frame in [0.0, 2.5, 5.0] {
         let there = scene.at_frame(frame).unwrap();
@@ -63,24 +64,24 @@ fn place(scene: &Scene, object: usize) -> Vec3 {
     steps.iter().find_map(|step| if let TransformStep::Translate(by) = step { Some(*by) } else { None }).unwrap()
 }
 
-/// Each of these once had no effect, or was lost at another frame.
+/// Each of these changes once had no effect or was lost at another frame.
 #[test]
 fn what_a_program_changes_is_kept() {
-    // An object that moves is replaced: it stands still.
+    // A moving object that is replaced stands still.
     let mut scene = moving();
     let before = scene.fingerprint();
     scene.description.objects[0] = Object::new(Sphere { radius: 3.0 }).at(1.0, 1.0, 1.0).into();
     assert_ne!(scene.fingerprint(), before);
     assert_eq!(place(&scene.at_frame(4.0).unwrap(), 0), Vec3::ONE);
     assert_is_one(&scene, "replaced");
-    // Of an object that moves, something else is changed: it moves on.
+    // A moving object of which another property is changed moves on.
     let mut scene = moving();
     let material = Some(MaterialRef::from(Phong::default()));
     scene.description.objects[0].material.clone_from(&material);
     let later = scene.at_frame(4.0).unwrap();
     assert_eq!((place(&later, 0), &later.description.objects[0].material), (Vec3::new(0.0, 5.0, 0.0), &material));
     assert_is_one(&scene, "other material");
-    // What moves is changed: it stands still, all else moves on.
+    // A moving property that is changed stands still; all else moves on.
     let mut scene = moving();
     scene.description.objects[0].transform = vec![TransformStep::Translate(Vec3::Z)];
     scene = scene.with_value("/variables/wide", json!(5)).unwrap();
@@ -92,13 +93,13 @@ fn what_a_program_changes_is_kept() {
 
 #[test]
 fn changes_anywhere_in_a_scene_are_kept() {
-    // Objects that move may change their places in the list.
+    // Moving objects may change their positions in the list.
     let mut scene = moving();
     scene.description.objects.remove(1);
     scene.description.objects.insert(0, Object::new(Sphere::default()).into());
     assert_eq!(place(&scene.at_frame(4.0).unwrap(), 1), Vec3::new(0.0, 5.0, 0.0));
     assert_is_one(&scene, "moved in the list");
-    // Those within others, in groups, lights, settings, materials.
+    // Nested objects, groups, lights, settings and materials may change.
     let mut scene = moving();
     scene.description.objects[2].objects.as_mut().unwrap()[1].visible = Visible(false);
     scene.description.groups["pair"][1].name = Some("block".into());
@@ -112,7 +113,7 @@ fn changes_anywhere_in_a_scene_are_kept() {
     assert_is_one(&scene, "everywhere");
 }
 
-/// What a text is refused for, a program is refused for too.
+/// Programs' changes are rejected for the same reasons as texts.
 #[test]
 fn what_a_program_changes_is_checked() {
     let refused = |change: &dyn Fn(&mut Scene), path: &str, words: &str| {
@@ -167,7 +168,7 @@ fn copies_share_what_is_not_changed() {
     assert!(own.groups["pair"][0].is_same(&later.description.groups["pair"][0]));
 }
 
-/// Scenes with other meshes once had one fingerprint when their meshes were prepared.
+/// Scenes with different prepared meshes once had the same fingerprint.
 #[test]
 fn prepared_meshes_have_fingerprints_of_their_own() {
     let scene = |x: f32| {
@@ -177,10 +178,10 @@ fn prepared_meshes_have_fingerprints_of_their_own() {
     };
     assert_ne!(scene(1.0).fingerprint(), scene(2.0).fingerprint());
     assert_eq!(scene(1.0).fingerprint(), again(&scene(1.0), 0.0).fingerprint());
-    assert_eq!(scene(1.0).compile().unwrap().world.geometry().triangles, 1);
+    assert_eq!(scene(1.0).compile().unwrap().world.geometry_stats().triangles, 1);
 }
 
-/// Every place in a scene's JSON.
+/// Collects the JSON pointers of all values in a scene.
 fn places(json: &Value, at: &str, found: &mut Vec<String>) {
     found.push(at.to_owned());
     match json {
@@ -194,7 +195,7 @@ fn places(json: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Puts a value into JSON as a pointer says; null takes away.
+/// Sets the value at a JSON pointer; null removes it.
 fn put(json: &mut Value, pointer: &str, value: &Value) {
     let (outer, last) = pointer.rsplit_once('/').unwrap();
     let last = last.replace("~1", "/").replace("~0", "~");
@@ -207,7 +208,7 @@ fn put(json: &mut Value, pointer: &str, value: &Value) {
     }
 }
 
-/// A scene that is edited is the scene that is written with the edit in it, and one is refused where the other is.
+/// An edited scene equals the scene written with the edit, and both are rejected alike.
 #[test]
 fn edited_scenes_are_those_that_are_written_anew() {
     let mut numbers = Numbers(38);
@@ -218,7 +219,7 @@ fn edited_scenes_are_those_that_are_written_anew() {
         let json = scene.to_value();
         let mut known = Vec::new();
         places(&json, "", &mut known);
-        // The version, and what stands for the whole scene.
+        // Leave out the version and the whole scene.
         known.retain(|place| !place.is_empty() && place != "/version");
         let place = &known[numbers.below(known.len())];
         let value = match numbers.below(6) {
@@ -250,7 +251,7 @@ fn edited_scenes_are_those_that_are_written_anew() {
     assert!(same > 100 && refused > 100, "{same} {refused}");
 }
 
-/// A scene of so many objects, each on a line of its own, and one more.
+/// A scene of `count` objects, each on its own line, and `last`.
 fn long(count: usize, last: &str) -> Result<Scene, SceneError> {
     let ball = |i: usize| match i % 500 {
         7 => r#"{"shape": {"sphere": {"radius": "=1 + frame"}}, "material": "red"}"#.to_owned(),
@@ -262,7 +263,7 @@ fn long(count: usize, last: &str) -> Result<Scene, SceneError> {
     Scene::from_json(format!("{head}\n\"objects\": [{}]}}", balls.join(",\n")), "long.json")
 }
 
-/// A long list, which is read piece by piece, gives the scene that a short one gives.
+/// A long list, which is parsed in chunks, gives the same scene as a short one.
 #[test]
 fn long_lists_are_read_as_short_ones_are() {
     let [long, short] = [2500, 600].map(|count| long(count, r#"{"shape": "plane"}"#).unwrap());
@@ -274,18 +275,18 @@ fn long_lists_are_read_as_short_ones_are() {
     assert_is_one(&long, "long");
 }
 
-/// Mistakes in long lists are told as those in short ones, with their places.
+/// Errors in long lists are reported as in short ones, with their places.
 #[test]
 fn mistakes_in_long_lists_have_their_places() {
     for (wrong, path, words) in [
         (r#"{"shape": "spere"}"#, "objects[N].shape", "unknown kind"),
         (r#"{"shape": {"sphere": {"radius": "=r"}}}"#, "objects[N].shape.sphere.radius", "`r`"),
         (r#"{"shape": "sphere", "material": "blue"}"#, "objects[N].material", "no material"),
-        (r#"{"shape": "sphere", "shape": "disk"}"#, "objects[N].shape", "second time"),
+        (r#"{"shape": "sphere", "shape": "disk"}"#, "objects[N].shape", "duplicate key"),
         (r#"{"shape": {"mesh": {"file": "none.obj"}}}"#, "objects[N].shape.mesh.file", "none.obj"),
         (r#"{"shape": "sphere" "name": 3}"#, "", "missing"),
     ] {
-        let told = |count: usize| {
+        let first_error = |count: usize| {
             let problems = match long(count, wrong) {
                 Ok(scene) => scene.check(),
                 Err(SceneError::Problems(problems)) => problems,
@@ -296,13 +297,14 @@ fn mistakes_in_long_lists_have_their_places() {
             assert!(line.contains(&format!("long.json:{}:", count + 2)), "{line}");
             (problem.path.replace(&count.to_string(), "N"), problem.message)
         };
-        assert_eq!(told(2500), told(600));
-        let (found, message) = told(2500);
+        assert_eq!(first_error(2500), first_error(600));
+        let (found, message) = first_error(2500);
         assert!(found == path && message.contains(words), "{found}: {message}");
     }
 }
 
-/// Numbers of transforms are set in objects that are known already; reading the objects' JSON gives the same bits.
+/// Numbers of moving transforms are set in the deserialized objects; deserializing the objects'
+/// JSON gives the same bits.
 #[test]
 fn numbers_of_transforms_that_move_are_those_that_are_read() {
     let steps = [
@@ -313,7 +315,7 @@ fn numbers_of_transforms_that_move_are_those_that_are_read() {
         r#"{"orient": [0, "=sin(frame)", 0, "=cos(frame)"]}"#,
         r#"{"look_at": {"from": ["=frame", 1, 2], "to": [0, "=-frame", 0], "up": [0, 1, "=frame / 8"], "forward": ["=0.1 + frame", 0, 1]}}"#,
         r#"{"matrix": [1, 0, 0, "=frame", 0, "=1 + frame", 0, 0, 0, 0, 1, "=0 * -frame"]}"#,
-        // These are read: a vector, and a track.
+        // A vector and a track are deserialized.
         r#"{"translate": "=place"}"#,
         r#"{"translate": {"animate": {"keys": [[0, [0, 0, 0]], [3, [1, "=frame", 2]]]}}}"#,
     ];
@@ -330,7 +332,7 @@ fn numbers_of_transforms_that_move_are_those_that_are_read() {
     let scene = Scene::from_json(text, "moving.json").unwrap();
     for frame in [0.0, 1.0, 2.5, -7.25] {
         let there = scene.at_frame(frame).unwrap();
-        // Another variable makes everything that moves be read again.
+        // Change a variable, so that all moving items are deserialized again.
         let read = there.with_value("/variables/other", json!(1)).unwrap();
         assert_eq!(there.description.objects, read.description.objects, "at {frame}");
         assert_eq!(there.description.groups, read.description.groups, "at {frame}");
@@ -339,14 +341,14 @@ fn numbers_of_transforms_that_move_are_those_that_are_read() {
     let [grown, still] = [7, 8].map(|i| scene.at_frame(1.0).unwrap().description.objects[i].transform.clone());
     assert_eq!(grown, [TransformStep::Translate(Vec3::new(1.0, 2.0, 3.0))]);
     assert_ne!(still, grown);
-    // A number too large for 32 bits is refused with its place.
+    // A number too large for 32 bits is rejected with its place.
     let text =
         r#"{"version": 1, "objects": [{"shape": "sphere", "transform": {"translate": ["=1e39 * frame", 0, 0]}}]}"#;
     let error = Scene::from_json(text, "huge.json").unwrap().at_frame(1.0).unwrap_err().to_string();
     assert!(error.contains("objects[0].transform"), "{error}");
 }
 
-/// What does not move is shared by all frames, and not looked at while the shutter is open.
+/// Static items are shared by all frames and not evaluated while the shutter is open.
 #[test]
 fn only_what_moves_is_read_again() {
     let mut scene = long(2500, r#"{"shape": "plane"}"#).unwrap();

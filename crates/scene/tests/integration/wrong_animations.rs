@@ -1,10 +1,11 @@
-//! More than a hundred wrong animations: each is answered with what is wrong and where, none by a panic or a hang.
+//! More than a hundred invalid animations: each gives an error with its place, none a panic or a
+//! hang.
 
 use juggler_scene::{Problems, Scene, SceneError};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-/// A scene with a number, an array, a colour, a flag and a rotation that `wrong` may be, in this order of kinds.
+/// A scene whose radius is `wrong`; the functions below do the same for other kinds of values.
 fn radius(wrong: &str) -> String {
     scene("", &format!(r#"{{"shape": {{"sphere": {{"radius": {wrong}}}}}}}"#))
 }
@@ -26,12 +27,12 @@ fn scene(more: &str, object: &str) -> String {
     format!("{{\"version\": 1,\n {more}{comma}\n \"objects\": [\n  {object}\n ]}}")
 }
 
-/// A track of these settings where a number stands.
+/// A scene with a track of these settings in place of a number.
 fn track(settings: &str) -> String {
     radius(&format!("{{\"animate\": {{{settings}}}}}"))
 }
 
-/// A track of these keys.
+/// A scene with a track of these keys.
 fn keys(keys: &str) -> String {
     track(&format!("\"keys\": [{keys}]"))
 }
@@ -40,13 +41,13 @@ fn slerp(keys: &str) -> String {
     step(&format!(r#"{{"orient": {{"animate": {{"keys": [{keys}], "interpolation": "slerp"}}}}}}"#))
 }
 
-/// Something along a path of the scene.
+/// A scene with an object that moves along a path.
 fn along(paths: &str, settings: &str) -> String {
     let object = format!(r#"{{"shape": "sphere", "transform": [{{"translate": {{"along": {{{settings}}}}}}}]}}"#);
     scene(&format!("\"paths\": {{{paths}}}"), &object)
 }
 
-/// The same when only the path is wrong.
+/// A scene in which only the path is wrong.
 fn path(path: &str) -> String {
     along(&format!("\"way\": {path}"), r#""path": "way", "at": 0.5"#)
 }
@@ -59,7 +60,7 @@ fn variables(variables: &str) -> String {
     scene(&format!("\"variables\": {{{variables}}}"), r#"{"shape": {"sphere": {"radius": "=a"}}}"#)
 }
 
-/// So many value forms within each other.
+/// Nested value forms.
 fn nested(depth: usize) -> String {
     let open = r#"{"animate": {"keys": [[0, 1]], "at": "#.repeat(depth);
     radius(&format!("{open}0{}", "}}".repeat(depth)))
@@ -67,7 +68,7 @@ fn nested(depth: usize) -> String {
 
 const BONES: &str = r#""from": [0, 0, 0], "to": [0, 4, 0], "lengths": [3, 2]"#;
 
-/// Wrong scenes, and what their message must say.
+/// Invalid scenes with the expected part of their messages.
 fn wrong() -> Vec<(String, &'static str)> {
     let tables = [
         wrong_settings(),
@@ -87,7 +88,7 @@ fn wrong_settings() -> Vec<(String, &'static str)> {
         (track(""), "`keys` is missing"),
         (track(r#""kyes": [[0, 1]]"#), "did you mean `keys`"),
         (track(r#""keys": [[0, 1]], "repat": "loop""#), "did you mean `repeat`"),
-        (track(r#""keys": [[0, 1]], "speed": 2"#), "`speed` is not known here"),
+        (track(r#""keys": [[0, 1]], "speed": 2"#), "unknown key `speed`"),
         (track(r#""keys": [[0, 1]], "repeat": "lop""#), "did you mean `loop`"),
         (track(r#""keys": [[0, 1]], "repeat": "ping-pong""#), "did you mean `ping_pong`"),
         (track(r#""keys": [[0, 1]], "repeat": 3"#), "expected a repeat"),
@@ -112,8 +113,8 @@ fn wrong_settings() -> Vec<(String, &'static str)> {
         (radius(r#"{"animate": []}"#), "expected an object"),
         (radius(r#"{"animate": null}"#), "expected an object"),
         (radius(r#"{"animate": "keys"}"#), "expected an object"),
-        (radius(r#"{"animate": {"keys": [[0, 1]]}, "ease": "in"}"#), "stands alone"),
-        (radius(r#"{"animate": {"keys": [[0, 1]]}, "along": {"path": "a", "at": 0}}"#), "stands alone"),
+        (radius(r#"{"animate": {"keys": [[0, 1]]}, "ease": "in"}"#), "an object with a single key"),
+        (radius(r#"{"animate": {"keys": [[0, 1]]}, "along": {"path": "a", "at": 0}}"#), "an object with a single key"),
         (radius(r#"{"anmate": {"keys": [[0, 1]]}}"#), "did you mean `animate`"),
     ]
 }
@@ -130,15 +131,15 @@ fn wrong_keys() -> Vec<(String, &'static str)> {
         (keys("[0, 1], [1]"), "at least 2"),
         (keys(r#"[0, 1, "in", "out"]"#), "at most 3"),
         (keys(r#"{"time": 0, "value": 1}"#), "expected an array"),
-        (keys(r#"["zero", 1]"#), "begins with its time"),
-        (keys("[null, 1]"), "begins with its time"),
-        (keys("[[0], 1]"), "begins with its time"),
+        (keys(r#"["zero", 1]"#), "must begin with its time"),
+        (keys("[null, 1]"), "must begin with its time"),
+        (keys("[[0], 1]"), "must begin with its time"),
         (keys(r#"["=frme", 1]"#), "did you mean `frame`"),
-        (keys("[1, 1], [0, 2]"), "in the order of their times"),
-        (keys("[0, 1], [2, 2], [1, 3]"), "in the order of their times"),
-        (keys("[0, 1], [0, 2]"), "two keys at the time 0"),
-        (keys(r#"["=1", 1], [1, 2]"#), "two keys at the time 1"),
-        (keys("[0, 1], [1e999, 2]"), "too large a number"),
+        (keys("[1, 1], [0, 2]"), "must be in order of time"),
+        (keys("[0, 1], [2, 2], [1, 3]"), "must be in order of time"),
+        (keys("[0, 1], [0, 2]"), "two keys have the time 0"),
+        (keys(r#"["=1", 1], [1, 2]"#), "two keys have the time 1"),
+        (keys("[0, 1], [1e999, 2]"), "is too large"),
         (keys(r#"[0, 1, "inout"], [1, 2]"#), "did you mean `in_out`"),
         (keys("[0, 1, 7], [1, 2]"), "expected"),
         (keys("[0, 1, [0, 0, 0, 0, 0]], [1, 2]"), "expected 4 numbers"),
@@ -154,12 +155,12 @@ fn wrong_values() -> Vec<(String, &'static str)> {
         (keys("[0, null]"), "can be interpolated"),
         (keys(r#"[0, {"sphere": {}}], [1, {"sphere": {}}]"#), "can be interpolated"),
         (keys("[0, []], [1, []]"), "without numbers"),
-        (keys(r##"[0, "#12345g"]"##), "is not a colour"),
-        (keys("[0, 1], [1, [1, 2]]"), "that of the first key a number"),
-        (keys("[0, [1, 2]], [1, [1, 2, 3]]"), "an array of 3, that of the first key an array of 2"),
-        (keys("[0, [[1, 2]]], [1, [[1, 2, 3]]]"), "that of the first key an array of 1 arrays (of 2)"),
-        (keys(r##"[0, "#ffffff"], [1, 1]"##), "that of the first key a colour"),
-        (keys(r##"[0, [1, 2]], [1, "#ffffff"]"##), "a colour"),
+        (keys(r##"[0, "#12345g"]"##), "is not a color"),
+        (keys("[0, 1], [1, [1, 2]]"), "but the value of the first key is a number"),
+        (keys("[0, [1, 2]], [1, [1, 2, 3]]"), "an array of 3, but the value of the first key is an array of 2"),
+        (keys("[0, [[1, 2]]], [1, [[1, 2, 3]]]"), "but the value of the first key is an array of 1 arrays (of 2)"),
+        (keys(r##"[0, "#ffffff"], [1, 1]"##), "the value of the first key is a color"),
+        (keys(r##"[0, [1, 2]], [1, "#ffffff"]"##), "a color"),
         (keys(r#"[0, "=nothing"]"#), "nothing is called `nothing`"),
         (keys(r#"[0, "=1/0"], [1, 2]"#), "infinite"),
         (keys("[0, -1], [1, -2]"), "`radius` must be greater than 0"),
@@ -176,7 +177,7 @@ fn wrong_values() -> Vec<(String, &'static str)> {
             "unknown kind of background",
         ),
         (slerp("[0, [0, 0, 1]]"), "a rotation is a quaternion"),
-        (slerp("[0, [0, 0, 0, 0]]"), "must not be all 0"),
+        (slerp("[0, [0, 0, 0, 0]]"), "must not be zero"),
         (slerp("[0, 5]"), "a rotation is a quaternion"),
         (slerp(r#"[0, [0, 0, "z", 1]]"#), "a rotation is a quaternion"),
         (slerp(r#"[0, {"axis": [0, 0, 0], "degrees": 9}]"#), "must not be zero"),
@@ -211,13 +212,13 @@ fn wrong_paths() -> Vec<(String, &'static str)> {
         (path(r#"{"points": [[0, 0, 0]], "closed": "yes"}"#), "expected true or false"),
         (path(r#"{"points": [[0, 0, 0]], "close": true}"#), "did you mean `closed`"),
         (path(r#"{"points": ["=start", [1, 0, 0]]}"#), "nothing is called `start`"),
-        (path(r#"{"points": [{"along": {"path": "way", "at": 0}}, [1, 0, 0]]}"#), "leads along itself"),
+        (path(r#"{"points": [{"along": {"path": "way", "at": 0}}, [1, 0, 0]]}"#), "depends on itself"),
         (top(r#""paths": []"#), "expected an object"),
         (
             top(
                 r#""paths": {"a": {"points": [{"along": {"path": "b", "at": 0}}]}, "b": {"points": [{"along": {"path": "a", "at": 0}}]}}"#,
             ),
-            "leads along itself",
+            "depends on itself",
         ),
         (top(r#""path": {"a": {"points": [[0, 0, 0]]}}"#), "did you mean `paths`"),
     ]
@@ -228,7 +229,7 @@ fn wrong_joints() -> Vec<(String, &'static str)> {
         (joint(BONES), "`plane_normal` is missing"),
         (joint(&format!("{BONES}, \"plane_normal\": [0, 0]")), "expected 3 numbers"),
         (joint(&format!("{BONES}, \"plane_normal\": [0, 0, 0]")), "must not be zero"),
-        (joint(&format!("{BONES}, \"plane_normal\": [0, 1, 0]")), "point along the limb"),
+        (joint(&format!("{BONES}, \"plane_normal\": [0, 1, 0]")), "parallel to the line from `from` to `to`"),
         (joint(&format!("{BONES}, \"plane_normal\": [0, 0, 1], \"keep_length\": true")), "did you mean `keep_lengths`"),
         (joint(&format!("{BONES}, \"plane_normal\": [0, 0, 1], \"keep_lengths\": 1")), "expected true or false"),
         (joint(&BONES.replace('4', "9").replace("[3, 2]", "[3, 2], \"plane_normal\": [0, 0, 1]")), "out of reach"),
@@ -263,25 +264,25 @@ fn wrong_variables() -> Vec<(String, &'static str)> {
         (variables(r#""a": "a + 1""#), "nothing is called `a`"),
         (variables(r#""v": [1, 2], "a": "v + 1""#), "write v.x or v.y"),
         (variables(r#""v": [1, 2], "a": "v.z""#), "write v.x or v.y"),
-        (variables(r#""v": [1, 2], "a": ["v", 1]"#), "expected one number here"),
+        (variables(r#""v": [1, 2], "a": ["v", 1]"#), "expected a single number"),
         (variables(r#""a": 1, "b": "a.x""#), "without components"),
         (variables(r#""a": [1, 2]"#), "expected a number, found an array"),
-        (variables(r#""a.x": 1, "a": 1"#), "cannot name a variable"),
-        (variables(r#""seconds": [1, 2], "a": 1"#), "already means something"),
+        (variables(r#""a.x": 1, "a": 1"#), "is not a valid name of a variable"),
+        (variables(r#""seconds": [1, 2], "a": 1"#), "is predefined in expressions"),
         (variables(r#""a": {"animate": {"keys": [[0, "x"]], "interpolation": "step"}}"#), "found a string"),
         (variables(r#""a": {"animate": {"keys": [[0, [1, 2, 3, 4, 5]]]}}"#), "1 to 4 numbers"),
         (variables(r#""a": {"animate": {"keys": [[0, [[1]]]]}}"#), "found an array"),
         (variables(r#""a": {"animate": {"keys": [[0, 1]], "at": "=b"}}, "b": 1"#), "further down"),
         (variables(r#""a": {"along": {"path": "none", "at": 0}}"#), "no path is called `none`"),
         (variables(r#""a": {"joint": {}}"#), "are missing"),
-        (variables(r#""a": {"animate": {"keys": [[0, 1]]}, "b": 1}"#), "stands alone"),
+        (variables(r#""a": {"animate": {"keys": [[0, 1]]}, "b": 1}"#), "an object with a single key"),
         (variables(r#""a": [{"along": {"path": "none", "at": 0}}, 1]"#), "no path is called `none`"),
     ]
 }
 
 fn wrong_steps() -> Vec<(String, &'static str)> {
     vec![
-        (step(r#"{"orient": [0, 0, 0, 0]}"#), "must not be all 0"),
+        (step(r#"{"orient": [0, 0, 0, 0]}"#), "must not be zero"),
         (step(r#"{"orient": [0, 0, 1]}"#), "expected 4 numbers"),
         (step(r#"{"orient": {"axis": [0, 1, 0], "degrees": 9}}"#), "expected an array of 4 numbers"),
         (step(r#"{"look_at": {}}"#), "`to` is missing"),
@@ -305,7 +306,7 @@ fn wrong_sizes() -> Vec<(String, &'static str)> {
         (nested(25), "deeper than the limit of 16"),
         (nested(400), "deeper than the limit of 64"),
         (keys(&many(100_001, &|i| format!("[{i}, 1]"))), "at most 100000"),
-        (keys(&many(20_000, &|i| format!("[{}, 1]", 20_000 - i))), "in the order of their times"),
+        (keys(&many(20_000, &|i| format!("[{}, 1]", 20_000 - i))), "must be in order of time"),
         (keys(&many(20_000, &|i| format!("[{i}, \"=x{i}\"]"))), "nothing is called"),
         (path(&format!("{{\"points\": [{}]}}", many(10_001, &|i| format!("[{i}, 0, 0]")))), "at most 10000"),
         (track(&format!(r#""keys": [[0, 1]], "at": "={}""#, "1+".repeat(4000))), "at most 4096"),
@@ -315,7 +316,7 @@ fn wrong_sizes() -> Vec<(String, &'static str)> {
     ]
 }
 
-/// What is wrong with a scene at some frame; nothing when it renders.
+/// Problems of a scene at two frames; `None` if it compiles.
 fn problems(text: &str) -> Option<Problems> {
     let at = |frame: f64| {
         let scene = Scene::from_json(text, "wrong.json")?.at_frame(frame)?;
@@ -328,30 +329,30 @@ fn problems(text: &str) -> Option<Problems> {
     }
 }
 
-/// What is not as it should be with the answer to a wrong scene.
-fn failure(text: &str, said: &str) -> Option<String> {
+/// Describes what is wrong with the report about an invalid scene.
+fn failure(text: &str, expected: &str) -> Option<String> {
     let shown: String = text.chars().take(300).collect();
     let Some(problems) = problems(text) else { return Some(format!("nothing is wrong with {shown}")) };
     let all = problems.to_string();
-    let told = all.contains(said) && all.contains(" --> wrong.json:") && problems.errors() > 0;
+    let is_reported = all.contains(expected) && all.contains(" --> wrong.json:") && problems.errors() > 0;
     let placed = problems.list().iter().all(|problem| problem.place.is_some() && !problem.message.is_empty());
     let short: String = all.chars().take(1500).collect();
-    let fine = told && placed && problems.list().len() <= 400;
-    (!fine).then(|| format!("expected {said:?} for {shown}\n{short}"))
+    let fine = is_reported && placed && problems.list().len() <= 400;
+    (!fine).then(|| format!("expected {expected:?} for {shown}\n{short}"))
 }
 
 #[test]
-fn every_wrong_animation_is_told_what_and_where() {
+fn every_wrong_animation_is_reported_with_reason_and_place() {
     let table = wrong();
     let distinct: BTreeSet<&String> = table.iter().map(|(text, _)| text).collect();
     assert!(distinct.len() == table.len() && table.len() >= 150, "{} scenes", table.len());
     let start = Instant::now();
-    let failures: Vec<String> = table.iter().filter_map(|(text, said)| failure(text, said)).collect();
+    let failures: Vec<String> = table.iter().filter_map(|(text, expected)| failure(text, expected)).collect();
     assert!(failures.is_empty(), "{} of {}\n{}", failures.len(), table.len(), failures.join("\n\n"));
     assert!(start.elapsed() < Duration::from_secs(60), "bounded");
 }
 
-/// One mistake, one message.
+/// Each error gives one message.
 #[test]
 fn mistakes_do_not_breed() {
     let tables =

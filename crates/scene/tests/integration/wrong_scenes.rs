@@ -1,10 +1,10 @@
-//! Wrong scenes, one mistake each, and what people read about them. The texts are reviewed snapshots.
+//! Invalid scenes with one error each, and the reports about them as reviewed snapshots.
 
 use juggler_scene::{Scene, SceneError};
 use std::fs;
 use std::path::Path;
 
-/// What a program would print about the scene in `text`, found in a folder with the other `files`.
+/// Report about the scene in `text`, in a folder with the other `files`.
 fn report(text: &str, files: &[(&str, &[u8])]) -> String {
     let folder = tempfile::tempdir().unwrap();
     for (name, content) in files {
@@ -22,12 +22,12 @@ fn complaint(path: &Path) -> String {
     }
 }
 
-/// A scene with one sphere and whatever `more` adds at the top.
+/// A scene with one sphere and the members `more`.
 fn with(more: &str) -> String {
     format!("{{\n  \"version\": 1,\n  {more},\n  \"objects\": [{{\"shape\": \"sphere\"}}]\n}}")
 }
 
-/// A scene with this object.
+/// A scene with one object.
 fn object(object: &str) -> String {
     format!("{{\n  \"version\": 1,\n  \"objects\": [\n    {object}\n  ]\n}}")
 }
@@ -35,19 +35,20 @@ fn object(object: &str) -> String {
 /// A hundred thousand objects.
 const CHAIN: &str = r#"{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [1, 0, 0], "radius": 1}, "count": 100000}}"#;
 
-/// Ten times a group.
+/// Ten placements of a group.
 fn ten(group: &str) -> String {
     vec![format!("{{\"group\": \"{group}\"}}"); 10].join(", ")
 }
 
-/// A scene of groups with these objects; the last are those of the scene.
+/// A scene with these groups; the last entry is `objects`.
 fn groups(groups: &[(&str, &str)]) -> String {
     let lines: Vec<String> = groups.iter().map(|(name, objects)| format!("  \"{name}\": [{objects}]")).collect();
     let (last, groups) = lines.split_last().unwrap();
     format!("{{\"version\": 1, \"groups\": {{\n{}}},\n{last}}}", groups.join(",\n"))
 }
 
-/// Seventy groups, each in the one before, written from the innermost on; then the name of one that holds no other.
+/// Seventy nested groups, written from the innermost out, followed by the key of the innermost
+/// group.
 fn chain_of_groups() -> String {
     let group = |i: u32| format!("\"g{i}\": [{{\"group\": \"g{}\"}}], ", i + 1);
     (0..70).rev().map(group).collect::<String>() + "\"g70\""
@@ -284,10 +285,13 @@ fn scenes_made_by_programs_are_checked_too() {
 #[test]
 fn long_names_are_shortened() {
     let long = "x".repeat(1_000_000);
-    for (text, told) in [
+    for (text, expected) in [
         (object(&format!(r#"{{"shape": "sphere", "material": "{long}"}}"#)), "no material is called `xxx"),
-        (with(&format!(r#""{long}": 1"#)), "` is not known here"),
-        (object(&format!(r#"{{"shape": {{"mesh": {{"file": "{long}.ply"}}}}}}"#)), "x.ply`: this cannot be the name"),
+        (with(&format!(r#""{long}": 1"#)), "unknown key `xxx"),
+        (
+            object(&format!(r#"{{"shape": {{"mesh": {{"file": "{long}.ply"}}}}}}"#)),
+            "x.ply`: this is not a valid file name",
+        ),
         (object(&format!(r#"{{"shape": {{"sphere": {{"radius": {}}}}}}}"#, "1".repeat(1_000_000))), "1` is too large"),
         (with(&format!(r#""materials": {{"{long}": {{"fong": {{}}}}}}"#)), "materials.xxx"),
         (
@@ -296,7 +300,11 @@ fn long_names_are_shortened() {
         ),
     ] {
         let report = report(&text, &[]);
-        assert!(report.contains(told) && report.contains('…') && report.len() < 10_000, "{told}: {}", report.len());
+        assert!(
+            report.contains(expected) && report.contains('…') && report.len() < 10_000,
+            "{expected}: {}",
+            report.len()
+        );
     }
 }
 

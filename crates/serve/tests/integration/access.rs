@@ -1,19 +1,20 @@
-//! Who is let in: one test for each rule.
+//! Access rules, one test each.
 use crate::common::{Serving, serve, serve_open, serve_with};
-use juggler_serve::{Options, ServeError, Server};
+use juggler_serve::{ServeError, Server, ServerOptions};
 use std::net::SocketAddr;
 
-/// A server that others could reach: at all addresses, reached here through the loopback.
+/// Starts a server at all addresses, which other machines could reach; the test uses the loopback
+/// address.
 fn serve_remote() -> Serving {
     let address = SocketAddr::from(([0, 0, 0, 0], 0));
-    serve_with(Options { address, allow_remote: true, ..Options::default() })
+    serve_with(ServerOptions { address, allow_remote: true, ..ServerOptions::default() })
 }
 
 #[test]
 fn it_listens_to_this_machine_alone() {
-    assert!(Options::default().address.ip().is_loopback());
+    assert!(ServerOptions::default().address.ip().is_loopback());
     let session = crate::common::small_session();
-    let options = Options { address: SocketAddr::from(([0, 0, 0, 0], 0)), ..Options::default() };
+    let options = ServerOptions { address: SocketAddr::from(([0, 0, 0, 0], 0)), ..ServerOptions::default() };
     assert!(matches!(Server::bind(session, options, |_| ()), Err(ServeError::Remote(_))));
     assert!(serve().is_alive());
 }
@@ -21,7 +22,7 @@ fn it_listens_to_this_machine_alone() {
 #[test]
 fn a_port_in_use_is_said() {
     let serving = serve();
-    let options = Options { address: serving.address, ..Options::default() };
+    let options = ServerOptions { address: serving.address, ..ServerOptions::default() };
     let error = Server::bind(crate::common::small_session(), options, |_| ()).err().unwrap();
     assert!(matches!(error, ServeError::Busy(_)), "{error}");
 }
@@ -31,20 +32,20 @@ fn only_own_names_lead_in() {
     let serving = serve_open();
     let port = serving.address.port();
     for own in [format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")] {
-        assert_eq!(serving.ask("GET", "/", &[&format!("Host: {own}")]).status, 200, "{own}");
+        assert_eq!(serving.request("GET", "/", &[&format!("Host: {own}")]).status, 200, "{own}");
     }
     let foreign =
         [format!("evil.example:{port}"), "localhost".into(), format!("localhost:{}", port ^ 1), String::new()];
     for host in foreign {
-        assert_eq!(serving.ask("GET", "/", &[&format!("Host: {host}")]).status, 403, "{host:?}");
+        assert_eq!(serving.request("GET", "/", &[&format!("Host: {host}")]).status, 403, "{host:?}");
     }
     let own = format!("Host: {}", serving.host());
-    assert_eq!(serving.ask("GET", "/", &[]).status, 403, "no Host");
-    assert_eq!(serving.ask("GET", "/", &[&own, "Host: evil.example"]).status, 403, "two of them");
-    assert_eq!(serving.ask("GET", &format!("http://evil.example:{port}/"), &[&own]).status, 403, "in the address");
+    assert_eq!(serving.request("GET", "/", &[]).status, 403, "no Host");
+    assert_eq!(serving.request("GET", "/", &[&own, "Host: evil.example"]).status, 403, "two of them");
+    assert_eq!(serving.request("GET", &format!("http://evil.example:{port}/"), &[&own]).status, 403, "in the address");
     let page = serving.open("/socket", &[("Host", "evil.example"), ("Origin", "http://evil.example")]);
     assert_eq!(page.err(), Some(403), "a rebound name");
-    serving.wait_for_line("the Host is another server");
+    serving.wait_for_line("the Host header names another server");
 }
 
 #[test]
@@ -62,11 +63,11 @@ fn pages_of_other_sites_get_no_socket() {
     for origin in foreign {
         assert_eq!(serving.open("/socket", &[("Origin", &origin)]).err(), Some(403), "{origin}");
     }
-    assert_eq!(serving.open("/socket", &[]).err(), Some(403), "no Origin");
+    assert_eq!(serving.open("/socket", &[]).err(), Some(403), "the request has no Origin header");
     serving.wait_for_line("Origin");
-    // Nor anything else.
+    // Other requests are refused too.
     let host = format!("Host: {}", serving.host());
-    assert_eq!(serving.ask("GET", "/save/picture.png", &[&host, "Origin: http://evil.example"]).status, 403);
+    assert_eq!(serving.request("GET", "/save/picture.png", &[&host, "Origin: http://evil.example"]).status, 403);
 }
 
 #[test]
@@ -75,13 +76,13 @@ fn nothing_changes_by_a_plain_request() {
     let (host, own) = (format!("Host: {}", serving.host()), format!("Origin: http://{}", serving.host()));
     for method in ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "NONSENSE"] {
         for path in ["/", "/socket", "/save/picture.png", "/catalogue.json"] {
-            assert_eq!(serving.ask(method, path, &[&host, &own]).status, 405, "{method} {path}");
-            assert_eq!(serving.ask(method, path, &[&host]).status, 403, "{method} {path} without Origin");
+            assert_eq!(serving.request(method, path, &[&host, &own]).status, 405, "{method} {path}");
+            assert_eq!(serving.request(method, path, &[&host]).status, 403, "{method} {path} without Origin");
         }
     }
 }
 
-/// Whether every request is refused that does not have the token.
+/// Asserts that every request needs the token.
 fn needs_its_token(serving: &Serving) {
     let token = serving.url.split_once("?token=").expect("an address with a token").1;
     assert_eq!(token.len(), 32);
@@ -90,11 +91,15 @@ fn needs_its_token(serving: &Serving) {
     let paths = ["/", "/page.js", "/catalogue.json", "/thumbnail/one-sphere.jpg", "/save/picture.png", "/socket", "/x"];
     let other = "0".repeat(32);
     for path in paths {
-        assert_eq!(serving.ask("GET", path, &[&host]).status, 403, "{path}");
+        assert_eq!(serving.request("GET", path, &[&host]).status, 403, "{path}");
         for wrong in ["", &token[..31], &format!("{token}0"), &other] {
-            assert_eq!(serving.ask("GET", &format!("{path}?token={wrong}"), &[&host]).status, 403, "{path} {wrong}");
+            assert_eq!(
+                serving.request("GET", &format!("{path}?token={wrong}"), &[&host]).status,
+                403,
+                "{path} {wrong}"
+            );
             let cookie = format!("Cookie: juggler_{}={wrong}", serving.address.port());
-            assert_eq!(serving.ask("GET", path, &[&host, &cookie]).status, 403);
+            assert_eq!(serving.request("GET", path, &[&host, &cookie]).status, 403);
         }
     }
     assert_eq!(serving.open("/socket", &[("Origin", &own)]).err(), Some(403));
@@ -112,15 +117,20 @@ fn other_users_of_this_machine_need_the_token() {
 fn other_machines_need_the_token_even_where_none_is_wanted() {
     needs_its_token(&serve_remote());
     let address = SocketAddr::from(([0, 0, 0, 0], 0));
-    needs_its_token(&serve_with(Options { address, allow_remote: true, token: false, ..Options::default() }));
+    needs_its_token(&serve_with(ServerOptions {
+        address,
+        allow_remote: true,
+        token: false,
+        ..ServerOptions::default()
+    }));
 }
 
 #[test]
 fn a_server_without_a_token_lets_this_machine_in() {
     let serving = serve_open();
     assert!(!serving.url.contains("token"), "{}", serving.url);
-    assert_eq!(serving.ask("GET", "/", &[&format!("Host: {}", serving.host())]).status, 200);
-    serving.page().told("status", |_| true);
+    assert_eq!(serving.request("GET", "/", &[&format!("Host: {}", serving.host())]).status, 200);
+    serving.page().next_text("status", |_| true);
 }
 
 #[test]
@@ -129,15 +139,15 @@ fn refusals_repeat_nothing_that_was_sent() {
     let host = format!("Host: {}", serving.host());
     let cookie = format!("Cookie: {}", serving.cookie.as_ref().unwrap());
     let answers = [
-        serving.ask("GET", "/", &[&format!("Host: {sent}")]),
-        serving.ask("GET", "/", &[&host, &cookie, &format!("Origin: http://{sent}")]),
-        serving.ask("GET", &format!("/?token={sent}"), &[&host]),
-        serving.ask("GET", "/", &[&host, &format!("Cookie: juggler_{}={sent}", serving.address.port())]),
-        serving.ask("GET", &format!("/{sent}"), &[&host, &cookie]),
-        serving.ask("GET", &format!("/thumbnail/{sent}.jpg"), &[&host, &cookie]),
-        serving.ask("GET", &format!("/save/{sent}.png"), &[&host, &cookie]),
-        serving.ask("GET", &format!("http://{sent}/"), &[&host, &cookie]),
-        serving.ask(sent, "/", &[&host, &cookie]),
+        serving.request("GET", "/", &[&format!("Host: {sent}")]),
+        serving.request("GET", "/", &[&host, &cookie, &format!("Origin: http://{sent}")]),
+        serving.request("GET", &format!("/?token={sent}"), &[&host]),
+        serving.request("GET", "/", &[&host, &format!("Cookie: juggler_{}={sent}", serving.address.port())]),
+        serving.request("GET", &format!("/{sent}"), &[&host, &cookie]),
+        serving.request("GET", &format!("/thumbnail/{sent}.jpg"), &[&host, &cookie]),
+        serving.request("GET", &format!("/save/{sent}.png"), &[&host, &cookie]),
+        serving.request("GET", &format!("http://{sent}/"), &[&host, &cookie]),
+        serving.request(sent, "/", &[&host, &cookie]),
     ];
     for answer in answers {
         assert!(answer.status >= 400 && !answer.text().contains(sent) && !answer.head.contains(sent), "{answer:?}");
@@ -151,8 +161,8 @@ fn refusals_repeat_nothing_that_was_sent() {
         format!(r#"{{"edit": {{"set": {{"path": "/{sent}", "value": 1}}}}}}"#),
         format!(r#"{{"edit": {{"set": {{"path": "/lights/0", "value": "{sent}"}}}}}}"#),
     ] {
-        page.say(&message);
-        let why = page.told("refused", |_| true).to_string();
+        page.send(&message);
+        let why = page.next_text("refused", |_| true).to_string();
         assert!(!why.contains(sent), "{message}: {why}");
     }
     let log = serving.log.lock().unwrap();
@@ -163,13 +173,13 @@ fn refusals_repeat_nothing_that_was_sent() {
 fn the_page_gets_a_cookie_for_the_token() {
     let serving = serve_remote();
     let (_, with_token) = serving.url.rsplit_once('/').unwrap();
-    let page = serving.ask("GET", &format!("/{with_token}"), &[&format!("Host: {}", serving.host())]);
+    let page = serving.request("GET", &format!("/{with_token}"), &[&format!("Host: {}", serving.host())]);
     assert_eq!(page.status, 200);
     let cookie = page.header("set-cookie").unwrap();
     assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"), "{cookie}");
     let cookie = cookie.split(';').next().unwrap();
     let host = format!("Host: {}", serving.host());
-    assert_eq!(serving.ask("GET", "/page.js", &[&host, &format!("Cookie: a=b; {cookie}; c=d")]).status, 200);
+    assert_eq!(serving.request("GET", "/page.js", &[&host, &format!("Cookie: a=b; {cookie}; c=d")]).status, 200);
     let own = format!("http://{}", serving.host());
     assert!(serving.open("/socket", &[("Origin", &own), ("Cookie", cookie)]).is_ok());
     assert_eq!(serving.open("/socket", &[("Origin", "http://evil.example"), ("Cookie", cookie)]).err(), Some(403));
@@ -186,7 +196,7 @@ fn everything_is_sent_with_headers_that_keep_others_out() {
         assert_eq!(answer.header("cache-control"), Some("no-store"), "{path}");
         assert_eq!(answer.header("cross-origin-resource-policy"), Some("same-origin"), "{path}");
     }
-    assert_eq!(serving.ask("GET", "/", &["Host: evil.example"]).header("x-frame-options"), Some("DENY"));
+    assert_eq!(serving.request("GET", "/", &["Host: evil.example"]).header("x-frame-options"), Some("DENY"));
 }
 
 #[test]

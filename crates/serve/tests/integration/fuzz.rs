@@ -1,8 +1,9 @@
-//! Messages that mean nothing: refused, and no memory is kept for them. Alone in its process, for that is measured.
+//! Invalid messages are refused and do not accumulate memory. The test runs alone in its process,
+//! whose memory it measures.
 use crate::common::{Page, serve};
 use tungstenite::Message;
 
-/// Numbers that look random and are the same every time.
+/// Pseudorandom numbers, the same in each run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -53,14 +54,14 @@ fn nonsense(numbers: &mut Numbers) -> Message {
     }
 }
 
-/// Sends so many messages, hearing what is answered as one goes.
+/// Sends invalid messages and reads the answers meanwhile.
 fn pester(page: &mut Page, numbers: &mut Numbers, messages: usize) {
     for index in 0..messages {
         page.socket.send(nonsense(numbers)).unwrap();
         if index % 4 == 3 {
-            // An answer at least, so that neither side's buffers are what is measured.
-            page.say("{\"probe\": [1, 1]}");
-            page.told("probe", |_| true);
+            // Wait for an answer, so that the measurement excludes socket buffers.
+            page.send("{\"probe\": [1, 1]}");
+            page.next_text("probe", |_| true);
         }
     }
 }
@@ -90,10 +91,10 @@ fn nonsense_is_refused_and_forgotten() {
     }
     let after = resident_kilobytes();
     assert!(after < before + 24_000, "memory grew from {before} to {after} kB");
-    serving.wait_for_line("means nothing");
+    serving.wait_for_line("a message is invalid");
     assert!(serving.log.lock().unwrap().len() < 2000, "the log is flooded");
     assert!(serving.is_alive());
-    page.say("{\"steer\": true}");
-    page.say("{\"edit\": \"reset\"}");
-    page.told("status", |status| status["error"].is_null() && status["scene"] != "");
+    page.send("{\"steer\": true}");
+    page.send("{\"edit\": \"reset\"}");
+    page.next_text("status", |status| status["error"].is_null() && status["scene"] != "");
 }

@@ -1,6 +1,6 @@
-//! How much of anything there may be: one test for each limit. What is too much is refused, and the server goes on.
+//! Resource limits, one test each: the excess is refused, and the server continues.
 use crate::common::{PATIENCE, answer, serve, serve_open, serve_with, short_limits, wait_until};
-use juggler_serve::{Limits, Options};
+use juggler_serve::{Limits, ServerOptions};
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,8 @@ fn two_hundred_connections_are_too_many() {
     let serving = serve_open();
     let mut streams: Vec<_> = (0..200).map(|_| serving.connect()).collect();
     serving.wait_for_line("too many connections");
-    // Those that were taken get an answer, the others were told so and closed.
+    // The last 100 connections exceed the limit and are closed, where possible after a status of
+    // 503.
     let refused = streams.iter_mut().rev().take(100).filter_map(|stream| {
         let mut text = String::new();
         let _ = stream.read_to_string(&mut text);
@@ -36,7 +37,7 @@ fn seventeen_pages_are_too_many() {
 
 #[test]
 fn half_a_request_is_not_waited_for() {
-    let serving = serve_with(Options { limits: short_limits(), ..Options::default() });
+    let serving = serve_with(ServerOptions { limits: short_limits(), ..ServerOptions::default() });
     let begun = ["", "GET / HT", "GET / HTTP/1.1\r\nHost: "];
     let mut streams: Vec<_> = begun
         .iter()
@@ -46,7 +47,7 @@ fn half_a_request_is_not_waited_for() {
             stream
         })
         .collect();
-    // One drips.
+    // This client sends byte by byte.
     let mut dripping = serving.connect();
     let start = Instant::now();
     for byte in b"GET / HTTP/1.1\r\nHost: localhost\r\nX: ".iter().cycle() {
@@ -67,7 +68,7 @@ fn half_a_request_is_not_waited_for() {
 
 #[test]
 fn a_connection_that_is_kept_and_not_used_is_closed() {
-    let serving = serve_with(Options { limits: short_limits(), token: false, ..Options::default() });
+    let serving = serve_with(ServerOptions { limits: short_limits(), token: false, ..ServerOptions::default() });
     let mut stream = serving.connect();
     write!(stream, "GET /icon.svg HTTP/1.1\r\nHost: {}\r\n\r\n", serving.host()).unwrap();
     let start = Instant::now();
@@ -80,27 +81,27 @@ fn a_connection_that_is_kept_and_not_used_is_closed() {
 fn a_large_message_ends_the_page_that_sent_it() {
     let serving = serve();
     let mut page = serving.page();
-    page.say(&format!("{{\"edit\": {{\"scene\": \"{}\"}}}}", "a".repeat(60_000)));
-    page.told("refused", |_| true);
+    page.send(&format!("{{\"edit\": {{\"scene\": \"{}\"}}}}", "a".repeat(60_000)));
+    page.next_text("refused", |_| true);
     let large = tungstenite::Message::text("a".repeat(65 << 10));
     let _ = page.socket.send(large);
-    while page.hear().is_some() {}
+    while page.receive().is_some() {}
     serving.wait_for_line("too l");
     assert!(serving.is_alive());
-    serving.page().told("status", |_| true);
+    serving.page().next_text("status", |_| true);
 }
 
 #[test]
 fn a_silent_page_is_let_go() {
     let limits = Limits { silence: Duration::from_millis(600), ..Limits::default() };
-    let serving = serve_with(Options { limits, ..Options::default() });
+    let serving = serve_with(ServerOptions { limits, ..ServerOptions::default() });
     let silent = serving.page();
     serving.wait_for_line("silent for too long");
-    // One that answers when it is asked may stay.
+    // A page that answers pings stays connected.
     let mut page = serving.page();
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(2) {
-        assert!(page.hear_for(Duration::from_millis(50)), "it was let go");
+        assert!(page.receive_for(Duration::from_millis(50)), "it was let go");
     }
     drop(silent);
 }
@@ -109,10 +110,10 @@ fn a_silent_page_is_let_go() {
 fn a_long_head_is_refused() {
     let serving = serve_open();
     let answer =
-        serving.ask("GET", "/", &[&format!("Host: {}", serving.host()), &format!("X: {}", "a".repeat(100_000))]);
+        serving.request("GET", "/", &[&format!("Host: {}", serving.host()), &format!("X: {}", "a".repeat(100_000))]);
     assert!(answer.status == 431 || answer.status == 0, "{answer:?}");
     let many: String = (0..2000).map(|index| format!("X{index}: a\r\n")).collect();
-    let answer = serving.ask("GET", "/", &[&format!("Host: {}", serving.host()), many.trim_end()]);
+    let answer = serving.request("GET", "/", &[&format!("Host: {}", serving.host()), many.trim_end()]);
     assert!(answer.status == 431 || answer.status == 0, "{answer:?}");
     assert!(serving.is_alive());
 }

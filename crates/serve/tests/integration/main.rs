@@ -1,4 +1,4 @@
-//! The web server: who is let in, limits, hostile messages, the page.
+//! The web server: access rules, resource limits, invalid messages, the page.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,6 +1,6 @@
-//! What a page sees and may do.
-use crate::common::{Heard, PATIENCE, serve, serve_with, wait_until};
-use juggler_serve::Options;
+//! Messages that a page receives, and requests that it may make.
+use crate::common::{PATIENCE, Received, serve, serve_with, wait_until};
+use juggler_serve::ServerOptions;
 use serde_json::json;
 use std::time::{Duration, Instant};
 
@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 fn a_picture_comes_at_once_gets_better_and_ends_without_loss() {
     let serving = serve();
     let mut page = serving.page();
-    let (first, image) = page.shown(|_| true);
+    let (first, image) = page.next_frame(|_| true);
     assert_eq!(first.size, [64, 48]);
     assert!(first.serial == 1 && image.starts_with(&[0xff, 0xd8]), "a JPEG");
-    let (last, image) = page.shown(|head| head.kind == 2);
+    let (last, image) = page.next_frame(|head| head.kind == 2);
     assert!(image.starts_with(b"\x89PNG"));
     let frame = serving.session.frame().unwrap();
     assert_eq!((last.number, last.revision, last.samples), (frame.number, frame.revision, frame.samples));
@@ -19,8 +19,8 @@ fn a_picture_comes_at_once_gets_better_and_ends_without_loss() {
     let mut pixels = vec![0; 64 * 48 * 4];
     reader.next_frame(&mut pixels).unwrap();
     assert!(pixels == frame.rgba, "the last picture is the session's");
-    // Then nothing more: neither pictures nor words.
-    assert!(page.hear_for(Duration::from_millis(500)));
+    // Afterwards nothing is sent, neither frames nor texts.
+    assert!(page.receive_for(Duration::from_millis(500)));
     assert_eq!(serving.session.frame().unwrap().number, frame.number);
 }
 
@@ -28,24 +28,24 @@ fn a_picture_comes_at_once_gets_better_and_ends_without_loss() {
 fn edits_show() {
     let serving = serve();
     let mut page = serving.page();
-    let before = page.told("status", |status| status["stage"] == "finished");
-    page.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
+    let before = page.next_text("status", |status| status["stage"] == "finished");
+    page.send(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
     let revision = before["revision"].as_u64().unwrap();
-    let (head, _) = page.shown(|head| head.revision > revision);
+    let (head, _) = page.next_frame(|head| head.revision > revision);
     assert!(head.revision > revision);
-    let after = page.told("status", |status| status["stage"] == "finished" && status["revision"] != revision);
+    let after = page.next_text("status", |status| status["stage"] == "finished" && status["revision"] != revision);
     assert_ne!(after["camera"], before["camera"]);
-    page.say(r#"{"edit": {"scene": "red-cube"}}"#);
-    page.told("status", |status| status["scene"] == "red-cube" && status["stage"] == "finished");
-    page.say(r#"{"edit": {"show": "normals"}}"#);
-    page.told("status", |status| status["channel"] == "normals");
+    page.send(r#"{"edit": {"scene": "red-cube"}}"#);
+    page.next_text("status", |status| status["scene"] == "red-cube" && status["stage"] == "finished");
+    page.send(r#"{"edit": {"show": "normals"}}"#);
+    page.next_text("status", |status| status["channel"] == "normals");
 }
 
 #[test]
 fn what_pages_may_not_ask_for_is_refused() {
     let serving = serve();
     let mut page = serving.page();
-    let scene = page.told("status", |status| status["scene"] != "")["scene"].clone();
+    let scene = page.next_text("status", |status| status["scene"] != "")["scene"].clone();
     for edit in [
         json!({"scene": "/etc/passwd"}),
         json!({"scene": "Cargo.toml"}),
@@ -53,8 +53,8 @@ fn what_pages_may_not_ask_for_is_refused() {
         json!({"set": {"path": "/include", "value": ["/etc/passwd"]}}),
         json!({"set": {"path": "/objects/0/shape", "value": {"mesh": {"file": "/etc/passwd"}}}}),
     ] {
-        page.say(&json!({ "edit": edit }).to_string());
-        let why = page.told("refused", |_| true);
+        page.send(&json!({ "edit": edit }).to_string());
+        let why = page.next_text("refused", |_| true);
         assert!(!why.as_str().unwrap().contains("root:"), "{why}");
     }
     let status = serving.session.status();
@@ -66,72 +66,72 @@ fn what_pages_may_not_ask_for_is_refused() {
 fn one_page_steers_and_the_others_watch() {
     let serving = serve();
     let (mut first, mut second) = (serving.page(), serving.page());
-    first.told("wheel", |wheel| wheel["steering"] == true && wheel["watching"] == 2);
-    second.told("wheel", |wheel| wheel["steering"] == false && wheel["free"] == false);
+    first.next_text("wheel", |wheel| wheel["steering"] == true && wheel["watching"] == 2);
+    second.next_text("wheel", |wheel| wheel["steering"] == false && wheel["free"] == false);
     let revision = serving.session.status().revision;
-    second.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
-    assert_eq!(second.told("refused", |_| true), "another page steers");
+    second.send(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
+    assert_eq!(second.next_text("refused", |_| true), "another page controls the session");
     assert_eq!(serving.session.status().revision, revision);
-    second.shown(|_| true);
-    second.say(r#"{"steer": true}"#);
-    second.told("wheel", |wheel| wheel["steering"] == true);
-    first.told("wheel", |wheel| wheel["steering"] == false);
-    // A page that goes leaves the wheel; of several, whoever turns it next has it.
+    second.next_frame(|_| true);
+    second.send(r#"{"steer": true}"#);
+    second.next_text("wheel", |wheel| wheel["steering"] == true);
+    first.next_text("wheel", |wheel| wheel["steering"] == false);
+    // When the steering page disconnects, the wheel is free; the next page that edits takes it.
     let mut third = serving.page();
-    // It has come before the second one goes, or the first would be alone for a moment.
-    third.told("wheel", |wheel| wheel["watching"] == 3);
+    // Wait until the third page is connected, lest the first be alone for a moment.
+    third.next_text("wheel", |wheel| wheel["watching"] == 3);
     drop(second);
-    first.told("wheel", |wheel| wheel["free"] == true && wheel["watching"] == 2);
-    first.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
-    first.told("wheel", |wheel| wheel["steering"] == true);
-    first.told("status", |status| status["revision"].as_u64() > Some(revision));
-    third.told("wheel", |wheel| wheel["steering"] == false && wheel["free"] == false);
-    // The only one steers without having asked.
+    first.next_text("wheel", |wheel| wheel["free"] == true && wheel["watching"] == 2);
+    first.send(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
+    first.next_text("wheel", |wheel| wheel["steering"] == true);
+    first.next_text("status", |status| status["revision"].as_u64() > Some(revision));
+    third.next_text("wheel", |wheel| wheel["steering"] == false && wheel["free"] == false);
+    // A single page steers without a request.
     drop(first);
-    third.told("wheel", |wheel| wheel["steering"] == true && wheel["watching"] == 1);
+    third.next_text("wheel", |wheel| wheel["steering"] == true && wheel["watching"] == 1);
 }
 
 #[test]
 fn a_slow_page_costs_pictures_not_memory() {
     let serving = serve();
     let mut page = serving.page();
-    page.told("status", |status| status["stage"] == "finished");
+    page.next_text("status", |status| status["stage"] == "finished");
     let mut slow = serving.page();
-    // It shows nothing: no more than two pictures are sent to it, whatever happens.
+    // Without acknowledgments at most two frames are sent.
     for _ in 0..30 {
-        page.say(r#"{"edit": {"fly": {"yaw_degrees": 1}}}"#);
-        page.shown(|_| true);
+        page.send(r#"{"edit": {"fly": {"yaw_degrees": 1}}}"#);
+        page.next_frame(|_| true);
     }
-    let newest = page.shown(|head| head.kind == 2).0;
+    let newest = page.next_frame(|head| head.kind == 2).0;
     slow.socket.get_ref().set_read_timeout(Some(Duration::from_millis(300))).unwrap();
     let mut serials = Vec::new();
-    while let Some(heard) = slow.hear() {
-        if let Heard::Frame(head, _) = heard {
+    while let Some(received) = slow.receive() {
+        if let Received::Frame(head, _) = received {
             serials.push(head.serial);
         }
     }
     assert_eq!(serials, [1, 2]);
     slow.socket.get_ref().set_read_timeout(Some(PATIENCE)).unwrap();
-    // Then the newest one, not those between.
-    slow.say(r#"{"ack": 2}"#);
-    assert_eq!(slow.shown(|_| true).0.number, newest.number);
+    // Afterwards the newest frame is sent, none of those between.
+    slow.send(r#"{"ack": 2}"#);
+    assert_eq!(slow.next_frame(|_| true).0.number, newest.number);
 }
 
 #[test]
 fn a_page_that_goes_loses_nothing() {
     let serving = serve();
     let mut page = serving.page();
-    page.shown(|_| true);
-    page.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
-    page.say(r#"{"edit": {"setting": {"samples": 64}}}"#);
-    page.told("status", |status| status["samples_wanted"] == 64);
+    page.next_frame(|_| true);
+    page.send(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
+    page.send(r#"{"edit": {"setting": {"samples": 64}}}"#);
+    page.next_text("status", |status| status["samples_wanted"] == 64);
     drop(page);
     wait_until("the picture is finished with nobody there", || {
         serving.session.status().stage == juggler_session::Stage::Finished
     });
-    // As text, for reading rounds the last digit.
+    // Compare as text, since parsing rounds the last digit.
     let camera = serving.session.status().camera.to_string();
-    let status = serving.page().told("status", |_| true);
+    let status = serving.page().next_text("status", |_| true);
     let camera: serde_json::Value = serde_json::from_str(&camera).unwrap();
     assert_eq!((&status["camera"], &status["samples_wanted"]), (&camera, &json!(64)));
 }
@@ -140,19 +140,19 @@ fn a_page_that_goes_loses_nothing() {
 fn pixels_are_probed() {
     let serving = serve();
     let mut page = serving.page();
-    page.told("status", |status| status["stage"] == "finished");
-    page.say(r#"{"probe": [32, 24]}"#);
-    let facts = page.told("probe", |_| true);
+    page.next_text("status", |status| status["stage"] == "finished");
+    page.send(r#"{"probe": [32, 24]}"#);
+    let facts = page.next_text("probe", |_| true);
     assert_eq!(facts["pixel"], json!([32, 24]));
     assert!(facts["depth"].as_f64().unwrap() > 0.0 && facts["color"].is_array(), "{facts}");
-    page.say(r#"{"probe": [4000000000, 4000000000]}"#);
-    page.told("probe", |_| true);
+    page.send(r#"{"probe": [4000000000, 4000000000]}"#);
+    page.next_text("probe", |_| true);
 }
 
 #[test]
 fn pictures_are_saved_by_download() {
     let serving = serve();
-    serving.page().told("status", |status| status["stage"] == "finished");
+    serving.page().next_text("status", |status| status["stage"] == "finished");
     let png = serving.get("/save/picture.png");
     assert!(png.status == 200 && png.body.starts_with(b"\x89PNG"));
     assert_eq!(png.header("content-disposition"), Some("attachment; filename=\"one-sphere.png\""));
@@ -162,7 +162,7 @@ fn pictures_are_saved_by_download() {
 
 #[test]
 fn scenes_are_listed_with_small_pictures() {
-    let serving = serve_with(Options { scene: Some("mine.json".into()), ..Options::default() });
+    let serving = serve_with(ServerOptions { scene: Some("mine.json".into()), ..ServerOptions::default() });
     let listing: serde_json::Value = serde_json::from_slice(&serving.get("/catalogue.json").body).unwrap();
     assert_eq!(listing["file"]["name"], "mine.json");
     let picture = serving.get("/thumbnail/red-cube.jpg");
@@ -194,10 +194,10 @@ fn every_file_that_the_page_names_is_there() {
 fn an_idle_server_does_nothing() {
     let serving = serve();
     let mut page = serving.page();
-    page.told("status", |status| status["stage"] == "finished");
-    page.hear_for(Duration::from_millis(600));
+    page.next_text("status", |status| status["stage"] == "finished");
+    page.receive_for(Duration::from_millis(600));
     let status = serving.session.status().number;
     let start = Instant::now();
-    assert!(page.hear_for(Duration::from_millis(400)) && start.elapsed() < PATIENCE);
+    assert!(page.receive_for(Duration::from_millis(400)) && start.elapsed() < PATIENCE);
     assert_eq!(serving.session.status().number, status);
 }

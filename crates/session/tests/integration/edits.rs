@@ -1,8 +1,8 @@
-//! Every kind of edit: what it does, and what it says when it cannot be.
+//! Effect and error messages of every kind of edit.
 use crate::{PATIENCE, until};
 use juggler::camera::film::Rect;
 use juggler::scene::{Scene, built_in_scenes};
-use juggler_session::{Channel, Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
+use juggler_session::{Channel, Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 const SIZE: [u32; 2] = [48, 36];
 
-fn options() -> Options {
-    Options { size: Some(SIZE), threads: 2, ..Options::default() }
+fn options() -> SessionOptions {
+    SessionOptions { size: Some(SIZE), threads: 2, ..SessionOptions::default() }
 }
 
 fn settled(session: &Session, revision: u64) -> Arc<Status> {
@@ -53,7 +53,7 @@ fn in_folder() -> (tempfile::TempDir, String) {
 #[test]
 fn settings_change_the_picture_or_say_what_is_wrong() {
     let session = opened("first-render");
-    let wanted = [
+    let settings = [
         (Setting::Samples(3), "samples_wanted"),
         (Setting::Integrator("normals".into()), "integrator"),
         (Setting::Integrator("classic".into()), "integrator"),
@@ -65,7 +65,7 @@ fn settings_change_the_picture_or_say_what_is_wrong() {
         (Setting::Threads(1), "threads"),
         (Setting::Scheduler("row-queue".into()), "scheduler"),
     ];
-    for (setting, member) in wanted {
+    for (setting, member) in settings {
         let json = serde_json::to_value(&setting).unwrap();
         let value = json.as_object().unwrap().values().next().unwrap().clone();
         let status = serde_json::to_value(&*after(&session, Edit::Setting(setting))).unwrap();
@@ -122,16 +122,16 @@ fn what_clamping_takes_away_is_told() {
 #[test]
 fn every_channel_shows_something_else() {
     let session = opened("juggler");
-    // Of fewer nothing is known of the noise.
+    // The noise estimate needs 64 samples.
     after(&session, Edit::Setting(Setting::Samples(64)));
-    let mut seen = Vec::new();
+    let mut images = Vec::new();
     for channel in Channel::ALL {
         let status = after(&session, Edit::Show(channel));
         assert_eq!((status.channel, status.samples), (channel, status.samples_wanted as f32));
         let frame = session.frame().unwrap();
         assert_eq!([frame.width, frame.height], SIZE, "{channel:?}");
-        assert!(!seen.contains(&frame.rgba), "{channel:?}");
-        seen.push(frame.rgba.clone());
+        assert!(!images.contains(&frame.rgba), "{channel:?}");
+        images.push(frame.rgba.clone());
     }
 }
 
@@ -173,7 +173,7 @@ fn moments_are_frames_of_the_animation() {
     let fifth = after(&session, Edit::At(5.0));
     assert_eq!((fifth.frame, fifth.frames), (5.0, 10));
     let still = Scene::load(&name).unwrap().at_frame(5.0).unwrap();
-    let program = Session::of(still, "still", options());
+    let program = Session::from_scene(still, "still", options());
     assert_eq!(settled(&program, 0).hash, fifth.hash);
     assert_eq!(after(&session, Edit::At(0.0)).hash, first);
     session.edit(Edit::Play(true));
@@ -258,11 +258,11 @@ fn scenes_are_switched_and_unknown_ones_leave_the_last() {
     let status = after(&session, Edit::Scene("jugler".into()));
     assert_eq!(
         status.error.as_deref(),
-        Some("error: no file and no built-in scene is called `jugler`, did you mean `juggler`?")
+        Some("error: no file and no built-in scene is called `jugler`; did you mean `juggler`?")
     );
     assert_eq!(status.scene, "one-sphere");
     assert!(status.hash.is_some() && session.frame().unwrap().number >= frame);
-    // The last of many wins.
+    // Of many requests the last one wins.
     for scene in built_in_scenes() {
         session.edit(Edit::Scene(scene.name.into()));
     }
@@ -275,7 +275,7 @@ fn a_session_without_a_scene_waits_for_one() {
     let session = Session::open("no such thing", options());
     let status = settled(&session, 0);
     assert!(status.error.is_some() && session.frame().is_none());
-    assert!(session.probe([0, 0]).is_none() && session.encoded("png").is_err());
+    assert!(session.probe([0, 0]).is_none() && session.encode("png").is_err());
     session.edit(Edit::Fly(Fly { forward: 1.0, ..Fly::default() }));
     assert_eq!(after(&session, Edit::Scene("red-cube".into())).error, None);
 }
@@ -286,8 +286,8 @@ fn pictures_are_saved_as_an_offline_render_writes_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.png");
     session.save(&file).unwrap();
-    assert_eq!(fs::read(&file).unwrap(), session.encoded("png").unwrap());
-    assert!(session.encoded("exr").is_ok() && session.encoded("txt").is_err());
+    assert_eq!(fs::read(&file).unwrap(), session.encode("png").unwrap());
+    assert!(session.encode("exr").is_ok() && session.encode("txt").is_err());
     let settings = juggler::Settings { size: Some(SIZE), ..Default::default() };
     let other = folder.path().join("b.png");
     juggler::render_to_file(&Scene::built_in("juggler").unwrap(), &settings, &other).unwrap();
@@ -297,7 +297,7 @@ fn pictures_are_saved_as_an_offline_render_writes_them() {
 
 #[test]
 fn wild_edits_do_no_harm() {
-    let session = Session::open("juggler", Options { size: Some([24, 18]), ..options() });
+    let session = Session::open("juggler", SessionOptions { size: Some([24, 18]), ..options() });
     let mut bits = 7_u64;
     let mut random = move |n: u64| {
         bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -339,27 +339,27 @@ fn wild_edits_do_no_harm() {
 #[test]
 fn news_are_told_and_the_threads_end_with_the_last_handle() {
     let session = opened("juggler");
-    let told = Arc::new(AtomicUsize::new(0));
-    let count = Arc::clone(&told);
-    session.on_news(move || {
+    let calls = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&calls);
+    session.on_update(move || {
         count.fetch_add(1, Relaxed);
     });
-    let seen = session.frame().unwrap().number;
+    let number = session.frame().unwrap().number;
     session.edit(Edit::Zoom(1.5));
-    assert!(session.wait(seen, u64::MAX, PATIENCE), "a frame comes");
+    assert!(session.wait(number, u64::MAX, PATIENCE), "a frame comes");
     let end = Instant::now() + PATIENCE;
-    while told.load(Relaxed) == 0 && Instant::now() < end {
+    while calls.load(Relaxed) == 0 && Instant::now() < end {
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert!(told.load(Relaxed) > 0);
+    assert!(calls.load(Relaxed) > 0);
     let other = session.clone();
     drop(session);
     after(&other, Edit::Zoom(1.5));
     drop(other);
-    // What the session holds goes with its thread.
+    // The session's thread releases the callback when it ends.
     let end = Instant::now() + PATIENCE;
-    while Arc::strong_count(&told) > 1 && Instant::now() < end {
+    while Arc::strong_count(&calls) > 1 && Instant::now() < end {
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(Arc::strong_count(&told), 1);
+    assert_eq!(Arc::strong_count(&calls), 1);
 }

@@ -1,16 +1,16 @@
-//! Files that change while they are looked at.
+//! Scene files that change during a session.
 use crate::until;
 use juggler::scene::Scene;
-use juggler_session::{Edit, Fly, Options, Session, Stage, Status};
+use juggler_session::{Edit, Fly, Session, SessionOptions, Stage, Status};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// What a change may take to be shown.
+/// Time within which a change must be displayed.
 const AT_ONCE: Duration = Duration::from_millis(200);
 
 fn watched(file: &Path) -> Session {
-    let options = Options { size: Some([32, 24]), threads: 2, watch: true, ..Options::default() };
+    let options = SessionOptions { size: Some([32, 24]), threads: 2, watch: true, ..SessionOptions::default() };
     Session::open(&file.to_string_lossy(), options)
 }
 
@@ -21,14 +21,14 @@ fn scene(include: &str, samples: u32) -> String {
     )
 }
 
-/// As editors do: beside, then renamed.
+/// Replaces a file as editors do: writes another one and renames it.
 fn replace(file: &Path, text: &str) {
     let beside = file.with_extension("new");
     fs::write(&beside, text).unwrap();
     fs::rename(beside, file).unwrap();
 }
 
-/// How long a change takes to be shown.
+/// Returns the time from a change until the status meets a condition.
 fn time(session: &Session, change: &dyn Fn(), what: &dyn Fn(&Status) -> bool) -> Duration {
     let begin = Instant::now();
     change();

@@ -1,11 +1,11 @@
-//! Groups of lights are mixed without tracing again.
+//! Relighting: light groups are scaled without tracing again.
 
 use juggler::scene::Scene;
-use juggler_session::{Edit, Options, Session, Setting, Stage, Status};
+use juggler_session::{Edit, Session, SessionOptions, Setting, Stage, Status};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Two lamps, one of them in a group, and a white wall.
+/// A white wall and two point lights, one of them in a light group.
 const SCENE: &str = r#"{"version": 1,
     "render": {"size": [40, 30], "samples": 16, "integrator": "path"}, "tone": {"curve": "linear", "dither": false},
     "camera": {"perspective": {"eye": [0, 0, 4]}}, "background": 0,
@@ -13,8 +13,8 @@ const SCENE: &str = r#"{"version": 1,
     "objects": [{"shape": {"rectangle": {"size": [8, 8]}}, "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}], "material": {"diffuse": {"reflectance": 0.8}}}]}"#;
 
 fn opened(text: &str) -> Session {
-    let options = Options { threads: 2, ..Options::default() };
-    Session::of(Scene::from_json(text, "scene").unwrap(), "scene", options)
+    let options = SessionOptions { threads: 2, ..SessionOptions::default() };
+    Session::from_scene(Scene::from_json(text, "scene").unwrap(), "scene", options)
 }
 
 fn settled(session: &Session, revision: u64) -> Arc<Status> {
@@ -33,8 +33,8 @@ fn gain(session: &Session, group: &str, factors: [f32; 3]) -> Arc<Status> {
     settled(session, session.edit(Edit::Setting(Setting::Gain(group.into(), factors))))
 }
 
-/// Mean of what is shown, red, green and blue.
-fn shown(session: &Session) -> [f64; 3] {
+/// Returns the mean of the displayed pixels, in RGB.
+fn mean_pixel(session: &Session) -> [f64; 3] {
     let frame = session.frame().unwrap();
     let count = (frame.rgba.len() / 4) as f64;
     [0, 1, 2].map(|at| frame.rgba.chunks_exact(4).map(|pixel| f64::from(pixel[at])).sum::<f64>() / count)
@@ -45,22 +45,22 @@ fn groups_are_mixed_with_the_samples_that_are_there() {
     let session = opened(SCENE);
     let before = settled(&session, 0);
     assert_eq!(before.light_groups, [("rest".into(), [1.0; 3]), ("key".into(), [1.0; 3])]);
-    let white = shown(&session);
+    let white = mean_pixel(&session);
     assert!(white[2] > 1.5 * white[0] && (white[0] - white[1]).abs() < 1e-9, "{white:?}");
 
     let lit = gain(&session, "key", [0.5, 0.25, 0.0]);
     assert_eq!(lit.light_groups[1], ("key".into(), [0.5, 0.25, 0.0]));
     assert_eq!((lit.samples, &lit.hash), (before.samples, &before.hash), "nothing is traced again");
-    let warm = shown(&session);
+    let warm = mean_pixel(&session);
     let rest = white[2] - white[0];
     for (found, expected) in warm.into_iter().zip([0.5 * white[0], 0.25 * white[1], rest]) {
-        // Levels are whole numbers.
+        // 8-bit levels are rounded.
         assert!((found - expected).abs() < 1.0, "{found} instead of {expected}");
     }
 
     let off = gain(&session, "rest", [0.0; 3]);
     assert_eq!(off.hash, before.hash);
-    assert!(shown(&session)[2] < 0.01);
+    assert!(mean_pixel(&session)[2] < 0.01);
     let file = tempfile::tempdir().unwrap();
     let file = file.path().join("dark.pfm");
     session.save(&file).unwrap();
@@ -69,7 +69,7 @@ fn groups_are_mixed_with_the_samples_that_are_there() {
 
     let again = settled(&session, session.edit(Edit::Reset));
     assert_eq!(again.light_groups, before.light_groups);
-    assert_eq!(shown(&session), white);
+    assert_eq!(mean_pixel(&session), white);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_camera_that_moves_shows_the_lights_as_they_are_mixed() {
 fn wrong_gains_are_refused() {
     let session = opened(SCENE);
     settled(&session, 0);
-    for (group, factors, told) in [
+    for (group, factors, message) in [
         ("kay", [1.0; 3], "did you mean `key`"),
         ("key", [-1.0, 0.0, 0.0], "0 to"),
         ("key", [f32::NAN, 0.0, 0.0], "0 to"),
@@ -107,7 +107,7 @@ fn wrong_gains_are_refused() {
             session.wait(u64::MAX, session.status().number, Duration::from_millis(50));
         }
         let status = session.status();
-        assert!(status.error.as_ref().is_some_and(|error| error.contains(told)), "{:?}", status.error);
+        assert!(status.error.as_ref().is_some_and(|error| error.contains(message)), "{:?}", status.error);
         assert_eq!(status.light_groups[1].1, [1.0; 3]);
     }
     let plain = opened(&SCENE.replace(r#", "light_group": "key""#, ""));

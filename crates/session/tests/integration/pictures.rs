@@ -1,8 +1,8 @@
-//! What a session shows in the end is what `juggler render` writes.
+//! The final image of a session equals the one that `juggler render` writes.
 use juggler::render::{Control, Scheduler};
 use juggler::scene::Scene;
 use juggler::{Error, Picture, Settings};
-use juggler_session::{Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
+use juggler_session::{Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -14,8 +14,8 @@ fn offline(name: &str) -> String {
     picture.render(Scheduler::default(), &Control::default(), |_| Ok::<(), Error>(())).unwrap().hash
 }
 
-fn options(threads: usize) -> Options {
-    Options { size: Some(SIZE), threads, ..Options::default() }
+fn options(threads: usize) -> SessionOptions {
+    SessionOptions { size: Some(SIZE), threads, ..SessionOptions::default() }
 }
 
 fn finished(session: &Session, revision: u64) -> Arc<Status> {

@@ -1,17 +1,18 @@
-//! Small pictures of the built-in scenes: all are there, and show what the scenes show.
+//! Every built-in scene has a thumbnail that resembles its rendered image.
 use juggler::imaging::{Limits, Tone, decode};
 use juggler::math::{Image, Rgb};
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::{Settings, render};
-use juggler_session::{screen::Toner, thumbnail};
+use juggler_session::{screen::DisplayTransform, thumbnail};
 use std::io::Cursor;
 
-/// What all of them may add to the program, bytes.
+/// Maximum total size of all thumbnails, in bytes.
 const MOST_BYTES: usize = 200 << 10;
-/// Fields that pictures are compared by, to each side.
+/// Number of cells per axis in which images are compared.
 const FIELDS: u32 = 8;
-/// Levels by which fields of a scene's two pictures may differ, in the mean: few samples are noisy. Pictures of two scenes
-/// differ by 82 in the median; twelve of 946 pairs, dark or nearly the same, by less than this.
+/// Maximum mean difference of the cells of a thumbnail and a noisy render, in 8-bit levels. Images
+/// of two scenes differ by 82 in the median; twelve of 946 pairs, dark or nearly the same, differ
+/// by less.
 const MOST_LEVELS: f64 = 16.0;
 
 fn decoded(name: &str) -> Image {
@@ -20,15 +21,15 @@ fn decoded(name: &str) -> Image {
     decode(name, Cursor::new(file), &Limits::default()).unwrap()
 }
 
-/// Levels of the screen, 0 to 255, in fields, each the mean of its pixels.
+/// Returns the mean 8-bit levels of each cell.
 fn fields(image: &Image, tone: &Tone) -> Vec<f64> {
-    let toner = Toner::new(tone);
+    let transform = DisplayTransform::new(tone);
     let (width, height) = (image.width(), image.height());
     let mut sums = vec![(0.0, 0.0); (FIELDS * FIELDS * 3) as usize];
     for (place, pixel) in (0..).zip(image.pixels()) {
         let (x, y): (u32, u32) = (place % width, place / width);
         let field = ((y * FIELDS / height) * FIELDS + x * FIELDS / width) * 3;
-        for (channel, level) in toner.rgba(*pixel)[..3].iter().enumerate() {
+        for (channel, level) in transform.rgba(*pixel)[..3].iter().enumerate() {
             let (sum, count) = &mut sums[field as usize + channel];
             (*sum, *count) = (*sum + f64::from(*level), *count + 1.0);
         }
@@ -55,9 +56,9 @@ fn every_built_in_scene_has_one_and_they_are_small() {
 #[test]
 fn they_show_what_the_scenes_show() {
     let display = Tone::default();
-    let shown: Vec<(&str, Vec<f64>)> =
+    let thumbnails: Vec<(&str, Vec<f64>)> =
         built_in_scenes().iter().map(|scene| (scene.name, fields(&decoded(scene.name), &display))).collect();
-    for (name, fields_of_thumbnail) in &shown {
+    for (name, fields_of_thumbnail) in &thumbnails {
         let scene = Scene::built_in(name).unwrap();
         let image = decoded(name);
         let size = Some([image.width() / 4, image.height() / 4]);

@@ -1,4 +1,4 @@
-//! Descriptions: to JSON and back, and what is refused.
+//! Descriptions: to JSON and back, and validation.
 
 use super::*;
 use crate::{Cuboid, Cylinder, Disk, Mesh, MeshData, Polygon, Rectangle, Sphere, Triangle, Tube};
@@ -64,7 +64,8 @@ fn polygons_say_which_vertex_is_at_fault() {
     refused(polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]]), "vertices[3]");
     // A dent, a star, a spike, a bow tie.
     refused(polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.5, 0.5]]), "vertices[3]");
-    let star: Vec<[f32; 2]> = (0..5u8).map(|i| juggler_math::fun::sin_cos_turns(f32::from(i) * 0.4).into()).collect();
+    let star: Vec<[f32; 2]> =
+        (0..5u8).map(|i| juggler_math::portable::sin_cos_turns(f32::from(i) * 0.4).into()).collect();
     refused(polygon(&star), "vertices[2]");
     refused(polygon(&[[0.0, 0.0], [4.0, 0.0], [2.0, 0.0], [2.0, 2.0]]), "vertices[1]");
     refused(polygon(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]), "vertices");
@@ -98,7 +99,7 @@ fn meshes_say_which_index_is_at_fault() {
     assert_eq!(both.load(whole).unwrap_err().field, "file");
 }
 
-/// Nothing panics when a description is used without having been prepared, or with numbers it would refuse.
+/// Shapes do not panic when they are used before `prepare`, or with numbers that it would refuse.
 #[test]
 fn unprepared_shapes_do_not_panic() {
     let mut shapes = AnyShape::examples();
@@ -107,10 +108,10 @@ fn unprepared_shapes_do_not_panic() {
     shapes.push(Sphere { radius: f32::NAN }.into());
     for shape in shapes {
         let ray = Ray::new(Vec3::new(0.1, 5.0, 0.2), Vec3::NEG_Y);
-        let hit = shape.intersect(&ray).unwrap_or(crate::Hit { t: 1.0, uv: juggler_math::Vec2::ZERO, part: 77 });
+        let hit = shape.intersect(&ray).unwrap_or(crate::Hit { t: 1.0, uv: juggler_math::Vec2::ZERO, primitive: 77 });
         let _ =
             (shape.surface(&ray, &hit), shape.bounds(), shape.area(), shape.sample(Vec3::Y, juggler_math::Vec2::ZERO));
-        let at = crate::SurfacePoint { point: Vec3::X, normal: Vec3::X, part: 77 };
+        let at = crate::SurfacePoint { point: Vec3::X, normal: Vec3::X, primitive: 77 };
         let _ = (shape.pdf(Vec3::Y, &at), shape.triangles(), shape.heap_bytes(), shape.occludes(&ray));
     }
 }

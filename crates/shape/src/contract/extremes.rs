@@ -1,11 +1,11 @@
-//! Spheres very large, very small and very far; coordinates at the ends of what floats hold.
+//! Very large, very small and very distant spheres; coordinates at the limits of floats.
 
 use super::*;
 use crate::{Plane, Sphere, SurfacePoint, Tube, intersect_sphere, sphere_surface};
 use juggler_math::Vec2;
 
-/// Seen from just above a globe of a million units, distances must grow evenly towards the horizon: arithmetic
-/// in `f32` has steps of hundreds of units there.
+/// Seen from just above a sphere of a million units, distances must grow smoothly towards the
+/// horizon: arithmetic in `f32` has steps of hundreds of units there.
 #[test]
 fn a_huge_sphere_shows_no_bands_from_close_by() {
     let (radius, height) = (1e6f32, 2.0f32);
@@ -15,13 +15,13 @@ fn a_huge_sphere_shows_no_bands_from_close_by() {
     let steps = 20_000;
     let mut before = 0.0;
     for i in 1..steps {
-        // By distance over ground, up to just before the horizon.
+        // Uniform in distance over ground, up to just before the horizon.
         let ground = 0.999 * horizon * f64::from(i) / f64::from(steps);
         let (x, drop) = (ground, f64::from(height) + ground * ground / (2.0 * f64::from(radius)));
         let ray = Ray::new(origin, DVec3::new(x, -drop, 0.0).normalize().as_vec3());
         let hit = sphere.intersect(&ray).unwrap_or_else(|| panic!("hole at {ground}"));
         let expected = x.hypot(drop);
-        // Rounding of the direction itself moves the point, the more the flatter the view.
+        // Rounding of the direction moves the point, the more the flatter the view.
         let sensitivity = 1.0 / (1.0 - ground / horizon);
         assert!(
             (f64::from(hit.t) - expected).abs() < 4e-7 * expected * expected * sensitivity / f64::from(height),
@@ -38,7 +38,7 @@ fn a_huge_sphere_shows_no_bands_from_close_by() {
     assert!(outwards.clone().all(|direction| sphere.intersect(&Ray::new(inside, -direction)).is_some()));
 }
 
-/// From a million radii away: the silhouette is sharp, and points are those of the geometry.
+/// From a million radii away, the silhouette is sharp and points are accurate.
 #[test]
 fn a_far_sphere_keeps_its_silhouette() {
     let mut random = Random::new(16);
@@ -47,7 +47,7 @@ fn a_far_sphere_keeps_its_silhouette() {
         let direction = center - random.unit_vector().cross(center.normalize()) * random.range(0.0, 1.5);
         let ray = Ray::new(Vec3::new(-3e5, 3e5, -4e5), direction.as_dvec3().normalize().as_vec3());
         let ray = Ray { direction: (direction - ray.origin).normalize(), ..ray };
-        // The direction as rounded decides: distance of the centre from the line, by Heron's height in f64.
+        // Distance of the center from the line along the rounded direction, in f64.
         let (to, along) = ((center - ray.origin).as_dvec3(), ray.direction.as_dvec3());
         let foot = to - along * (to.dot(along) / along.length_squared());
         let miss = foot.length();
@@ -67,7 +67,7 @@ fn a_far_sphere_keeps_its_silhouette() {
     }
 }
 
-/// The sphere in world space and the one in object space are the same arithmetic.
+/// Intersections in world space and in object space use the same arithmetic.
 #[test]
 fn spheres_in_world_space_agree_with_those_in_object_space() {
     let mut random = Random::new(17);
@@ -75,7 +75,7 @@ fn spheres_in_world_space_agree_with_those_in_object_space() {
     for _ in 0..5_000 {
         let (center, sphere) = (random.point(8.0).floor(), Sphere { radius: random.range(0.5, 4.0) });
         let local = Ray::new(random.point(4.0), random.unit_vector());
-        // Quarters keep the sum exact.
+        // Multiples of a quarter keep the sum exact.
         let origin = (local.origin * 4.0).round() * 0.25;
         let (local, world) = (Ray { origin, ..local }, Ray { origin: origin + center, ..local });
         let hit = sphere.intersect(&local);
@@ -85,7 +85,7 @@ fn spheres_in_world_space_agree_with_those_in_object_space() {
     assert!(hits > 1_000);
 }
 
-/// No infinite hit, no NaN: only misses or finite points.
+/// Rays at the limits of floats miss or hit finite points: no infinity, no NaN.
 #[test]
 fn rays_at_the_ends_of_the_floats_give_finite_answers() {
     let extremes = [0.0, -0.0, 1e-45, 1e-38, -1e-20, 1.0, -1e20, 1e37, 3e38];
@@ -107,13 +107,16 @@ fn rays_at_the_ends_of_the_floats_give_finite_answers() {
             }
             if let Some(hit) = shape.intersect(&ray) {
                 let surface = shape.surface(&ray, &hit);
-                let at = SurfacePoint { point: surface.point, normal: surface.normal, part: hit.part };
+                let at = SurfacePoint { point: surface.point, normal: surface.normal, primitive: hit.primitive };
                 assert!(shape.pdf(ray.origin, &at) >= 0.0, "{shape:?} {ray:?} {hit:?}");
                 assert!(
                     hit.t.is_finite() && surface.point.is_finite() && surface.normal.is_finite(),
                     "{shape:?} {ray:?} {hit:?} {surface:?}"
                 );
-                assert!(surface.uv.is_finite() && surface.error.is_finite(), "{shape:?} {ray:?} {hit:?} {surface:?}");
+                assert!(
+                    surface.uv.is_finite() && surface.position_error.is_finite(),
+                    "{shape:?} {ray:?} {hit:?} {surface:?}"
+                );
             }
             let _ = shape.sample(ray.origin, random.vec2());
         }

@@ -1,7 +1,7 @@
-//! What every shape must keep: tests over all examples of all kinds. Here: what they share.
+//! Properties of every shape, tested over the examples of all kinds; here, their common helpers.
 
 use super::{AnyShape, Shape};
-use crate::testing::{ball, is_convex, is_flat, is_solid};
+use crate::testing::{bounding_sphere, is_convex, is_flat, is_solid};
 use juggler_math::testing::Random;
 use juggler_math::{DVec3, Frame, Ray, Vec3, warp};
 
@@ -15,14 +15,15 @@ mod measures;
 /// Chance of a false alarm of one statistical test.
 const SIGNIFICANCE: f64 = 1e-6;
 
-/// All examples, ready to be hit.
+/// All examples, prepared.
 fn shapes() -> Vec<AnyShape> {
     let mut shapes = AnyShape::examples();
     shapes.iter_mut().for_each(|shape| shape.prepare().unwrap());
     shapes
 }
 
-/// A random line through the ball, all equally likely; it starts `away` radii before the ball's centre.
+/// Random line through a sphere, all lines equally likely; it starts `away` radii before the
+/// sphere's center.
 fn line(random: &mut Random, (center, radius): (Vec3, f32), away: f32) -> Ray {
     let frame = Frame::around(random.unit_vector());
     let across = warp::concentric_disk(random.vec2());

@@ -1,34 +1,36 @@
-//! Smooth shading normals for a mesh without normals, up to a crease angle: corners of triangles that meet at an edge are
-//! smoothed together where the triangles' normals differ by no more than the angle, as in Blender's "shade smooth by angle".
-//! Positions are split where corners are not smoothed together.
+//! Smooth shading normals, up to a crease angle, for a mesh without normals: corners of triangles
+//! that share an edge are smoothed together where the triangles' normals differ by no more than the
+//! angle, as in Blender's "shade smooth by angle". Positions are split where corners are not
+//! smoothed together.
 
 use super::MeshData;
 use crate::{InvalidShape, check};
-use juggler_math::{DVec3, fun};
+use juggler_math::{DVec3, portable};
 use std::collections::BTreeMap;
 
-/// Most triangles, so that all corners have a number.
-const MOST_TRIANGLES: usize = 1 << 30;
+/// Maximum number of triangles, so that the index of every corner fits a `u32`.
+const MAX_TRIANGLES: usize = 1 << 30;
 
-/// How the corners of a mesh are smoothed.
-pub struct Creases {
-    /// Three numbers a triangle, each the place of a corner among the split positions.
+/// Smoothing groups of a mesh's corners.
+pub struct SmoothingGroups {
+    /// Index triples into the split positions, one for each triangle.
     triangles: Vec<[u32; 3]>,
-    /// Of each split position the position that it was, and the corners' group that it is smoothed with.
+    /// For each split position, the original position and the smoothing group.
     corners: Vec<(u32, u32)>,
 }
 
-impl Creases {
-    /// Of a mesh whose edges are creases where the normals of their two triangles differ by more than the angle. Edges of
-    /// one triangle, and of more than two, are creases, too. Positions at the same place are one.
+impl SmoothingGroups {
+    /// Smoothing groups of a mesh. Edges are creases where the normals of their two triangles
+    /// differ by more than the angle, in degrees; edges of one triangle, and of more than two, are
+    /// creases too. Coincident positions count as one.
     pub fn new(data: &MeshData, angle_degrees: f32) -> Result<Self, InvalidShape> {
         check::number("crease_angle_degrees", angle_degrees, 0.0, 180.0)?;
         data.check()?;
-        if data.triangles.len() > MOST_TRIANGLES {
-            let message = format!("a mesh with a crease angle has at most {MOST_TRIANGLES} triangles");
+        if data.triangles.len() > MAX_TRIANGLES {
+            let message = format!("a mesh with a crease angle has at most {MAX_TRIANGLES} triangles");
             return Err(check::invalid("crease_angle_degrees", message));
         }
-        let groups = groups(data, f64::from(fun::cos(angle_degrees.to_radians())));
+        let groups = groups(data, f64::from(portable::cos(angle_degrees.to_radians())));
         let mut known = BTreeMap::new();
         let mut corners = Vec::new();
         let mut split = |position: u32, group: u32| {
@@ -42,8 +44,8 @@ impl Creases {
         Ok(Self { triangles, corners })
     }
 
-    /// A mesh of these corners with its normals: the mean of the triangles' normals by their areas, over each group. One
-    /// with normals of its own stays as it is.
+    /// Mesh of the split positions with the normals of their groups: means of the triangles'
+    /// normals weighted by area. A mesh that has normals stays unchanged.
     pub fn smoothed(&self, data: MeshData) -> MeshData {
         if !data.normals.is_empty() {
             return data;
@@ -51,10 +53,10 @@ impl Creases {
         let groups = self.corners.iter().map(|(_, group)| *group as usize + 1).max().unwrap_or(0);
         let mut sums = vec![DVec3::ZERO; groups];
         for (number, corners) in self.triangles.iter().enumerate() {
-            let Some(facet) = data.facet(number) else { continue };
+            let Some(triangle) = data.triangle_geometry(number) else { continue };
             for corner in corners {
                 let group = self.corners.get(*corner as usize).and_then(|(_, group)| sums.get_mut(*group as usize));
-                group.into_iter().for_each(|sum| *sum += facet.winding());
+                group.into_iter().for_each(|sum| *sum += triangle.area_normal());
             }
         }
         let normal = |group: u32| sums.get(group as usize).copied().unwrap_or_default().normalize_or_zero().as_vec3();
@@ -70,12 +72,14 @@ impl Creases {
     }
 }
 
-/// For each corner of each triangle the number of the group that it is smoothed with.
+/// For each corner of each triangle, the index of its smoothing group.
 fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
-    let places = places(data);
+    let places = coincident_positions(data);
     let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
-    let normal = |corner: u32| data.facet(corner as usize / 3).map(|facet| facet.winding().normalize_or_zero());
-    // Each edge of a triangle with an area, and the corners at its two ends, the lower place first.
+    let normal = |corner: u32| {
+        data.triangle_geometry(corner as usize / 3).map(|triangle| triangle.area_normal().normalize_or_zero())
+    };
+    // Edges of triangles with an area, and the corners at their ends, lower position first.
     let mut edges: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * data.triangles.len());
     for (first, triangle) in (0..).step_by(3).zip(&data.triangles) {
         if normal(first).is_none_or(|normal| normal == DVec3::ZERO) {
@@ -93,7 +97,7 @@ fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
     for shared in edges.chunk_by(|a, b| a.0 == b.0) {
         let [(_, one), (_, other)] = shared else { continue };
         let (Some(a), Some(b)) = (normal(one[0]), normal(other[0])) else { continue };
-        // A little more, so that the angle itself is smoothed whatever its rounding.
+        // Tolerance, so that an edge of exactly the angle is smooth despite rounding.
         if a.dot(b) >= least_cosine - 1e-6 {
             (0..2).for_each(|end| join(&mut groups, one[end], other[end]));
         }
@@ -101,8 +105,8 @@ fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
     (0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect()
 }
 
-/// For each position the lowest number of a position at the same place.
-fn places(data: &MeshData) -> Vec<u32> {
+/// For each position, the lowest index of a coincident position.
+fn coincident_positions(data: &MeshData) -> Vec<u32> {
     let bits = |position: u32| data.positions.get(position as usize).map(|at| (*at + 0.0).to_array().map(f32::to_bits));
     let mut order: Vec<u32> = (0..data.positions.len() as u32).collect();
     order.sort_unstable_by_key(|position| (bits(*position), *position));
@@ -117,7 +121,7 @@ fn places(data: &MeshData) -> Vec<u32> {
     places
 }
 
-/// The lowest corner of a group; the way there is shortened.
+/// Lowest corner of a group; shortens the path to it (union-find by path halving).
 fn root(groups: &mut [u32], mut corner: u32) -> u32 {
     while let Some(next) = groups.get(corner as usize).copied()
         && next != corner
@@ -144,7 +148,7 @@ mod tests {
     use juggler_math::testing::close3;
     use juggler_math::{Vec2, Vec3};
 
-    /// A strip of quads bent by this angle at each of the lines between them, each corner written once.
+    /// Strip of quads, bent by these angles at the edges between them, without duplicate positions.
     fn strip(angles: &[f32]) -> MeshData {
         let (mut at, mut turn) = (Vec3::ZERO, 0.0f32);
         let mut data = MeshData::default();
@@ -152,7 +156,7 @@ mod tests {
         line(&mut data, at);
         for (i, angle) in std::iter::once(&0.0).chain(angles).enumerate() {
             turn += angle.to_radians();
-            let (sin, cos) = fun::sin_cos(turn);
+            let (sin, cos) = portable::sin_cos(turn);
             at += Vec3::new(cos, 0.0, -sin);
             line(&mut data, at);
             let i = 2 * i as u32;
@@ -162,24 +166,25 @@ mod tests {
     }
 
     fn smooth(data: MeshData, angle: f32) -> MeshData {
-        Creases::new(&data, angle).unwrap().smoothed(data)
+        SmoothingGroups::new(&data, angle).unwrap().smoothed(data)
     }
 
     #[test]
     fn edges_up_to_the_angle_are_smooth_and_others_are_creases() {
         let bent = smooth(strip(&[20.0, 60.0]), 30.0);
         assert_eq!(bent.triangles.len(), 6);
-        // The line that is bent by 60 degrees is split.
+        // The edge bent by 60 degrees is split.
         assert_eq!(bent.positions.len(), 8 + 2);
         bent.check().unwrap();
         let normal_of = |triangle: usize, corner: usize| bent.normals[bent.triangles[triangle][corner] as usize];
         let turned = |degrees: f32| {
-            let (sin, cos) = fun::sin_cos(degrees.to_radians());
+            let (sin, cos) = portable::sin_cos(degrees.to_radians());
             Vec3::new(sin, 0.0, cos)
         };
         assert!(close3(normal_of(2, 1), turned(20.0), 1e-6), "before the crease");
         assert!(close3(normal_of(4, 0), turned(80.0), 1e-6), "after the crease");
-        // Both corners of the smooth line have one normal between both sides, by areas; one has two triangles of one side.
+        // Both corners of the smooth edge have one normal, weighted by area; one of them has two
+        // triangles of one side.
         for (triangle, corner) in [(0, 1), (2, 0)] {
             let normal = normal_of(triangle, corner);
             assert!(normal.dot(turned(10.0)) > 0.99 && (normal.length() - 1.0).abs() < 1e-6, "{normal}");
@@ -191,7 +196,7 @@ mod tests {
 
     #[test]
     fn positions_at_one_place_are_smoothed_together_and_keep_their_coordinates() {
-        // Each triangle with corners of its own, as files without indices have them.
+        // Triangles that share no positions, as in files without indices.
         let whole = strip(&[20.0]);
         let positions: Vec<Vec3> =
             whole.triangles.as_flattened().iter().map(|at| whole.positions[*at as usize]).collect();
@@ -212,12 +217,12 @@ mod tests {
         assert_eq!(round.positions.len(), data.positions.len());
         let flat = smooth(data.clone(), 0.0);
         for (number, corners) in flat.triangles.iter().enumerate() {
-            let normal = data.facet(number).unwrap().winding().normalize().as_vec3();
+            let normal = data.triangle_geometry(number).unwrap().area_normal().normalize().as_vec3();
             assert!(corners.iter().all(|corner| close3(flat.normals[*corner as usize], normal, 1e-5)));
         }
         let own = MeshData { normals: vec![Vec3::Y; data.positions.len()], ..data.clone() };
         assert_eq!(smooth(own.clone(), 30.0), own, "a mesh with normals keeps them");
-        assert_eq!(Creases::new(&data, 181.0).err().unwrap().field, "crease_angle_degrees");
-        assert!(Creases::new(&MeshData { triangles: vec![[0, 1, 99]], ..data }, 30.0).is_err());
+        assert_eq!(SmoothingGroups::new(&data, 181.0).err().unwrap().field, "crease_angle_degrees");
+        assert!(SmoothingGroups::new(&MeshData { triangles: vec![[0, 1, 99]], ..data }, 30.0).is_err());
     }
 }

@@ -1,35 +1,36 @@
-//! Triangles as importers bring them: bare arrays, not yet checked.
+//! Arrays of a triangle mesh as importers fill them in, not yet validated.
 
 use crate::check::{self, invalid};
-use crate::{InvalidShape, facet::Facet};
+use crate::{InvalidShape, triangle_geometry::TriangleGeometry};
 use juggler_math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// The arrays of a triangle mesh. Importers fill it in, [`Mesh`](super::Mesh) takes it and checks it.
+/// Arrays of a triangle mesh. Importers fill them in, [`Mesh`](super::Mesh) validates them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
     /// Corner positions, object space, scene units.
     pub positions: Vec<Vec3>,
-    /// Index triples into `positions`; the front is where the corners run counter-clockwise.
+    /// Index triples into `positions`; corners run counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
-    /// Shading normals, object space, of any length (zero: none here): none at all, or one per position.
+    /// Shading normals, object space, of any length: empty, or one per position. A zero normal
+    /// counts as missing.
     pub normals: Vec<Vec3>,
-    /// Surface coordinates: none at all, or one per position.
+    /// Surface coordinates: empty, or one per position.
     pub uvs: Vec<Vec2>,
 }
 
 impl MeshData {
-    /// A triangle with what its corners carry; `None` when there is no such triangle or corner.
-    pub(crate) fn facet(&self, triangle: usize) -> Option<Facet> {
+    /// Triangle with the attributes of its corners; `None` if an index is out of range.
+    pub(crate) fn triangle_geometry(&self, triangle: usize) -> Option<TriangleGeometry> {
         let corners = *self.triangles.get(triangle)?;
-        Some(Facet {
+        Some(TriangleGeometry {
             corners: at_corners(&self.positions, corners)?,
             normals: at_corners(&self.normals, corners),
             uvs: at_corners(&self.uvs, corners),
         })
     }
 
-    /// Whether every number is finite and every index names something.
+    /// Checks that every number is finite and every index is in range; the error names the field.
     pub(super) fn check(&self) -> Result<(), InvalidShape> {
         let count = self.positions.len();
         per_position("normals", self.normals.len(), count)?;
@@ -54,7 +55,10 @@ fn per_position(field: &str, length: usize, positions: usize) -> Result<(), Inva
     if length == 0 || length == positions {
         return Ok(());
     }
-    Err(invalid(field, format!("`{field}` must be none or one per position ({positions}), are {length}")))
+    Err(invalid(
+        field,
+        format!("`{field}` must be empty or have one entry per position ({positions}), it has {length}"),
+    ))
 }
 
 fn finite(field: &str, values: impl IndexedParallelIterator<Item = Vec3>) -> Result<(), InvalidShape> {

@@ -1,10 +1,10 @@
 //! Meshes for the contract tests.
 
 use super::*;
-use juggler_math::fun;
+use juggler_math::portable;
 
 impl Mesh {
-    /// For the contract tests: a smooth globe, a twisted open band, a flat fan, extreme sizes.
+    /// Examples for the contract tests: smooth spheres of several sizes, a twisted open band.
     pub fn examples() -> Vec<Self> {
         vec![
             globe(24, 12, 1.0, Vec3::ZERO),
@@ -16,14 +16,15 @@ impl Mesh {
     }
 }
 
-/// A closed globe with smooth normals and uvs, its poles degenerate on purpose: each has triangles without area.
+/// Closed sphere with smooth normals and uvs. Its poles are degenerate on purpose: each has
+/// triangles without area.
 pub fn globe(around: u32, rings: u32, radius: f32, center: Vec3) -> Mesh {
     let mut data = MeshData::default();
     for ring in 0..=rings {
         for step in 0..=around {
             let (u, v) = (step as f32 / around as f32, ring as f32 / rings as f32);
-            let (sin, cos) = fun::sin_cos_turns(u % 1.0);
-            let (across, y) = if ring % rings == 0 { (0.0, 1.0) } else { fun::sin_cos_turns(0.5 * v) };
+            let (sin, cos) = portable::sin_cos_turns(u % 1.0);
+            let (across, y) = if ring % rings == 0 { (0.0, 1.0) } else { portable::sin_cos_turns(0.5 * v) };
             let y = if ring == rings { -1.0 } else { y };
             let normal = Vec3::new(across * cos, y, -across * sin);
             data.positions.push(center + normal * radius);
@@ -45,7 +46,7 @@ fn band() -> Mesh {
     let mut data = MeshData::default();
     for step in 0..=steps {
         let turns = step as f32 / steps as f32;
-        let ((sin, cos), (up, out)) = (fun::sin_cos_turns(turns), fun::sin_cos_turns(0.5 * turns));
+        let ((sin, cos), (up, out)) = (portable::sin_cos_turns(turns), portable::sin_cos_turns(0.5 * turns));
         for side in [-0.4, 0.4] {
             data.positions.push(Vec3::new(cos, 0.0, sin) * (1.0 + side * out) + Vec3::Y * (side * up));
         }

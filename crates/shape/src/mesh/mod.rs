@@ -13,50 +13,66 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::Derivatives;
-use super::arithmetic::within_floats;
-use super::facet::Facet;
-use super::solid_angle::{area_pdf, area_sample, pick};
-use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
+use super::SurfaceDerivatives;
+use super::arithmetic::clamp_to_f32_range;
+use super::solid_angle::{area_pdf, area_sample, select_by_weight};
+use super::triangle_geometry::TriangleGeometry;
+use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::surface::Surface;
-use crease::Creases;
-use described::MeshDescription;
+use crease::SmoothingGroups;
+use description::MeshDescription;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
-use prepared::Prepared;
+use prepared::PreparedMesh;
 use serde::Deserialize;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+mod batch;
 mod crease;
 mod data;
-mod deforming;
-mod described;
-mod many;
+mod description;
 mod morph;
+mod moving_mesh;
 mod prepared;
 
 pub use data::MeshData;
-pub use morph::Morph;
+pub use morph::MorphTarget;
 
-/// A surface of triangles: from a file, or given here. Its front is where the corners of a triangle run
-/// counter-clockwise.
+/// A triangle mesh, from a file or from arrays. The corners of a triangle run counter-clockwise
+/// seen from the front.
 ///
-/// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of each triangle.
+/// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of
+/// each triangle.
 ///
 /// Clones share the arrays and, once prepared, the hierarchy.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(from = "MeshDescription")]
 pub struct Mesh {
-    /// A model file (PLY, OBJ, STL), relative to the scene file, instead of arrays.
+    /// Model file (PLY, OBJ, STL), relative to the scene file, instead of arrays.
     pub file: Option<String>,
-    /// Corners and triangles. Once prepared, morphs are blended in, and normals added where creases ask for them.
+    /// Corners and triangles. [`Shape::prepare`] blends morphs into them and adds the normals that
+    /// the crease angle implies.
     arrays: Arc<MeshData>,
-    /// Greatest angle between the normals of two neighboring triangles whose edge is shaded smoothly, in degrees.
+    /// Largest angle between the normals of two neighboring triangles whose edge is shaded
+    /// smoothly, in degrees, 0 to 180.
     pub crease_angle_degrees: Option<f32>,
-    /// Other places that its corners go to, each as far as its weight says.
-    pub morphs: Vec<Morph>,
-    /// What [`Shape::prepare`] makes of the arrays.
-    prepared: Option<Arc<Prepared>>,
+    /// Morph targets, each added in proportion to its weight.
+    pub morphs: Vec<MorphTarget>,
+    /// Data that [`Shape::prepare`] derives from the arrays.
+    prepared: Option<Arc<PreparedMesh>>,
+    /// Result of preparing the arrays alone, shared by all clones, so that a scene that is compiled
+    /// again does not build the hierarchy again.
+    memo: Memo,
+}
+
+/// Prepared mesh, once a clone has prepared it. Meshes are equal whether or not they are prepared.
+#[derive(Clone, Debug, Default)]
+struct Memo(Arc<OnceLock<Arc<PreparedMesh>>>);
+
+impl PartialEq for Memo {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl From<MeshData> for Mesh {
@@ -73,13 +89,15 @@ impl From<Arc<MeshData>> for Mesh {
 }
 
 impl Mesh {
-    /// A mesh of triangles, which are index triples into `positions` (object space, scene units);
-    /// the front is where the corners run counter-clockwise. [`Shape::prepare`] checks the arrays.
+    /// Mesh of triangles, which are index triples into `positions` (object space, scene units);
+    /// corners run counter-clockwise seen from the front. [`Shape::prepare`] validates the arrays.
     ///
     /// ```
     /// use juggler_shape::Mesh;
     /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    /// let mesh = Mesh::from_triangles(positions.map(Into::into), [[0, 1, 2]]).with_uvs([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into));
+    /// let uvs = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    /// let mesh = Mesh::from_triangles(positions.map(Into::into), [[0, 1, 2]])
+    ///     .with_uvs(uvs.map(Into::into));
     /// assert_eq!((mesh.arrays().triangles.len(), mesh.arrays().uvs.len()), (1, 3));
     /// ```
     pub fn from_triangles(positions: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
@@ -89,42 +107,47 @@ impl Mesh {
     /// Sets the shading normals: one per position, object space, of any length.
     #[must_use]
     pub fn with_normals(mut self, normals: impl Into<Vec<Vec3>>) -> Self {
-        self.change().normals = normals.into();
+        self.arrays_mut().normals = normals.into();
         self
     }
 
     /// Sets the surface coordinates: one per position.
     #[must_use]
     pub fn with_uvs(mut self, uvs: impl Into<Vec<Vec2>>) -> Self {
-        self.change().uvs = uvs.into();
+        self.arrays_mut().uvs = uvs.into();
         self
     }
 
-    /// A mesh whose arrays are in a file, to be given to [`Mesh::load`] before [`Shape::prepare`].
+    /// Mesh whose arrays are in a file; pass them to [`Mesh::load`] before [`Shape::prepare`].
     pub fn from_file(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), ..Self::default() }
     }
 
-    /// A mesh that is as these say at even times from opening to closing of the shutter; all with the same triangles.
-    /// Its area, the places on it, and where `crease_angle_degrees` leaves creases, are those of the first.
-    pub fn moving(mut keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
+    /// Mesh that moves linearly between keyframes at uniform times from opening to closing of the
+    /// shutter, all with the same triangles. Its area, sampled points and creases are those of the
+    /// first keyframe. The error names the field at fault.
+    pub fn from_keyframes(mut keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
         let same = keys.windows(2).all(|pair| match pair {
             [a, b] => a.triangles == b.triangles && a.positions.len() == b.positions.len(),
             _ => true,
         });
         if !same {
-            return Err(check::invalid("triangles", "a mesh that moves keeps its triangles"));
+            return Err(check::invalid(
+                "triangles",
+                "all keyframes of a mesh must have the same triangles and number of positions",
+            ));
         }
         if let (Some(angle), Some(first)) = (crease_angle_degrees, keys.first().filter(|key| key.normals.is_empty())) {
-            let creases = Creases::new(first, angle)?;
-            keys = keys.into_iter().map(|key| creases.smoothed(key)).collect();
+            let smoothing = SmoothingGroups::new(first, angle)?;
+            keys = keys.into_iter().map(|key| smoothing.smoothed(key)).collect();
         }
-        let prepared = Prepared::moving(keys)?;
+        let prepared = PreparedMesh::from_keyframes(keys)?;
         let (arrays, prepared) = (Arc::clone(prepared.arrays()), Some(Arc::new(prepared)));
         Ok(Self { arrays, prepared, crease_angle_degrees, ..Self::default() })
     }
 
-    /// Takes what the file holds. An error when the description has arrays of its own beside the file.
+    /// Takes the arrays of the file. Returns an error if the description has arrays of its own
+    /// beside the file.
     pub fn load(&mut self, data: MeshData) -> Result<(), InvalidShape> {
         if !self.arrays.positions.is_empty() || !self.arrays.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
@@ -134,8 +157,8 @@ impl Mesh {
         Ok(())
     }
 
-    /// The arrays, corners blended with `morphs`: for each of [`Mesh::morphs`] the places of all corners. An error
-    /// names the field at fault.
+    /// The arrays with positions blended by `morphs`, the target positions for each of
+    /// [`Mesh::morphs`]. The error names the field at fault.
     pub fn blended(&self, morphs: &[&[Vec3]]) -> Result<MeshData, InvalidShape> {
         let mut data = MeshData::clone(&self.arrays);
         let targets: Vec<(&[Vec3], f32)> =
@@ -144,7 +167,7 @@ impl Mesh {
         Ok(data)
     }
 
-    /// The same mesh for another vector unit than the best of this machine.
+    /// The same mesh for another SIMD level than the best of this machine.
     pub fn with_simd_level(&self, level: SimdLevel) -> Self {
         let prepared = self.prepared.as_ref().map(|prepared| Arc::new(prepared.with_simd_level(level)));
         Self { prepared, ..self.clone() }
@@ -155,17 +178,18 @@ impl Mesh {
         self.prepared.as_deref().is_some_and(|prepared| prepared.bvh().is_none())
     }
 
-    /// One of its triangles as it is at a time, once prepared.
-    pub(super) fn facet(&self, triangle: u32, time: f32) -> Option<Facet> {
-        self.prepared.as_deref()?.facet(triangle as usize, time)
+    /// Triangle at a time; `None` before [`Shape::prepare`].
+    pub(super) fn triangle_geometry(&self, triangle: u32, time: f32) -> Option<TriangleGeometry> {
+        self.prepared.as_deref()?.triangle_geometry(triangle as usize, time)
     }
 
-    /// The arrays, once prepared.
+    /// The arrays; `None` before [`Shape::prepare`].
     pub fn data(&self) -> Option<&MeshData> {
         self.prepared.as_deref().map(|prepared| &**prepared.arrays())
     }
 
-    /// What is odd about the mesh and yet no error, in words: triangles that were ignored.
+    /// Messages about flaws of the mesh that are no errors: triangles without area, which are
+    /// ignored.
     pub fn warnings(&self) -> Vec<String> {
         match self.prepared.as_ref().map_or(0, |p| p.degenerate()) {
             0 => Vec::new(),
@@ -174,21 +198,22 @@ impl Mesh {
         }
     }
 
-    /// Corners and triangles: those that the mesh was given or, once prepared, those that are met by rays. Empty for a mesh
-    /// in a file.
+    /// Corners and triangles: those given or, after [`Shape::prepare`], those that rays hit. Empty
+    /// for a mesh in a file.
     pub fn arrays(&self) -> &Arc<MeshData> {
         &self.arrays
     }
 
-    /// Lets go of corners, triangles and morphs, so that the rest can be looked at alone.
+    /// Drops corners, triangles and the positions of morphs, so that the rest can be inspected
+    /// alone.
     pub fn clear_arrays(&mut self) {
-        (self.arrays, self.prepared) = (Arc::default(), None);
+        (self.arrays, self.prepared, self.memo) = Default::default();
         self.morphs.iter_mut().for_each(|morph| morph.positions.clear());
     }
 
-    /// The arrays to be changed: what was prepared is out of date.
-    fn change(&mut self) -> &mut MeshData {
-        self.prepared = None;
+    /// The arrays for modification; drops the prepared data, which is then out of date.
+    fn arrays_mut(&mut self) -> &mut MeshData {
+        (self.prepared, self.memo) = Default::default();
         Arc::make_mut(&mut self.arrays)
     }
 }
@@ -210,10 +235,20 @@ impl Shape for Mesh {
             morph::blend(Arc::make_mut(&mut arrays), &morphs)?;
         }
         if let Some(angle) = self.crease_angle_degrees.filter(|_| arrays.normals.is_empty()) {
-            let creases = Creases::new(&arrays, angle)?;
-            arrays = Arc::new(creases.smoothed(Arc::unwrap_or_clone(arrays)));
+            let smoothing = SmoothingGroups::new(&arrays, angle)?;
+            arrays = Arc::new(smoothing.smoothed(Arc::unwrap_or_clone(arrays)));
         }
-        self.prepared = Some(Arc::new(Prepared::new(Arc::clone(&arrays))?));
+        // Morphs and creases may change, so only the arrays' own preparation is kept.
+        let is_own = Arc::ptr_eq(&arrays, &self.arrays);
+        let prepared = match self.memo.0.get().filter(|_| is_own) {
+            Some(prepared) => Arc::clone(prepared),
+            None => Arc::new(PreparedMesh::new(Arc::clone(&arrays))?),
+        };
+        if is_own {
+            // Another thread may have been first; both results are equal.
+            _ = self.memo.0.set(Arc::clone(&prepared));
+        }
+        self.prepared = Some(prepared);
         self.arrays = arrays;
         Ok(())
     }
@@ -223,32 +258,33 @@ impl Shape for Mesh {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let hit = self.prepared.as_ref()?.closest(&within_floats(ray))?;
-        Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index })
+        let hit = self.prepared.as_ref()?.closest(&clamp_to_f32_range(ray))?;
+        Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), primitive: hit.index })
     }
 
     fn occludes(&self, ray: &Ray) -> bool {
-        self.prepared.as_ref().is_some_and(|p| p.any(&within_floats(ray)))
+        self.prepared.as_ref().is_some_and(|p| p.any(&clamp_to_f32_range(ray)))
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let facet = self.prepared.as_ref().and_then(|p| p.facet(hit.part as usize, ray.time));
-        facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(ray, hit.uv))
+        let triangle = self.prepared.as_ref().and_then(|p| p.triangle_geometry(hit.primitive as usize, ray.time));
+        triangle
+            .map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |triangle| triangle.surface(ray, hit.uv))
     }
 
-    fn derivatives(&self, _local: Vec3, hit: &Hit, time: f32) -> Option<Derivatives> {
-        self.prepared.as_ref()?.facet(hit.part as usize, time)?.derivatives()
+    fn derivatives(&self, _local: Vec3, hit: &Hit, time: f32) -> Option<SurfaceDerivatives> {
+        self.prepared.as_ref()?.triangle_geometry(hit.primitive as usize, time)?.derivatives()
     }
 
     fn area(&self) -> f32 {
         self.prepared.as_ref().map_or(0.0, |p| p.area())
     }
 
-    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
         let prepared = self.prepared.as_ref()?;
-        let (index, rest) = pick(prepared.running_areas(), u.x)?;
+        let (index, rest) = select_by_weight(prepared.running_areas(), u.x)?;
         let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate().as_dvec2();
-        let (point, normal) = prepared.arrays().facet(index)?.point(at);
+        let (point, normal) = prepared.arrays().triangle_geometry(index)?.point(at);
         area_sample(from, point, normal, prepared.area())
     }
 

@@ -1,5 +1,5 @@
-//! Corners that go elsewhere: a mesh blended with others of as many corners (blend shapes, as in glTF 2.0, section
-//! 3.7.2.2): position = base + Σ weight · (target − base).
+//! Morph targets: a mesh blended with others of as many corners (blend shapes, as in glTF 2.0,
+//! section 3.7.2.2): position = base + Σ weight · (target − base).
 
 use super::MeshData;
 use crate::check::invalid;
@@ -8,29 +8,34 @@ use juggler_math::{DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Other places of a mesh's corners, and how far they have gone there. Shading normals follow the surface.
+/// Morph target (blend shape) of a mesh: target positions of its corners and a weight. The mesh's
+/// shading normals are computed anew from the blended surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
-pub struct Morph {
-    /// A model file with as many corners as the mesh, relative to the scene file, instead of `positions`.
+#[schemars(rename = "Morph")]
+pub struct MorphTarget {
+    /// Model file with as many corners as the mesh, relative to the scene file, instead of
+    /// `positions`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// The other places, one for each of the mesh's.
+    /// Target positions in scene units, one for each of the mesh's.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f32; 3]>")]
     pub positions: Vec<Vec3>,
-    /// How far: 0 not at all, 1 all the way.
+    /// Weight of the displacement from the mesh to the target, -100 to 100: 0 has no effect, 1
+    /// reaches the target, and values outside 0 to 1 extrapolate.
     #[schemars(range(min = -100, max = 100))]
     pub weight: f32,
 }
 
-/// Blends the corners of a mesh; `targets` are places and weights. An error names the field at fault.
+/// Blends the positions of a mesh with target positions and their weights, and computes its normals
+/// anew. The error names the field at fault.
 pub fn blend(data: &mut MeshData, morphs: &[(&[Vec3], f32)]) -> Result<(), InvalidShape> {
     for (i, (positions, weight)) in morphs.iter().enumerate() {
         if positions.len() != data.positions.len() {
             let field = format!("morphs[{i}]");
             let message = format!(
-                "a mesh of {} positions cannot become one of {}: both must have the same corners in the same order",
+                "a mesh of {} positions cannot become one of {}: both must have the same vertices in the same order",
                 data.positions.len(),
                 positions.len()
             );
@@ -56,14 +61,15 @@ pub fn blend(data: &mut MeshData, morphs: &[(&[Vec3], f32)]) -> Result<(), Inval
     Ok(())
 }
 
-/// Shading normals that follow the surface: at each corner the mean of its triangles' normals, by their areas.
+/// Shading normals of the surface: at each corner the mean of its triangles' normals, weighted by
+/// area.
 fn normals(data: &MeshData) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; data.positions.len()];
     for (triangle, corners) in data.triangles.iter().enumerate() {
-        let Some(facet) = data.facet(triangle) else { continue };
+        let Some(triangle) = data.triangle_geometry(triangle) else { continue };
         for corner in corners {
             if let Some(sum) = sums.get_mut(*corner as usize) {
-                *sum += facet.winding();
+                *sum += triangle.area_normal();
             }
         }
     }

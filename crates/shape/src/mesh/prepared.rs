@@ -1,8 +1,8 @@
-//! A checked mesh with its hierarchy, shared by all clones.
+//! A validated mesh with its hierarchy, shared by all clones.
 
 use super::MeshData;
-use super::deforming::Deforming;
-use crate::facet::Facet;
+use super::moving_mesh::MovingMesh;
+use crate::triangle_geometry::TriangleGeometry;
 use crate::{InvalidShape, check::invalid};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
 use juggler_math::{Aabb, Ray};
@@ -10,45 +10,47 @@ use rayon::prelude::*;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// A checked mesh with its hierarchy.
-pub struct Prepared {
-    /// As it is when the shutter opens.
+/// A validated mesh with its hierarchy.
+pub struct PreparedMesh {
+    /// Arrays at the opening of the shutter.
     arrays: Arc<MeshData>,
     tree: Tree,
     bounds: Aabb,
     area: f64,
-    /// Triangles without area.
+    /// Number of triangles without area.
     degenerate: usize,
-    /// Running sums of the triangles' areas, made when the mesh is first sampled: few meshes are lamps.
+    /// Running sums of the triangles' areas, computed when the mesh is first sampled: few meshes
+    /// are lights.
     areas: OnceLock<Vec<f64>>,
 }
 
 /// The hierarchy over a mesh's triangles.
 enum Tree {
     Still(Box<TriangleBvh>),
-    Moving(Deforming),
+    Moving(MovingMesh),
 }
 
-/// What all triangles are together.
-struct Extent {
+/// Bounds, area and number of degenerate triangles of a mesh.
+struct MeshMeasures {
     bounds: Aabb,
     area: f64,
     degenerate: usize,
 }
 
-impl Extent {
+impl MeshMeasures {
     const NONE: Self = Self { bounds: Aabb::EMPTY, area: 0.0, degenerate: 0 };
 
-    /// Summed in blocks of a fixed size, so that the threads do not show.
-    fn of(data: &MeshData) -> Self {
+    /// Sums in blocks of a fixed size, so that the result does not depend on threads.
+    fn from_data(data: &MeshData) -> Self {
         const BLOCK: usize = 1 << 16;
         let blocks = (0..data.triangles.len().div_ceil(BLOCK)).into_par_iter();
         let blocks: Vec<Self> = blocks
             .map(|block| {
-                let facets = (block * BLOCK..(block + 1) * BLOCK).map_while(|triangle| data.facet(triangle));
-                facets.fold(Self::NONE, |sum, facet| match facet.area() {
+                let triangles =
+                    (block * BLOCK..(block + 1) * BLOCK).map_while(|triangle| data.triangle_geometry(triangle));
+                triangles.fold(Self::NONE, |sum, triangle| match triangle.area() {
                     area if area > 0.0 => {
-                        let bounds = facet.corners.into_iter().fold(sum.bounds, Aabb::with_point);
+                        let bounds = triangle.corners.into_iter().fold(sum.bounds, Aabb::with_point);
                         Self { bounds, area: sum.area + area, ..sum }
                     }
                     _ => Self { degenerate: sum.degenerate + 1, ..sum },
@@ -63,32 +65,33 @@ impl Extent {
     }
 }
 
-impl Prepared {
-    /// Checks the arrays and builds the hierarchy.
+impl PreparedMesh {
+    /// Validates the arrays and builds the hierarchy.
     pub fn new(arrays: Arc<MeshData>) -> Result<Self, InvalidShape> {
-        let extent = checked(&arrays)?;
+        let measures = checked(&arrays)?;
         let bvh = TriangleBvh::build(&arrays.positions, &arrays.triangles, Quality::Balanced)
             .map_err(|error| invalid("triangles", error.to_string()))?;
-        Ok(Self::with(arrays, Tree::Still(Box::new(bvh)), extent))
+        Ok(Self::with(arrays, Tree::Still(Box::new(bvh)), measures))
     }
 
-    /// The same for a mesh that is as these say at even times while the shutter is open, all with the same triangles.
-    pub fn moving(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+    /// Validates and prepares a mesh that moves linearly between keyframes at uniform times while
+    /// the shutter is open, all with the same triangles.
+    pub fn from_keyframes(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
         for key in &keys {
             key.check()?;
         }
         let Some(data) = keys.first().cloned() else { return Self::new(Arc::default()) };
-        let extent = checked(&data)?;
-        let tree = Deforming::new(keys)?;
-        let extent = Extent { bounds: tree.bounds(), ..extent };
-        Ok(Self::with(Arc::new(data), Tree::Moving(tree), extent))
+        let measures = checked(&data)?;
+        let tree = MovingMesh::new(keys)?;
+        let measures = MeshMeasures { bounds: tree.bounds(), ..measures };
+        Ok(Self::with(Arc::new(data), Tree::Moving(tree), measures))
     }
 
-    fn with(arrays: Arc<MeshData>, tree: Tree, Extent { bounds, area, degenerate }: Extent) -> Self {
+    fn with(arrays: Arc<MeshData>, tree: Tree, MeshMeasures { bounds, area, degenerate }: MeshMeasures) -> Self {
         Self { arrays, tree, bounds, area, degenerate, areas: OnceLock::new() }
     }
 
-    /// The same for another vector unit.
+    /// The same mesh for another SIMD level.
     pub fn with_simd_level(&self, level: SimdLevel) -> Self {
         let tree = match &self.tree {
             Tree::Still(bvh) => Tree::Still(Box::new(TriangleBvh::clone(bvh).with_simd_level(level))),
@@ -105,7 +108,7 @@ impl Prepared {
         }
     }
 
-    /// Whether anything is hit at the ray's time.
+    /// Whether the ray hits anything at its time.
     pub fn any(&self, ray: &Ray) -> bool {
         match &self.tree {
             Tree::Still(bvh) => bvh.any(ray),
@@ -113,15 +116,15 @@ impl Prepared {
         }
     }
 
-    /// A triangle as it is at a time.
-    pub fn facet(&self, triangle: usize, time: f32) -> Option<Facet> {
+    /// Triangle at a time.
+    pub fn triangle_geometry(&self, triangle: usize, time: f32) -> Option<TriangleGeometry> {
         match &self.tree {
-            Tree::Still(_) => self.arrays.facet(triangle),
-            Tree::Moving(tree) => tree.facet(triangle, time),
+            Tree::Still(_) => self.arrays.triangle_geometry(triangle),
+            Tree::Moving(tree) => tree.triangle_geometry(triangle, time),
         }
     }
 
-    /// The hierarchy, of a mesh that keeps its shape.
+    /// The hierarchy; `None` for a mesh that moves.
     pub fn bvh(&self) -> Option<&TriangleBvh> {
         match &self.tree {
             Tree::Still(bvh) => Some(bvh),
@@ -142,7 +145,7 @@ impl Prepared {
         &self.arrays
     }
 
-    /// A box around every triangle that has an area, wherever it comes.
+    /// Bounding box of all triangles that have an area, at all times.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -152,7 +155,7 @@ impl Prepared {
         self.area as f32
     }
 
-    /// How many triangles have no area.
+    /// Number of triangles without area.
     pub fn degenerate(&self) -> usize {
         self.degenerate
     }
@@ -161,9 +164,10 @@ impl Prepared {
     pub fn running_areas(&self) -> &[f64] {
         self.areas.get_or_init(|| {
             let mut sum = 0.0;
-            let facets = (0..self.arrays.triangles.len()).filter_map(|triangle| self.arrays.facet(triangle));
-            let running = facets.map(|facet| {
-                sum += facet.area();
+            let triangles =
+                (0..self.arrays.triangles.len()).filter_map(|triangle| self.arrays.triangle_geometry(triangle));
+            let running = triangles.map(|triangle| {
+                sum += triangle.area();
                 sum
             });
             running.collect()
@@ -186,18 +190,18 @@ fn bytes(MeshData { positions, triangles, normals, uvs }: &MeshData) -> usize {
     arrays + size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice())
 }
 
-/// Checks the arrays; some triangle must have an area.
-fn checked(data: &MeshData) -> Result<Extent, InvalidShape> {
+/// Validates the arrays; some triangle must have an area.
+fn checked(data: &MeshData) -> Result<MeshMeasures, InvalidShape> {
     data.check()?;
-    let extent = Extent::of(data);
-    if extent.degenerate == data.triangles.len() {
-        let message = format!("`triangles` must have an area, but all {} are degenerate", extent.degenerate);
+    let measures = MeshMeasures::from_data(data);
+    if measures.degenerate == data.triangles.len() {
+        let message = format!("`triangles` must have an area, but all {} are degenerate", measures.degenerate);
         return Err(invalid("triangles", message));
     }
-    Ok(extent)
+    Ok(measures)
 }
 
-impl PartialEq for Prepared {
+impl PartialEq for PreparedMesh {
     fn eq(&self, other: &Self) -> bool {
         let keys = |prepared: &Self| match &prepared.tree {
             Tree::Still(_) => Vec::new(),
@@ -207,7 +211,7 @@ impl PartialEq for Prepared {
     }
 }
 
-impl fmt::Debug for Prepared {
+impl fmt::Debug for PreparedMesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} triangles", self.arrays.triangles.len())
     }

@@ -1,8 +1,8 @@
-//! Tests of what only meshes have.
+//! Tests specific to meshes.
 
 use super::*;
 use examples::globe;
-use juggler_math::fun;
+use juggler_math::portable;
 
 fn prepared(data: MeshData) -> Mesh {
     let mut mesh = Mesh::from(data);
@@ -15,7 +15,7 @@ fn surface_below(mesh: &Mesh, x: f32, z: f32) -> Surface {
     mesh.surface(&ray, &mesh.intersect(&ray).unwrap())
 }
 
-/// One triangle in the plane y = 0 with its front above.
+/// One triangle in the plane y = 0, front up.
 fn floor(normals: [Vec3; 3]) -> MeshData {
     MeshData {
         positions: vec![Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0],
@@ -57,7 +57,8 @@ fn normals_blend_and_a_globe_of_triangles_shades_like_a_sphere() {
     }
 }
 
-/// Normals against the winding are turned round as a whole; one that dips below the surface is mirrored up.
+/// Normals opposite to the winding are all negated; one that is below the surface is reflected
+/// above it.
 #[test]
 fn shading_normals_stay_on_the_front() {
     let lean = Vec3::new(0.6, 0.8, 0.0);
@@ -69,7 +70,7 @@ fn shading_normals_stay_on_the_front() {
     assert_eq!(missing.shading_normal, Vec3::Y);
 }
 
-/// A globe that grows and wanders, at so many moments.
+/// Sphere that grows and moves, at this number of times.
 fn wandering(moments: usize, bent: bool) -> Vec<MeshData> {
     let at = |i: usize| {
         let time = i as f32 / (moments - 1) as f32;
@@ -85,11 +86,11 @@ fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
     let mut random = juggler_math::testing::Random::new(51);
     for (moments, bent, kept) in [(2, false, 2), (17, false, 2), (17, true, 17)] {
         let keys = wandering(moments, bent);
-        let moving = Mesh::moving(keys.clone(), None).unwrap();
+        let moving = Mesh::from_keyframes(keys.clone(), None).unwrap();
         for _ in 0..40 {
             let time = random.f32();
-            let (key, share) = juggler_math::motion::stretch(moments, time);
-            let between = |(a, b): (&Vec3, &Vec3)| juggler_math::motion::between(*a, *b, share);
+            let (key, fraction) = juggler_math::motion::key_interval(moments, time);
+            let between = |(a, b): (&Vec3, &Vec3)| juggler_math::motion::lerp(*a, *b, fraction);
             let positions = keys[key].positions.iter().zip(&keys[key + 1].positions).map(between).collect();
             let still = prepared(MeshData { positions, normals: Vec::new(), ..keys[key].clone() });
             assert!(moving.bounds().union(still.bounds()).extent() == moving.bounds().extent());
@@ -109,7 +110,7 @@ fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
         globe(8, 6, 1.0, Vec3::ZERO).arrays().as_ref().clone(),
         globe(9, 6, 1.0, Vec3::ZERO).arrays().as_ref().clone(),
     );
-    assert!(Mesh::moving(vec![small, large], None).is_err());
+    assert!(Mesh::from_keyframes(vec![small, large], None).is_err());
 }
 
 #[test]
@@ -117,7 +118,7 @@ fn morphs_blend_corners_and_normals_follow() {
     let base = globe(24, 12, 1.0, Vec3::ZERO);
     let wide: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p * Vec3::new(3.0, 1.0, 1.0)).collect();
     let high: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p + Vec3::Y).collect();
-    let morph = |positions: &Vec<Vec3>, weight| Morph { file: None, positions: positions.clone(), weight };
+    let morph = |positions: &Vec<Vec3>, weight| MorphTarget { file: None, positions: positions.clone(), weight };
     let mut mesh = Mesh { morphs: vec![morph(&wide, 0.5), morph(&high, 2.0)], ..base.clone() };
     mesh.prepare().unwrap();
     let bounds = mesh.bounds();
@@ -134,7 +135,7 @@ fn morphs_blend_corners_and_normals_follow() {
 #[test]
 fn a_crease_angle_makes_a_flat_mesh_round_and_keeps_its_shape() {
     let mut arrays = globe(24, 12, 1.0, Vec3::ZERO);
-    arrays.change().normals.clear();
+    arrays.arrays_mut().normals.clear();
     let with = |crease_angle_degrees: Option<f32>| {
         let mut mesh = Mesh { crease_angle_degrees, ..arrays.clone() };
         mesh.prepare().unwrap();
@@ -151,15 +152,35 @@ fn a_crease_angle_makes_a_flat_mesh_round_and_keeps_its_shape() {
             let Some(hit) = hit else { continue };
             let surface = mesh.surface(&ray, &hit);
             let outwards = surface.point.normalize();
-            let off = fun::acos(surface.shading_normal.dot(outwards).abs().min(1.0)).to_degrees();
+            let off = portable::acos(surface.shading_normal.dot(outwards).abs().min(1.0)).to_degrees();
             *most = most.max(off);
         }
     }
     assert!(most[0] > 6.0 && most[1] < 4.0 && most[2] > 6.0, "{most:?}");
     let keys = wandering(5, true).into_iter().map(|key| MeshData { normals: Vec::new(), ..key }).collect::<Vec<_>>();
-    let moving = Mesh::moving(keys, Some(180.0)).unwrap();
+    let moving = Mesh::from_keyframes(keys, Some(180.0)).unwrap();
     let ray = Ray { time: 1.0, ..Ray::new(Vec3::new(3.3, 9.0, 0.4), Vec3::NEG_Y) };
     let surface = moving.surface(&ray, &moving.intersect(&ray).unwrap());
     let outwards = (surface.point - Vec3::X * 3.0).normalize();
     assert!(surface.shading_normal.dot(outwards) > 0.99, "{surface:?}");
+}
+
+#[test]
+fn clones_are_prepared_once() {
+    let mesh = Mesh::from(floor([Vec3::Y; 3]));
+    let data = |mesh: &Mesh| {
+        let mut mesh = mesh.clone();
+        mesh.prepare().unwrap();
+        std::ptr::from_ref(mesh.prepared.as_deref().unwrap())
+    };
+    let kept = data(&mesh);
+    assert_eq!(data(&mesh), kept);
+    // Other arrays, creases and morphs are prepared by themselves.
+    let turned = mesh.clone().with_normals([Vec3::X; 3]);
+    let creased = Mesh { crease_angle_degrees: Some(30.0), ..mesh.clone().with_normals(Vec::new()) };
+    let morph =
+        MorphTarget { positions: vec![Vec3::ONE, Vec3::Z * 5.0, Vec3::X * 5.0], weight: 1.0, ..MorphTarget::default() };
+    let morphed = Mesh { morphs: vec![morph], ..mesh.clone() };
+    assert!([turned, creased, morphed].iter().all(|other| data(other) != kept));
+    assert_eq!(data(&mesh), kept);
 }

@@ -1,4 +1,4 @@
-//! How far a point is from a shape's surface: formulas of their own, in `f64`, to judge hits by.
+//! Distance of a point from a shape's surface, by independent formulas in `f64`, to verify hits.
 
 use crate::AnyShape;
 use juggler_math::{DVec3, Vec3};

@@ -7,8 +7,8 @@ pub use distance::distance;
 use crate::AnyShape;
 use juggler_math::Vec3;
 
-/// A ball around a shape, or around the interesting part of one without end.
-pub fn ball(shape: &AnyShape) -> (Vec3, f32) {
+/// Center and radius of a bounding sphere; of a sphere around the origin for an unbounded shape.
+pub fn bounding_sphere(shape: &AnyShape) -> (Vec3, f32) {
     match shape {
         AnyShape::Plane(_) => (Vec3::ZERO, 1.0),
         AnyShape::Tube(tube) => (Vec3::ZERO, 1.5 * tube.radius),
@@ -21,7 +21,7 @@ pub fn is_solid(shape: &AnyShape) -> bool {
     match shape {
         AnyShape::Sphere(_) | AnyShape::Cuboid(_) | AnyShape::Tube(_) => true,
         AnyShape::Cylinder(cylinder) => cylinder.capped,
-        // Only the globes have normals.
+        // Among the examples, only closed meshes have normals.
         AnyShape::Mesh(mesh) => mesh.data().is_some_and(|data| !data.normals.is_empty()),
         _ => false,
     }
@@ -33,7 +33,7 @@ pub fn is_flat(shape: &AnyShape) -> bool {
     matches!(shape, Any::Plane(_) | Any::Disk(_) | Any::Rectangle(_) | Any::Triangle(_) | Any::Polygon(_))
 }
 
-/// Whether no part of the shape hides another from outside once back faces are left out.
+/// Whether no front face of the shape occludes another from outside.
 pub fn is_convex(shape: &AnyShape) -> bool {
     is_flat(shape) || is_solid(shape) && !matches!(shape, AnyShape::Mesh(_))
 }

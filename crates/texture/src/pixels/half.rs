@@ -1,6 +1,6 @@
-//! Numbers in 16 bits (IEEE 754 binary16): 11 bits of precision, up to 65,504.
+//! Half-precision floats (IEEE 754 binary16): 11 bits of precision, up to 65,504.
 
-/// The number that 16 bits stand for.
+/// Value of a half-precision float.
 #[inline]
 pub fn to_f32(half: u16) -> f32 {
     let sign = u32::from(half & 0x8000) << 16;
@@ -13,12 +13,12 @@ pub fn to_f32(half: u16) -> f32 {
     }
 }
 
-/// The nearest 16 bits, to even where two are as near; what is too large becomes the largest.
+/// Nearest half-precision float, ties to even. Larger numbers saturate.
 pub fn from_f32(value: f32) -> u16 {
     let sign = (value.to_bits() >> 16 & 0x8000) as u16;
     let size = value.abs().min(65_504.0);
     let bits = if size < 6.103_515_6e-5 {
-        // Adding 2^-1 · 2^24 steps of 2^-24 rounds to such steps.
+        // Adding 1/2 rounds to multiples of 2^-24, the spacing of floats there.
         ((size + 0.5).to_bits() - 0.5f32.to_bits()) as u16
     } else {
         let bits = size.to_bits() - (112 << 23);

@@ -1,9 +1,9 @@
-//! Pictures in memory, as textures and surroundings read them.
+//! Images in memory, for textures and backgrounds.
 
 mod half;
-mod pyramid;
+mod mip_map;
 mod sample;
 mod texels;
 
-pub use pyramid::{Pyramid, Texel};
+pub use mip_map::{MipMap, Texel};
 pub use sample::{Filter, Wrap};

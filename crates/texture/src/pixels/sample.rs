@@ -1,51 +1,53 @@
-//! Between texels and beyond borders.
+//! Texture sampling: wrap modes and filters.
 
-use super::{Pyramid, Texel};
-use juggler_math::fun;
+use super::{MipMap, Texel};
+use juggler_math::portable;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What lies beyond a picture's border.
+/// Continuation of an image beyond its borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Wrap {
-    /// The picture again.
+    /// Repeats the image.
     #[default]
     Repeat,
-    /// The picture again, every other time turned over.
+    /// Repeats the image, mirrored every other time.
     Mirror,
-    /// What is at the border.
+    /// Extends the texels at the border.
     Clamp,
-    /// Nothing: black, alpha 0.
+    /// Black, with alpha 0.
     Black,
 }
 
-/// How a place between texels gets its colour.
+/// Filter of an image texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Filter {
-    /// That of the texel it lies in: blocks from close by.
+    /// Nearest texel. Texels show as blocks at close range.
     Nearest,
-    /// Mixed of the four texels about.
+    /// Bilinear interpolation of the four nearest texels.
     Bilinear,
-    /// The same, and from afar mixed of smaller copies of the picture, by the size of the ray's footprint.
+    /// Trilinear interpolation: bilinear interpolation in the MIP map levels that fit the ray's
+    /// footprint. Prevents aliasing at a distance.
     #[default]
     Trilinear,
 }
 
 impl Wrap {
-    /// A coordinate in units of the picture where the numbers are small; the picture's first period, as far as there are
-    /// periods.
-    fn near(self, x: f32) -> f64 {
+    /// Reduces a coordinate, in units of the image, to small numbers: to the first period if the
+    /// mode is periodic, otherwise to -4 to 4.
+    fn reduce_coordinate(self, x: f32) -> f64 {
         let x = if x.is_finite() { f64::from(x) } else { 0.0 };
         match self {
-            Self::Repeat => x - fun::floor_f64(x),
-            Self::Mirror => x - 2.0 * fun::floor_f64(x * 0.5),
+            Self::Repeat => x - portable::floor_f64(x),
+            Self::Mirror => x - 2.0 * portable::floor_f64(x * 0.5),
             Self::Clamp | Self::Black => x.clamp(-4.0, 4.0),
         }
     }
 
-    /// The texel of a line of `size` that stands at place `i`, which lies less than five lines off.
+    /// Texel of a row of `size` at index `i`, less than five rows away; `None` beyond the border of
+    /// [`Wrap::Black`].
     fn texel(self, i: i64, size: u32) -> Option<u32> {
         let (size, last) = (i64::from(size), i64::from(size) - 1);
         let found = match self {
@@ -62,11 +64,11 @@ impl Wrap {
     }
 }
 
-impl Pyramid {
-    /// The texel at (x, y), from (0, 0) at the top left to (1, 1) at the bottom right, for a footprint of that diameter in the
-    /// same units.
+impl MipMap {
+    /// Filtered texel at (x, y), from (0, 0) at the top left to (1, 1) at the bottom right. `width`
+    /// is the diameter of the footprint in the same units.
     pub fn sample(&self, [x, y]: [f32; 2], width: f32, wrap: [Wrap; 2], filter: Filter) -> Texel {
-        let at = [wrap[0].near(x), wrap[1].near(y)];
+        let at = [wrap[0].reduce_coordinate(x), wrap[1].reduce_coordinate(y)];
         if filter == Filter::Nearest {
             return self.at(0, at, wrap);
         }
@@ -75,8 +77,8 @@ impl Pyramid {
         if filter == Filter::Bilinear || texels.is_nan() || texels <= 1.0 {
             return self.bilinear(0, at, wrap);
         }
-        // One texel of this level is as wide as the footprint.
-        let level = fun::log2(texels.min(1e9));
+        // Choose the level whose texels are as wide as the footprint.
+        let level = portable::log2(texels.min(1e9));
         let last = self.levels() - 1;
         let lower = (level as usize).min(last);
         let share = if lower == last { 0.0 } else { level - lower as f32 };
@@ -88,26 +90,27 @@ impl Pyramid {
         std::array::from_fn(|i| fine[i] + (coarse[i] - fine[i]) * share)
     }
 
-    /// The texel that a place lies in.
+    /// Texel that contains a point.
     fn at(&self, level: usize, at: [f64; 2], wrap: [Wrap; 2]) -> Texel {
         let size = self.size(level);
-        let index = |axis: usize| wrap[axis].texel(fun::floor_f64(at[axis] * f64::from(size[axis])) as i64, size[axis]);
+        let index =
+            |axis: usize| wrap[axis].texel(portable::floor_f64(at[axis] * f64::from(size[axis])) as i64, size[axis]);
         match (index(0), index(1)) {
             (Some(x), Some(y)) => self.texel(level, x, y),
             _ => [0.0; 4],
         }
     }
 
-    /// Mixed of the four texels whose middles are about a place.
+    /// Bilinear interpolation of the four texels nearest to a point.
     fn bilinear(&self, level: usize, at: [f64; 2], wrap: [Wrap; 2]) -> Texel {
         let size = self.size(level);
-        let place = |axis: usize| {
+        let neighbors = |axis: usize| {
             let x = at[axis] * f64::from(size[axis]) - 0.5;
-            let floor = fun::floor_f64(x);
+            let floor = portable::floor_f64(x);
             let index = floor as i64;
             (wrap[axis].texel(index, size[axis]), wrap[axis].texel(index + 1, size[axis]), (x - floor) as f32)
         };
-        let ((left, right, across), (top, bottom, down)) = (place(0), place(1));
+        let ((left, right, across), (top, bottom, down)) = (neighbors(0), neighbors(1));
         let texel = |x: Option<u32>, y: Option<u32>| match (x, y) {
             (Some(x), Some(y)) => self.texel(level, x, y),
             _ => [0.0; 4],
@@ -128,13 +131,13 @@ mod tests {
 
     const ALL: [Wrap; 4] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black];
 
-    fn random_picture(width: u32, height: u32, random: &mut Random) -> Pyramid {
+    fn random_picture(width: u32, height: u32, random: &mut Random) -> MipMap {
         let numbers = (0..width * height * 3).map(|_| random.f32()).collect();
-        Pyramid::of_numbers([width, height], 3, numbers).unwrap()
+        MipMap::from_floats([width, height], 3, numbers).unwrap()
     }
 
-    /// The texel at a place of an endless plane of texels.
-    fn endless(picture: &Pyramid, x: i64, y: i64, wrap: [Wrap; 2]) -> Texel {
+    /// Texel of an image that is continued to an infinite plane.
+    fn endless(picture: &MipMap, x: i64, y: i64, wrap: [Wrap; 2]) -> Texel {
         let [width, height] = picture.size(0).map(i64::from);
         let turn = |i: i64, size: i64, wrap: Wrap| match wrap {
             Wrap::Repeat => Some(i - size * i.div_euclid(size)),
@@ -178,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn far_away_there_is_a_colour_too() {
+    fn far_away_there_is_a_color_too() {
         let picture = random_picture(7, 4, &mut Random::new(741));
         for far in [1e6, -1e9, 1e30, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN] {
             for (wrap, filter) in
@@ -201,7 +204,7 @@ mod tests {
         let mean = picture.texel(6, 0, 0);
         let sample = |x: f32, width: f32| picture.sample([x, 0.4], width, [Wrap::Repeat; 2], Filter::Trilinear);
         assert_eq!((sample(0.3, 1.0), sample(0.9, 100.0)), (mean, mean));
-        // In between, the spread of values falls with the footprint.
+        // In between, the variance falls as the footprint grows.
         let spread = |width: f32| {
             let values: Vec<f32> = (0..500).map(|i| sample(i as f32 * 0.002, width)[0]).collect();
             let mean = values.iter().sum::<f32>() / 500.0;
@@ -209,7 +212,7 @@ mod tests {
         };
         let spreads = [0.0, 0.02, 0.05, 0.1, 0.3].map(spread);
         assert!(spreads.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{spreads:?}");
-        // No jump from level to level.
+        // Neighboring levels blend without a jump.
         for i in 1..2000 {
             let (a, b) = (sample(0.31, i as f32 * 0.0005), sample(0.31, (i + 1) as f32 * 0.0005));
             assert!((a[0] - b[0]).abs() < 0.03, "{i}");

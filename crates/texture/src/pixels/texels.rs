@@ -1,21 +1,22 @@
-//! Samples as they lie in memory, one to four a texel.
+//! Samples of images in memory, one to four per texel.
 
 use super::half;
 
-/// The samples of one picture, in as few bytes as keep them.
+/// Samples of one image, in the smallest type that holds them exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
-    /// Levels, which a table makes light of.
+    /// Levels of 8 bits, which [`DecodingTable`] decodes to linear light.
     Bytes(Vec<u8>),
-    /// Numbers with 11 bits of precision.
+    /// Half-precision floats, with 11 bits of precision.
     Halves(Vec<u16>),
-    /// Numbers.
+    /// Single-precision floats.
     Floats(Vec<f32>),
 }
 
 impl Texels {
-    /// Numbers: as halves where that loses nothing. What is no number becomes 0, what is infinite very large.
-    pub fn of_numbers(mut numbers: Vec<f32>) -> Self {
+    /// Stores numbers as halves if that loses nothing, otherwise as floats. NaN becomes 0, all
+    /// others are clamped to ±1e30.
+    pub fn from_floats(mut numbers: Vec<f32>) -> Self {
         for number in &mut numbers {
             *number = if number.is_nan() { 0.0 } else { number.clamp(-1e30, 1e30) };
         }
@@ -26,7 +27,7 @@ impl Texels {
         Self::Floats(numbers)
     }
 
-    /// As many samples of the same kind, all 0.
+    /// As many zeros of the same type.
     pub fn zeros(&self, count: usize) -> Self {
         match self {
             Self::Bytes(_) => Self::Bytes(vec![0; count]),
@@ -35,7 +36,7 @@ impl Texels {
         }
     }
 
-    /// How many samples.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match self {
             Self::Bytes(samples) => samples.len(),
@@ -44,7 +45,7 @@ impl Texels {
         }
     }
 
-    /// Bytes on the heap.
+    /// Size on the heap in bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Bytes(samples) => samples.len(),
@@ -54,26 +55,27 @@ impl Texels {
     }
 }
 
-/// What the 256 levels of a byte stand for.
+/// Decoding table of the 256 levels of a byte.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Levels {
-    /// Of colours; rises.
+pub struct DecodingTable {
+    /// Linear light of each level, in rising order.
     color: [f32; 256],
 }
 
-impl Levels {
-    /// By a curve from a level between 0 and 1 to light.
+impl DecodingTable {
+    /// Table of `decode`, which maps an encoded value from 0 to 1 to linear light and must be
+    /// monotonic.
     pub fn new(decode: impl Fn(f64) -> f64) -> Self {
         Self { color: std::array::from_fn(|level| decode(level as f64 / 255.0) as f32) }
     }
 
-    /// The light of a level.
+    /// Linear light of a level.
     #[inline]
     pub fn light(&self, level: u8) -> f32 {
         self.color[usize::from(level)]
     }
 
-    /// The level whose light is nearest.
+    /// Level whose light is nearest to `light`.
     pub fn nearest(&self, light: f32) -> u8 {
         let above = self.color.partition_point(|entry| *entry < light).min(255);
         let below = above.saturating_sub(1);
@@ -82,9 +84,9 @@ impl Levels {
     }
 }
 
-/// The alpha of a level: a share, by no curve.
+/// Alpha of a level, which is linear.
 #[inline]
-pub fn share(level: u8) -> f32 {
+pub fn alpha_from_level(level: u8) -> f32 {
     f32::from(level) / 255.0
 }
 
@@ -95,15 +97,15 @@ mod tests {
 
     #[test]
     fn levels_go_round_and_others_go_to_the_nearest() {
-        for levels in [Levels::new(srgb_decode_f64), Levels::new(|level| level)] {
+        for table in [DecodingTable::new(srgb_decode_f64), DecodingTable::new(|level| level)] {
             for level in 0..=255u8 {
-                assert_eq!(levels.nearest(levels.light(level)), level);
+                assert_eq!(table.nearest(table.light(level)), level);
             }
             for i in -10..1010 {
                 let light = i as f32 / 1000.0;
-                let off = |level: u8| (levels.light(level) - light).abs();
+                let off = |level: u8| (table.light(level) - light).abs();
                 let best = (0..=255u8).map(off).fold(f32::MAX, f32::min);
-                assert_eq!(off(levels.nearest(light)), best, "{light}");
+                assert_eq!(off(table.nearest(light)), best, "{light}");
             }
         }
     }
@@ -111,11 +113,11 @@ mod tests {
     #[test]
     fn numbers_take_no_more_than_they_need() {
         assert_eq!(
-            Texels::of_numbers(vec![1.0, -0.5, 65_504.0, f32::NAN]),
+            Texels::from_floats(vec![1.0, -0.5, 65_504.0, f32::NAN]),
             Texels::Halves(vec![0x3c00, 0xb800, 0x7bff, 0])
         );
-        assert_eq!(Texels::of_numbers(vec![1.0, 0.1]), Texels::Floats(vec![1.0, 0.1]));
-        assert_eq!(Texels::of_numbers(vec![f32::INFINITY, -f32::INFINITY]), Texels::Floats(vec![1e30, -1e30]));
+        assert_eq!(Texels::from_floats(vec![1.0, 0.1]), Texels::Floats(vec![1.0, 0.1]));
+        assert_eq!(Texels::from_floats(vec![f32::INFINITY, -f32::INFINITY]), Texels::Floats(vec![1e30, -1e30]));
         assert_eq!((Texels::Halves(vec![0; 3]).bytes(), Texels::Floats(vec![0.0; 3]).bytes()), (6, 12));
     }
 }

@@ -1,6 +1,6 @@
 //! Which specular spheres take part in light sampling.
 
-use super::MOST;
+use super::MAX_CASTERS;
 use crate::{Object, World};
 use juggler_light::AnyLight;
 use juggler_light::background::{AnyBackground, Solid};
@@ -9,7 +9,7 @@ use juggler_math::{Transform, Vec3};
 use juggler_shape::{AnyShape, Sphere};
 use juggler_texture::TextureTable;
 
-/// Spheres of these radii, all of polished metal, side by side.
+/// A row of polished metal spheres with the given radii.
 fn spheres(radii: &[f32]) -> World {
     let metal: AnyMaterial = serde_json::from_str(r#"{"conductor": {"reflectance": 0.9}}"#).unwrap();
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
@@ -30,10 +30,10 @@ fn of_many_spheres_the_largest_are_sampled() {
     let mut radii: Vec<f32> = (0..40).map(|i| 0.1 + 0.01 * ((i * 17) % 40) as f32).collect();
     let world = spheres(&radii);
     radii.sort_by(|a, b| b.total_cmp(a));
-    radii.truncate(MOST);
-    let sampled: Vec<f32> = world.casters.iter().map(|caster| caster.ball.radius).collect();
+    radii.truncate(MAX_CASTERS);
+    let sampled: Vec<f32> = world.casters.iter().map(|caster| caster.sphere.radius).collect();
     assert_eq!(sampled.len(), radii.len());
-    for (sampled, wanted) in sampled.iter().zip(&radii) {
-        assert!((sampled - wanted).abs() < 1e-5, "{sampled}, not {wanted}");
+    for (sampled, expected) in sampled.iter().zip(&radii) {
+        assert!((sampled - expected).abs() < 1e-5, "{sampled}, not {expected}");
     }
 }

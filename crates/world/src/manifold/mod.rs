@@ -1,167 +1,170 @@
-//! Manifold next-event estimation by way of a polished ball: the ways on which light comes from a place to another one by
-//! the mirror that a ball is, or through it (Hanika, Droske, Fascione, Manifold Next Event Estimation, 2015; Zeltner,
-//! Georgiev, Jakob, Specular Manifold Sampling, 2020).
+//! Manifold next-event estimation through a specular sphere: all paths that connect two points by
+//! one reflection or by two refractions (Hanika, Droske, Fascione, Manifold Next Event Estimation,
+//! 2015; Zeltner, Georgiev, Jakob, Specular Manifold Sampling, 2020).
 //!
-//! Those walk over any surface and find some of the ways. A ball has a plane that holds the whole way, so that one angle
-//! says it all: here every way is found, and the density of each is known in closed form.
+//! Those methods walk on arbitrary surfaces and find some of the paths. For a sphere the whole path
+//! lies in one plane, so a single angle describes it: this module finds every path, with its
+//! density in closed form.
 //!
-//! Lengths are in units of the ball's radius. With u the sine of the angle of incidence, the same wherever the way touches
-//! the ball, and k the radius over the distance of an end from the centre, the way leaves that end at an angle of sine
-//! k u to the line to the centre.
+//! Lengths are in units of the sphere's radius. Let u be the sine of the angle of incidence, which
+//! is the same at both interfaces, and k the radius divided by the distance of an end point from
+//! the center. At that end point the path and the line to the center form an angle of sine k u.
 
 use arrayvec::ArrayVec;
-use juggler_math::{Vec3, fun};
+use juggler_math::{Vec3, portable};
 
 mod lens;
 mod mirror;
 #[cfg(test)]
 mod tests;
 
-/// How light comes by way of a ball.
+/// Kind of specular path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
-    /// It is mirrored on the outside.
-    Mirrored,
-    /// It goes in and out again.
+pub enum SpecularPath {
+    /// Reflection on the outside.
+    Reflected,
+    /// Refraction into the sphere and out again.
     Refracted {
-        /// Index of refraction inside over outside, above 1.
+        /// Relative index of refraction, inside over outside; above 1.
         ior: f32,
     },
 }
 
-/// A ball in world space.
+/// A sphere in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
-    /// Its centre.
+pub struct SpecularSphere {
+    /// Center.
     pub center: Vec3,
-    /// Its radius, above 0.
+    /// Radius, above 0.
     pub radius: f32,
 }
 
-/// Where a way begins or ends, as the ball sees it.
+/// End point of a specular path, relative to the sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
-    /// Unit, from the centre.
+pub struct EndPoint {
+    /// Unit vector from the sphere's center.
     pub toward: Vec3,
-    /// Radius over distance: 0 at infinity, below 1.
-    pub nearness: f32,
+    /// Radius divided by the distance from the center: 0 at infinity, below 1.
+    pub inverse_distance: f32,
 }
 
-/// A way from one end to another.
+/// A specular path between two end points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bend {
-    /// Unit, in which it leaves the first end.
+pub struct Connection {
+    /// Unit direction in which the path leaves the first end point.
     pub direction: Vec3,
-    /// Where it touches the ball first and last: unit, from the centre.
-    pub touches: [Vec3; 2],
+    /// First and last point on the sphere, as unit vectors from its center.
+    pub vertices: [Vec3; 2],
     /// Sine of the angle of incidence.
     pub sine: f32,
 }
 
-/// Ways that there can be.
-pub const MAX_BENDS: usize = 3;
+/// Maximum number of paths between two end points.
+pub const MAX_CONNECTIONS: usize = 3;
 
-/// An end nearer than this (its nearness) counts as on the ball.
-const NEAREST: f32 = 0.9999;
+/// End points with a larger inverse distance count as lying on the sphere.
+const MAX_INVERSE_DISTANCE: f32 = 0.9999;
 
-impl Ball {
-    /// A place as the ball sees it; `None` when it is not clearly outside.
+impl SpecularSphere {
+    /// Converts a point to an end point; `None` unless it is clearly outside the sphere.
     #[inline]
-    pub fn end(&self, place: Vec3) -> Option<End> {
-        let way = place - self.center;
-        let distance = way.length();
-        let nearness = self.radius / distance;
-        (nearness <= NEAREST).then(|| End { toward: way / distance, nearness })
+    pub fn end_point(&self, point: Vec3) -> Option<EndPoint> {
+        let offset = point - self.center;
+        let distance = offset.length();
+        let inverse_distance = self.radius / distance;
+        (inverse_distance <= MAX_INVERSE_DISTANCE).then(|| EndPoint { toward: offset / distance, inverse_distance })
     }
 
-    /// The share of all directions in which a place with that nearness sees the ball, times 2.
+    /// Solid angle that the sphere subtends at a point of this inverse distance, divided by 2π.
     #[inline]
-    pub fn seen(nearness: f32) -> f32 {
-        let squared = nearness * nearness;
+    pub fn one_minus_cos(inverse_distance: f32) -> f32 {
+        let squared = inverse_distance * inverse_distance;
         squared / (1.0 + (1.0 - squared).max(0.0).sqrt())
     }
 }
 
-impl End {
-    /// Infinitely far in a direction, a unit vector.
+impl EndPoint {
+    /// End point at infinity in the direction `toward`, a unit vector.
     #[inline]
     pub fn infinity(toward: Vec3) -> Self {
-        Self { toward, nearness: 0.0 }
+        Self { toward, inverse_distance: 0.0 }
     }
 }
 
-/// The plane through both ends and the centre.
+/// The plane through both end points and the sphere's center.
 #[derive(Clone, Copy, Debug)]
 struct Plane {
-    /// Unit, to the first end.
+    /// Unit vector from the center to the first end point.
     axis: Vec3,
-    /// Unit, at a right angle, on the side of the second end.
+    /// Unit vector orthogonal to `axis`, on the side of the second end point.
     across: Vec3,
-    /// Of the angle between the ends.
+    /// Sine of `angle`, the angle Φ at the center between the end points.
     sin: f32,
     cos: f32,
     angle: f32,
-    /// Of both ends.
-    nearness: [f32; 2],
+    /// Inverse distance of both end points.
+    inverse_distance: [f32; 2],
 }
 
 impl Plane {
-    /// `None` when everything lies on a line.
+    /// `None` if the end points and the center are collinear.
     #[inline]
-    fn new(from: &End, to: &End) -> Option<Self> {
+    fn new(from: &EndPoint, to: &EndPoint) -> Option<Self> {
         let cos = from.toward.dot(to.toward);
         let across = to.toward - from.toward * cos;
         let sin = across.length();
-        let angle = fun::atan2(sin, cos);
-        let nearness = [from.nearness, to.nearness];
-        (sin > 1e-6).then(|| Self { axis: from.toward, across: across / sin, sin, cos, angle, nearness })
+        let angle = portable::atan2(sin, cos);
+        let inverse_distance = [from.inverse_distance, to.inverse_distance];
+        (sin > 1e-6).then(|| Self { axis: from.toward, across: across / sin, sin, cos, angle, inverse_distance })
     }
 
-    /// The unit vector from the centre at an angle from the axis.
+    /// Unit vector from the center at an angle from the axis, given as sine and cosine.
     #[inline]
     fn at(&self, (sin, cos): (f32, f32)) -> Vec3 {
         self.axis * cos + self.across * sin
     }
 
-    /// The direction of the way of incidence `sine` from the first end; to which `side` of the centre it goes is 1 or -1.
+    /// Direction at the first end point of the path of incidence `sine`; `side` is 1 or -1 by the
+    /// side on which it passes the center.
     #[inline]
     fn direction(&self, sine: f32, side: f32) -> Vec3 {
-        let sin = self.nearness[0] * sine;
-        self.at((side * sin, -cosine(sin)))
+        let sin = self.inverse_distance[0] * sine;
+        self.at((side * sin, -cos_from_sin(sin)))
     }
 }
 
-/// Every way between two ends.
+/// Finds all specular paths between two end points.
 #[inline]
-pub fn bends(way: Way, from: &End, to: &End) -> ArrayVec<Bend, MAX_BENDS> {
+pub fn connections(kind: SpecularPath, from: &EndPoint, to: &EndPoint) -> ArrayVec<Connection, MAX_CONNECTIONS> {
     let Some(plane) = Plane::new(from, to) else { return ArrayVec::new() };
-    match way {
-        Way::Mirrored => mirror::bend(&plane).into_iter().collect(),
-        Way::Refracted { ior } => lens::bends(&plane, ior),
+    match kind {
+        SpecularPath::Reflected => mirror::connection(&plane).into_iter().collect(),
+        SpecularPath::Refracted { ior } => lens::connections(&plane, ior),
     }
 }
 
-/// Solid angle of the second end, seen from the centre, over solid angle at the first, of a thin bundle around the way of
-/// incidence `sine`: places that are picked from the centre with density p are so picked from the first end with density
-/// p times this.
+/// Ratio of solid angles of a thin bundle of paths: at the sphere's center towards the second end
+/// point, over that at the first end point. It converts a density of directions at the center to
+/// one at the first end point.
 ///
-/// With Φ(u) the angle at the centre between the ends, and a their angles to the way: cos a₁ cos a₂ |Φ'(u)| sin Φ / (u k₁²).
+/// With Φ(u) the angle at the center between the end points and a the angles between path and axis
+/// at the end points, it is cos a₁ cos a₂ |Φ'(u)| sin Φ / (u k₁²).
 #[inline]
-pub fn spread(way: Way, from: &End, to: &End, sine: f32) -> f32 {
-    let [near, far] = [from.nearness, to.nearness];
-    let cosines = [near, far].map(|nearness| cosine(nearness * sine));
-    let slope = match way {
-        Way::Mirrored => mirror::slope(sine, [near, far], cosines),
-        Way::Refracted { ior } => lens::slope(sine, [near, far], cosines, ior),
+pub fn solid_angle_ratio(kind: SpecularPath, from: &EndPoint, to: &EndPoint, sine: f32) -> f32 {
+    let [k1, k2] = [from.inverse_distance, to.inverse_distance];
+    let cosines = [k1, k2].map(|inverse_distance| cos_from_sin(inverse_distance * sine));
+    let derivative = match kind {
+        SpecularPath::Reflected => mirror::angle_derivative(sine, [k1, k2], cosines),
+        SpecularPath::Refracted { ior } => lens::angle_derivative(sine, [k1, k2], cosines, ior),
     };
     let angle = from.toward.cross(to.toward).length();
-    // Along the axis both vanish.
-    let around = if sine > 1e-4 { angle / sine } else { slope.abs() };
-    cosines[0] * cosines[1] * slope.abs() * around / (near * near)
+    // On the axis, sin Φ and u both vanish.
+    let around = if sine > 1e-4 { angle / sine } else { derivative.abs() };
+    cosines[0] * cosines[1] * derivative.abs() * around / (k1 * k1)
 }
 
-/// Of an angle below 90 degrees, by its sine.
+/// Cosine of an angle of at most 90 degrees, from its sine.
 #[inline]
-pub fn cosine(sine: f32) -> f32 {
+pub fn cos_from_sin(sine: f32) -> f32 {
     ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt()
 }

@@ -1,4 +1,4 @@
-//! Tests of what moves while the shutter is open.
+//! Ray queries while objects move.
 
 use super::{crowd, equals_brute_force, expanded_at, grove, large_mesh, rays, world_of};
 use crate::*;
@@ -6,7 +6,7 @@ use juggler_math::testing::Random;
 use juggler_math::{Motion, Transform};
 use std::sync::Arc;
 
-/// Everything moves, instances of what moves too: straight, turning, growing.
+/// A world of moving objects and moving instances of them, with translation, rotation and scaling.
 fn in_motion(random: &mut Random) -> World {
     let mut moving = |mut objects: Vec<Object>| -> Vec<Object> {
         for object in objects.iter_mut().filter(|object| object.is_bounded()) {
@@ -16,13 +16,13 @@ fn in_motion(random: &mut Random) -> World {
                 Some(*at)
             });
             let (keys, size) = (keys.collect(), object.bounds().extent().length());
-            object.motion = Motion::through(keys).unwrap().smoothed(size);
+            object.motion = Motion::from_keys(keys).unwrap().smoothed(size);
         }
         objects
     };
     let mut objects = moving(crowd(&mut Random::new(41), 2, Some(MaterialId(0))));
-    let level = Arc::new(Level::new(moving(crowd(&mut Random::new(42), 1, None))));
-    let instance = Object { content: Content::Level(level), motion: Transform::IDENTITY.into(), material: None };
+    let geometry = Arc::new(Geometry::new(moving(crowd(&mut Random::new(42), 1, None))));
+    let instance = Object { content: Content::Geometry(geometry), motion: Transform::IDENTITY.into(), material: None };
     objects.extend(moving(vec![instance.clone(), instance.clone(), instance]));
     objects.extend(crowd(&mut Random::new(43), 1, Some(MaterialId(2))));
     objects.extend(moving(vec![Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1))]));
@@ -36,9 +36,9 @@ fn what_moves_equals_brute_force_at_every_time() {
     equals_brute_force(&world, 300);
 }
 
-/// What moves, met at some time, is met where it stands still there: the same place and normal.
+/// A hit on a moving object has the position of a hit on the object frozen at the ray's time.
 #[test]
-fn what_moves_is_met_where_it_is_at_the_time_of_the_ray() {
+fn rays_hit_moving_objects_where_they_are_at_the_time_of_the_ray() {
     let mut random = Random::new(44);
     let world = in_motion(&mut Random::new(40));
     for round in 0..60 {
@@ -53,7 +53,7 @@ fn what_moves_is_met_where_it_is_at_the_time_of_the_ray() {
                 let (a, b) = (world.vertex(&ray, &moving).surface, still.vertex(&again, &standing).surface);
                 assert!(a.point.distance(b.point) < 0.01, "{a:?} {b:?}");
             } else {
-                // Only at edges may one meet what the other misses.
+                // Only at silhouette edges may one ray hit what the other misses.
                 let edge = |world: &World, hit: &WorldHit, ray: &Ray| {
                     hit.is_some() && world.vertex(ray, hit).surface.normal.dot(ray.direction).abs() > 0.3
                 };

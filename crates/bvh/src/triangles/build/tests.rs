@@ -1,9 +1,9 @@
-//! Trees with divided triangles: what they cost, what they hold, and that no part of a triangle is missing.
+//! Trees with spatial splits: SAH cost, contents, and coverage of every triangle by its leaves.
 
 use super::*;
 use juggler_math::hash;
 
-/// Small triangles all over, and a share of long thin ones across them in any direction.
+/// Small triangles everywhere, crossed by `long` long thin ones in random directions.
 fn crossed(count: u32, long: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let unit = |i: u32, k: u32| hash::unit_f32(hash::mix(hash::combine(i, k)));
     let point = |i: u32, k: u32| Vec3::new(unit(i, k), unit(i, k + 1), unit(i, k + 2)) * 2.0 - Vec3::ONE;
@@ -16,9 +16,9 @@ fn crossed(count: u32, long: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// What the tree would be without division.
-fn whole(mesh: &Mesh) -> Bvh {
-    Bvh::over(mesh.items().unwrap(), &BuildOptions { block: LANES, ..Quality::Best.into() })
+/// Tree without spatial splits.
+fn whole(mesh: &TriangleList) -> Bvh {
+    Bvh::from_items(mesh.items().unwrap(), &BuildOptions { block: LANES, ..Quality::Best.into() })
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn division_never_costs_and_mostly_pays_for_long_triangles() {
     for (count, long) in [(3, 3), (100, 20), (3000, 0), (3000, 300), (40_000, 300)] {
         let (positions, triangles) = crossed(count, long);
         let tree = TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap();
-        let (stats, whole) = (tree.stats(), whole(&Mesh { positions: &positions, triangles: &triangles }));
+        let (stats, whole) = (tree.stats(), whole(&TriangleList { positions: &positions, triangles: &triangles }));
         assert!(stats.sah_cost <= whole.stats.sah_cost, "{count}, {long}: {stats:?}");
         assert_eq!((stats.items, stats.left_out), (count as usize, 0));
         let places: usize = stats.leaf_sizes.iter().enumerate().map(|(size, leaves)| size * leaves).sum();
@@ -38,7 +38,7 @@ fn division_never_costs_and_mostly_pays_for_long_triangles() {
     }
 }
 
-/// The boxes of the leaves that hold each triangle.
+/// Boxes of the leaves that refer to each triangle.
 fn boxes_of(bvh: &Bvh, triangles: usize) -> Vec<Vec<Aabb>> {
     let mut boxes = vec![Vec::new(); triangles];
     for node in bvh.nodes.iter() {
@@ -52,15 +52,15 @@ fn boxes_of(bvh: &Bvh, triangles: usize) -> Vec<Vec<Aabb>> {
     boxes
 }
 
-/// Every point of a triangle lies in the box of one of its leaves, with room on all sides.
+/// Every point of a triangle lies in the box of one of its leaves, with a margin on all sides.
 #[test]
 fn no_part_of_a_triangle_is_missing() {
     for (scale, offset) in [(1.0, 0.0), (1e-20, 0.0), (1e25, 0.0), (1.0, 3000.0), (1.0, -1e4)] {
         let (positions, triangles) = crossed(3000, 300);
         let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale + offset * scale).collect();
-        let mesh = Mesh { positions: &positions, triangles: &triangles };
+        let mesh = TriangleList { positions: &positions, triangles: &triangles };
         let options = BuildOptions { block: LANES, ..Quality::Best.into() };
-        let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+        let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
         let mut divided = 0;
         for (triangle, boxes) in boxes_of(&bvh, triangles.len()).iter().enumerate() {
             let corners = mesh.corners(triangle).unwrap();
@@ -94,12 +94,12 @@ fn any_number_of_threads_divides_the_same() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap())
     };
-    let one = build(1);
-    assert!(one.stats().references > one.stats().items + 500, "{:?}", one.stats());
-    assert!([2, 3].into_iter().all(|threads| one.same_bits(&build(threads))));
+    let ray_visitor = build(1);
+    assert!(ray_visitor.stats().references > ray_visitor.stats().items + 500, "{:?}", ray_visitor.stats());
+    assert!([2, 3].into_iter().all(|threads| ray_visitor.same_bits(&build(threads))));
 }
 
-/// Nothing to divide, nothing that can be, and coordinates without measure.
+/// Degenerate triangles, indivisible triangles and extreme coordinates.
 #[test]
 fn bad_triangles_are_left_out_or_divided_soundly() {
     let (mut positions, triangles) = crossed(3000, 300);
@@ -110,15 +110,15 @@ fn bad_triangles_are_left_out_or_divided_soundly() {
     positions[103] = Vec3::splat(-f32::MAX);
     let tree = TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap();
     assert_eq!((tree.stats().items, tree.stats().left_out), (2997, 3));
-    let mesh = Mesh { positions: &positions, triangles: &triangles };
+    let mesh = TriangleList { positions: &positions, triangles: &triangles };
     let options = BuildOptions { block: LANES, ..Quality::Best.into() };
     for count in [0, 1, 2, 9] {
-        let mesh = Mesh { triangles: &triangles[10..10 + count], ..mesh };
-        let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+        let mesh = TriangleList { triangles: &triangles[10..10 + count], ..mesh };
+        let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
         assert_eq!((bvh.stats.items, bvh.stats.references >= count), (count, true));
     }
     let equal = vec![triangles[20]; 500];
-    let mesh = Mesh { triangles: &equal, ..mesh };
-    let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+    let mesh = TriangleList { triangles: &equal, ..mesh };
+    let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
     assert!(bvh.stats.items == 500 && bvh.stats.references <= 625 && bvh.stats.depth <= 72, "{:?}", bvh.stats);
 }

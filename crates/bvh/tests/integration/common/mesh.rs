@@ -1,15 +1,15 @@
-//! Triangles, brute force over them, and every kernel at every vector level against it.
+//! Triangle meshes, brute force, and checks of every kernel at every SIMD level.
 use super::Random;
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit, intersect_triangle, simd_levels};
-use juggler_math::{Ray, Vec3, fun, vec3};
+use juggler_math::{Ray, Vec3, portable, vec3};
 
-/// Rays of a test's case: `small`, or as many as `JUGGLER_RAYS` says.
+/// Number of rays of a test case: `small`, or the value of `JUGGLER_RAYS`.
 pub fn rays_to_try(small: usize) -> usize {
-    let wanted = std::env::var("JUGGLER_RAYS").ok().and_then(|count| count.replace('_', "").parse().ok());
-    wanted.unwrap_or(small)
+    let requested = std::env::var("JUGGLER_RAYS").ok().and_then(|count| count.replace('_', "").parse().ok());
+    requested.unwrap_or(small)
 }
 
-/// Triangles: three numbers of corners each.
+/// A triangle mesh: three vertex indices per triangle.
 #[derive(Clone)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
@@ -17,8 +17,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Three corners of its own for each triangle.
-    pub fn of(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
+    /// Constructs a mesh whose triangles share no vertices.
+    pub fn from_triangles(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
         let positions: Vec<Vec3> = corners.into_iter().flatten().collect();
         let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Self { positions, triangles }
@@ -33,26 +33,27 @@ impl Mesh {
         Self { positions, triangles: self.triangles.clone() }
     }
 
-    /// Every triangle tried; of hits at equal distance that with the smallest number.
+    /// Brute force: tests every triangle; among hits at equal distance the smallest index wins.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         let hits = (0..self.triangles.len()).filter_map(|index| {
             let [a, b, c] = self.corners(index);
             let (t, u, v) = intersect_triangle(ray, a, b, c)?;
             Some(TriangleHit { t, u, v, index: index as u32 })
         });
-        // Zeros of both signs are equal distances.
+        // Zeros of both signs are equal distances, so `total_cmp` would be wrong.
         hits.reduce(|best, hit| if hit.t < best.t { hit } else { best })
     }
 }
 
-/// A globe of `rows` times `columns` quads in two triangles each, the poles fans; every vertex moved in or
-/// out by up to half of `rough`. Closed: neighbours share their vertices.
+/// A globe of `rows` × `columns` quads of two triangles each, with triangle fans at the poles. Each
+/// vertex is displaced radially by up to half of `rough`. Closed: adjacent triangles share their
+/// vertices.
 pub fn globe(random: &mut Random, rows: u32, columns: u32, rough: f32) -> Mesh {
     let mut positions = vec![Vec3::Y, -Vec3::Y];
     for row in 1..rows {
         for column in 0..columns {
-            let (sin, cos) = fun::sin_cos(std::f32::consts::PI * row as f32 / rows as f32);
-            let (sin_around, cos_around) = fun::sin_cos(std::f32::consts::TAU * column as f32 / columns as f32);
+            let (sin, cos) = portable::sin_cos(std::f32::consts::PI * row as f32 / rows as f32);
+            let (sin_around, cos_around) = portable::sin_cos(std::f32::consts::TAU * column as f32 / columns as f32);
             positions.push(vec3(sin * cos_around, cos, sin * sin_around) * (1.0 + rough * (random.unit() - 0.5)));
         }
     }
@@ -71,25 +72,26 @@ pub fn globe(random: &mut Random, rows: u32, columns: u32, rough: f32) -> Mesh {
     Mesh { positions, triangles }
 }
 
-/// Small triangles all over, and long thin ones across them in any direction, which the best quality divides.
+/// Small triangles everywhere, crossed by long thin ones in random directions, which spatial splits
+/// divide.
 pub fn crossed(random: &mut Random, count: usize, long: usize) -> Mesh {
-    Mesh::of((0..count).map(|i| {
+    Mesh::from_triangles((0..count).map(|i| {
         let (center, along) = (random.point(), random.point() * if i < long { 1.0 } else { 0.02 });
         [center - along, center + along, center + along + random.point() * 0.02]
     }))
 }
 
-/// Whether the best quality puts triangles of the mesh into several leaves.
+/// Whether the best quality refers to triangles of the mesh from several leaves.
 pub fn is_divided(mesh: &Mesh) -> bool {
     let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Best).unwrap();
     tree.stats().references > tree.stats().items
 }
 
-/// A tree, ready for every kernel at one vector level.
+/// A tree for every kernel at one SIMD level.
 pub struct Kernels {
     name: String,
     tree: TriangleBvh,
-    /// The same, with rays in flight.
+    /// The same tree with rays in flight.
     in_flight: TriangleBvh,
 }
 
@@ -105,7 +107,7 @@ impl Kernels {
         Self { name: format!("{name}, {level:?}"), in_flight: tree.clone().with_rays_in_flight(true), tree }
     }
 
-    /// For every quality and vector level.
+    /// Trees for every quality and SIMD level.
     pub fn all(name: &str, mesh: &Mesh) -> Vec<Self> {
         let mut all = Vec::new();
         for quality in Quality::ALL {
@@ -120,7 +122,8 @@ impl Kernels {
         self.tree.closest(ray)
     }
 
-    /// Every kernel finds what is expected, the same bits, and any hit where there is a closest one.
+    /// Checks that every kernel finds the expected hits, bit for bit, and any hit wherever there is
+    /// a closest one.
     pub fn check(&self, rays: &[Ray], expected: &[Option<TriangleHit>]) {
         let single: Vec<_> = rays.iter().map(|ray| self.tree.closest(ray)).collect();
         self.check_hits("single", rays, &single, expected);
@@ -134,13 +137,13 @@ impl Kernels {
             ("packet", &self.tree, TriangleBvh::closest_packet, TriangleBvh::any_packet),
         ];
         for (kernel, tree, closest, any) in kernels {
-            // What the arrays held before must not matter.
+            // Prefill the arrays with wrong results, which must be overwritten.
             let (mut ends, mut hits) = (rays.to_vec(), vec![Some(WRONG); rays.len()]);
             closest(tree, &mut ends, &mut hits);
             self.check_hits(kernel, rays, &hits, expected);
             for (end, (ray, hit)) in ends.iter().zip(rays.iter().zip(&hits)) {
                 let t_max = hit.map_or(ray.t_max, |hit| hit.t);
-                assert_eq!(*end, ray.up_to(t_max), "{}, {kernel}: where a ray ends", self.name);
+                assert_eq!(*end, ray.with_t_max(t_max), "{}, {kernel}: where a ray ends", self.name);
             }
             let mut occluded: Vec<bool> = expected.iter().map(Option::is_none).collect();
             any(tree, rays, &mut occluded);

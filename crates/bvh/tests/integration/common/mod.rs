@@ -1,5 +1,5 @@
-//! Random numbers, rays and shapes for the tests, and a visitor that keeps the nearest item.
-#![allow(dead_code)] // each test program uses its part
+//! Random numbers, rays and shapes for the tests, and a leaf visitor that keeps the nearest item.
+#![allow(dead_code)] // Each test module uses only a part.
 
 pub mod mesh;
 pub mod rays;
@@ -8,7 +8,7 @@ use juggler_bvh::{Bvh, Leaf, Quality, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3, hash};
 use std::ops::Range;
 
-/// A counter that is hashed: the same numbers in every run.
+/// Counter-based random numbers: the same in every run.
 pub struct Random {
     seed: u32,
     count: u32,
@@ -28,12 +28,12 @@ impl Random {
         self.bits() as usize % n
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub fn unit(&mut self) -> f32 {
         hash::unit_f32(self.bits())
     }
 
-    /// Each coordinate in [-1, 1).
+    /// A point in [-1, 1)³.
     pub fn point(&mut self) -> Vec3 {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - Vec3::ONE
     }
@@ -48,7 +48,7 @@ impl Random {
     }
 }
 
-/// What a shape must say for itself.
+/// A shape with bounds and an intersection test.
 pub trait Shape: Copy {
     fn bounds(&self) -> Aabb;
     fn hit(&self, ray: &Ray) -> Option<f32>;
@@ -84,9 +84,9 @@ impl Shape for Sphere {
     }
 }
 
-pub type Nearest = Option<(u32, u32)>; // bits of t, item
+pub type Nearest = Option<(u32, u32)>; // (bits of t, item)
 
-/// Keeps the nearest item of each lane, the smallest number among equals.
+/// Leaf visitor that keeps the nearest item of each lane; among equal distances the smallest index.
 pub struct Keep<'a, S> {
     pub shapes: &'a [S],
     pub order: &'a [u32],
@@ -129,7 +129,7 @@ pub fn brute_force<S: Shape>(shapes: &[S], ray: &Ray) -> Nearest {
     nearest.map(|(t, item)| (t.to_bits(), item))
 }
 
-/// Every way to trace, against trying every shape; `group` rays to a call. The vector levels take turns.
+/// Checks every query against brute force, with `group` rays per call; SIMD levels take turns.
 pub fn check<S: Shape>(name: &str, shapes: &[S], rays: &[Ray], group: usize) {
     let boxes: Vec<Aabb> = shapes.iter().map(Shape::bounds).collect();
     for quality in Quality::ALL {

@@ -1,13 +1,14 @@
-//! Rays that look for trouble: in planes, along axes, through corners, from surfaces, of extreme length.
+//! Adversarial rays: in planes, along axes, through vertices, from surfaces, with extreme direction
+//! lengths.
 
 use super::Random;
 use super::mesh::Mesh;
 use juggler_math::{Ray, Vec3};
 
-/// Most rays of a call: two groups of packets and an odd rest.
+/// Maximum number of rays per call: two groups of packets and a remainder.
 const MOST: usize = 70;
 
-/// Rays of a mesh's box and corners.
+/// Generator of rays around a mesh.
 pub struct Aim<'a> {
     mesh: &'a Mesh,
     center: Vec3,
@@ -31,7 +32,7 @@ impl<'a> Aim<'a> {
         self.mesh.corners(random.below(self.mesh.triangles.len()))
     }
 
-    /// A corner, the middle of an edge, a point of an edge or one within.
+    /// A vertex, the midpoint of an edge, a point on an edge, or an inner point of a triangle.
     fn on_a_triangle(&self, random: &mut Random) -> Vec3 {
         let [a, b, c] = self.triangle(random);
         match random.below(4) {
@@ -42,7 +43,8 @@ impl<'a> Aim<'a> {
         }
     }
 
-    /// Each coordinate that of some corner: in planes of boxes, on their edges and corners.
+    /// A point whose coordinates mostly are those of random vertices: in planes, on edges and at
+    /// corners of boxes.
     fn on_planes(&self, random: &mut Random) -> Vec3 {
         Vec3::from(std::array::from_fn(|axis| {
             let corner = self.triangle(random)[random.below(3)];
@@ -50,7 +52,7 @@ impl<'a> Aim<'a> {
         }))
     }
 
-    /// A ray of any kind.
+    /// A ray of one of eight kinds.
     fn ray(&self, random: &mut Random, kind: usize) -> Ray {
         let origin = match kind {
             0 | 1 => self.somewhere(random, 2.0),
@@ -70,25 +72,26 @@ impl<'a> Aim<'a> {
         Ray::new(origin, usable(direction))
     }
 
-    /// Distances stay below 2^100, as far as single rays along the axes see.
+    /// Shortest direction for which distances stay below 2^100, the limit of single rays along the
+    /// axes.
     fn shortest(&self) -> f32 {
         1e-30 * self.radius.max(1.0)
     }
 
-    /// In the plane of a triangle, not always in it.
+    /// A point in the plane of a triangle, inside it or not.
     fn in_a_plane(&self, random: &mut Random) -> Vec3 {
         let [a, b, c] = self.triangle(random);
         let whole = |random: &mut Random| [-1.0, 0.0, 0.5, 1.0, 2.0][random.below(5)];
         a + (b - a) * whole(random) + (c - a) * whole(random)
     }
 
-    /// Along an edge or from a corner to the middle of an edge.
+    /// A direction along an edge, or from a vertex to the midpoint of the opposite edge.
     fn along(&self, random: &mut Random) -> Vec3 {
         let [a, b, c] = self.triangle(random);
         [b - a, a - c, (b - a) * 0.5 + (c - a) * 0.5][random.below(3)]
     }
 
-    /// The rays of one call: of one kind or mixed, from one place or anywhere, 1 to 70.
+    /// Rays of one call, 1 to 70: of one kind or mixed, coherent or incoherent.
     pub fn call(&self, random: &mut Random) -> Vec<Ray> {
         let count = 1 + random.below(MOST);
         let kind = random.below(8);
@@ -100,19 +103,19 @@ impl<'a> Aim<'a> {
                     self.ray(random, kind)
                 })
                 .collect(),
-            2 => self.neighbours(random, kind, count),
+            2 => self.nearly_equal(random, kind, count),
             _ => self.through_an_eye(random, count),
         }
     }
 
-    /// Almost one ray; some of them exactly.
-    fn neighbours(&self, random: &mut Random, kind: usize, count: usize) -> Vec<Ray> {
+    /// Nearly equal rays; with a spread of zero, equal ones.
+    fn nearly_equal(&self, random: &mut Random, kind: usize, count: usize) -> Vec<Ray> {
         let first = self.ray(random, kind);
         let spread = [0.0, 1e-6, 1e-3, 0.1][random.below(4)];
         let size = first.direction.abs();
         (0..count)
             .map(|_| {
-                // Zeros stay zeros, signs stay.
+                // Relative perturbation keeps zeros and signs.
                 let direction = first.direction + random.point() * size * spread;
                 let aside = random.point() * (self.radius * spread * random.below(2) as f32);
                 Ray { origin: first.origin + aside, direction: usable(direction), ..first }
@@ -120,7 +123,7 @@ impl<'a> Aim<'a> {
             .collect()
     }
 
-    /// From an eye to what lies near a point: a camera's tile.
+    /// Rays from a point to the neighborhood of a target, as in a tile of camera rays.
     fn through_an_eye(&self, random: &mut Random, count: usize) -> Vec<Ray> {
         let (eye, target) = (self.somewhere(random, 3.0), self.on_a_triangle(random));
         let spread = self.radius * [1e-3, 0.05, 0.5][random.below(3)];
@@ -128,7 +131,7 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// Zeros of both signs and components that are almost zero; never along no axis.
+/// A direction with zeros of both signs and nearly zero components; never zero in all.
 fn axis_like(random: &mut Random) -> Vec3 {
     let small = |random: &mut Random| [0.0, -0.0, 0.0, -0.0, 1e-40, -1e-42, 1e-30, -1e-30, 0.5][random.below(9)];
     let mut direction = Vec3::from(std::array::from_fn(|_| small(random)));
@@ -136,12 +139,13 @@ fn axis_like(random: &mut Random) -> Vec3 {
     direction
 }
 
-/// Rays must have a direction.
+/// Replaces directions that are too short or not finite.
 fn usable(direction: Vec3) -> Vec3 {
     if direction.is_finite() && direction.abs().max_element() > 1e-37 { direction } else { -Vec3::X }
 }
 
-/// The same rays with other ends, now that it is known what they hit: just there, just before, just behind, empty.
+/// The same ray with another interval around its hit: from, up to or exactly at the hit, one ulp
+/// before or behind, or empty.
 pub fn cut(random: &mut Random, ray: &Ray, t: Option<f32>) -> Ray {
     let Some(t) = t else { return Ray { t_max: f32::NEG_INFINITY, ..*ray } };
     let ends = [

@@ -1,27 +1,28 @@
-//! Even over the pixel: the classic average.
+//! Box filter: uniform over the pixel.
 //!
 //! ```json
 //! {"box": {}}
 //! ```
 
-use super::{Filter, Reconstruction};
+use super::{FilterSampler, ReconstructionFilter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Even over the pixel.
+/// Box filter: uniform over the pixel. No blur beyond the pixel, but more aliasing than wider
+/// filters.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Box {}
 
-impl Reconstruction for Box {
-    fn filter(&self, _samples: u32) -> Filter {
-        Filter::Box
+impl ReconstructionFilter for Box {
+    fn sampler(&self, _samples: u32) -> FilterSampler {
+        FilterSampler::Box
     }
 }
 
 #[cfg(any(test, feature = "testing"))]
 impl Box {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

@@ -1,28 +1,30 @@
-//! The scatter of the Amiga Juggler's Java program: a whole pixel of jitter from the corner of each cell of
-//! the sampling grid, so the picture is filtered over nearly two pixels and moved half a pixel right and
+//! Jitter of the Amiga Juggler's Java program: up to one pixel from the corner of each cell of the
+//! sampling grid. It filters the picture over nearly two pixels and moves it half a pixel right and
 //! down. Only for pictures that must match that program; use it with the `stratified` sampler.
 //!
 //! ```json
 //! {"juggler": {}}
 //! ```
 
-use super::{Filter, Reconstruction};
+use super::{FilterSampler, ReconstructionFilter};
 use juggler_math::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The ancestor's two-pixel jitter.
+/// Two-pixel jitter of the Juggler's Java program, only for pictures that must match that program.
+/// Use it with the `stratified` sampler.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Juggler {}
 
-impl Reconstruction for Juggler {
-    fn filter(&self, samples: u32) -> Filter {
-        Filter::Juggler(samples.isqrt().max(1))
+impl ReconstructionFilter for Juggler {
+    fn sampler(&self, samples: u32) -> FilterSampler {
+        FilterSampler::Juggler(samples.isqrt().max(1))
     }
 }
 
-/// `u` = (cell + jitter) / side becomes cell / side + jitter, measured from the pixel's corner.
+/// Maps `u` = (cell + jitter) / side to cell / side + jitter from the pixel's corner; returns the
+/// offset from the pixel's center.
 pub fn warp(u: Vec2, side: u32) -> Vec2 {
     let scaled = u * side as f32;
     let cell = scaled.floor();
@@ -31,7 +33,7 @@ pub fn warp(u: Vec2, side: u32) -> Vec2 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Juggler {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self {}]
     }

@@ -1,22 +1,23 @@
-//! Mitchell and Netravali's cubic (SIGGRAPH 1988): sharp, with slight negative lobes.
+//! Cubic filter of Mitchell and Netravali (SIGGRAPH 1988): sharp, with small negative lobes.
 //!
 //! ```json
 //! {"mitchell": {"b": 0.333, "c": 0.333}}
 //! ```
 
-use super::{Filter, Reconstruction, Table};
+use super::{FilterSampler, FilterTable, ReconstructionFilter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Sharp, with slight negative lobes.
+/// Cubic filter of Mitchell and Netravali: sharp, with small negative lobes and a radius of 2
+/// pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mitchell {
-    /// Blur; the authors recommend b + 2c = 1.
+    /// Parameter B, 0 to 1: larger values blur more. The authors recommend B + 2C = 1.
     #[schemars(range(min = 0, max = 1))]
     pub b: f32,
-    /// Ringing.
+    /// Parameter C, 0 to 1: larger values are sharper and ring more.
     #[schemars(range(min = 0, max = 1))]
     pub c: f32,
 }
@@ -27,13 +28,13 @@ impl Default for Mitchell {
     }
 }
 
-impl Reconstruction for Mitchell {
-    fn filter(&self, _samples: u32) -> Filter {
-        Filter::Table(Arc::new(Table::new(2.0, |x| value(x, self.b, self.c))))
+impl ReconstructionFilter for Mitchell {
+    fn sampler(&self, _samples: u32) -> FilterSampler {
+        FilterSampler::Table(Arc::new(FilterTable::new(2.0, |x| value(x, self.b, self.c))))
     }
 }
 
-/// The filter along one axis, radius 2 (Mitchell and Netravali 1988, equation 8).
+/// Filter along one axis, radius 2 (Mitchell and Netravali 1988, equation 8).
 pub fn value(x: f32, b: f32, c: f32) -> f32 {
     let x = x.abs();
     let cubic = |a3: f32, a2: f32, a1: f32, a0: f32| ((a3 * x + a2) * x + a1) * x + a0;
@@ -48,7 +49,7 @@ pub fn value(x: f32, b: f32, c: f32) -> f32 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Mitchell {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
     }

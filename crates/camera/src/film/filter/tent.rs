@@ -1,19 +1,19 @@
-//! A tent: falls in a straight line from the centre to the radius.
+//! Tent filter: linear falloff from the center to the radius.
 //!
 //! ```json
 //! {"tent": {"radius": 1}}
 //! ```
 
-use super::{Filter, Reconstruction};
+use super::{FilterSampler, ReconstructionFilter};
 use juggler_math::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Falls in a straight line from the centre to the radius.
+/// Tent filter: linear falloff from the center to the radius.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Tent {
-    /// Radius in pixels.
+    /// Radius in pixels, 0.1 to 16. Larger values blur more.
     #[schemars(range(min = 0.1, max = 16))]
     pub radius: f32,
 }
@@ -24,13 +24,13 @@ impl Default for Tent {
     }
 }
 
-impl Reconstruction for Tent {
-    fn filter(&self, _samples: u32) -> Filter {
-        Filter::Tent(self.radius)
+impl ReconstructionFilter for Tent {
+    fn sampler(&self, _samples: u32) -> FilterSampler {
+        FilterSampler::Tent(self.radius)
     }
 }
 
-/// The unit tent by inverting its distribution along each axis.
+/// Samples the unit tent by inversion of its CDF along each axis.
 pub fn warp(u: Vec2) -> Vec2 {
     let one = |u: f32| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
     Vec2::new(one(u.x), one(u.y))
@@ -38,7 +38,7 @@ pub fn warp(u: Vec2) -> Vec2 {
 
 #[cfg(any(test, feature = "testing"))]
 impl Tent {
-    /// For the contract tests.
+    /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default(), Self { radius: 2.0 }]
     }

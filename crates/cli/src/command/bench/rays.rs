@@ -1,5 +1,4 @@
-//! `juggler bench rays`: how fast rays find their triangles, with nothing around it. For comparing machines, and
-//! versions of Juggler.
+//! `juggler bench rays`: rate of ray casting alone, to compare machines and versions of Juggler.
 
 mod report;
 
@@ -9,21 +8,21 @@ use crate::source;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use juggler::math::Aabb;
-use juggler::scene::import::{self, Fault, ImportError, Limits};
+use juggler::scene::import::{self, ImportError, ImportErrorKind, Limits};
 use juggler_bvh::{Quality, TriangleBvh};
-use juggler_raybench::clock::{Of, Stopwatch};
-use juggler_raybench::kernel::{self, Kernel, Scratch, Test};
+use juggler_raybench::clock::{CpuClock, Stopwatch};
+use juggler_raybench::kernel::{self, Kernel, NamedTest, Scratch};
 use juggler_raybench::measure::{self, Trace, median};
-use juggler_raybench::meshes::{BUILT_IN, Recipe, RecipeError};
+use juggler_raybench::meshes::{BUILT_IN, MeshSpec, MeshSpecError};
 use juggler_raybench::rays::{self, RaySet};
 use juggler_raybench::{Kind, Mesh, View};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use report::{Build, Rate, Report};
 use std::path::Path;
 
-/// What is measured when nobody says otherwise: small meshes of three sorts, done in half a minute anywhere.
+/// Default meshes: three small ones of different character, which take half a minute at most.
 const MESHES: [&str; 3] = ["blob", "classroom", "hall"];
-/// A build that takes no longer is repeated.
+/// Total time in seconds up to which builds are repeated.
 const QUICK_BUILDS: f64 = 0.3;
 
 /// Flags of `juggler bench rays`.
@@ -33,30 +32,30 @@ pub struct Rays {
     /// OBJ, PLY or STL files, or built-in meshes [default: blob, classroom and hall]
     #[arg(value_name = "MESH")]
     meshes: Vec<String>,
-    /// Kinds of rays: from the camera, to the light, short and long ones off what they hit [default: all]
+    /// Kinds of rays, separated by commas [default: all]
     #[arg(long = "kind", value_name = "KIND", value_delimiter = ',', value_parser = one_of(Kind::ALL, Kind::name))]
     kinds: Vec<Kind>,
-    /// Ways to ask: one ray a call, many unrelated rays, eight neighbours together [default: all]
+    /// Kernels: single rays, batches of unrelated rays, packets of eight [default: all]
     #[arg(long = "kernel", value_name = "KERNEL", value_delimiter = ',', value_parser = one_of(Kernel::ALL, Kernel::name))]
     kernels: Vec<Kernel>,
-    /// Which tree is traced; all are built
+    /// Quality of the hierarchy that is traced; all three are built
     #[arg(long, value_name = "QUALITY", default_value = "balanced", value_parser = one_of(Quality::ALL, report::quality))]
     quality: Quality,
-    /// How many rays the camera sends
+    /// Number of camera rays
     #[arg(long, value_name = "N", default_value_t = 50_000, value_parser = clap::value_parser!(u32).range(64..=2_073_600))]
     rays: u32,
-    /// How often each is measured; the median counts
+    /// Number of measurements; the median is reported
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeats: u32,
-    /// Threads to compare with one [default: one for each core]
+    /// Number of threads to compare with one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// As one JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Reads one of a few names.
+/// Parser of the names of an enumeration.
 fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     all: [T; N],
     name: fn(T) -> &'static str,
@@ -66,37 +65,37 @@ fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
 }
 
 fn built_in_meshes() -> String {
-    let line = |kind: &juggler_raybench::meshes::BuiltIn| format!("  {:10} {} [{}]", kind.name, kind.about, kind.size);
+    let line = |kind: &juggler_raybench::meshes::MeshKind| format!("  {:10} {} [{}]", kind.name, kind.about, kind.size);
     let lines: Vec<String> = BUILT_IN.iter().map(line).collect();
-    format!("Built-in meshes, NAME or NAME:SIZE, made by rule and the same everywhere:\n{}", lines.join("\n"))
+    format!("Built-in meshes, NAME or NAME:SIZE, generated, and identical on every machine:\n{}", lines.join("\n"))
 }
 
 impl Rays {
-    /// Measures mesh by mesh and prints.
+    /// Measures and reports mesh by mesh.
     pub fn run(self) -> Result<(), Failure> {
         let names: Vec<&str> = self.meshes.iter().map(String::as_str).collect();
         let names = if names.is_empty() { MESHES.to_vec() } else { names };
-        // Wrong names are found before anything is measured.
-        let subjects: Vec<Subject> = names.into_iter().map(Subject::named).collect::<Result<_, _>>()?;
+        // Resolve all names before the first measurement.
+        let subjects: Vec<MeshSource> = names.into_iter().map(MeshSource::named).collect::<Result<_, _>>()?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.map_or(cores, usize::from);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
         let mut reports = Vec::new();
-        for subject in &subjects {
-            let report = self.measure(subject, &pool)?;
+        for mesh_source in &subjects {
+            let report = self.measure(mesh_source, &pool)?;
             if !self.json {
                 let gap = if reports.is_empty() { "" } else { "\n" };
-                console::print(&format!("{gap}{}", report.to_words()))?;
+                console::print_result(&format!("{gap}{}", report.to_words()))?;
             }
             reports.push(report);
         }
-        if self.json { console::print(&report::to_json(&reports)) } else { Ok(()) }
+        if self.json { console::print_result(&report::to_json(&reports)) } else { Ok(()) }
     }
 
-    fn measure(&self, subject: &Subject, pool: &ThreadPool) -> Result<Report, Failure> {
-        let mesh = subject.mesh()?;
-        let mut report = Report::new(subject.name(), mesh.triangles.len(), pool.current_num_threads());
+    fn measure(&self, mesh_source: &MeshSource, pool: &ThreadPool) -> Result<Report, Failure> {
+        let mesh = mesh_source.mesh()?;
+        let mut report = Report::new(mesh_source.name(), mesh.triangles.len(), pool.current_num_threads());
         let mut traced = None;
         for quality in Quality::ALL {
             let (bvh, build) = pool.install(|| self.build(&mesh, quality))?;
@@ -116,12 +115,12 @@ impl Rays {
         Ok(report)
     }
 
-    /// Builds, more than once when that is quick.
+    /// Builds a hierarchy, and repeats quick builds for a median time.
     fn build(&self, mesh: &Mesh, quality: Quality) -> Result<(TriangleBvh, Build), Failure> {
-        let (all, mut seconds) = (Stopwatch::start(Of::Process), Vec::new());
+        let (all, mut seconds) = (Stopwatch::start(CpuClock::Process), Vec::new());
         loop {
-            let watch = Stopwatch::start(Of::Process);
-            let bvh = kernel::build(mesh, quality).map_err(|error| Failure::Wrong(error.to_string()))?;
+            let watch = Stopwatch::start(CpuClock::Process);
+            let bvh = kernel::build(mesh, quality).map_err(|error| Failure::Invalid(error.to_string()))?;
             seconds.push(watch.elapsed().wall);
             if seconds.len() >= self.repeats as usize || all.elapsed().wall > QUICK_BUILDS {
                 let build =
@@ -131,7 +130,7 @@ impl Rays {
         }
     }
 
-    fn trace(&self, set: &RaySet, bvhs: &[(Test, TriangleBvh)], report: &mut Report) -> Result<(), Failure> {
+    fn trace(&self, set: &RaySet, bvhs: &[(NamedTest, TriangleBvh)], report: &mut Report) -> Result<(), Failure> {
         let query = set.kind.query();
         let kernels = Kernel::ALL.into_iter().filter(|k| self.kernels.is_empty() || self.kernels.contains(k));
         let pairs: Vec<_> =
@@ -144,7 +143,7 @@ impl Rays {
         let mut counts = vec![1, report.threads];
         counts.dedup();
         for threads in counts {
-            let timings = measure::in_turns(&set.rays, &traces, threads, self.repeats as usize);
+            let timings = measure::measure_alternately(&set.rays, &traces, threads, self.repeats as usize);
             for ((test, kernel, _), timing) in pairs.iter().zip(timings) {
                 report.add(Rate { test: test.name, kernel: *kernel, kind: set.kind, threads, timing })?;
             }
@@ -153,21 +152,21 @@ impl Rays {
     }
 }
 
-/// What is traced, before it is loaded or made.
-enum Subject<'n> {
+/// A mesh to measure, before it is loaded or generated.
+enum MeshSource<'n> {
     File(&'n str),
-    BuiltIn(&'n str, Recipe),
+    BuiltIn(&'n str, MeshSpec),
 }
 
-impl<'n> Subject<'n> {
+impl<'n> MeshSource<'n> {
     fn named(name: &'n str) -> Result<Self, Failure> {
         let path = Path::new(name);
-        match Recipe::named(name) {
-            _ if path.is_dir() => Err(Failure::Wrong(format!("`{name}` is a folder, not a mesh file"))),
+        match MeshSpec::parse(name) {
+            _ if path.is_dir() => Err(Failure::Invalid(format!("`{name}` is a folder, not a mesh file"))),
             _ if path.exists() => Ok(Self::File(name)),
-            Ok(recipe) => Ok(Self::BuiltIn(name, recipe)),
-            Err(RecipeError::Unknown) => Err(source::unknown(name, "mesh", BUILT_IN.map(|kind| kind.name))),
-            Err(error) => Err(Failure::Wrong(error.to_string())),
+            Ok(spec) => Ok(Self::BuiltIn(name, spec)),
+            Err(MeshSpecError::Unknown) => Err(source::unknown(name, "mesh", BUILT_IN.map(|kind| kind.name))),
+            Err(error) => Err(Failure::Invalid(error.to_string())),
         }
     }
 
@@ -179,11 +178,11 @@ impl<'n> Subject<'n> {
 
     fn mesh(&self) -> Result<Mesh, Failure> {
         match self {
-            Self::BuiltIn(_, recipe) => Ok(recipe.make()),
+            Self::BuiltIn(_, spec) => Ok(spec.make()),
             Self::File(name) => {
                 let imported = import::load(Path::new(name), &Limits::default()).map_err(|error| refused(&error))?;
                 for warning in imported.warnings {
-                    console::say(&format!("warning: `{name}`: {warning}"));
+                    console::print_message(&format!("warning: `{name}`: {warning}"));
                 }
                 let view = View::around(&Aabb::from_points(imported.mesh.positions.iter().copied()));
                 Ok(Mesh { positions: imported.mesh.positions, triangles: imported.mesh.triangles, view })
@@ -194,8 +193,8 @@ impl<'n> Subject<'n> {
 
 fn refused(error: &ImportError) -> Failure {
     let shown = error.path.display();
-    match &error.fault {
-        Fault::Read(error) => Failure::file("read", shown, error),
-        fault => Failure::Wrong(format!("cannot read `{shown}`: {fault}")),
+    match &error.kind {
+        ImportErrorKind::Read(error) => Failure::file("read", shown, error),
+        fault => Failure::Invalid(format!("cannot read `{shown}`: {fault}")),
     }
 }

@@ -1,5 +1,5 @@
-//! `juggler bench schedulers`: how pixels are handed out to threads, on scenes whose work is spread unevenly over
-//! the picture. All ways give the same picture; the bench checks that too.
+//! `juggler bench schedulers`: compares the schedulers on scenes whose cost is distributed unevenly
+//! over the picture, and checks that all give the same picture.
 
 use crate::console;
 use crate::failure::Failure;
@@ -17,10 +17,10 @@ use juggler::{Error, Picture, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Instant;
 
-/// The ways, with their names in the table.
-const WAYS: [(Scheduler, &str); 3] =
+/// Schedulers and their names in the table.
+const SCHEDULERS: [(Scheduler, &str); 3] =
     [(Scheduler::StaticRows, "row blocks"), (Scheduler::RowQueue, "row queue"), (Scheduler::WorkStealing, "stealing")];
-/// Width of a column of the table.
+/// Width of a column of the table, in characters.
 const COLUMN: usize = 12;
 
 /// Flags of `juggler bench schedulers`.
@@ -34,24 +34,25 @@ pub struct Schedulers {
     /// Samples per pixel
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     samples: u32,
-    /// How often each is measured; the median counts
+    /// Number of measurements; the median is reported
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeats: u32,
-    /// Threads to compare with one [default: one for each core]
+    /// Number of threads to compare with one thread [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
-/// All measurements of one scene on one number of threads.
+/// Measurements of one scene with one number of threads.
 struct Row {
     scene: String,
     threads: usize,
-    /// Seconds, for each of [`WAYS`].
-    seconds: [Vec<f64>; WAYS.len()],
+    /// Times in seconds, for each of [`SCHEDULERS`].
+    seconds: [Vec<f64>; SCHEDULERS.len()],
 }
 
 impl Schedulers {
-    /// Measures in turns, so that what disturbs the machine disturbs all alike, and prints the medians.
+    /// Measures the schedulers in turns, so that disturbances of the machine affect all alike, and
+    /// prints the medians.
     pub fn run(self) -> Result<(), Failure> {
         let settings = Settings { size: Some(self.size), samples: Some(self.samples), ..Settings::default() };
         let pictures = self.scenes()?.into_iter().map(|(name, scene)| Ok((name, Picture::new(&scene, &settings)?)));
@@ -71,7 +72,7 @@ impl Schedulers {
             }
         }
         let table: Vec<String> = rows.iter().map(|(row, ..)| row.to_words()).collect();
-        console::print(&format!("{}\n{}", head(), table.join("\n")))
+        console::print_result(&format!("{}\n{}", head(), table.join("\n")))
     }
 
     fn scenes(&self) -> Result<Vec<(String, Scene)>, Failure> {
@@ -94,9 +95,9 @@ impl Schedulers {
 impl Row {
     fn measure(&mut self, pool: &ThreadPool, picture: &Picture) -> Result<(), Failure> {
         let mut hashes = Vec::new();
-        for ((way, _), seconds) in WAYS.iter().zip(&mut self.seconds) {
+        for ((scheduler, _), seconds) in SCHEDULERS.iter().zip(&mut self.seconds) {
             let start = Instant::now();
-            let film = pool.install(|| picture.render(*way, &Control::default(), |_| Ok::<(), Error>(())))?;
+            let film = pool.install(|| picture.render(*scheduler, &Control::default(), |_| Ok::<(), Error>(())))?;
             seconds.push(start.elapsed().as_secs_f64());
             hashes.push(film.hash);
         }
@@ -123,18 +124,19 @@ impl Row {
 }
 
 fn head() -> String {
-    let ways: String = WAYS.iter().map(|(_, name)| format!("{name:>COLUMN$}{:>8}", "speed")).collect();
-    format!("{:COLUMN$}{:>COLUMN$}{ways}", "scene", "threads")
+    let names: String = SCHEDULERS.iter().map(|(_, name)| format!("{name:>COLUMN$}{:>8}", "speed")).collect();
+    format!("{:COLUMN$}{:>COLUMN$}{names}", "scene", "threads")
 }
 
-/// The middle of the values; 0 when there are none.
+/// Median of the values; 0 if there are none.
 fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
-/// A heap of mirror balls around (x, y) in front of an empty sky: few pixels have nearly all of the work.
+/// A heap of mirror spheres around (x, y) under an empty sky, so that few pixels have nearly all of
+/// the cost.
 fn mirrors(x: f32, y: f32) -> Scene {
     let mirror = Phong { diffuse: Rgb::splat(0.1).into(), reflection: Rgb::splat(0.85).into(), ..Phong::default() };
     let eye = vec3(0.0, 0.0, 20.0);

@@ -1,21 +1,22 @@
-//! What comparing two pictures takes, told from their heads before a pixel is read.
+//! Memory estimate of a comparison, from the headers of the files.
 
-use super::side::is_part;
+use super::side::is_partial_render;
 use crate::failure::Failure;
 use crate::memory;
-use juggler::film::Part;
+use juggler::film::PartialRender;
 use juggler::imaging;
 use std::path::Path;
 
-/// Bytes a pixel of a picture, with what decoders hold beside.
+/// Bytes per pixel of a picture, with the decoder's buffers.
 const PICTURE: u64 = 12 + 24;
-/// Bytes a pixel of what a picture may know of its noise: mean, variance and counts, and the layers that they come from.
+/// Bytes per pixel of a noise estimate: mean, variance and counts, and the layers that they are
+/// read from.
 const ESTIMATE: u64 = 12 + 12 + 8 + 24;
-/// Bytes a pixel of FLIP.
+/// Bytes per pixel of FLIP.
 const FLIP: u64 = 160;
 
-/// Refuses two pictures that need more than `most` bytes, which FLIP is part of if it is `wanted`. Returns whether there is
-/// room for FLIP.
+/// Checks that two pictures fit in `most` bytes, including FLIP if it is `wanted`. Returns whether
+/// FLIP fits.
 pub fn has_room_for_flip(names: [&str; 2], wanted: bool, most: Option<u64>) -> Result<bool, Failure> {
     let Some(most) = most else { return Ok(true) };
     let [one, other] = [pixels(names[0])?, pixels(names[1])?];
@@ -28,8 +29,8 @@ pub fn has_room_for_flip(names: [&str; 2], wanted: bool, most: Option<u64>) -> R
 
 fn pixels(name: &str) -> Result<u64, Failure> {
     let path = Path::new(name);
-    if is_part(path) {
-        return Ok(Part::open(path)?.description().region.area());
+    if is_partial_render(path) {
+        return Ok(PartialRender::open(path)?.description().region.area());
     }
     let facts = imaging::inspect(path)?;
     Ok(u64::from(facts.width) * u64::from(facts.height))

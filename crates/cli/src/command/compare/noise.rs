@@ -1,46 +1,47 @@
-//! Whether noise explains how two pictures differ.
+//! Test whether noise explains the difference between two pictures.
 
-use super::side::Side;
-use juggler::imaging::significance::{Significance, Worst, significance};
+use super::side::ComparedPicture;
+use juggler::imaging::significance::{LargestDifference, Significance, significance};
 use serde_json::{Value, json};
 
-/// What is said of noise.
+/// Result of the noise test.
 #[derive(Debug, PartialEq)]
-pub enum Noise {
-    /// Tested against that level.
+pub enum NoiseTest {
+    /// The test was done.
     Tested {
-        /// What the test says.
+        /// Result of the test.
         found: Significance,
-        /// The chance below which they are different.
+        /// Significance level.
         level: f64,
-        /// What makes it say less than it might.
+        /// Reason why the test may miss differences.
         note: Option<&'static str>,
     },
-    /// They know their variances, but there is no test.
+    /// Both pictures contain variances, but the test does not apply, for this reason.
     Untested(String),
 }
 
-impl Noise {
-    /// Of pictures that both know their variances.
-    pub fn of(a: &Side, b: &Side, level: f64) -> Option<Self> {
+impl NoiseTest {
+    /// Tests two pictures; `None` unless both contain variances.
+    pub fn from_pictures(a: &ComparedPicture, b: &ComparedPicture, level: f64) -> Option<Self> {
         let (one, other) = (a.estimate.as_ref()?, b.estimate.as_ref()?);
         let both = |key: &str| a.text(key).is_some() && a.text(key) == b.text(key);
         if both("Fingerprint") {
             let reason =
-                "both are of the same scene and seed, so that they share samples: render one with another --seed";
+                "both pictures have the same scene and seed, so they share samples: render one with another --seed";
             return Some(Self::Untested(reason.into()));
         }
         if a.is_denoised || b.is_denoised {
-            return Some(Self::Untested("noise was taken out of a picture: its variances are those of before".into()));
+            return Some(Self::Untested("a picture is denoised, but its variances are those before denoising".into()));
         }
-        let note = both("Seed").then_some("both have the same seed: their noise is alike, which may hide differences");
+        let note =
+            both("Seed").then_some("both pictures have the same seed: their correlated noise may hide differences");
         Some(match significance(one, other) {
             Ok(found) => Self::Tested { found, level, note },
             Err(reason) => Self::Untested(reason.to_string()),
         })
     }
 
-    /// Whether noise explains all; nothing where that is not known.
+    /// Whether noise explains the difference; `None` if untested.
     pub fn is_same(&self) -> Option<bool> {
         match self {
             Self::Tested { found, level, .. } => Some(found.p >= *level),
@@ -48,8 +49,8 @@ impl Noise {
         }
     }
 
-    /// `p = 0.43`.
-    pub fn chance(&self) -> Option<String> {
+    /// The p-value, such as `p = 0.430`.
+    pub fn p_value(&self) -> Option<String> {
         let Self::Tested { found: Significance { p, .. }, .. } = self else { return None };
         Some(match p {
             p if *p < 1e-300 => "p < 1e-300".to_owned(),
@@ -58,13 +59,13 @@ impl Noise {
         })
     }
 
-    /// What is to be known beside the verdict, line by line.
+    /// Lines of text beside the verdict.
     pub fn to_words(&self) -> Vec<String> {
         match self {
             Self::Untested(reason) => vec![format!("noise   not tested: {reason}")],
             Self::Tested { found: Significance { blocks, worst, .. }, level, note } => {
-                let mut lines = vec![format!("noise   {blocks} blocks of pixels tested at the level {level}")];
-                if let Some(Worst { area: [x, y, width, height], channel, deviation }) = worst {
+                let mut lines = vec![format!("noise   {blocks} blocks of pixels tested at significance level {level}")];
+                if let Some(LargestDifference { area: [x, y, width, height], channel, deviation }) = worst {
                     let channel = ["red", "green", "blue"].get(*channel).copied().unwrap_or_default();
                     lines.push(format!(
                         "        most at {x},{y} {width}x{height}: {channel} differs by {deviation:.1} standard errors"
@@ -80,7 +81,7 @@ impl Noise {
         match self {
             Self::Untested(reason) => json!({"same": null, "p": null, "untested": reason}),
             Self::Tested { found, level, note } => {
-                let worst = found.worst.map(|Worst { area, channel, deviation }| {
+                let worst = found.worst.map(|LargestDifference { area, channel, deviation }| {
                     json!({"area": area, "channel": channel, "deviation": deviation})
                 });
                 json!({

@@ -1,6 +1,6 @@
-//! What is in a mesh file, what of it was left out or repaired, and how long it took to load.
+//! Contents of a mesh file, repairs and omissions on import, and load times.
 
-use super::{bounds_in_words, corners, row};
+use super::{bounds_text, corners, row};
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::math::Aabb;
@@ -10,7 +10,7 @@ use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 
-/// A mesh file, loaded and made ready for tracing.
+/// A mesh file, loaded and built for tracing.
 pub struct Report<'n> {
     name: &'n str,
     file_bytes: u64,
@@ -21,15 +21,15 @@ pub struct Report<'n> {
     bounds: Aabb,
     geometry_bytes: usize,
     bvh_bytes: usize,
-    /// Seconds of reading the file.
+    /// Time to read the file, in seconds.
     load: f64,
-    /// Seconds of building the hierarchy.
+    /// Time to build the bounding volume hierarchy, in seconds.
     build: f64,
     warnings: Vec<String>,
 }
 
 impl<'n> Report<'n> {
-    /// Of the file of this name.
+    /// Loads the mesh file of this name.
     pub fn of(name: &'n str) -> Result<Self, Failure> {
         let path = Path::new(name);
         let start = Instant::now();
@@ -38,7 +38,7 @@ impl<'n> Report<'n> {
         let (vertices, normals, uvs) = (mesh.positions.len(), !mesh.normals.is_empty(), !mesh.uvs.is_empty());
         let start = Instant::now();
         let mut mesh = Mesh::from(mesh);
-        mesh.prepare().map_err(|invalid| Failure::Wrong(format!("`{name}` holds a mesh that cannot be: {invalid}")))?;
+        mesh.prepare().map_err(|invalid| Failure::Invalid(format!("`{name}` contains an invalid mesh: {invalid}")))?;
         let build = start.elapsed().as_secs_f64();
         warnings.extend(mesh.warnings());
         Ok(Self {
@@ -57,7 +57,7 @@ impl<'n> Report<'n> {
         })
     }
 
-    /// For people, or as one JSON object.
+    /// Report as text or as one JSON object.
     pub fn text(&self, json: bool) -> String {
         if json { self.to_json() } else { self.to_words() }
     }
@@ -72,7 +72,7 @@ impl<'n> Report<'n> {
             row("triangles", &self.triangles.to_string()),
             row("vertices", &self.vertices.to_string()),
             row("with", if carried.is_empty() { "positions only" } else { &carried }),
-            row("bounds", &bounds_in_words(&self.bounds)),
+            row("bounds", &bounds_text(&self.bounds)),
             row(
                 "memory",
                 &format!("{} shapes, {} tree", bytes(self.geometry_bytes as u64), bytes(self.bvh_bytes as u64)),

@@ -1,38 +1,38 @@
-//! What `juggler info` says of a film: how long it is, and what moves in it.
+//! Length of an animation and a list of its moving values, for `juggler info`.
 
 use crate::format::counted;
-use juggler::scene::animate::{Survey, Track};
+use juggler::scene::animate::{FormSummary, Survey};
 use juggler::scene::description::Animation;
 use serde_json::{Value, json};
 
-/// Most value forms that are listed.
+/// Maximum number of listed value forms.
 const MAX_LISTED: usize = 20;
 
-/// What is said in words: a name and a value a line.
+/// Rows of the text output: key and value.
 pub fn rows(animation: &Animation, survey: &Survey) -> Vec<(&'static str, String)> {
     let mut rows = vec![("animation", length(animation))];
-    let Survey { tracks, expressions } = survey;
+    let Survey { forms, expressions } = survey;
     if *expressions > 0 {
         rows.push(("expressions", format!("{expressions} depend on time")));
     }
-    if !tracks.is_empty() {
-        rows.push(("tracks", tracks.len().to_string()));
-        rows.extend(tracks.iter().take(MAX_LISTED).map(|track| ("", format!("{}: {}", track.path, told(track)))));
-        let more = tracks.len().saturating_sub(MAX_LISTED);
+    if !forms.is_empty() {
+        rows.push(("tracks", forms.len().to_string()));
+        rows.extend(forms.iter().take(MAX_LISTED).map(|track| ("", format!("{}: {}", track.path, track_text(track)))));
+        let more = forms.len().saturating_sub(MAX_LISTED);
         rows.extend((more > 0).then(|| ("", format!("... and {more} more"))));
     }
     rows
 }
 
-/// The same as JSON.
+/// JSON output.
 pub fn json(animation: &Animation, survey: &Survey) -> Value {
-    let tracks: Vec<Value> = survey.tracks.iter().take(MAX_LISTED).map(as_json).collect();
+    let tracks: Vec<Value> = survey.forms.iter().take(MAX_LISTED).map(as_json).collect();
     json!({
         "frames": animation.frames,
         "frames_per_second": animation.frames_per_second,
         "seconds": seconds(animation),
         "expressions": survey.expressions,
-        "tracks": survey.tracks.len(),
+        "tracks": survey.forms.len(),
         "listed": tracks,
     })
 }
@@ -51,23 +51,23 @@ fn length(animation: &Animation) -> String {
 }
 
 /// `animate, 4 keys, 0 to 2.5 s, smooth, loop`.
-fn told(track: &Track) -> String {
-    let mut told = vec![track.kind.clone()];
-    told.extend(track.along.clone());
-    told.extend(track.keys.map(|keys| counted(keys as u128, "key")));
-    told.extend(track.span.map(|[first, last]| format!("{} to {} s", rounded(first), rounded(last))));
-    told.extend(track.interpolation.map(|interpolation| word(&interpolation)));
-    told.extend(track.repeat.map(|repeat| word(&repeat)));
-    told.join(", ")
+fn track_text(track: &FormSummary) -> String {
+    let mut parts = vec![track.kind.clone()];
+    parts.extend(track.along.clone());
+    parts.extend(track.keys.map(|keys| counted(keys as u128, "key")));
+    parts.extend(track.time_range.map(|[first, last]| format!("{} to {} s", rounded(first), rounded(last))));
+    parts.extend(track.interpolation.map(|interpolation| word(&interpolation)));
+    parts.extend(track.repeat.map(|repeat| word(&repeat)));
+    parts.join(", ")
 }
 
-fn as_json(track: &Track) -> Value {
+fn as_json(track: &FormSummary) -> Value {
     let mut json = json!({
         "path": track.path.to_string(),
         "kind": track.kind,
         "along": track.along,
         "keys": track.keys,
-        "span": track.span,
+        "span": track.time_range,
         "interpolation": track.interpolation,
         "repeat": track.repeat,
     });
@@ -77,7 +77,7 @@ fn as_json(track: &Track) -> Value {
     json
 }
 
-/// A choice as the scene file writes it.
+/// Name of a variant as in the scene file.
 fn word(choice: &impl serde::Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
 }

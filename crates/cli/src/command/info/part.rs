@@ -1,32 +1,32 @@
-//! `juggler info part.jfilm`: what a part of a picture holds. Every byte of it is checked on the way.
+//! `juggler info part.jfilm`: contents of a partial render, after a check of all its bytes.
 
 use super::row;
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::camera::film::Rect;
-use juggler::film::{Description, Part, Share, Stop};
+use juggler::film::{PartialRender, RenderDescription, ShardDescription, Stop};
 use serde_json::json;
 use std::path::Path;
 
-/// As many samples as a pixel can have: as good as no limit.
+/// Maximum number of samples per pixel, so in effect no limit.
 const MOST_SAMPLES: u32 = 1 << 24;
 
-/// What the tiles of a part hold.
+/// Summary of the tiles of a part.
 struct Contents {
-    /// Tiles with samples.
+    /// Number of tiles with samples.
     tiles: usize,
-    /// Samples per pixel, of the tile that has fewest and of the one that has most.
+    /// Minimum and maximum number of samples per pixel over the tiles.
     samples: [u32; 2],
 }
 
-/// Words, or one JSON object.
+/// Report as text or as one JSON object.
 pub fn text(path: &Path, json: bool) -> Result<String, Failure> {
-    let part = Part::open(path)?;
+    let part = PartialRender::open(path)?;
     let contents = contents(&part)?;
     Ok(if json { to_json(&part, &contents) } else { to_words(&part, &contents) })
 }
 
-fn contents(part: &Part) -> Result<Contents, Failure> {
+fn contents(part: &PartialRender) -> Result<Contents, Failure> {
     let mut reader = part.reader()?;
     let mut samples = [u32::MAX, 0];
     for number in part.tiles() {
@@ -37,18 +37,18 @@ fn contents(part: &Part) -> Result<Contents, Failure> {
     Ok(Contents { tiles: part.tiles().len(), samples: [samples[0].min(samples[1]), samples[1]] })
 }
 
-fn to_words(part: &Part, contents: &Contents) -> String {
-    let Description { size: [width, height], region, samples, stop, share, .. } = part.description();
+fn to_words(part: &PartialRender, contents: &Contents) -> String {
+    let RenderDescription { size: [width, height], region, samples, stop, shard, .. } = part.description();
     let [fewest, most] = contents.samples;
-    let of = part.description().layout().tiles();
+    let of = part.description().tiling().tile_count();
     let mut lines = vec![part.path().display().to_string()];
     let mut say = |key: &str, value: String| lines.push(row(key, &value));
     let finished = if part.description().finished { "finished" } else { "not finished" };
-    say("part", format!("{}, {finished}", share_in_words(share, *samples)));
-    say("picture", format!("{width}x{height}{}, {}", crop_in_words(region, *width, *height), goal(*stop, *samples)));
+    say("part", format!("{}, {finished}", describe_shard(shard, *samples)));
+    say("picture", format!("{width}x{height}{}, {}", crop_text(region, *width, *height), goal(*stop, *samples)));
     say("scene", format!("{}, frame {}", part.description().scene, part.description().frame));
     say("tiles", format!("{} of {of}", contents.tiles));
-    say("samples", if fewest == most { most.to_string() } else { format!("{fewest} to {most} a pixel") });
+    say("samples", if fewest == most { most.to_string() } else { format!("{fewest} to {most} per pixel") });
     say("file", bytes(part.bytes()));
     say("command", part.description().command.clone());
     for (key, text) in &part.description().metadata {
@@ -60,9 +60,9 @@ fn to_words(part: &Part, contents: &Contents) -> String {
     lines.join("\n")
 }
 
-/// `shard 3 of 40`, and what was cut when it was not everything.
-fn share_in_words(share: &Share, all: u32) -> String {
-    let Share { index, count, samples, crop } = share;
+/// `shard 3/40` or `whole`, and the crop and sample range if there are any.
+fn describe_shard(shard: &ShardDescription, all: u32) -> String {
+    let ShardDescription { index, count, samples, crop } = shard;
     let mut text = if *count > 1 { format!("shard {index}/{count}") } else { "whole".to_owned() };
     if *samples != (0..all) {
         text += &format!(" of samples {}..{}", samples.start, samples.end);
@@ -73,7 +73,7 @@ fn share_in_words(share: &Share, all: u32) -> String {
     text
 }
 
-fn crop_in_words(region: &Rect, width: u32, height: u32) -> String {
+fn crop_text(region: &Rect, width: u32, height: u32) -> String {
     let Rect { x, y, width: w, height: h } = *region;
     if *region == (Rect { x: 0, y: 0, width, height }) { String::new() } else { format!(", its crop {x},{y},{w},{h}") }
 }
@@ -87,7 +87,7 @@ fn goal(stop: Stop, samples: u32) -> String {
     }
 }
 
-fn to_json(part: &Part, contents: &Contents) -> String {
+fn to_json(part: &PartialRender, contents: &Contents) -> String {
     json!({
         "version": 1,
         "file": part.path().display().to_string(),

@@ -1,15 +1,15 @@
-//! Fireflies, in words.
+//! Text report of fireflies.
 
 use super::words::{number, percent, vector};
 use crate::format::counted;
 use juggler::probe::{Fireflies, Firefly};
 
-/// Kinds of paths that are told one by one.
+/// Maximum number of kinds of paths listed.
 const MOST_KINDS: usize = 8;
 
-/// All of it.
+/// Renders the whole report.
 pub fn to_words(found: &Fireflies) -> String {
-    let Fireflies { size: [width, height], integrator, samples, count, excess, sure, .. } = found;
+    let Fireflies { size: [width, height], integrator, samples, count, excess, certain, .. } = found;
     let samples = counted((*samples).into(), "sample");
     let pixels = counted(*count as u128, "pixel");
     let stand = if *count == 1 { "stands" } else { "stand" };
@@ -17,14 +17,16 @@ pub fn to_words(found: &Fireflies) -> String {
         format!("{width}x{height}, {integrator}, {samples}"),
         format!("{pixels} {stand} out by chance, with {} of the light", percent(*excess)),
     ];
-    match sure {
+    match certain {
         Some(0) => {}
-        Some(sure) => {
-            let bright = if *sure == 1 { "1 other is" } else { &format!("{sure} others are") };
-            lines.push(format!("{bright} bright by what they show: their samples agree"));
+        Some(certain) => {
+            let bright = if *certain == 1 { "1 other is" } else { &format!("{certain} others are") };
+            lines.push(format!("{bright} bright because of the scene: their samples agree"));
         }
         None => {
-            lines.push("of fewer than 32 samples a pixel it is not known which are bright by what they show".into());
+            lines.push(
+                "fewer than 32 samples per pixel do not tell fireflies from small bright details of the scene".into(),
+            );
         }
     }
     if let Some(clamped) = found.clamped {
@@ -32,10 +34,7 @@ pub fn to_words(found: &Fireflies) -> String {
     }
     if !found.pixels.is_empty() {
         lines.push(String::new());
-        lines.push(format!(
-            "{:>11}  {:>9} {:>9} {:>9}  {}",
-            "pixel", "luminance", "around it", "one sample", "its path"
-        ));
+        lines.push(format!("{:>11}  {:>9} {:>9} {:>9}  {}", "pixel", "luminance", "neighbors", "one sample", "path"));
         lines.extend(found.pixels.iter().map(row));
     }
     if !found.kinds.is_empty() {
@@ -44,13 +43,13 @@ pub fn to_words(found: &Fireflies) -> String {
     lines.join("\n")
 }
 
-/// Which kinds of paths do it.
+/// Lists the kinds of paths that cause fireflies.
 fn kinds(found: &Fireflies) -> Vec<String> {
     let (first, others) = found.kinds.split_at(found.kinds.len().min(MOST_KINDS));
-    let looked_into = counted(found.looked_into as u128, "pixel");
+    let probed = counted(found.probed as u128, "pixel");
     let mut lines = vec![
         String::new(),
-        format!("by kinds of paths ({looked_into} looked into)"),
+        format!("by kind of path ({probed} probed)"),
         format!("{:>8} {:>8}  of the light that stands out", "pixels", "share"),
     ];
     lines.extend(first.iter().map(|kind| kind_row(kind.pixels, kind.share, &kind.path)));
@@ -60,8 +59,8 @@ fn kinds(found: &Fireflies) -> Vec<String> {
         lines.push(kind_row(others.iter().map(|kind| kind.pixels).sum(), share, &name));
     }
     let told: f64 = found.kinds.iter().map(|kind| kind.share).sum();
-    if found.looked_into < found.count {
-        lines.push(kind_row(found.count - found.looked_into, 1.0 - told, "not looked into"));
+    if found.probed < found.count {
+        lines.push(kind_row(found.count - found.probed, 1.0 - told, "not probed"));
     }
     lines
 }

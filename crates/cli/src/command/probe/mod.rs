@@ -1,4 +1,4 @@
-//! `juggler probe`: why a pixel is as it is, and which pixels are fireflies.
+//! `juggler probe`: explains a pixel, or finds fireflies.
 
 mod fireflies;
 mod words;
@@ -7,7 +7,7 @@ use crate::args::ViewArgs;
 use crate::console;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{beyond_the_end, effect};
+use crate::plan::{effect, end_warning};
 use crate::source;
 use crate::value;
 use clap::Args;
@@ -18,47 +18,49 @@ use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Shown after the help.
+/// Text after the help.
 pub const EXAMPLES: &str = "\
 Examples:
   juggler probe scene.json 320,180                  the pixel in column 320, row 180, as `juggler render` makes it
   juggler probe scene.json 320,180 --samples 1024 --branches 10 --tree-depth 8
-  juggler probe scene.json --fireflies 20           which pixels stand out by chance, and by which paths
-  juggler probe scene.json 320,180 --stats -        all of it as JSON
+  juggler probe scene.json --fireflies 20           the 20 brightest fireflies and their paths
+  juggler probe scene.json 320,180 --stats -        the report as JSON
 
 Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed.";
 
 /// Flags of `juggler probe`.
 #[derive(Debug, Args)]
 pub struct Probe {
-    /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
+    /// Scene file, built-in scene (see `juggler scenes`), or `-` for standard input
     scene: String,
 
-    /// The pixel: X from the left, Y from the top, both from 0 on
+    /// Pixel: column and row, from 0 at the top left
     #[arg(value_name = "X,Y", value_parser = value::pixel, required_unless_present = "fireflies", conflicts_with = "fireflies")]
     pixel: Option<[u32; 2]>,
 
-    /// Render the picture in memory and tell the N pixels that stand out most from what is around them by chance [default: 10]
+    /// Render the picture and report the N worst fireflies [default: 10]
+    ///
+    /// Fireflies are pixels that stand out from their neighborhood by chance.
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "10", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     fireflies: Option<u32>,
 
-    /// Samples that are told one by one, the brightest first
+    /// Number of samples to list, the brightest first
     #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=10_000))]
     brightest: u32,
 
-    /// Places in a row that the tree of paths tells apart
+    /// Depth of the tree of paths, in vertices
     #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=64))]
     tree_depth: u32,
 
-    /// Branches of each place in the tree of paths; smaller ones are summed
+    /// Branches per vertex in the tree of paths; smaller ones are summed
     #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=10_000))]
     branches: u32,
 
-    /// Write the numbers as JSON; `-` is standard output
+    /// Write the results as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     stats: Option<String>,
 
-    /// Threads that render for --fireflies [default: one for each core]
+    /// Number of rendering threads for --fireflies [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -67,16 +69,16 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Traces the pixel, or the picture, and tells.
+    /// Probes the pixel, or finds the fireflies of the picture, and prints the report.
     pub fn run(self) -> Result<(), Failure> {
         let scene = source::load(&self.scene, None)?;
         let frame = self.view.frame(scene.description.animation.frames_per_second);
-        let beyond = self.view.frame.and_then(|frame| beyond_the_end(frame, scene.description.animation.frames));
-        beyond.iter().for_each(|warning| console::say(warning));
+        let beyond = self.view.frame.and_then(|frame| end_warning(frame, scene.description.animation.frames));
+        beyond.iter().for_each(|warning| console::print_message(warning));
         let scene = if frame == 0.0 { scene } else { scene.at_frame(frame)? };
         let settings: Settings = self.view.settings();
         effect::check_scene(&settings, &scene)?;
-        // How long the shutter is open may be wished for, and decides what moves.
+        // Apply the shutter first, since it decides what moves.
         let scene = settings.apply(&scene)?;
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build();
         let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
@@ -84,7 +86,7 @@ impl Probe {
             let picture = Picture::new(&scene, &settings)?;
             let warnings = &picture.compiled().warnings;
             if !warnings.list().is_empty() {
-                console::say(&warnings.render(console::color()));
+                console::print_message(&warnings.render(console::color()));
             }
             let prober = Prober::new(&scene, picture);
             match (self.pixel, self.fireflies) {
@@ -106,7 +108,7 @@ impl Probe {
         self.tell(&fireflies, || fireflies::to_words(&fireflies))
     }
 
-    /// In JSON, and in words where standard output is free.
+    /// Writes JSON, and prints text unless JSON goes to standard output.
     fn tell(&self, told: &impl Serialize, words: impl FnOnce() -> String) -> Result<(), Failure> {
         if let Some(file) = &self.stats {
             output::write_text(file, &to_json(&self.scene, told))?;
@@ -114,11 +116,11 @@ impl Probe {
         if self.stats.as_deref() == Some(STANDARD_OUTPUT) {
             return Ok(());
         }
-        console::print(&words())
+        console::print_result(&words())
     }
 }
 
-/// Numbers that JSON cannot hold become null.
+/// Results as JSON; numbers that JSON cannot represent are null.
 fn to_json(scene: &str, told: &impl Serialize) -> String {
     let mut object = json!({"version": 1, "scene": scene});
     if let (Some(object), Ok(Value::Object(more))) = (object.as_object_mut(), serde_json::to_value(told)) {

@@ -1,12 +1,12 @@
-//! What is known of a pixel, in words.
+//! Text report of a pixel.
 
 use crate::format::counted;
-use juggler::probe::{Branch, Light, Others, Place, Probe, SampleProbe, Share, Sight, Step};
+use juggler::probe::{Branch, FirstHit, LightOrigins, Others, PathEvent, Probe, ProbeVertex, SampleProbe, Share};
 
-/// Where the columns of the tree begin.
+/// Column at which the numbers of the tree start.
 const COLUMN: usize = 60;
 
-/// All of it.
+/// Renders the whole report.
 pub fn to_words(probe: &Probe) -> String {
     let Probe { pixel: [x, y], size: [width, height], integrator, samples, not_finite, .. } = probe;
     let samples = counted((*samples).into(), "sample");
@@ -17,12 +17,12 @@ pub fn to_words(probe: &Probe) -> String {
         lines.push(row("not finite", &format!("{lost}, counted as black")));
     }
     if probe.clamped != 0.0 {
-        lines.push(row("clamped", &format!("{} taken off", number(probe.clamped))));
+        lines.push(row("clamped", &format!("{} removed", number(probe.clamped))));
     }
-    lines.extend(seen(probe.seen.as_ref()));
+    lines.extend(first_hit(probe.first_hit.as_ref()));
     match &probe.light {
         Some(light) => lines.extend(of_light(light)),
-        None => lines.push(format!("the integrator `{integrator}` follows no paths of light")),
+        None => lines.push(format!("the integrator `{integrator}` traces no paths to lights")),
     }
     lines.join("\n")
 }
@@ -39,25 +39,25 @@ fn mean(probe: &Probe) -> String {
     }
 }
 
-fn seen(sight: Option<&Sight>) -> Vec<String> {
-    let Some(sight) = sight else { return vec![row("sees", "background")] };
-    let Sight { object, part, shape, instance, material, point, normal, distance, uv } = sight;
+fn first_hit(hit: Option<&FirstHit>) -> Vec<String> {
+    let Some(hit) = hit else { return vec![row("first hit", "background")] };
+    let FirstHit { object, part, shape, instance, material, point, normal, distance, uv } = hit;
     let part = part.as_ref().map(|part| format!(", {part}")).unwrap_or_default();
     let shape = shape.as_ref().map(|shape| format!(", {shape}")).unwrap_or_default();
     vec![
-        row("sees", &format!("{object}{part}{shape}, instance {instance}, material {material}")),
+        row("first hit", &format!("{object}{part}{shape}, instance {instance}, material {material}")),
         row("", &format!("at {}, {} away", vector(*point), number(f64::from(*distance)))),
         row("", &format!("normal {}, uv {}", vector(*normal), uv.map(|value| number(f64::from(value))).join(" "))),
     ]
 }
 
-fn of_light(light: &Light) -> Vec<String> {
-    let mut lines = vec![row("light", &shares(&light.shares.ways))];
+fn of_light(light: &LightOrigins) -> Vec<String> {
+    let mut lines = vec![row("light", &shares(&light.shares.kinds))];
     lines.push(row("lights", &shares(&light.shares.lights)));
     if light.shares.groups.len() > 1 {
         lines.push(row("groups", &shares(&light.shares.groups)));
     }
-    lines.push(row("stretches", &shares(&light.shares.stretches)));
+    lines.push(row("segments", &shares(&light.shares.segments)));
     lines.push(String::new());
     lines.push(format!("{:COLUMN$} {:>8} {:>8}", "paths", "samples", "light"));
     branch(&light.paths, 0, &mut lines);
@@ -77,8 +77,8 @@ fn shares(shares: &[Share]) -> String {
 
 fn branch(branch: &Branch, depth: usize, lines: &mut Vec<String>) {
     if depth > 0 {
-        let name = match (&branch.step, &branch.light_from) {
-            (Some(Step { object, event, .. }), _) => format!("{object} {event}"),
+        let name = match (&branch.scattering, &branch.light_from) {
+            (Some(PathEvent { object, event, .. }), _) => format!("{object} {event}"),
             (None, Some(light)) => format!("> {light}"),
             (None, None) => String::new(),
         };
@@ -102,35 +102,35 @@ fn line(name: &str, depth: usize, samples: Option<u32>, share: f64) -> String {
 }
 
 fn of_sample(sample: &SampleProbe) -> Vec<String> {
-    let SampleProbe { sample: number, radiance, share, clamped, path, places, .. } = sample;
+    let SampleProbe { sample: number, radiance, share, clamped, path, vertices, .. } = sample;
     let share = share.map(|share| format!(", {} of the light", percent(share))).unwrap_or_default();
     let clamped =
         if *clamped > 0.0 { format!(", {} clamped", self::number(f64::from(*clamped))) } else { String::new() };
     let mut lines = vec![format!("  sample {number}: {}{share}{clamped}: {path}", vector(*radiance))];
-    lines.extend(places.iter().enumerate().map(|(number, place)| of_place(number + 1, place)));
+    lines.extend(vertices.iter().enumerate().map(|(number, vertex)| vertex_line(number + 1, vertex)));
     lines
 }
 
-fn of_place(number: usize, place: &Place) -> String {
-    let what = match &place.step {
-        Some(Step { object, material, event }) => format!("{object} ({material}) {event}"),
-        None => "leaves the world".to_owned(),
+fn vertex_line(number: usize, vertex: &ProbeVertex) -> String {
+    let what = match &vertex.scattering {
+        Some(PathEvent { object, material, event }) => format!("{object} ({material}) {event}"),
+        None => "leaves the scene".to_owned(),
     };
-    let at = place.point.map(|point| format!(" at {}", vector(point))).unwrap_or_default();
-    let lights: Vec<String> = place
+    let at = vertex.point.map(|point| format!(" at {}", vector(point))).unwrap_or_default();
+    let lights: Vec<String> = vertex
         .lights
         .iter()
-        .map(|light| format!("; {} {}: {}", light.how, light.light, vector(light.radiance)))
+        .map(|light| format!("; {} ({}): {}", light.light, light.how, vector(light.radiance)))
         .collect();
-    format!("    {number:>2} {what}{at}, throughput {}{}", vector(place.throughput), lights.concat())
+    format!("    {number:>2} {what}{at}, throughput {}{}", vector(vertex.throughput), lights.concat())
 }
 
-/// Numbers with spaces between.
+/// Numbers separated by spaces.
 pub fn vector(values: [f32; 3]) -> String {
     values.map(|value| number(f64::from(value))).join(" ")
 }
 
-/// With four digits that count: `0.1235`, `12.35`, `1.235e-5`.
+/// A number with four significant digits: `0.1235`, `12.35`, `1.235e-5`.
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !value.is_finite() {

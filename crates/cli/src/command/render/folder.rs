@@ -1,7 +1,7 @@
-//! The folder in which the frames of a movie wait until it is complete, and the lock by which
-//! processes that make the same movie know of each other.
+//! Folder for the frames of a movie until it is complete, with a lock against concurrent processes
+//! that make the same movie.
 
-use super::film::forget;
+use super::film_render::forget;
 use crate::failure::Failure;
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write};
@@ -9,43 +9,47 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The file in a folder of frames by which processes know of each other.
+/// Lock file in a folder of frames.
 const LOCK: &str = ".lock";
-/// How long to wait for it.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Timeout of the lock.
+const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// How a process uses a folder of frames.
+/// Purpose for which a process uses a folder of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
-    /// It puts frames there, as others may.
+pub enum Access {
+    /// Renders frames, beside other processes.
     Shared,
-    /// It makes the movie and clears the frames away.
-    Alone,
+    /// Encodes the movie and removes the frames.
+    Exclusive,
 }
 
-/// A folder of frames. The system lets go of the lock when the process ends, however it ends.
-pub struct Folder {
+/// A locked folder of frames. The operating system releases the lock when the process ends.
+pub struct FrameFolder {
     path: String,
     _lock: Option<File>,
 }
 
-impl Folder {
-    /// Makes it where there is none. Another process that makes the same movie may be about to
-    /// clear it away: then it is made anew.
-    pub fn open(path: &str, purpose: Use) -> Result<Self, Failure> {
-        let patient_until = Instant::now() + PATIENCE;
+impl FrameFolder {
+    /// Creates the folder if necessary and locks it. If another process is about to remove it, it
+    /// is created again.
+    ///
+    /// # Errors
+    ///
+    /// Fails if another process holds the lock until the timeout.
+    pub fn open(path: &str, access: Access) -> Result<Self, Failure> {
+        let deadline = Instant::now() + LOCK_TIMEOUT;
         loop {
-            match Self::locked(path, purpose)? {
+            match Self::locked(path, access)? {
                 Some(folder) => return Ok(folder),
-                None if Instant::now() < patient_until => thread::sleep(PATIENCE / 40),
-                None => return Err(others(path)),
+                None if Instant::now() < deadline => thread::sleep(LOCK_TIMEOUT / 40),
+                None => return Err(locked_error(path)),
             }
         }
     }
 
-    /// The same at once; `None` where the folder is being cleared away or another process has the
-    /// lock.
-    fn locked(path: &str, purpose: Use) -> Result<Option<Self>, Failure> {
+    /// Tries once to lock the folder; `None` if another process holds the lock or has just removed
+    /// the folder.
+    fn locked(path: &str, access: Access) -> Result<Option<Self>, Failure> {
         match fs::create_dir(path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => {
                 return Err(Failure::file("create", path, &error));
@@ -58,24 +62,25 @@ impl Folder {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(Failure::file("write", &name, &error)),
         };
-        let locked = if purpose == Use::Shared { file.try_lock_shared() } else { file.try_lock() };
+        let locked = if access == Access::Shared { file.try_lock_shared() } else { file.try_lock() };
         match locked {
             Err(TryLockError::WouldBlock) => Ok(None),
-            // Some network disks know no locks; frames appear whole or not at all in any case.
+            // Continue without a lock where the file system supports none: frames are written
+            // atomically.
             Err(TryLockError::Error(_)) => Ok(Some(Self { path: path.into(), _lock: None })),
-            // A lock that was cleared away while this process waited for it keeps nobody out.
+            // The lock file was removed while this process waited for it.
             Ok(()) if !is_same(&file, Path::new(&name)) => Ok(None),
             Ok(()) => {
-                // Who has it is told to people only: it does not matter if that cannot be written.
-                let who = if purpose == Use::Alone { format!("{}\n", std::process::id()) } else { String::new() };
+                // Store the process number for error messages; ignore write errors.
+                let who = if access == Access::Exclusive { format!("{}\n", std::process::id()) } else { String::new() };
                 let _ = file.set_len(0).and_then(|()| file.write_all(who.as_bytes()));
                 Ok(Some(Self { path: path.into(), _lock: Some(file) }))
             }
         }
     }
 
-    /// Clears away what processes that were killed left of these frames, and the folder unless
-    /// somebody keeps something else in it.
+    /// Removes these frames, the files that killed processes left, and the folder if it is empty
+    /// then.
     pub fn clear(self, frames: &[PathBuf]) -> Result<(), Failure> {
         for frame in frames {
             fs::remove_file(frame).map_err(|error| Failure::file("remove", frame.display(), &error))?;
@@ -93,16 +98,16 @@ impl Folder {
     }
 }
 
-/// Who else is at work in a folder.
-fn others(path: &str) -> Failure {
+/// Error that names the process which holds the lock.
+fn locked_error(path: &str) -> Failure {
     let number = fs::read_to_string(format!("{path}/{LOCK}")).unwrap_or_default();
     let number = number.trim().parse::<u32>().map(|number| format!(" (process {number})")).unwrap_or_default();
     Failure::System(format!(
-        "other processes are at work in `{path}`{number}: the same command can make the movie when they are done"
+        "other processes are writing to `{path}`{number}: run the same command again when they are done"
     ))
 }
 
-/// Whether the file of that name is this one.
+/// Whether `path` is the open file `file`.
 #[cfg(unix)]
 fn is_same(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -110,7 +115,7 @@ fn is_same(file: &File, path: &Path) -> bool {
     here.is_ok_and(|here| there.is_ok_and(|there| (here.dev(), here.ino()) == (there.dev(), there.ino())))
 }
 
-/// An open file cannot be removed there.
+/// Other systems do not allow the removal of an open file.
 #[cfg(not(unix))]
 fn is_same(_file: &File, _path: &Path) -> bool {
     true
@@ -124,13 +129,13 @@ mod tests {
     fn a_folder_that_is_cleared_away_is_made_anew_by_who_waits_for_it() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("film.gif.frames").to_string_lossy().into_owned();
-        let first = Folder::open(&path, Use::Alone).unwrap();
+        let first = FrameFolder::open(&path, Access::Exclusive).unwrap();
         let second = thread::spawn({
             let path = path.clone();
-            move || Folder::open(&path, Use::Alone)
+            move || FrameFolder::open(&path, Access::Exclusive)
         });
-        // The second waits for the lock by then, or comes afterwards: both end well.
-        thread::sleep(PATIENCE / 10);
+        // Both orders must work: the second thread waits for the lock, or starts after the removal.
+        thread::sleep(LOCK_TIMEOUT / 10);
         first.clear(&[]).unwrap();
         let second = second.join().unwrap().unwrap();
         assert!(Path::new(&path).join(LOCK).exists());
@@ -142,9 +147,9 @@ mod tests {
     fn who_is_at_work_is_told() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("film.gif.frames").to_string_lossy().into_owned();
-        let _first = Folder::open(&path, Use::Alone).unwrap();
-        let message = format!("{:?}", Folder::open(&path, Use::Alone).map(drop).unwrap_err());
+        let _first = FrameFolder::open(&path, Access::Exclusive).unwrap();
+        let message = format!("{:?}", FrameFolder::open(&path, Access::Exclusive).map(drop).unwrap_err());
         let who = format!("(process {})", std::process::id());
-        assert!(message.contains("at work in") && message.contains(&who), "{message}");
+        assert!(message.contains("writing to") && message.contains(&who), "{message}");
     }
 }

@@ -1,22 +1,22 @@
-//! The families of kinds, and how a kind is added to each.
+//! Families of kinds, and the files and lines that add a kind to each.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A kind that is a copy of another under other names.
+/// A new kind, copied from an existing one under other names.
 pub struct Addition {
     pub family: &'static str,
-    /// Folder of the family, from the root of the source.
+    /// Folder of the family, relative to the root of the source.
     pub folder: &'static str,
-    /// The file that is copied, and the copy; `None` for a source of its own, [`TRI`].
+    /// File to copy, and name of the copy; `None` takes the source [`TRI`].
     pub files: (Option<&'static str>, &'static str),
-    /// Words that are replaced in the copy.
+    /// Words to replace in the copy.
     pub words: &'static [(&'static str, &'static str)],
-    /// File of the line that declares the module, and the line.
+    /// Line that declares the module, with its file.
     module: (&'static str, &'static str),
-    /// File of the line that lists the kind, and the line.
+    /// Line that lists the kind, with its file.
     entry: (&'static str, &'static str),
-    /// JSON of the old kind and of the new one in [`SCENE`].
+    /// JSON of the old and of the new kind in [`SCENE`].
     pub in_json: Option<(&'static str, &'static str)>,
 }
 
@@ -25,7 +25,7 @@ impl Addition {
         Path::new(self.folder).join(self.files.1)
     }
 
-    /// Lines that existing files get, with the files.
+    /// Lines to add to existing files, with the files.
     pub fn pages(&self) -> Vec<(PathBuf, String)> {
         [self.module, self.entry].map(|(file, line)| (Path::new(self.folder).join(file), line.to_owned())).to_vec()
     }
@@ -41,7 +41,7 @@ impl Addition {
     }
 }
 
-/// Replaces a word where it is no part of a longer one.
+/// Replaces a word where it is not part of a longer one.
 fn replace_word(text: &str, before: &str, after: &str) -> String {
     let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     let mut parts = text.split(before);
@@ -156,7 +156,7 @@ pub const FAMILIES: &[Addition] = &[
     },
 ];
 
-/// A scene of one kind of each family.
+/// A scene with one kind of each family.
 pub const SCENE: &str = r#"{
     "version": 1,
     "render": {"size": [64, 48], "samples": 4, "integrator": INTEGRATOR, "sampler": "independent", "filter": "mitchell"},
@@ -171,12 +171,12 @@ pub const SCENE: &str = r#"{
     ]
 }"#;
 
-/// A mesh format of nine numbers a triangle.
+/// A mesh format with nine numbers per triangle.
 const TRI: &str = r#"//! Triangles as text: nine numbers each.
 
-use super::estimate::{Counts, Survey};
+use super::estimate::{Counts, FileSampler};
 use super::format::MeshFormat;
-use super::{Fault, Imported, Limits};
+use super::{ImportErrorKind, Imported, Limits};
 use juggler_math::Vec3;
 use juggler_shape::MeshData;
 use std::io;
@@ -197,7 +197,7 @@ impl MeshFormat for Tri {
         false
     }
 
-    fn read(&self, bytes: &[u8], _limits: &Limits, _piece: usize) -> Result<Imported, Fault> {
+    fn read(&self, bytes: &[u8], _limits: &Limits, _piece: usize) -> Result<Imported, ImportErrorKind> {
         let words = String::from_utf8_lossy(bytes);
         let numbers: Vec<f32> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let mut mesh = MeshData::default();
@@ -209,7 +209,7 @@ impl MeshFormat for Tri {
         Ok(Imported { mesh, warnings: Vec::new() })
     }
 
-    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
+    fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
         Ok(Counts::of_facets(file.size / 18))
     }
 }

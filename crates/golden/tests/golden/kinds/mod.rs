@@ -1,5 +1,5 @@
-//! A new kind of any family is one file and two lines: kinds are added to a copy of the source,
-//! which must compile, and render as the kinds that they are copies of.
+//! Checks that a new kind of any family is one file and two lines: adds kinds to a copy of the
+//! source, which must compile and render like the kinds that they were copied from.
 
 mod families;
 
@@ -9,20 +9,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Lines of existing files that a new kind may add.
+/// Number of lines that a new kind adds to existing files.
 const LINES: usize = 2;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The copy of the source, beside the other things that tests leave in the target folder.
+/// Folder of the copied source, below Cargo's folder for test files.
 fn scratch() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("kinds")
 }
 
-/// Writes a file unless it says the same already, so that the compiler finds unchanged files
-/// unchanged.
+/// Writes a file unless it has that content already, so that Cargo does not rebuild unchanged
+/// files.
 fn write(path: &Path, content: &[u8]) {
     if fs::read(path).is_ok_and(|old| old == content) {
         return;
@@ -31,7 +31,7 @@ fn write(path: &Path, content: &[u8]) {
     fs::write(path, content).unwrap();
 }
 
-/// Paths of all files below a folder, relative to `root`, but for what is built.
+/// Collects the paths of all files below a folder, relative to `root`, except build output.
 fn files(root: &Path, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(root.join(folder)).unwrap() {
         let entry = entry.unwrap();
@@ -45,8 +45,8 @@ fn files(root: &Path, folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Copies the source to the scratch folder and adds kinds. Files of an earlier copy that are neither
-/// are removed.
+/// Copies the source to the scratch folder and adds kinds. Removes files of an earlier copy that
+/// are neither.
 fn copy_with(additions: &[&Addition]) {
     let mut paths: Vec<PathBuf> = ["Cargo.toml", "Cargo.lock"].map(PathBuf::from).to_vec();
     for folder in ["crates", "scenes", "schema"] {
@@ -72,7 +72,7 @@ fn copy_with(additions: &[&Addition]) {
     }
 }
 
-/// Removes files of the scratch folder that are not among these, and folders that become empty.
+/// Removes all other files of the scratch folder, and the folders that become empty.
 fn remove_others(paths: &BTreeSet<PathBuf>) {
     let mut old = Vec::new();
     for folder in ["crates", "scenes", "schema"].map(Path::new).into_iter().filter(|f| scratch().join(f).exists()) {
@@ -85,7 +85,7 @@ fn remove_others(paths: &BTreeSet<PathBuf>) {
     }
 }
 
-/// Inserts one line. `rule` is the line and, behind an arrow, the text of the line that it follows.
+/// Inserts one line. `rule` consists of the line, ` <- `, and the text of the line that it follows.
 fn insert(text: &mut String, rule: &str, page: &Path) {
     let (line, after) = rule.split_once(" <- ").unwrap();
     let at = text.find(after).unwrap_or_else(|| panic!("{} has no `{after}`", page.display()));
@@ -118,7 +118,7 @@ fn a_new_kind_is_one_file_and_two_lines() {
     }
 }
 
-/// Renders a scene of old kinds and one of new ones, which must be the same picture to the bit.
+/// Renders a scene of old kinds and one of new kinds; the pictures must be bit for bit the same.
 fn new_kinds_render_as_the_old_ones() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = "0 0 0  0 0 1  1 0 0\n0 0 1  1 0 1  1 0 0\n";

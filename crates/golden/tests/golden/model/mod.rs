@@ -1,19 +1,19 @@
-//! Positions and triangles of a glTF model: of the format as much as the tests need.
+//! Minimal glTF reader: positions and triangles of the first mesh.
 
 use juggler::math::Vec3;
 use juggler_math::testing::skipped;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Corners and triangles of a file's first mesh, without the transforms of its nodes.
+/// Vertices and triangles of a file's first mesh, without node transforms.
 pub struct Model {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Model {
-    /// The model of this name in the folder `gltf` of the assets that `JUGGLER_ASSETS` names (`../shared/assets`
-    /// beside the workspace by default), if they are there.
+    /// Reads the model `name` in the folder `gltf` of the test assets. `JUGGLER_ASSETS` is their
+    /// folder, by default `../shared/assets` beside the workspace; `None` if it does not exist.
     pub fn asset(name: &str) -> Option<Self> {
         let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
         let folder = std::env::var_os("JUGGLER_ASSETS").map_or_else(beside, PathBuf::from);
@@ -24,7 +24,8 @@ impl Model {
         let path = folder.join("gltf").join(name);
         let bytes = std::fs::read(&path).unwrap();
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-        // A binary file: 12 bytes, then length, kind and bytes of the JSON, then the same of the buffer.
+        // A binary file: 12 bytes, then length, type and bytes of the JSON chunk, then the same of
+        // the buffer.
         if bytes.starts_with(b"glTF") {
             let buffer = 20 + word(12) + 8;
             return Some(Self::new(&serde_json::from_slice(&bytes[20..buffer - 8]).unwrap(), &bytes[buffer..]));
@@ -53,19 +54,19 @@ impl Model {
         Self { positions, triangles }
     }
 
-    /// The same in another size.
+    /// Returns a scaled copy.
     pub fn scaled(&self, factor: f32) -> Self {
         Self { positions: self.positions.iter().map(|p| *p * factor).collect(), triangles: self.triangles.clone() }
     }
 
-    /// Least and greatest coordinates.
+    /// Minimum and maximum coordinates.
     pub fn corners(&self) -> (Vec3, Vec3) {
         let all = || self.positions.iter().copied();
         (all().fold(Vec3::INFINITY, Vec3::min), all().fold(Vec3::NEG_INFINITY, Vec3::max))
     }
 }
 
-/// A number of the document; what is left out is zero.
+/// An integer of the document; a missing one is 0.
 fn number(value: &Value) -> usize {
     value.as_u64().unwrap_or(0) as usize
 }

@@ -1,9 +1,9 @@
-//! Levels of AV1 (AV1 Bitstream & Decoding Process, A.3): what a decoder must be able to do.
+//! AV1 levels (AV1 Bitstream & Decoding Process, A.3): minimum capabilities of a decoder.
 
-/// The level that promises nothing.
-pub(super) const ANY: u8 = 31;
+/// Level 31, the maximum parameters level, which sets no limits.
+pub(super) const MAX_PARAMETERS: u8 = 31;
 
-/// Number, pixels, width, height and pixels a second of each level.
+/// Level index with maximum number of pixels, width, height and pixels per second.
 const LEVELS: [(u8, u64, u32, u32, u64); 14] = [
     (0, 147_456, 2048, 1152, 4_423_680),
     (1, 278_784, 2816, 1584, 8_363_520),
@@ -21,8 +21,8 @@ const LEVELS: [(u8, u64, u32, u32, u64); 14] = [
     (19, 35_651_584, 16_384, 8704, 4_278_190_080),
 ];
 
-/// The least level of such a film, when there is one.
-pub(super) fn least(width: u32, height: u32, frames_per_second: f64) -> Option<u8> {
+/// Lowest level that fits the frame size and rate, if any.
+pub(super) fn lowest(width: u32, height: u32, frames_per_second: f64) -> Option<u8> {
     let area = u64::from(width) * u64::from(height);
     let rate = area as f64 * frames_per_second;
     let fits = |level: &&(u8, u64, u32, u32, u64)| {
@@ -37,20 +37,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn usual_films_have_their_usual_levels() {
-        assert_eq!(least(1920, 1080, 30.0), Some(8));
-        assert_eq!(least(1920, 1080, 60.0), Some(9));
-        assert_eq!(least(3840, 2160, 60.0), Some(13));
-        assert_eq!(least(320, 200, 30.0), Some(0));
-        assert_eq!(least(20_000, 20_000, 1.0), None);
+    fn common_movies_have_their_usual_levels() {
+        assert_eq!(lowest(1920, 1080, 30.0), Some(8));
+        assert_eq!(lowest(1920, 1080, 60.0), Some(9));
+        assert_eq!(lowest(3840, 2160, 60.0), Some(13));
+        assert_eq!(lowest(320, 200, 30.0), Some(0));
+        assert_eq!(lowest(20_000, 20_000, 1.0), None);
     }
 
-    /// Each row follows from the frame and frame rate that the specification gives as an example of
-    /// its level (table in A.3): the area is that frame's, both sides may be a number of times as
-    /// long, and the rate is that of those frames.
+    /// Each row follows from the example of its level in the specification (table in A.3): the
+    /// maximum area is that of the example frame, each side may be a multiple of the frame's, and
+    /// the pixel rate is that of the example.
     #[test]
     fn rows_follow_from_the_frames_of_the_specification() {
-        // Level, width, height, frames a second, how many times as long a side may be.
+        // Level, width, height, frames per second, maximum side as a multiple of the frame's.
         let examples: [(u8, u32, u32, u32, u32); 14] = [
             (0, 512, 288, 30, 4),
             (1, 704, 396, 30, 4),

@@ -1,16 +1,16 @@
-//! From red, green and blue to brightness and colour differences: ITU-R BT.709, 8 bits of limited range, with one
-//! colour for two by two pixels, level with the left column of them.
+//! RGB to Y'CbCr by ITU-R BT.709, 8 bits, limited range, 4:2:0 with chroma samples co-sited with
+//! the left luma column.
 
-/// Bits behind the point.
+/// Fractional bits of the fixed-point factors.
 const BITS: u32 = 16;
-/// The shares of red and blue in brightness.
+/// Luma coefficients of red and blue.
 const RED: f64 = 0.2126;
 const BLUE: f64 = 0.0722;
 
-/// Factors of red, green and blue, in sixteenth bits: levels of 0 to 255 become 0 to `range`.
-const fn factors(of: [f64; 3], range: f64) -> [i32; 3] {
+/// Fixed-point factors of red, green and blue that map 0 to 255 to 0 to `range`.
+const fn factors(coefficients: [f64; 3], range: f64) -> [i32; 3] {
     let one = range / 255.0 * (1 << BITS) as f64;
-    [rounded(of[0] * one), rounded(of[1] * one), rounded(of[2] * one)]
+    [rounded(coefficients[0] * one), rounded(coefficients[1] * one), rounded(coefficients[2] * one)]
 }
 
 const fn rounded(value: f64) -> i32 {
@@ -24,7 +24,7 @@ const CHROMA: [[i32; 3]; 2] = [
     factors([0.5, -GREEN / (2.0 - 2.0 * RED), -BLUE / (2.0 - 2.0 * RED)], 224.0),
 ];
 
-/// Room for the three planes of a frame.
+/// Buffers for the three planes of a frame.
 pub(super) struct Planes {
     width: usize,
     height: usize,
@@ -32,27 +32,27 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// For frames of a size, odd ones too.
+    /// Buffers for frames of this size, which may be odd.
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, height, planes: Default::default() }
     }
 
-    /// The planes of a frame of three bytes a pixel, each with the length of its rows.
-    pub fn of(&mut self, bytes: &[u8]) -> [(&[u8], usize); 3] {
+    /// Converts 8-bit RGB pixels to planes, each returned with its row length.
+    pub fn convert(&mut self, bytes: &[u8]) -> [(&[u8], usize); 3] {
         let pixels = bytes.as_chunks::<3>().0;
         let [luma, blue, red] = &mut self.planes;
         luma.clear();
-        luma.extend(pixels.iter().map(|pixel| weigh(LUMA, pixel.map(i32::from), 0, 16)));
+        luma.extend(pixels.iter().map(|pixel| weighted_sum(LUMA, pixel.map(i32::from), 0, 16)));
         blue.clear();
         red.clear();
         let rows: Vec<&[[u8; 3]]> = pixels.chunks_exact(self.width).collect();
         for pair in rows.chunks(2) {
             let [upper, .., lower] = pair else {
-                // The last row of an odd number.
-                pair.iter().for_each(|row| differences(row, row, blue, red));
+                // An odd number of rows ends with a single one.
+                pair.iter().for_each(|row| append_chroma(row, row, blue, red));
                 continue;
             };
-            differences(upper, lower, blue, red);
+            append_chroma(upper, lower, blue, red);
         }
         debug_assert_eq!(blue.len(), self.width.div_ceil(2) * self.height.div_ceil(2));
         let half = self.width.div_ceil(2);
@@ -60,22 +60,22 @@ impl Planes {
     }
 }
 
-/// The colour of two rows: each is a quarter of the pixel to the left, half of its own and a quarter of that to the right.
-fn differences(upper: &[[u8; 3]], lower: &[[u8; 3]], blue: &mut Vec<u8>, red: &mut Vec<u8>) {
+/// Chroma of two rows, filtered horizontally with weights 1/4, 1/2, 1/4.
+fn append_chroma(upper: &[[u8; 3]], lower: &[[u8; 3]], blue: &mut Vec<u8>, red: &mut Vec<u8>) {
     let last = upper.len().saturating_sub(1);
     for x in (0..upper.len()).step_by(2) {
         let columns = [x.saturating_sub(1), x, x, (x + 1).min(last)];
         let sum: [i32; 3] = std::array::from_fn(|channel| {
             columns.iter().map(|x| i32::from(upper[*x][channel]) + i32::from(lower[*x][channel])).sum()
         });
-        blue.push(weigh(CHROMA[0], sum, 3, 128));
-        red.push(weigh(CHROMA[1], sum, 3, 128));
+        blue.push(weighted_sum(CHROMA[0], sum, 3, 128));
+        red.push(weighted_sum(CHROMA[1], sum, 3, 128));
     }
 }
 
-/// A weighted sum of 2^`more` pixels, rounded, with what black has.
-fn weigh(factors: [i32; 3], pixel: [i32; 3], more: u32, black: i64) -> u8 {
-    let shift = BITS + more;
+/// Weighted sum of 2^`samples_log2` pixels, rounded, plus the level of black.
+fn weighted_sum(factors: [i32; 3], pixel: [i32; 3], samples_log2: u32, black: i64) -> u8 {
+    let shift = BITS + samples_log2;
     let sum: i64 = factors.iter().zip(pixel).map(|(factor, level)| i64::from(*factor) * i64::from(level)).sum();
     (((sum + (1 << (shift - 1))) >> shift) + black).clamp(0, 255) as u8
 }
@@ -85,11 +85,11 @@ mod tests {
     use super::*;
 
     fn planes(width: usize, height: usize, bytes: &[u8]) -> [Vec<u8>; 3] {
-        Planes::new(width, height).of(bytes).map(|(plane, _)| plane.to_vec())
+        Planes::new(width, height).convert(bytes).map(|(plane, _)| plane.to_vec())
     }
 
     #[test]
-    fn known_colours_have_their_known_levels() {
+    fn known_colors_have_their_known_levels() {
         for (color, expected) in [
             ([0, 0, 0], [16, 128, 128]),
             ([255, 255, 255], [235, 128, 128]),
@@ -114,8 +114,8 @@ mod tests {
     }
 
     #[test]
-    fn colour_lies_level_with_the_left_column() {
-        // White, white, then red: the second colour has three quarters of red, the first a trace of none.
+    fn color_lies_level_with_the_left_column() {
+        // White, white, red, red: the second chroma sample is 3/4 red, the first is neutral.
         let row = [[255; 3], [255; 3], [255, 0, 0], [255, 0, 0]].concat();
         let [_, blue, _] = planes(4, 1, &row);
         let red_alone = f64::from(128 - 102);

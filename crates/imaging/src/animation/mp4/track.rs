@@ -1,86 +1,88 @@
-//! The file: frames one after the other as they come, and before them a table that is written last, into room left for
-//! it, so that players can begin before all is there. The table takes eight bytes of memory a frame.
+//! MP4 file layout: space for the metadata (`moov`) is reserved before the frames and filled at the
+//! end, so that playback can start before the download completes. The metadata takes 8 bytes of
+//! memory per frame.
 
-use super::boxes::{self, Frames};
+use super::boxes::{self, FrameTable};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-/// Room for the head of the AV1 stream, which the first frame brings.
+/// Bytes reserved for the AV1 sequence header, which comes with the first frame.
 const SEQUENCE: usize = 64;
-/// Bytes before the frames: a box whose length has 64 bits.
+/// Length of the `mdat` header with a 64-bit size.
 const HEAD: usize = 16;
-/// Kinds of units in an AV1 stream (AV1 Bitstream & Decoding Process, 6.2.2).
+/// OBU types of an AV1 stream (AV1 Bitstream & Decoding Process, 6.2.2).
 const SEQUENCE_HEADER: u8 = 1;
 const TEMPORAL_DELIMITER: u8 = 2;
 
-/// What the file says of the film.
-pub(super) struct Facts {
-    /// Width and height.
+/// Properties of the video track.
+pub(super) struct TrackInfo {
+    /// Frame width and height in pixels.
     pub size: [u32; 2],
-    /// How long a frame is shown.
+    /// Duration of a frame in ticks.
     pub ticks: u32,
-    /// Ticks a second.
+    /// Ticks per second.
     pub per_second: u32,
-    /// What a decoder must be able to do.
+    /// AV1 level.
     pub level: u8,
-    /// How many there will be.
+    /// Number of frames.
     pub frames: u32,
-    /// Frames from one that needs no other to the next.
-    pub between_keys: u32,
+    /// Frames from one key frame to the next.
+    pub key_frame_interval: u32,
 }
 
-/// A file on its way.
+/// An MP4 file being written.
 pub(super) struct Track {
     bytes: Box<dyn WriteSeek>,
-    place: String,
-    facts: Facts,
+    file: String,
+    info: TrackInfo,
     sizes: Vec<u32>,
     keys: Vec<u32>,
     sequence: Vec<u8>,
-    /// Bytes left for the table.
-    room: usize,
+    /// Bytes reserved for the metadata.
+    reserved: usize,
 }
 
 impl Track {
-    /// Writes what comes before the frames.
-    pub fn begin(destination: Destination, facts: Facts) -> Result<Self, ImageError> {
-        let place = destination.name().to_owned();
-        let keys = facts.frames.div_ceil(facts.between_keys.max(1));
-        let room = boxes::movie(&facts, &Frames { sizes: &[], keys: &[], start: 0, sequence: &[0; SEQUENCE] }).len();
-        let room = room + 4 * (facts.frames as usize + keys as usize);
+    /// Writes everything before the frames.
+    pub fn begin(destination: Destination, info: TrackInfo) -> Result<Self, ImageError> {
+        let file = destination.name().to_owned();
+        let keys = info.frames.div_ceil(info.key_frame_interval.max(1));
+        let reserved =
+            boxes::movie(&info, &FrameTable { sizes: &[], keys: &[], start: 0, sequence: &[0; SEQUENCE] }).len();
+        let reserved = reserved + 4 * (info.frames as usize + keys as usize);
         let bytes = destination.into_seekable();
-        let mut track = Self { bytes, place, facts, sizes: Vec::new(), keys: Vec::new(), sequence: Vec::new(), room };
-        track.head(0).map_err(|source| track.failed(source))?;
+        let mut track = Self { bytes, file, info, sizes: Vec::new(), keys: Vec::new(), sequence: Vec::new(), reserved };
+        track.write_head(0).map_err(|source| track.failed(source))?;
         Ok(track)
     }
 
-    /// Everything before the frames, with nothing in the room for the table.
-    fn head(&mut self, length: u64) -> io::Result<()> {
+    /// Writes file type, free space in place of the metadata, and the header of `mdat`.
+    fn write_head(&mut self, length: u64) -> io::Result<()> {
         self.bytes.write_all(&boxes::file_type())?;
-        self.room(self.room)?;
+        self.write_free(self.reserved)?;
         self.bytes.write_all(&[&[0, 0, 0, 1][..], b"mdat", &length.to_be_bytes()].concat())
     }
 
-    /// A box with nothing in it, of 8 bytes and more.
-    fn room(&mut self, length: usize) -> io::Result<()> {
+    /// Writes a `free` box of at least 8 bytes.
+    fn write_free(&mut self, length: usize) -> io::Result<()> {
         self.bytes.write_all(&[&(length as u32).to_be_bytes()[..], b"free"].concat())?;
         io::copy(&mut io::repeat(0).take(length.saturating_sub(8) as u64), &mut self.bytes).map(drop)
     }
 
-    /// Where the first frame begins.
+    /// File offset of the first frame.
     fn start(&self) -> usize {
-        boxes::file_type().len() + self.room + HEAD
+        boxes::file_type().len() + self.reserved + HEAD
     }
 
-    /// The next frame, as the encoder gives it.
+    /// Appends an encoded frame.
     pub fn append(&mut self, unit: &[u8], is_key: bool) -> Result<(), ImageError> {
         let mut size = 0;
-        for (kind, bytes) in units(unit) {
+        for (kind, bytes) in split_obus(unit) {
             if kind == SEQUENCE_HEADER && self.sequence.is_empty() {
                 self.sequence = bytes.to_vec();
             }
-            // What divides frames in a stream; here the table does.
+            // MP4 omits temporal delimiters, since the sample table separates the frames.
             if kind != TEMPORAL_DELIMITER {
                 self.bytes.write_all(bytes).map_err(|source| self.failed(source))?;
                 size += bytes.len();
@@ -93,7 +95,7 @@ impl Track {
         Ok(())
     }
 
-    /// Writes the table, and how long it all is.
+    /// Writes the metadata and the length of the frames.
     pub fn finish(mut self) -> Result<(), ImageError> {
         self.end().map_err(|source| self.failed(source))
     }
@@ -101,17 +103,17 @@ impl Track {
     fn end(&mut self) -> io::Result<()> {
         let length = self.sizes.iter().map(|size| u64::from(*size)).sum::<u64>() + HEAD as u64;
         let frames =
-            Frames { sizes: &self.sizes, keys: &self.keys, start: self.start() as u32, sequence: &self.sequence };
-        let table = boxes::movie(&self.facts, &frames);
+            FrameTable { sizes: &self.sizes, keys: &self.keys, start: self.start() as u32, sequence: &self.sequence };
+        let table = boxes::movie(&self.info, &frames);
         self.bytes.rewind()?;
-        self.head(length)?;
-        let rest = self.room.checked_sub(table.len()).filter(|rest| *rest >= 8);
+        self.write_head(length)?;
+        let rest = self.reserved.checked_sub(table.len()).filter(|rest| *rest >= 8);
         if let Some(rest) = rest {
             self.bytes.seek(SeekFrom::Start(boxes::file_type().len() as u64))?;
             self.bytes.write_all(&table)?;
-            self.room(rest)?;
+            self.write_free(rest)?;
         } else {
-            // More than was expected: at the end there is room for anything.
+            // The metadata exceeds the reserved space: append them at the end.
             self.bytes.seek(SeekFrom::End(0))?;
             self.bytes.write_all(&table)?;
         }
@@ -119,18 +121,19 @@ impl Track {
     }
 
     fn failed(&self, source: io::Error) -> ImageError {
-        ImageError::Write { place: self.place.clone(), source }
+        ImageError::Write { file: self.file.clone(), source }
     }
 }
 
-/// The units of a stream with their kinds, as far as they can be told apart.
-fn units(stream: &[u8]) -> Vec<(u8, &[u8])> {
+/// Splits a stream into OBUs with their types; malformed data end up in the last one.
+fn split_obus(stream: &[u8]) -> Vec<(u8, &[u8])> {
     let (mut units, mut rest) = (Vec::new(), stream);
     while let Some((first, _)) = rest.split_first() {
-        let head = if first & 4 != 0 { 2 } else { 1 };
+        let header = if first & 4 != 0 { 2 } else { 1 };
         let has_size = first & 2 != 0;
-        let (size, digits) = if has_size { number(rest.get(head..).unwrap_or_default()) } else { (rest.len(), 0) };
-        let length = (head + digits).saturating_add(size).min(rest.len());
+        let (size, digits) =
+            if has_size { read_leb128(rest.get(header..).unwrap_or_default()) } else { (rest.len(), 0) };
+        let length = (header + digits).saturating_add(size).min(rest.len());
         let (unit, after) = rest.split_at(length);
         units.push((first >> 3 & 15, unit));
         rest = after;
@@ -138,13 +141,13 @@ fn units(stream: &[u8]) -> Vec<(u8, &[u8])> {
     units
 }
 
-/// A number in pieces of seven bits, low ones first, and how many bytes it has.
-fn number(bytes: &[u8]) -> (usize, usize) {
+/// Decodes a LEB128 number of at most 4 bytes; returns the value and its length in bytes.
+fn read_leb128(bytes: &[u8]) -> (usize, usize) {
     let mut value = 0;
-    for (place, byte) in bytes.iter().take(4).enumerate() {
-        value |= usize::from(byte & 127) << (7 * place);
+    for (index, byte) in bytes.iter().take(4).enumerate() {
+        value |= usize::from(byte & 127) << (7 * index);
         if byte & 128 == 0 {
-            return (value, place + 1);
+            return (value, index + 1);
         }
     }
     (value, bytes.len().min(4))
@@ -157,9 +160,9 @@ mod tests {
     #[test]
     fn streams_are_cut_into_their_units() {
         let stream = [&[0x12, 0][..], &[0x0a, 3, 7, 7, 7], &[0x32, 0x81, 1], &[9; 129]].concat();
-        let found: Vec<(u8, usize)> = units(&stream).iter().map(|(kind, bytes)| (*kind, bytes.len())).collect();
+        let found: Vec<(u8, usize)> = split_obus(&stream).iter().map(|(kind, bytes)| (*kind, bytes.len())).collect();
         assert_eq!(found, [(2, 2), (1, 5), (6, 132)]);
-        assert_eq!(units(&[0x32, 0xff]).len(), 1, "what is cut short is one unit");
-        assert!(units(&[]).is_empty());
+        assert_eq!(split_obus(&[0x32, 0xff]).len(), 1, "what is cut short is one unit");
+        assert!(split_obus(&[]).is_empty());
     }
 }

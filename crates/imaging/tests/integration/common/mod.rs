@@ -1,11 +1,11 @@
-//! Pictures for tests, written to memory.
-use juggler_imaging::{Destination, Format, Header, Limits, decode, writer};
+//! Test images, encoded to memory.
+use juggler_imaging::{Destination, Header, ImageFormat, Limits, decode, writer};
 use juggler_math::testing::Random;
 use juggler_math::{Image, Rgb};
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex};
 
-/// Memory that stays readable after the writer has gone.
+/// Buffer that stays readable after the writer is dropped.
 #[derive(Clone, Default)]
 pub struct Shared(Arc<Mutex<Cursor<Vec<u8>>>>);
 
@@ -30,7 +30,7 @@ impl Seek for Shared {
     }
 }
 
-/// A picture of smooth light with noise, some black, some very bright.
+/// A smooth gradient with noise, some black and some very bright pixels.
 pub fn picture(width: u32, height: u32, brightest: f32) -> Image {
     let mut random = Random::new(u64::from(width * 1000 + height));
     let pixels = (0..width * height).map(|i| {
@@ -48,8 +48,8 @@ pub fn header(image: &Image) -> Header {
     Header::new(image.width(), image.height())
 }
 
-/// The file, `rows` rows at a time, to a place that can go back or to a pipe.
-pub fn encode_by(format: Format, image: &Image, header: &Header, rows: usize, seekable: bool) -> Vec<u8> {
+/// Encodes the image, `rows` rows per call, to seekable memory or to a pipe.
+pub fn encode_by(format: ImageFormat, image: &Image, header: &Header, rows: usize, seekable: bool) -> Vec<u8> {
     let memory = Shared::default();
     let destination = match seekable {
         true => Destination::seekable("memory", memory.clone()),
@@ -64,7 +64,7 @@ pub fn encode_by(format: Format, image: &Image, header: &Header, rows: usize, se
 }
 
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
-pub fn encode(format: Format, image: &Image, header: &Header) -> Vec<u8> {
+pub fn encode(format: ImageFormat, image: &Image, header: &Header) -> Vec<u8> {
     encode_by(format, image, header, image.height() as usize, true)
 }
 

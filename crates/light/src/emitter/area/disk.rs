@@ -1,10 +1,10 @@
-//! A flat disk that shines: even by area (the solid angle of a disk has no simple map).
+//! Disk emitter, sampled uniformly by area (the solid angle of a disk has no simple mapping).
 
-use super::{AreaSample, area_density, seen};
+use super::{AreaSample, area_sample, uniform_area_pdf};
 use juggler_math::{Aabb, DVec3, Vec2, Vec3, warp};
 use std::f64::consts::PI;
 
-/// A flat, full disk.
+/// Flat, full disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiskEmitter {
     center: DVec3,
@@ -13,8 +13,8 @@ pub struct DiskEmitter {
 }
 
 impl DiskEmitter {
-    /// A disk in world space with the normal of its front, any length; `None` unless its radius is above 0, its normal
-    /// has a length, and all is finite.
+    /// Creates a disk in world space; `normal` is the normal of its front, of any length. `None`
+    /// unless the radius is above 0, the normal is not zero, and all numbers are finite.
     pub fn new(center: Vec3, normal: Vec3, radius: f32) -> Option<Self> {
         let unit = normal.as_dvec3().normalize_or_zero();
         let usable = radius > 0.0 && radius < f32::INFINITY && center.is_finite() && unit != DVec3::ZERO;
@@ -23,14 +23,14 @@ impl DiskEmitter {
 
     pub(super) fn sample(&self, from: Vec3, u: Vec2) -> Option<AreaSample> {
         let from = from.as_dvec3();
-        let place = warp::concentric_disk(u).as_dvec2() * self.radius;
+        let offset = warp::concentric_disk(u).as_dvec2() * self.radius;
         let (tangent, bitangent) = self.normal.any_orthonormal_pair();
-        let point = self.center + tangent * place.x + bitangent * place.y;
-        seen(from, point, self.normal, area_density(from, point, self.normal, self.area()))
+        let point = self.center + tangent * offset.x + bitangent * offset.y;
+        area_sample(from, point, self.normal, uniform_area_pdf(from, point, self.normal, self.area()))
     }
 
     pub(super) fn pdf(&self, from: Vec3, point: Vec3) -> f32 {
-        area_density(from.as_dvec3(), point.as_dvec3(), self.normal, self.area()) as f32
+        uniform_area_pdf(from.as_dvec3(), point.as_dvec3(), self.normal, self.area()) as f32
     }
 
     pub(super) fn area(&self) -> f64 {

@@ -1,5 +1,5 @@
-//! Places on surfaces that shine, picked evenly by the solid angle under which a point sees them wherever there is a
-//! way to do so, else evenly by area. World space; which side shines is the caller's business.
+//! Sampling of points on emitting surfaces in world space: uniformly by solid angle where a mapping
+//! exists, otherwise uniformly by area. The caller decides which side emits.
 
 use super::LightBounds;
 use juggler_math::{Aabb, DVec3, Vec2, Vec3};
@@ -18,38 +18,40 @@ pub use rectangle::RectangleEmitter;
 pub use sphere::SphereEmitter;
 pub use triangle::TriangleEmitter;
 
-/// A place on a surface that shines, seen from a point.
+/// Sampled point on an emitting surface, as seen from a shading point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaSample {
-    /// The place, world space; on the surface up to rounding.
+    /// Sampled point, in world space; on the surface up to rounding.
     pub point: Vec3,
-    /// The surface's unit normal there, to its front (outwards for a sphere).
+    /// Unit normal at the point, towards the front (outward for a sphere).
     pub normal: Vec3,
-    /// Where on a rectangle or triangle, in shares of its two edges; 0 for others.
-    pub edges: Vec2,
-    /// Unit direction towards the place.
+    /// Position on a rectangle or triangle in units of its two edges; zero for other surfaces.
+    pub uv: Vec2,
+    /// Unit direction towards the point.
     pub wi: Vec3,
-    /// How far it is, above 0.
+    /// Distance of the point, above 0.
     pub distance: f32,
-    /// Density per steradian with which `wi` was chosen, above 0.
+    /// Density per steradian of `wi`, above 0.
     pub pdf: f32,
 }
 
-/// A surface that shines. Large kinds stand in boxes: scenes have millions of emitting spheres.
+/// Emitting surface. Large variants are boxed, because scenes may have millions of emitting
+/// spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AreaEmitter {
-    /// A sphere.
+    /// Sphere.
     Sphere(SphereEmitter),
-    /// A flat, full disk.
+    /// Flat, full disk.
     Disk(Box<DiskEmitter>),
-    /// A rectangle.
+    /// Rectangle.
     Rectangle(Box<RectangleEmitter>),
-    /// A triangle.
+    /// Triangle.
     Triangle(Box<TriangleEmitter>),
 }
 
 impl AreaEmitter {
-    /// The place for `u` in the unit square; `None` when it is seen edge-on, or from its very place.
+    /// Samples a point as seen from `from`, with `u` in the unit square. `None` if the surface is
+    /// seen edge-on or `from` is the sampled point itself.
     #[inline]
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<AreaSample> {
         match self {
@@ -60,8 +62,8 @@ impl AreaEmitter {
         }
     }
 
-    /// Density per steradian with which `sample` picks the direction to `point`, which lies on the surface and, on a
-    /// sphere seen from outside, on the side that is seen.
+    /// Density per steradian with which [`AreaEmitter::sample`] samples the direction to `point`.
+    /// The point lies on the surface and, for a sphere seen from outside, on its visible side.
     #[inline]
     pub fn pdf(&self, from: Vec3, point: Vec3) -> f32 {
         match self {
@@ -72,7 +74,7 @@ impl AreaEmitter {
         }
     }
 
-    /// Area of the front.
+    /// Area of the front in square scene units.
     pub fn area(&self) -> f32 {
         match self {
             Self::Sphere(sphere) => sphere.area() as f32,
@@ -82,7 +84,7 @@ impl AreaEmitter {
         }
     }
 
-    /// Bytes on the heap.
+    /// Heap memory in bytes.
     pub fn heap_bytes(&self) -> usize {
         match self {
             Self::Sphere(_) => 0,
@@ -92,10 +94,10 @@ impl AreaEmitter {
         }
     }
 
-    /// Its bounds in a light tree, when every place has this radiance (its luminance).
+    /// Bounds for the light tree, for a uniform radiance with the luminance `radiance`.
     pub fn light_bounds(&self, radiance: f32, two_sided: bool) -> LightBounds {
-        let seen = if matches!(self, Self::Sphere(_)) { 0.25 * self.area() } else { self.area() };
-        let power = 4.0 * std::f32::consts::PI * seen * radiance;
+        let area_sample = if matches!(self, Self::Sphere(_)) { 0.25 * self.area() } else { self.area() };
+        let power = 4.0 * std::f32::consts::PI * area_sample * radiance;
         let (bounds, axis, cos_theta_o) = match self {
             Self::Sphere(sphere) => (sphere.bounds(), Vec3::Z, -1.0),
             Self::Disk(disk) => (disk.bounds(), disk.normal(), 1.0),
@@ -130,31 +132,31 @@ impl From<TriangleEmitter> for AreaEmitter {
     }
 }
 
-/// The sample of a place, chosen with density `pdf` per steradian.
-fn seen(from: DVec3, point: DVec3, normal: DVec3, pdf: f64) -> Option<AreaSample> {
-    let way = point - from;
-    let (distance, pdf) = (way.length(), pdf as f32);
+/// Builds the sample of a point with density `pdf` per steradian.
+fn area_sample(from: DVec3, point: DVec3, normal: DVec3, pdf: f64) -> Option<AreaSample> {
+    let to_point = point - from;
+    let (distance, pdf) = (to_point.length(), pdf as f32);
     let usable = distance as f32 > 0.0 && pdf > 0.0 && pdf < f32::INFINITY;
     usable.then(|| AreaSample {
         point: point.as_vec3(),
         normal: normal.as_vec3(),
-        edges: Vec2::ZERO,
-        wi: (way / distance).as_vec3(),
+        uv: Vec2::ZERO,
+        wi: (to_point / distance).as_vec3(),
         distance: distance as f32,
         pdf,
     })
 }
 
-/// Density per steradian seen from `from` of a place that is picked evenly among `area`: distance² / (area · cos)
-/// (PBR 4th ed., section 4.2.3); 0 where it is not a number to divide by.
-fn area_density(from: DVec3, point: DVec3, normal: DVec3, area: f64) -> f64 {
-    let way = point - from;
-    let squared = way.length_squared();
-    let density = squared * squared.sqrt() / (way.dot(normal).abs() * area);
+/// Density per steradian, as seen from `from`, of a point sampled uniformly on `area`: distance² /
+/// (area · cos) (PBR 4th ed., section 4.2.3). 0 where it overflows.
+fn uniform_area_pdf(from: DVec3, point: DVec3, normal: DVec3, area: f64) -> f64 {
+    let to_point = point - from;
+    let squared = to_point.length_squared();
+    let density = squared * squared.sqrt() / (to_point.dot(normal).abs() * area);
     if density < f64::from(f32::MAX) { density } else { 0.0 }
 }
 
-/// The box around points in double precision, rounded outwards.
+/// Bounding box of points in double precision, rounded outward.
 fn box_around(points: impl IntoIterator<Item = DVec3>) -> Aabb {
     let outwards = |bounds: Aabb, point: DVec3| {
         let near = point.as_vec3();

@@ -1,11 +1,12 @@
-//! Samples of surfaces against their densities and against closed forms of what arrives.
+//! Tests of surface samples against their densities and against closed forms of the irradiance.
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared, chi_squared_directions, z_test};
-use juggler_math::{Frame, fun, vec3, warp};
+use juggler_math::{Frame, portable, vec3, warp};
 use std::f64::consts::PI;
 
-/// One in a thousand for all tests of densities here together, of which there are not quite sixty.
+/// Significance level of each test: 1e-3 for all of the nearly sixty tests of densities in this
+/// file.
 const SIGNIFICANCE: f64 = 1.7e-5;
 const SAMPLES: u32 = 1_000_000;
 
@@ -25,7 +26,7 @@ fn disk(center: Vec3, normal: Vec3, radius: f32) -> AreaEmitter {
     DiskEmitter::new(center, normal, radius).unwrap().into()
 }
 
-/// Surfaces around y = 1 that face down, all about as large.
+/// Surfaces near y = 1 that face down, of similar size.
 fn examples() -> Vec<AreaEmitter> {
     vec![
         rectangle(vec3(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 1.5),
@@ -37,8 +38,8 @@ fn examples() -> Vec<AreaEmitter> {
     ]
 }
 
-/// Points to look from: far, near, in the plane's continuation, behind.
-const PLACES: [Vec3; 7] = [
+/// Shading points: far, near, in the plane of the surface, behind it.
+const SHADING_POINTS: [Vec3; 7] = [
     vec3(0.0, 0.0, 0.0),
     vec3(3.0, -2.0, 1.0),
     vec3(0.1, 0.8, 0.1),
@@ -48,8 +49,9 @@ const PLACES: [Vec3; 7] = [
     vec3(0.05, 1.31, 0.1),
 ];
 
-/// How many of `count` samples each cell of the edges' square should get: cells of a planar surface, by midpoints.
-fn expected_cells(light: &AreaEmitter, from: Vec3, count: f64, place: impl Fn(f64, f64) -> Vec3) -> Vec<f64> {
+/// Expected number of `count` samples in each cell of the edges' unit square, for a planar surface,
+/// by the midpoint rule.
+fn expected_cells(light: &AreaEmitter, from: Vec3, count: f64, point_at: impl Fn(f64, f64) -> Vec3) -> Vec<f64> {
     const FINE: usize = 40;
     let folded = matches!(light, AreaEmitter::Triangle(_));
     let normal = light.light_bounds(1.0, false).axis.as_dvec3();
@@ -57,14 +59,14 @@ fn expected_cells(light: &AreaEmitter, from: Vec3, count: f64, place: impl Fn(f6
     for i in 0..8 * FINE {
         for j in 0..8 * FINE {
             let (u, v) = ((i as f64 + 0.5) / (8 * FINE) as f64, (j as f64 + 0.5) / (8 * FINE) as f64);
-            // On the diagonal half of a cell belongs to a triangle.
-            let share =
+            // Half of a cell on the diagonal belongs to a triangle.
+            let fraction =
                 if !folded || i + j + 1 < 8 * FINE { 1.0 } else { f64::from(u8::from(i + j + 1 == 8 * FINE)) * 0.5 };
-            let point = place(u, v);
-            let way = point.as_dvec3() - from.as_dvec3();
-            let steradians = way.normalize().dot(normal).abs() / way.length_squared();
+            let point = point_at(u, v);
+            let to_point = point.as_dvec3() - from.as_dvec3();
+            let steradians = to_point.normalize().dot(normal).abs() / to_point.length_squared();
             let whole = f64::from(light.area()) * if folded { 2.0 } else { 1.0 } / (64 * FINE * FINE) as f64;
-            cells[i / FINE * 8 + j / FINE] += f64::from(light.pdf(from, point)) * steradians * whole * share * count;
+            cells[i / FINE * 8 + j / FINE] += f64::from(light.pdf(from, point)) * steradians * whole * fraction * count;
         }
     }
     cells
@@ -79,20 +81,20 @@ fn planar_samples_follow_their_density() {
             AreaEmitter::Triangle(t) => (t.corner, t.edges),
             _ => continue,
         };
-        let place = |u: f64, v: f64| (corner + edges[0] * u + edges[1] * v).as_vec3();
-        for from in PLACES {
+        let point_at = |u: f64, v: f64| (corner + edges[0] * u + edges[1] * v).as_vec3();
+        for from in SHADING_POINTS {
             let count = SAMPLES;
             let mut observed = [0.0; 64];
             for _ in 0..count {
                 let sample = light.sample(from, random.vec2()).unwrap();
                 let cell = |v: f32| ((v * 8.0) as usize).min(7);
-                observed[cell(sample.edges.x) * 8 + cell(sample.edges.y)] += 1.0;
-                let at = place(f64::from(sample.edges.x), f64::from(sample.edges.y));
+                observed[cell(sample.uv.x) * 8 + cell(sample.uv.y)] += 1.0;
+                let at = point_at(f64::from(sample.uv.x), f64::from(sample.uv.y));
                 assert!(at.distance(sample.point) < 1e-5, "{light:?} {from} {sample:?}");
                 let pdf = light.pdf(from, sample.point);
                 assert!((pdf / sample.pdf - 1.0).abs() < 1e-3, "{light:?} {from} {sample:?} {pdf}");
             }
-            let expected = expected_cells(&light, from, f64::from(count), place);
+            let expected = expected_cells(&light, from, f64::from(count), point_at);
             let total: f64 = expected.iter().sum();
             assert!((total / f64::from(count) - 1.0).abs() < 5e-3, "{light:?} {from}: {total}");
             let fitted: Vec<f64> = expected.iter().map(|cell| cell * f64::from(count) / total).collect();
@@ -101,7 +103,7 @@ fn planar_samples_follow_their_density() {
     }
 }
 
-/// Tiny and grazing ones, too: what the digits of the map are for.
+/// Small solid angles and grazing views, which test the precision of the mapping.
 #[test]
 fn narrow_views_follow_their_density() {
     let mut random = Random::new(1102);
@@ -114,14 +116,14 @@ fn narrow_views_follow_their_density() {
         let (a, b) = (Vec3::X * size, Vec3::Z * size);
         let corner = vec3(0.0, 1.0, 0.0);
         for light in [rectangle(corner, a, b), triangle([corner, corner + a, corner + b])] {
-            let place = |u: f64, v: f64| (corner.as_dvec3() + (a.as_dvec3() * u + b.as_dvec3() * v)).as_vec3();
+            let point_at = |u: f64, v: f64| (corner.as_dvec3() + (a.as_dvec3() * u + b.as_dvec3() * v)).as_vec3();
             let mut observed = [0.0; 64];
             for _ in 0..SAMPLES {
                 let sample = light.sample(from, random.vec2()).unwrap();
                 let cell = |v: f32| ((v * 8.0) as usize).min(7);
-                observed[cell(sample.edges.x) * 8 + cell(sample.edges.y)] += 1.0;
+                observed[cell(sample.uv.x) * 8 + cell(sample.uv.y)] += 1.0;
             }
-            let expected = expected_cells(&light, from, f64::from(SAMPLES), place);
+            let expected = expected_cells(&light, from, f64::from(SAMPLES), point_at);
             let total: f64 = expected.iter().sum();
             assert!((total / f64::from(SAMPLES) - 1.0).abs() < 0.02, "{light:?} {from}: {total}");
             let fitted: Vec<f64> = expected.iter().map(|cell| cell * f64::from(SAMPLES) / total).collect();
@@ -134,8 +136,9 @@ fn narrow_views_follow_their_density() {
 fn directions_to_round_ones_follow_their_density() {
     let center = vec3(0.0, 1.0, 0.0);
     let (light, mut random) = (sphere(center, 0.7), Random::new(1107));
-    for from in PLACES.into_iter().chain([center + vec3(0.0, 0.701, 0.0)]).filter(|p| p.distance(center) > 0.7) {
-        // Even over the cone: by 1 - cos and by the turn around its axis.
+    for from in SHADING_POINTS.into_iter().chain([center + vec3(0.0, 0.701, 0.0)]).filter(|p| p.distance(center) > 0.7)
+    {
+        // Uniform over the cone: in 1 - cos and in the azimuth.
         let to_center = center - from;
         let size = 1.0 - (1.0 - 0.49 / to_center.length_squared()).sqrt();
         let frame = Frame::around(to_center.normalize());
@@ -173,24 +176,25 @@ fn directions_to_round_ones_follow_their_density() {
     }
 }
 
-/// What arrives from light of radiance 1 at a place with a normal, by samples, must be the closed form.
-fn arrives(light: &AreaEmitter, from: Vec3, normal: Vec3, expected: f64) {
+/// Checks the sampled irradiance from radiance 1, at a point with a normal, against the closed
+/// form.
+fn check_irradiance(light: &AreaEmitter, from: Vec3, normal: Vec3, expected: f64) {
     let mut random = Random::new(1103);
     let value = |sample: AreaSample| f64::from(sample.wi.dot(normal).max(0.0) / sample.pdf);
     let values: Vec<f64> = (0..20_000).map(|_| light.sample(from, random.vec2()).map_or(0.0, value)).collect();
-    // Three deviations.
+    // The significance level of three standard deviations.
     z_test(&values, expected, 2.7e-3).unwrap_or_else(|e| panic!("{light:?} {from} {normal}: {e}"));
 }
 
-/// Lambert's formula for a polygon above the horizon.
-fn polygon_form(corners: &[Vec3], from: Vec3, normal: Vec3) -> f64 {
-    let ways: Vec<DVec3> = corners.iter().map(|c| (c.as_dvec3() - from.as_dvec3()).normalize()).collect();
+/// Lambert's formula for the irradiance from a polygon above the horizon.
+fn polygon_irradiance(corners: &[Vec3], from: Vec3, normal: Vec3) -> f64 {
+    let directions: Vec<DVec3> = corners.iter().map(|c| (c.as_dvec3() - from.as_dvec3()).normalize()).collect();
     let edge = |i: usize| {
-        let (a, b) = (ways[i], ways[(i + 1) % ways.len()]);
+        let (a, b) = (directions[i], directions[(i + 1) % directions.len()]);
         let cross = a.cross(b);
-        fun::atan2_f64(cross.length(), a.dot(b)) * cross.normalize().dot(normal.as_dvec3())
+        portable::atan2_f64(cross.length(), a.dot(b)) * cross.normalize().dot(normal.as_dvec3())
     };
-    (0.5 * (0..ways.len()).map(edge).sum::<f64>()).abs()
+    (0.5 * (0..directions.len()).map(edge).sum::<f64>()).abs()
 }
 
 #[test]
@@ -201,13 +205,18 @@ fn irradiance_of_polygons_is_lamberts() {
             let from = vec3(random.range(-2.0, 2.0), 1.0 - height, random.range(-2.0, 2.0));
             let corner = vec3(-1.0, 1.0, -1.0);
             let (a, b) = (Vec3::X * 2.0, Vec3::Z * 1.5);
-            let form = |corners: &[Vec3]| polygon_form(corners, from, Vec3::Y);
-            arrives(&rectangle(corner, a, b), from, Vec3::Y, form(&[corner, corner + a, corner + a + b, corner + b]));
-            arrives(
+            let irradiance = |corners: &[Vec3]| polygon_irradiance(corners, from, Vec3::Y);
+            check_irradiance(
+                &rectangle(corner, a, b),
+                from,
+                Vec3::Y,
+                irradiance(&[corner, corner + a, corner + a + b, corner + b]),
+            );
+            check_irradiance(
                 &triangle([corner, corner + a, corner + b]),
                 from,
                 Vec3::Y,
-                form(&[corner, corner + a, corner + b]),
+                irradiance(&[corner, corner + a, corner + b]),
             );
         }
     }
@@ -218,16 +227,16 @@ fn irradiance_of_spheres_and_disks_is_the_closed_form() {
     for (distance, radius) in [(1.0f32, 0.99), (3.0, 1.0), (1e4, 1.0), (1e9, 2.0)] {
         let from = vec3(0.0, -distance, 0.0);
         let ratio = f64::from(radius / distance);
-        arrives(&sphere(Vec3::ZERO, radius), from, Vec3::Y, PI * ratio * ratio);
+        check_irradiance(&sphere(Vec3::ZERO, radius), from, Vec3::Y, PI * ratio * ratio);
     }
     let tilted = vec3(0.6, 0.8, 0.0);
-    arrives(&sphere(Vec3::ZERO, 1.0), vec3(0.0, -2.0, 0.0), tilted, PI * 0.25 * 0.8);
+    check_irradiance(&sphere(Vec3::ZERO, 1.0), vec3(0.0, -2.0, 0.0), tilted, PI * 0.25 * 0.8);
     for (height, aside) in [(1.0f64, 0.0), (0.5, 0.3), (0.3, 1.5), (4.0, 2.0)] {
         let (h, a, r) = (height, aside, 0.8f64);
         let sum = h * h + a * a + r * r;
-        let form = 0.5 * (1.0 - (h * h + a * a - r * r) / (sum * sum - 4.0 * a * a * r * r).sqrt());
+        let irradiance = 0.5 * (1.0 - (h * h + a * a - r * r) / (sum * sum - 4.0 * a * a * r * r).sqrt());
         let light = disk(vec3(1.0, 2.0, 3.0), Vec3::NEG_Y, 0.8);
-        arrives(&light, vec3(1.0 + aside as f32, 2.0 - height as f32, 3.0), Vec3::Y, PI * form);
+        check_irradiance(&light, vec3(1.0 + aside as f32, 2.0 - height as f32, 3.0), Vec3::Y, PI * irradiance);
     }
 }
 
@@ -267,12 +276,12 @@ fn what_is_no_surface_is_refused() {
     assert!(TriangleEmitter::new([Vec3::ZERO, Vec3::X, Vec3::INFINITY]).is_none());
     assert!(SphereEmitter::new(Vec3::ZERO, 0.0).is_none() && SphereEmitter::new(Vec3::NAN, 1.0).is_none());
     assert!(DiskEmitter::new(Vec3::ZERO, Vec3::ZERO, 1.0).is_none());
-    // In the plane itself nothing is seen, at its very place nothing arrives.
+    // No light arrives in the plane of a surface or at a point on it.
     assert_eq!(rectangle(Vec3::ZERO, Vec3::X, Vec3::Z).sample(vec3(3.0, 0.0, 0.0), Vec2::splat(0.3)), None);
     assert_eq!(disk(Vec3::ZERO, Vec3::Y, 1.0).sample(Vec3::ZERO, Vec2::splat(0.5)), None);
 }
 
-/// By solid angle a near rectangle varies less than by area; that is what the map is for.
+/// Sampling a near rectangle by solid angle has less variance than sampling it by area.
 #[test]
 fn solid_angles_vary_less_than_areas() {
     let light = RectangleEmitter::new(vec3(-1.0, 1.0, -1.0), [Vec3::X * 2.0, Vec3::Z * 2.0]).unwrap();
@@ -284,7 +293,7 @@ fn solid_angles_vary_less_than_areas() {
         let value = f64::from(sample.wi.y / sample.pdf);
         solid = [solid[0] + value, solid[1] + value * value];
         let point = DVec3::new(f64::from(u.x) * 2.0 - 1.0, 1.0, f64::from(u.y) * 2.0 - 1.0);
-        let pdf = area_density(from.as_dvec3(), point, DVec3::Y, 4.0);
+        let pdf = uniform_area_pdf(from.as_dvec3(), point, DVec3::Y, 4.0);
         let value = (point - from.as_dvec3()).normalize().y / pdf;
         area = [area[0] + value, area[1] + value * value];
     }

@@ -1,139 +1,147 @@
-//! A tree over many lights that picks one by what it may give at a point (Conty Estevez and Kulla, Importance Sampling
-//! of Many Lights with Adaptive Tree Splitting, 2018; bounds and importance as in Pharr, Jakob, Humphreys, PBR 4th
-//! ed., section 12.6.3).
+//! Light tree: selects one of many lights by its approximate contribution at a point (Conty Estevez
+//! and Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018; bounds and
+//! importance as in Pharr, Jakob, Humphreys, PBR 4th ed., section 12.6.3).
 //!
-//! Deviations: eight children a node, whose importances are computed side by side; angles are never computed, only
-//! their sines and cosines; bounds only decide whether light may arrive at all, and the importance is an estimate of its
-//! mean, never lower than a small share of what distance and power say, so that no such light has chance 0; the cosine at
-//! the point counts one side only.
+//! Deviations: a node has eight children, whose importances are computed in parallel. Angles are
+//! never computed, only their sines and cosines. Bounds decide only whether light may arrive at
+//! all. The importance estimates the mean contribution, with a lower bound in proportion to power
+//! over squared distance, so that no light that may arrive has probability 0. The cosine at the
+//! point counts one side only.
 //!
-//! A light's way from the root, three bits a level, is stored with it: its chance is found by the very operations that
-//! pick it, to the last bit.
+//! Each light stores its path from the root, three bits per level. Its probability is computed by
+//! the same operations as in sampling, so both agree to the last bit.
 
 use fearless_simd::dispatch;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Vec3};
 
 mod build;
+mod child_bounds;
+mod emission_profile;
 mod node;
-mod summary;
 #[cfg(test)]
 mod tests;
 
-use node::{Child, Node, Place};
+use node::{Child, Node, ShadingContext};
 
-/// What a light can do at most: where it is, which way it shines, how strongly.
+/// Bounds of a light's emission: position, directions and power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightBounds {
-    /// Holds every place that shines; finite.
+    /// Bounding box of all emitting points; finite.
     pub bounds: Aabb,
-    /// Axis of the cone of its normals, a unit vector.
+    /// Axis of the cone of normals, a unit vector.
     pub axis: Vec3,
-    /// Cosine of that cone's half angle: 1 for one normal, -1 for all directions.
+    /// Cosine of the half angle of this cone: 1 for a single normal, -1 for all directions.
     pub cos_theta_o: f32,
-    /// Cosine of the greatest angle to a normal under which it shines, beyond the cone: 0 for surfaces.
+    /// Cosine of the largest angle between a normal and the emitted light: 0 for surfaces.
     pub cos_theta_e: f32,
-    /// 4 π times the greatest intensity that leaves it in any direction: the power of a point light that is as bright. Any
-    /// unit that is the same for all lights.
+    /// 4π times the maximum intensity over all directions: the power of a uniform point light of
+    /// this intensity. The unit is arbitrary, but the same for all lights.
     pub power: f32,
-    /// Whether it shines to the other side as well.
+    /// Whether the light emits from both sides.
     pub two_sided: bool,
 }
 
-/// A light that was picked.
+/// Light selected by [`LightTree::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pick {
-    /// Which one.
+pub struct LightTreeSample {
+    /// Index of the light.
     pub index: u32,
-    /// The chance with which it was.
+    /// Probability of the selection.
     pub probability: f32,
-    /// The random number that picked it, stretched to [0, 1) again. After many levels few of its bits are left.
-    pub rest: f32,
+    /// Random number left by the selection, rescaled to [0, 1). After many levels few of its bits
+    /// remain.
+    pub u_remapped: f32,
 }
 
-/// A tree over lights.
+/// Light tree.
 #[derive(Clone, Debug)]
 pub struct LightTree {
-    /// The root is the first; none when nothing shines.
+    /// Nodes, the root first; empty if no light emits.
     nodes: Vec<Node>,
-    /// The slots from the root to each light, lowest bits first; [`Self::DARK`] for one that is never picked.
-    trails: Vec<u64>,
-    /// A power of two that takes the world's coordinates below 1.
+    /// Slots from the root to each light, the lowest bits first; [`Self::NOT_IN_TREE`] for a light
+    /// that is never selected.
+    bit_trails: Vec<u64>,
+    /// Power of two that scales world coordinates below 1.
     scale: f32,
-    /// The vector unit that weighs children.
+    /// Vector instructions that compute the importances.
     level: SimdLevel,
 }
 
 impl Default for LightTree {
-    /// A tree over nothing.
+    /// Creates a tree without lights.
     fn default() -> Self {
         Self::build(&[])
     }
 }
 
 impl LightTree {
-    /// The trail of a light that is not in the tree. A trail has 21 levels, 63 bits.
-    const DARK: u64 = u64::MAX;
+    /// Bit trail of a light that is not in the tree. A bit trail has 21 levels, 63 bits.
+    const NOT_IN_TREE: u64 = u64::MAX;
 
-    /// A tree over lights. Those with a power that is not above 0, or a box that is empty or not finite, are never
-    /// picked.
+    /// Builds a tree over lights. A light is never selected if its power is not above 0, or if its
+    /// box is empty or not finite.
     pub fn build(lights: &[LightBounds]) -> Self {
         build::build(lights)
     }
 
-    /// The same tree for another vector unit than the best of this machine: for tests and measurements.
+    /// Sets the vector instructions, which are the best of this machine by default; for tests and
+    /// benchmarks.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.level = level;
         self
     }
 
-    /// Bytes on the heap.
+    /// Heap memory in bytes.
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.trails.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.bit_trails.as_slice())
     }
 
-    /// Picks a light for a point by `u` in [0, 1); `None` when none can light it.
+    /// Selects a light for a point with `u` in [0, 1); `None` if no light can illuminate the point.
     ///
-    /// `normal` is the unit normal on the side that is to be lit: what lies wholly below its plane is not picked.
-    /// `Vec3::ZERO` where light counts from all sides: media, surfaces that let light through.
-    pub fn sample(&self, point: Vec3, normal: Vec3, u: f32) -> Option<Pick> {
-        dispatch!(self.level, _ => self.descend(point, normal, u))
+    /// `normal` is the unit normal on the lit side: lights that lie wholly below its plane are not
+    /// selected. It is `Vec3::ZERO` where light from all sides counts, in media and on transmissive
+    /// surfaces.
+    pub fn sample(&self, point: Vec3, normal: Vec3, u: f32) -> Option<LightTreeSample> {
+        dispatch!(self.level, _ => self.sample_impl(point, normal, u))
     }
 
     #[inline(always)]
-    fn descend(&self, point: Vec3, normal: Vec3, u: f32) -> Option<Pick> {
-        let place = self.place(point, normal);
+    fn sample_impl(&self, point: Vec3, normal: Vec3, u: f32) -> Option<LightTreeSample> {
+        let context = self.to_tree_space(point, normal);
         let mut node = self.nodes.first()?;
-        let mut weights = node.weights(&place);
-        let (mut probability, mut rest) = (1.0, u);
+        let mut importances = node.importances(&context);
+        let (mut probability, mut u_remapped) = (1.0, u);
         loop {
-            let (slot, chance, stretched) = weights.pick(rest)?;
-            probability *= chance;
-            rest = stretched;
+            let (slot, slot_probability, remapped) = importances.sample(u_remapped)?;
+            probability *= slot_probability;
+            u_remapped = remapped;
             match node.child(slot) {
-                Child::Light(index) => return Some(Pick { index, probability, rest }),
+                Child::Light(index) => return Some(LightTreeSample { index, probability, u_remapped }),
                 Child::Node(index) => node = self.nodes.get(index)?,
             }
-            weights = node.weights(&place).or_powers(node);
+            importances = node.importances(&context).or_by_power(node);
         }
     }
 
-    /// The chance with which [`LightTree::sample`] picks this light for the same point and normal.
+    /// Probability with which [`LightTree::sample`] selects the light `index` for the same point
+    /// and normal.
     pub fn probability(&self, point: Vec3, normal: Vec3, index: u32) -> f32 {
-        dispatch!(self.level, _ => self.follow(point, normal, index))
+        dispatch!(self.level, _ => self.probability_impl(point, normal, index))
     }
 
     #[inline(always)]
-    fn follow(&self, point: Vec3, normal: Vec3, index: u32) -> f32 {
-        let trail = self.trails.get(index as usize).copied().filter(|trail| *trail != Self::DARK);
-        let (Some(mut trail), Some(mut node)) = (trail, self.nodes.first()) else { return 0.0 };
-        let place = self.place(point, normal);
-        let mut weights = node.weights(&place);
+    fn probability_impl(&self, point: Vec3, normal: Vec3, index: u32) -> f32 {
+        let bit_trail =
+            self.bit_trails.get(index as usize).copied().filter(|bit_trail| *bit_trail != Self::NOT_IN_TREE);
+        let (Some(mut bit_trail), Some(mut node)) = (bit_trail, self.nodes.first()) else { return 0.0 };
+        let context = self.to_tree_space(point, normal);
+        let mut importances = node.importances(&context);
         let mut probability = 1.0;
         loop {
-            let slot = (trail & 7) as usize;
-            trail >>= 3;
-            probability *= weights.chance(slot);
+            let slot = (bit_trail & 7) as usize;
+            bit_trail >>= 3;
+            probability *= importances.probability(slot);
             match node.child(slot) {
                 Child::Node(next) if probability > 0.0 => match self.nodes.get(next) {
                     Some(next) => node = next,
@@ -141,18 +149,18 @@ impl LightTree {
                 },
                 _ => return probability,
             }
-            weights = node.weights(&place).or_powers(node);
+            importances = node.importances(&context).or_by_power(node);
         }
     }
 
-    /// The point in the tree's coordinates. From a thousand million times as far as the lights lie from the origin,
-    /// nothing changes any more but the size of the numbers.
+    /// Converts a point to the tree's coordinates. Points beyond 10^9 times the extent of the
+    /// lights are moved to that distance, which changes only the magnitude of the numbers.
     #[inline(always)]
-    fn place(&self, point: Vec3, normal: Vec3) -> Place {
+    fn to_tree_space(&self, point: Vec3, normal: Vec3) -> ShadingContext {
         const FAR: f32 = 1e9;
         let scaled = point * self.scale;
         let near = scaled.abs().max_element() <= FAR;
         let point = if near { scaled } else { point / point.abs().max_element() * FAR };
-        Place::new(point, normal)
+        ShadingContext::new(point, normal)
     }
 }

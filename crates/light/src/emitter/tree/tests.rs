@@ -1,14 +1,14 @@
-//! Light trees against brute force.
+//! Tests of light trees against brute force.
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared};
 use juggler_math::{DVec3, Frame, Vec2, warp};
 
-/// A light of any kind in the cube of half edge `size`, of the extent `extent`.
+/// Random light in the cube of half edge `size`, with a box of up to `extent`.
 fn any_light(random: &mut Random, size: f32, extent: f32) -> LightBounds {
-    let (place, half) = (random.point(size), random.vec3() * extent);
+    let (point_on_light, half) = (random.point(size), random.vec3() * extent);
     let half = if random.below(2) == 0 { Vec3::ZERO } else { half };
-    let bounds = Aabb { min: place - half, max: place + half };
+    let bounds = Aabb { min: point_on_light - half, max: point_on_light + half };
     let axis = [random.unit_vector(), Vec3::NEG_Y][random.below(2)];
     let (cos_theta_o, cos_theta_e) = match random.below(5) {
         0 => (-1.0, 0.0),
@@ -35,10 +35,12 @@ fn point_light(position: Vec3, power: f32) -> LightBounds {
     LightBounds { bounds, axis: Vec3::Y, cos_theta_o: -1.0, cos_theta_e: 0.0, power, two_sided: false }
 }
 
-/// Whether a random place of the light with a random normal shines at a point: the truth that bounds must hold.
-fn shines(random: &mut Random, light: &LightBounds, point: Vec3, normal: Vec3) -> bool {
-    let share = (random.vec3() * 3.0 - 1.0).clamp(Vec3::ZERO, Vec3::ONE);
-    let place = (light.bounds.min + light.bounds.extent() * share).clamp(light.bounds.min, light.bounds.max);
+/// Whether a random point of the light with a random normal illuminates a point: the reference for
+/// the bounds.
+fn illuminates(random: &mut Random, light: &LightBounds, point: Vec3, normal: Vec3) -> bool {
+    let fraction = (random.vec3() * 3.0 - 1.0).clamp(Vec3::ZERO, Vec3::ONE);
+    let point_on_light =
+        (light.bounds.min + light.bounds.extent() * fraction).clamp(light.bounds.min, light.bounds.max);
     let size = (1.0 - light.cos_theta_o) * if random.below(2) == 0 { 1.0 } else { random.f32() };
     let rim = Vec3::from((warp::uniform_cone(Vec2::new(1f32.next_down(), random.f32()), size).truncate(), 0.0));
     let from_axis = rim.with_z(1.0 - size);
@@ -46,22 +48,22 @@ fn shines(random: &mut Random, light: &LightBounds, point: Vec3, normal: Vec3) -
     if light.two_sided && random.below(2) == 0 {
         emitted = -emitted;
     }
-    let way: DVec3 = point.as_dvec3() - place.as_dvec3();
-    let leaves = way.normalize_or_zero().dot(emitted) > f64::from(light.cos_theta_e);
-    leaves && (normal == Vec3::ZERO || -way.dot(normal.as_dvec3()) > 0.0)
+    let from_light: DVec3 = point.as_dvec3() - point_on_light.as_dvec3();
+    let leaves = from_light.normalize_or_zero().dot(emitted) > f64::from(light.cos_theta_e);
+    leaves && (normal == Vec3::ZERO || -from_light.dot(normal.as_dvec3()) > 0.0)
 }
 
 #[test]
 fn normals_in_all_directions_fill_the_sphere_to_the_last_bit() {
     use std::f64::consts::PI;
-    assert_eq!(summary::solid_angle(PI, PI).to_bits(), (4.0 * PI).to_bits());
-    assert_eq!(juggler_math::fun::acos_f64(-1.0).to_bits(), PI.to_bits());
+    assert_eq!(child_bounds::solid_angle(PI, PI).to_bits(), (4.0 * PI).to_bits());
+    assert_eq!(juggler_math::portable::acos_f64(-1.0).to_bits(), PI.to_bits());
 }
 
 #[test]
-fn no_light_that_shines_has_no_chance() {
+fn no_light_that_illuminates_has_probability_zero() {
     let mut random = Random::new(1001);
-    let mut shone = 0;
+    let mut illuminated = 0;
     for round in 0..400 {
         let lights = any_lights(&mut random, [1, 5, 9, 40, 300][round % 5]);
         let tree = LightTree::build(&lights);
@@ -71,68 +73,68 @@ fn no_light_that_shines_has_no_chance() {
             let normal = any_normal(&mut random);
             for _ in 0..40 {
                 let index = random.below(lights.len());
-                if shines(&mut random, &lights[index], point, normal) {
-                    shone += 1;
-                    let chance = tree.probability(point, normal, index as u32);
-                    assert!(chance > 0.0, "{point} {normal} {:?}", lights[index]);
+                if illuminates(&mut random, &lights[index], point, normal) {
+                    illuminated += 1;
+                    let probability = tree.probability(point, normal, index as u32);
+                    assert!(probability > 0.0, "{point} {normal} {:?}", lights[index]);
                 }
             }
         }
     }
-    assert!(shone > 30_000, "{shone}");
+    assert!(illuminated > 30_000, "{illuminated}");
 }
 
 #[test]
-fn chances_sum_to_one_and_are_those_of_the_picks_to_the_bit() {
+fn probabilities_sum_to_one_and_equal_those_of_the_samples_to_the_bit() {
     let mut random = Random::new(1002);
-    let mut picked = 0;
+    let mut sampled = 0;
     for round in 0..120 {
         let lights = any_lights(&mut random, [1, 2, 8, 9, 70, 600][round % 6]);
         let tree = LightTree::build(&lights);
         let (point, normal) = (random.point(1.5), any_normal(&mut random));
-        let chance = |index: usize| f64::from(tree.probability(point, normal, index as u32));
-        let sum: f64 = (0..lights.len()).map(chance).sum();
+        let probability = |index: usize| f64::from(tree.probability(point, normal, index as u32));
+        let sum: f64 = (0..lights.len()).map(probability).sum();
         assert!((sum - 1.0).abs() < 1e-5 || sum == 0.0, "{sum}");
         for i in 0..300 {
             let u = [0.0, 1f32.next_down()].get(i).copied().unwrap_or_else(|| random.f32());
-            let Some(pick) = tree.sample(point, normal, u) else {
+            let Some(sample) = tree.sample(point, normal, u) else {
                 assert_eq!(sum, 0.0);
                 continue;
             };
-            picked += 1;
-            assert!(pick.probability > 0.0 && (0.0..1.0).contains(&pick.rest), "{pick:?}");
-            let chance = tree.probability(point, normal, pick.index);
-            assert_eq!(pick.probability.to_bits(), chance.to_bits(), "{pick:?} {chance}");
+            sampled += 1;
+            assert!(sample.probability > 0.0 && (0.0..1.0).contains(&sample.u_remapped), "{sample:?}");
+            let probability = tree.probability(point, normal, sample.index);
+            assert_eq!(sample.probability.to_bits(), probability.to_bits(), "{sample:?} {probability}");
         }
     }
-    assert!(picked > 20_000, "{picked}");
+    assert!(sampled > 20_000, "{sampled}");
 }
 
 #[test]
-fn picks_are_as_frequent_as_their_chances_and_the_rest_is_uniform() {
+fn samples_are_as_frequent_as_their_probabilities_and_remapped_numbers_are_uniform() {
     let mut random = Random::new(1003);
     for count in [3usize, 8, 50, 400] {
         let mut lights = any_lights(&mut random, count);
         lights[0].cos_theta_o = -1.0;
-        let (tree, point, picks) = (LightTree::build(&lights), random.point(1.0), 1_000_000);
+        let (tree, point, samples) = (LightTree::build(&lights), random.point(1.0), 1_000_000);
         let normal = (lights[0].bounds.center() - point).normalize();
-        let (mut observed, mut rests) = (vec![0.0; count], [0.0; 20]);
-        for _ in 0..picks {
-            let pick = tree.sample(point, normal, random.f32()).unwrap();
-            observed[pick.index as usize] += 1.0;
-            rests[(pick.rest * 20.0) as usize] += 1.0;
+        let (mut observed, mut remapped) = (vec![0.0; count], [0.0; 20]);
+        for _ in 0..samples {
+            let sample = tree.sample(point, normal, random.f32()).unwrap();
+            observed[sample.index as usize] += 1.0;
+            remapped[(sample.u_remapped * 20.0) as usize] += 1.0;
         }
-        let chance = |i: usize| f64::from(tree.probability(point, normal, i as u32)) * f64::from(picks);
-        chi_squared(&observed, &(0..count).map(chance).collect::<Vec<_>>(), 1e-3 / 8.0).unwrap();
-        chi_squared(&rests, &[f64::from(picks) / 20.0; 20], 1e-3 / 8.0).unwrap();
+        let probability = |i: usize| f64::from(tree.probability(point, normal, i as u32)) * f64::from(samples);
+        chi_squared(&observed, &(0..count).map(probability).collect::<Vec<_>>(), 1e-3 / 8.0).unwrap();
+        chi_squared(&remapped, &[f64::from(samples) / 20.0; 20], 1e-3 / 8.0).unwrap();
     }
 }
 
 #[test]
-fn few_lights_are_picked_by_power_cosine_and_distance() {
+fn few_lights_are_sampled_by_power_cosine_and_distance() {
     let lights = [point_light(Vec3::new(3.0, 0.0, 4.0), 2.0), point_light(Vec3::new(0.0, 0.0, 2.0), 0.5)];
     let tree = LightTree::build(&lights);
-    // 2/25 and 0.5/4; with a normal along z times 4/5 and 1.
+    // The importances are 2/25 and 0.5/4; a normal along z multiplies them by 4/5 and 1.
     let near = |normal, expected: f32| (tree.probability(Vec3::ZERO, normal, 0) / expected - 1.0).abs() < 1e-4;
     assert!(near(Vec3::ZERO, 0.08 / 0.205) && near(Vec3::Z, 0.064 / 0.189));
     assert!(tree.sample(Vec3::ZERO, -Vec3::Z, 0.5).is_none() && tree.sample(Vec3::ZERO, Vec3::X, 0.9).is_some());
@@ -140,7 +142,7 @@ fn few_lights_are_picked_by_power_cosine_and_distance() {
 }
 
 #[test]
-fn what_cannot_shine_is_never_picked() {
+fn lights_that_cannot_emit_are_never_sampled() {
     let none = LightTree::build(&[]);
     assert!(none.sample(Vec3::ZERO, Vec3::Y, 0.3).is_none() && none.probability(Vec3::ZERO, Vec3::Y, 0) == 0.0);
     let mut lights: Vec<_> =
@@ -161,8 +163,8 @@ fn coincident_lights_share_evenly_and_from_their_place_too() {
     let tree = LightTree::build(&lights);
     for point in [Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), Vec3::splat(1e38), Vec3::splat(1e-38)] {
         for index in [0, 1, 500, 999] {
-            let chance = tree.probability(point, Vec3::ZERO, index);
-            assert!((chance * 1000.0 - 1.0).abs() < 1e-3, "{point}: {chance}");
+            let probability = tree.probability(point, Vec3::ZERO, index);
+            assert!((probability * 1000.0 - 1.0).abs() < 1e-3, "{point}: {probability}");
         }
     }
 }
@@ -193,7 +195,7 @@ fn extremes_in_one_scene_stay_numbers() {
     let mut random = Random::new(1005);
     let number = |random: &mut Random| {
         let exponent = random.range(-15.0, 15.0);
-        random.range(-1.0, 1.0) * juggler_math::fun::powf(10.0, exponent)
+        random.range(-1.0, 1.0) * juggler_math::portable::powf(10.0, exponent)
     };
     let vector = |random: &mut Random| Vec3::new(number(random), number(random), number(random));
     let lights: Vec<_> = (0..500)
@@ -205,15 +207,15 @@ fn extremes_in_one_scene_stay_numbers() {
     let tree = LightTree::build(&lights);
     for _ in 0..5000 {
         let (point, normal) = (vector(&mut random), any_normal(&mut random));
-        if let Some(pick) = tree.sample(point, normal, random.f32()) {
-            assert!(pick.probability > 0.0 && pick.probability <= 1.0 && pick.rest < 1.0, "{pick:?}");
+        if let Some(sample) = tree.sample(point, normal, random.f32()) {
+            assert!(sample.probability > 0.0 && sample.probability <= 1.0 && sample.u_remapped < 1.0, "{sample:?}");
         }
         let sum: f64 = (0..500).map(|i| f64::from(tree.probability(point, normal, i))).sum();
         assert!((sum - 1.0).abs() < 1e-5 || sum == 0.0, "{point} {normal} {sum}");
     }
 }
 
-/// Places that halve their distance again and again are what makes trees deep.
+/// Lights at distances that halve repeatedly make deep trees.
 #[test]
 fn depth_is_bounded() {
     let mut lights: Vec<_> = (0..150).map(|i| point_light(Vec3::X * 0.5f32.powi(i), 1.0)).collect();
@@ -224,39 +226,41 @@ fn depth_is_bounded() {
     assert!(tree.heap_bytes() < 20_150 * 300, "{}", tree.heap_bytes());
 }
 
-/// The variance of one pick's answer, in units of the squared truth, by chances that are summed over all lights.
-fn relative_variance(lights: &[LightBounds], point: Vec3, normal: Vec3, chance: impl Fn(usize) -> f64) -> f64 {
-    let gives = |light: &LightBounds| {
-        let way = light.bounds.center() - point;
-        let squared = f64::from(way.length_squared());
-        let cosine = f64::from(way.normalize().dot(normal)).max(0.0);
-        let leaving = f64::from(-way.normalize().dot(light.axis)).max(0.0);
+/// Variance of the one-sample estimator relative to the squared true value, with probabilities
+/// summed over all lights.
+fn relative_variance(lights: &[LightBounds], point: Vec3, normal: Vec3, probability: impl Fn(usize) -> f64) -> f64 {
+    let contribution = |light: &LightBounds| {
+        let to_light = light.bounds.center() - point;
+        let squared = f64::from(to_light.length_squared());
+        let cosine = f64::from(to_light.normalize().dot(normal)).max(0.0);
+        let leaving = f64::from(-to_light.normalize().dot(light.axis)).max(0.0);
         let emission = if light.cos_theta_o < 0.0 { 1.0 } else { leaving };
         f64::from(light.power) * emission * cosine / squared
     };
-    let truth: f64 = lights.iter().map(gives).sum();
-    let squares = lights.iter().enumerate().filter(|(_, light)| gives(light) > 0.0);
-    squares.map(|(i, light)| gives(light) * gives(light) / chance(i)).sum::<f64>() / (truth * truth) - 1.0
+    let truth: f64 = lights.iter().map(contribution).sum();
+    let squares = lights.iter().enumerate().filter(|(_, light)| contribution(light) > 0.0);
+    squares.map(|(i, light)| contribution(light) * contribution(light) / probability(i)).sum::<f64>() / (truth * truth)
+        - 1.0
 }
 
 #[test]
 fn many_lights_vary_far_less_than_by_power() {
     let mut random = Random::new(1006);
-    // Lamps under a ceiling, shining down, and bulbs.
-    let lamp = |random: &mut Random| {
+    // Downlights below a ceiling, and point lights.
+    let downlight = |random: &mut Random| {
         let position = Vec3::new(random.range(-20.0, 20.0), random.range(2.5, 3.0), random.range(-20.0, 20.0));
         let cos_theta_o = if random.below(4) == 0 { -1.0 } else { 1.0 };
         LightBounds { axis: Vec3::NEG_Y, cos_theta_o, ..point_light(position, random.range(0.5, 2.0)) }
     };
-    let lights: Vec<_> = (0..2000).map(|_| lamp(&mut random)).collect();
+    let lights: Vec<_> = (0..2000).map(|_| downlight(&mut random)).collect();
     let tree = LightTree::build(&lights);
     let total: f64 = lights.iter().map(|light| f64::from(light.power)).sum();
     let (mut by_tree, mut by_power) = (0.0, 0.0);
     for _ in 0..100 {
         let point = Vec3::new(random.range(-20.0, 20.0), random.range(0.0, 2.0), random.range(-20.0, 20.0));
         let normal = Frame::around(Vec3::Y).to_world(warp::cosine_hemisphere(random.vec2()));
-        let chance = |i: usize| f64::from(tree.probability(point, normal, i as u32));
-        by_tree += relative_variance(&lights, point, normal, chance);
+        let probability = |i: usize| f64::from(tree.probability(point, normal, i as u32));
+        by_tree += relative_variance(&lights, point, normal, probability);
         by_power += relative_variance(&lights, point, normal, |i| f64::from(lights[i].power) / total);
     }
     assert!(by_tree * 100.0 < by_power, "{by_tree} {by_power}");
@@ -273,13 +277,13 @@ fn lights_that_face_anywhere_vary_little_from_among_them_too() {
     let lights: Vec<_> = (0..2000).map(|_| flat(&mut random)).collect();
     let tree = LightTree::build(&lights);
     let mut variance = |reach: f32| {
-        let of_place = |random: &mut Random| {
+        let of_point = |random: &mut Random| {
             let point = Vec3::from_array([0; 3].map(|_| random.range(-reach, reach)));
             let normal = random.unit_vector();
             relative_variance(&lights, point, normal, |i| f64::from(tree.probability(point, normal, i as u32)))
         };
-        // No number where nothing shines.
-        let all: Vec<f64> = (0..300).map(|_| of_place(&mut random)).filter(|one| one.is_finite()).collect();
+        // NaN where no light arrives.
+        let all: Vec<f64> = (0..300).map(|_| of_point(&mut random)).filter(|one| one.is_finite()).collect();
         assert!(all.len() > 200);
         all.iter().sum::<f64>() / all.len() as f64
     };

@@ -1,4 +1,4 @@
-//! Values as numbers: what can be interpolated, and back into the form of a value.
+//! Conversion of JSON values to numbers that can be interpolated, and back.
 
 use crate::animate::{number, numbers};
 use crate::document::{Node, Value};
@@ -7,43 +7,46 @@ use juggler_math::Rgb;
 use juggler_math::quaternion;
 use std::sync::Arc;
 
-/// How colours become numbers: linear red, green and blue, in which they are mixed.
-fn channels(text: &str) -> Option<[f64; 3]> {
+/// Linear red, green and blue of a hexadecimal color.
+fn linear_rgb(text: &str) -> Option<[f64; 3]> {
     let Rgb { r, g, b } = Rgb::from_hex(text)?;
     Some([r, g, b].map(f64::from))
 }
 
-/// Whether something inside is a mistake that has been reported.
-pub fn holds_mistake(node: &Node) -> bool {
+/// Whether a value contains an error that is reported already.
+pub fn has_error(node: &Node) -> bool {
     match &node.value {
-        Value::Wrong => true,
-        Value::Array(elements) => elements.iter().any(holds_mistake),
-        Value::Object(members) => members.values().any(|member| holds_mistake(&member.node)),
+        Value::Invalid => true,
+        Value::Array(elements) => elements.iter().any(has_error),
+        Value::Object(members) => members.values().any(|member| has_error(&member.node)),
         _ => false,
     }
 }
 
-/// Why there is nothing between this value and another.
-pub fn unblendable(node: &Node) -> Option<String> {
+/// Error message if a value cannot be interpolated.
+pub fn interpolation_error(node: &Node) -> Option<String> {
     match &node.value {
         Value::Number(_) => None,
-        Value::String(text) if channels(text).is_some() => None,
+        Value::String(text) if linear_rgb(text).is_some() => None,
         Value::String(text) if text.starts_with('#') => Some(format!(
-            "`{text}` is not a colour: one is written \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\""
+            "`{text}` is not a color: a color is written \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\""
         )),
         Value::Array(elements) if elements.is_empty() => Some("an array without numbers cannot be interpolated".into()),
-        Value::Array(elements) => elements.iter().find_map(unblendable),
+        Value::Array(elements) => elements.iter().find_map(interpolation_error),
         _ => Some(format!(
-            "only numbers, arrays of numbers and colours can be interpolated, this is {}: write \"interpolation\": \"step\"",
+            "only numbers, arrays of numbers and colors can be interpolated, this is {}: write \"interpolation\": \"step\"",
             node.kind()
         )),
     }
 }
 
-/// How a value's form differs from that of the first key; both can be interpolated.
-pub fn differs(node: &Node, first: &Node) -> Option<String> {
+/// Error message if the form of a value differs from that of the first key. Both values can be
+/// interpolated.
+pub fn form_mismatch(node: &Node, first: &Node) -> Option<String> {
     let same = same_form(node, first);
-    (!same).then(|| format!("this key's value is {}, that of the first key {}", told(node), told(first)))
+    (!same).then(|| {
+        format!("this key's value is {}, but the value of the first key is {}", describe(node), describe(first))
+    })
 }
 
 fn same_form(a: &Node, b: &Node) -> bool {
@@ -59,9 +62,9 @@ fn same_form(a: &Node, b: &Node) -> bool {
     }
 }
 
-fn told(node: &Node) -> String {
+fn describe(node: &Node) -> String {
     match &node.value {
-        Value::String(_) => "a colour".into(),
+        Value::String(_) => "a color".into(),
         Value::Array(elements) if elements.iter().any(|inner| matches!(inner.value, Value::Array(_))) => {
             let inner = elements.iter().map(|inner| inner.elements().len().to_string()).take(4).collect::<Vec<_>>();
             let more = if elements.len() > inner.len() { ", ..." } else { "" };
@@ -72,7 +75,7 @@ fn told(node: &Node) -> String {
     }
 }
 
-/// The numbers of a value that can be interpolated, in order.
+/// Numbers of a value that can be interpolated, in order.
 pub fn flat(node: &Node) -> Vec<f64> {
     let mut numbers = Vec::new();
     flatten(node, &mut numbers);
@@ -82,45 +85,45 @@ pub fn flat(node: &Node) -> Vec<f64> {
 fn flatten(node: &Node, numbers: &mut Vec<f64>) {
     match &node.value {
         Value::Number(number) => numbers.push(number.as_f64().unwrap_or_default()),
-        Value::String(text) => numbers.extend(channels(text).unwrap_or_default()),
+        Value::String(text) => numbers.extend(linear_rgb(text).unwrap_or_default()),
         Value::Array(elements) => elements.iter().for_each(|element| flatten(element, numbers)),
         _ => {}
     }
 }
 
-/// A value of the form of `node` with these numbers.
-pub fn formed(node: &Node, values: &mut impl Iterator<Item = f64>) -> Node {
+/// Creates a value with the form of `node` from numbers.
+pub fn with_numbers(node: &Node, values: &mut impl Iterator<Item = f64>) -> Node {
     let value = match &node.value {
         Value::String(_) => return numbers(values.by_ref().take(3), node),
         Value::Array(elements) => {
-            Value::Array(Arc::new(elements.iter().map(|element| formed(element, values)).collect()))
+            Value::Array(Arc::new(elements.iter().map(|element| with_numbers(element, values)).collect()))
         }
         _ => number(values.next().unwrap_or_default()),
     };
     Node { place: node.place, value }
 }
 
-/// The rotation of a value: four numbers, or an axis and degrees; or why it is none.
+/// Rotation from a quaternion, or from an axis and an angle in degrees; otherwise an error message.
 pub fn rotation(node: &Node) -> Result<DQuat, String> {
     let expected = "a rotation is a quaternion [x, y, z, w] or {\"axis\": [x, y, z], \"degrees\": ...}";
     match &node.value {
         Value::Array(elements) => {
-            let written = exactly(elements).ok_or_else(|| format!("{expected}, this is {}", told(node)))?;
-            quaternion::unit(written).ok_or_else(|| "a quaternion must not be all 0: it turns nowhere".into())
+            let written = numbers_array(elements).ok_or_else(|| format!("{expected}, this is {}", describe(node)))?;
+            quaternion::normalized(written).ok_or_else(|| "a quaternion must not be zero".into())
         }
         Value::Object(members) => {
-            let axis = members.get("axis").and_then(|axis| exactly(axis.node.elements()));
-            let degrees = members.get("degrees").and_then(|degrees| exactly(std::slice::from_ref(&degrees.node)));
+            let axis = members.get("axis").and_then(|axis| numbers_array(axis.node.elements()));
+            let degrees = members.get("degrees").and_then(|degrees| numbers_array(std::slice::from_ref(&degrees.node)));
             let (Some(axis), Some([degrees]), 2) = (axis, degrees, members.len()) else { return Err(expected.into()) };
-            quaternion::turn(DVec3::from_array(axis), degrees)
-                .ok_or_else(|| "`axis` must not be zero: there is nothing to turn about".into())
+            quaternion::from_axis_degrees(DVec3::from_array(axis), degrees)
+                .ok_or_else(|| "`axis` must not be zero".into())
         }
         _ => Err(format!("{expected}, this is {}", node.kind())),
     }
 }
 
-/// The numbers of an array that has exactly so many.
-fn exactly<const N: usize>(elements: &[Node]) -> Option<[f64; N]> {
+/// Numbers of an array with exactly `N` elements.
+fn numbers_array<const N: usize>(elements: &[Node]) -> Option<[f64; N]> {
     let number = |node: &Node| match &node.value {
         Value::Number(number) => number.as_f64(),
         _ => None,

@@ -1,4 +1,4 @@
-//! Where two bones meet.
+//! Value form `joint`: position of the joint of two bones.
 //!
 //! ```json
 //! {"joint": {"from": [0, 0, 0], "to": [0, 4, 0], "lengths": [3, 2], "plane_normal": [0, 0, 1]}}
@@ -6,32 +6,35 @@
 
 use super::Kind;
 use crate::animate::numbers;
-use crate::animate::walk::Walk;
+use crate::animate::tree_resolver::TreeResolver;
 use crate::description::{Bones, positive_items};
 use crate::document::Node;
-use crate::path::Trail;
+use crate::path::PathRef;
 use crate::report::Finding;
 use juggler_math::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where two bones meet, as for the object `limb`: an elbow or a knee, to put anything along the bones.
+/// Position of the joint of two bones, as in a `limb`: an elbow or a knee, to place shapes along
+/// the bones.
 ///
-/// It lies in the plane through `from` that `plane_normal` is perpendicular to, on the side of the cross product
-/// (to − from) × normal.
+/// The bones bend from the line between the ends toward the direction of the cross product
+/// (to − from) × `plane_normal`. The distance between the ends must not exceed the sum of the
+/// lengths, nor fall below their difference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Joint {
     /// One end: a hand or a foot.
     pub from: [f64; 3],
-    /// The other end: a shoulder or a hip.
+    /// Other end: a shoulder or a hip.
     pub to: [f64; 3],
-    /// Lengths of the bone at `from` and of the bone at `to`.
+    /// Lengths of the bones at `from` and at `to`.
     #[schemars(transform = positive_items)]
     pub lengths: [f64; 2],
-    /// Normal of the plane in which the bones bend; need not be unit.
+    /// Normal of the plane in which the bones bend. Any length except zero; must not be parallel to
+    /// `to − from`.
     pub plane_normal: [f64; 3],
-    /// Whether the bones keep their lengths although `plane_normal` is not perpendicular to the line between the
-    /// ends. Without it the joint comes nearer to that line.
+    /// Whether the bones keep their lengths if `plane_normal` is not perpendicular to `to − from`.
+    /// With `false`, the joint moves closer to the line between the ends.
     #[serde(default = "yes")]
     pub keep_lengths: bool,
 }
@@ -42,19 +45,19 @@ fn yes() -> bool {
 
 pub const KIND: Kind = Kind { name: "joint", value };
 
-fn value(walk: &mut Walk<'_>, content: &Node, at: &Trail<'_>) -> Option<Node> {
-    let Joint { from, to, lengths, plane_normal, keep_lengths } = walk.read("Joint", content, at)?;
-    walk.note(at, |track| track);
+fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> Option<Node> {
+    let Joint { from, to, lengths, plane_normal, keep_lengths } = resolver.read("Joint", content, at)?;
+    resolver.record_form(at, |track| track);
     let [from, to, plane_normal] = [from, to, plane_normal].map(DVec3::from);
     match (Bones { from, to, lengths, plane_normal, keep_lengths }).joint() {
         Ok(joint) if joint.is_finite() => Some(numbers(joint.to_array(), content)),
         Ok(_) => {
-            walk.wrong(content, at, "these numbers are too large: the joint has no place");
+            resolver.report_error(content, at, "these numbers are too large: the position of the joint is not finite");
             None
         }
         Err(wrong) => {
             let node = content.get(wrong.field).unwrap_or(content);
-            walk.report(Finding::error(wrong.message).at(at.join(wrong.field)).on(node.place));
+            resolver.report(Finding::error(wrong.message).at(at.join(wrong.field)).on(node.place));
             None
         }
     }

@@ -1,11 +1,11 @@
-//! Value forms: objects with one reserved key that stand wherever a value may stand, and become a value at each frame.
+//! Value forms: objects with one reserved key that replace a value and are evaluated at each frame.
 //!
-//! To add one: write its file with the struct of its settings, which is its JSON, and its [`Kind`]; then a line in
-//! [`ValueForm`] and one in [`KINDS`].
+//! To add a form, write its file with the struct of its settings, which defines its JSON, and its
+//! [`Kind`]; then add a line to [`ValueForm`] and one to [`KINDS`].
 
-use super::walk::Walk;
+use super::tree_resolver::TreeResolver;
 use crate::document::{Members, Node};
-use crate::path::Trail;
+use crate::path::PathRef;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,34 +18,34 @@ mod track;
 pub use along::Along;
 pub use joint::Joint;
 pub use keys::{Key, MAX_KEYS};
-pub use track::{Animate, Interpolation, Repeat};
+pub use track::{Animate, Extrapolation, Interpolation};
 
-/// Stands wherever a value may stand, in `variables` and inside each other too, and becomes a value at each frame.
-/// Everything inside may be an expression.
+/// Value form, which may replace a value, also in `variables` and inside other value forms, and
+/// is evaluated at each frame. All values inside may be expressions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ValueForm {
-    /// A value that changes from key to key.
+    /// Value interpolated between keys.
     Animate(Animate),
-    /// A point on one of the scene's paths: three numbers.
+    /// Point on a path of the scene: three numbers.
     Along(Along),
-    /// Where two bones meet: three numbers.
+    /// Position of the joint of two bones: three numbers.
     Joint(Joint),
 }
 
 /// All value forms.
 pub const KINDS: [Kind; 3] = [track::KIND, along::KIND, joint::KIND];
 
-/// A value form as the walk uses it.
+/// Value form, as the traversal uses it.
 pub struct Kind {
-    /// Its reserved key.
+    /// Reserved key.
     pub name: &'static str,
-    /// Its value, from its content; nothing when something is wrong with it, which is then reported. The value's place is
-    /// where to look when it does not fit.
-    pub value: fn(&mut Walk<'_>, &Node, &Trail<'_>) -> Option<Node>,
+    /// Evaluates the form's content, whose expressions are resolved. Returns `None` after an error,
+    /// which the function reports. Later errors refer to the source location of the returned value.
+    pub value: fn(&mut TreeResolver<'_>, &Node, &PathRef<'_>) -> Option<Node>,
 }
 
-/// The form that an object is, or was meant to be.
+/// Value form whose reserved key an object has.
 pub fn kind_in(members: &Members) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| members.contains_key(kind.name))
 }

@@ -1,31 +1,32 @@
-//! Wavefront OBJ ("Advanced Visualizer" manual, Wavefront Technologies 1992, appendix B1): polygons from
-//! `v`, `vt`, `vn` and `f`.
+//! Wavefront OBJ ("Advanced Visualizer" manual, Wavefront Technologies 1992, appendix B1): polygons
+//! from `v`, `vt`, `vn` and `f`.
 //!
-//! A corner names position, surface coordinate and normal by three indices; corners with equal triples
-//! become one vertex, in the order of their first use. Indices count from 1, or back from the last one with
-//! -1. A face may name a vertex that is defined further down. A position that is nowhere is an error; a
-//! surface coordinate or normal that is nowhere is left out, for the mesh has its form without it. What a
-//! single mesh has no place for (groups, materials, smoothing groups, lines, curves, colours behind a
-//! position) is counted and left out.
+//! A corner refers to a position, texture coordinates and a normal by three indices. Corners with
+//! equal triples become one vertex, in the order of their first use. Indices count from 1, or
+//! backwards from -1, the last element so far. A face may refer to a position that is defined
+//! further down. An undefined position is an error; undefined texture coordinates or normals are
+//! dropped, since the mesh keeps its form without them. Statements without an equivalent in a
+//! single mesh (groups, materials, smoothing groups, lines, curves, vertex colors) are counted and
+//! ignored.
 
 mod notes;
 #[cfg(test)]
 mod tests;
 
-use super::assemble::Parts;
-use super::error::{Fault, quote};
-use super::estimate::{Counts, Survey};
+use super::assemble::MeshParts;
+use super::error::{ImportErrorKind, quote};
+use super::estimate::{Counts, FileSampler};
 use super::format::MeshFormat;
 use super::pieces::{next_line_start, read_pieces};
 use super::text::{Scanner, integer};
-use super::weld::{Key, Piece, Welded};
+use super::weld::{Key, Welded, WeldedPiece};
 use super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 use notes::Notes;
 use rayon::prelude::*;
 use std::io;
 
-/// Stands for an index that a corner does not give.
+/// Index of an element that a corner does not have.
 const NONE: u32 = u32::MAX;
 
 /// Wavefront OBJ.
@@ -41,21 +42,21 @@ impl MeshFormat for Obj {
     }
 
     fn is_content(&self, bytes: &[u8]) -> bool {
-        let first = Scanner::wavefront(bytes).word_anywhere();
+        let first = Scanner::with_obj_rules(bytes).word_anywhere();
         matches!(first, Some(b"v" | b"vt" | b"vn" | b"f" | b"mtllib" | b"usemtl" | b"o" | b"g"))
     }
 
-    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
         read(bytes, limits, piece)
     }
 
-    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
-        Ok(file.sample()?.wavefront())
+    fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
+        Ok(file.sample()?.obj_counts())
     }
 }
 
-/// Reads a whole file in pieces of about this many bytes.
-pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+/// Reads a whole file in pieces of about `piece` bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
     let texts = cut(bytes, piece);
     let mut start = Start { line: 1, ..Start::default() };
     let mut starts = Vec::with_capacity(texts.len());
@@ -68,13 +69,13 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
             Ok(())
         },
     )?;
-    let mut whole = Whole::with_room_for(&start, limits);
+    let mut whole = ObjData::with_room_for(&start, limits);
     let pieces: Vec<(&[u8], Start)> = texts.into_iter().zip(starts).collect();
     read_pieces(&pieces, |(text, start)| read_piece(text, *start, limits), |piece| whole.append(piece, limits))?;
     whole.finish(limits)
 }
 
-/// Cut at lines' ends that no `\` before them takes away.
+/// Cuts the text into pieces at line ends that no `\` continues.
 fn cut(bytes: &[u8], piece: usize) -> Vec<&[u8]> {
     let mut pieces = Vec::new();
     let mut rest = bytes;
@@ -88,20 +89,20 @@ fn cut(bytes: &[u8], piece: usize) -> Vec<&[u8]> {
     pieces
 }
 
-/// What stands before a piece.
+/// Counts of the text before a piece, or of a piece.
 #[derive(Clone, Copy, Default)]
 struct Start {
     line: u64,
-    /// Positions, surface coordinates and normals.
+    /// Number of positions, texture coordinates and normals.
     counts: [usize; 3],
     faces: usize,
 }
 
 impl Start {
-    /// Counts in a piece of text: what must be added for the piece after it.
+    /// Counts the statements of a piece of text.
     fn of_next(text: &[u8]) -> Self {
         let mut found = Self::default();
-        let mut scanner = Scanner::wavefront(text).starting_at_line(0);
+        let mut scanner = Scanner::with_obj_rules(text).starting_at_line(0);
         loop {
             match scanner.word() {
                 Some(b"v") => found.counts[0] += 1,
@@ -124,9 +125,9 @@ impl Start {
     }
 }
 
-fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<Reader, Fault> {
-    let mut scanner = Scanner::wavefront(text).starting_at_line(start.line);
-    let mut reader = Reader { start: start.counts, ..Reader::default() };
+fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<ObjPiece, ImportErrorKind> {
+    let mut scanner = Scanner::with_obj_rules(text).starting_at_line(start.line);
+    let mut reader = ObjPiece { start: start.counts, ..ObjPiece::default() };
     loop {
         reader.statement(&mut scanner, limits)?;
         if !scanner.next_line() {
@@ -135,28 +136,28 @@ fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<Reader, Faul
     }
 }
 
-/// What a piece of the text holds.
+/// Contents of a piece of the text.
 #[derive(Default)]
-struct Reader {
-    /// Positions, surface coordinates and normals before it.
+struct ObjPiece {
+    /// Number of positions, texture coordinates and normals before the piece.
     start: [usize; 3],
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
-    welded: Piece,
-    /// The face being read; kept for its memory.
+    welded: WeldedPiece,
+    /// Corners of the current face; kept to reuse its allocation.
     face: Vec<u32>,
     notes: Notes,
 }
 
-impl Reader {
-    /// How many positions, surface coordinates and normals stand before this place.
+impl ObjPiece {
+    /// Number of positions, texture coordinates and normals before the current statement.
     fn counts(&self) -> [usize; 3] {
         let [v, vt, vn] = self.start;
         [v + self.positions.len(), vt + self.uvs.len(), vn + self.normals.len()]
     }
 
-    fn statement(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), Fault> {
+    fn statement(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), ImportErrorKind> {
         match scanner.word() {
             None => {}
             Some(b"v") => {
@@ -166,7 +167,7 @@ impl Reader {
             }
             Some(b"vt") => {
                 limits.next_vertex(self.counts()[1])?;
-                self.uvs.push(surface_coordinate(scanner)?);
+                self.uvs.push(texture_coordinates(scanner)?);
             }
             Some(b"vn") => {
                 limits.next_vertex(self.counts()[2])?;
@@ -179,7 +180,7 @@ impl Reader {
         Ok(())
     }
 
-    fn face(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), Fault> {
+    fn face(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), ImportErrorKind> {
         self.face.clear();
         while let Some(word) = scanner.word() {
             let triple = self.corner(word, scanner)?;
@@ -188,8 +189,9 @@ impl Reader {
         self.welded.faces.push(&self.face, limits)
     }
 
-    /// One corner: `7`, `7/2`, `7//3` or `7/2/3`; an empty index at the end (`7/2/`) is as none.
-    fn corner(&mut self, word: &[u8], scanner: &Scanner<'_>) -> Result<[u32; 3], Fault> {
+    /// Parses a corner: `7`, `7/2`, `7//3` or `7/2/3`. An empty index at the end (`7/2/`) counts as
+    /// absent.
+    fn corner(&mut self, word: &[u8], scanner: &Scanner<'_>) -> Result<[u32; 3], ImportErrorKind> {
         let counts = self.counts();
         let mut parts = word.split(|byte| *byte == b'/');
         let mut triple = [NONE; 3];
@@ -199,13 +201,13 @@ impl Reader {
                 continue;
             }
             let found = || format!("expected {STREAMS} in {}", quote(word));
-            let index = integer(part).ok_or_else(|| scanner.place().fault(found()))?;
+            let index = integer(part).ok_or_else(|| scanner.place().error(found()))?;
             let index =
-                absolute(index, count).ok_or_else(|| scanner.place().fault(out_of_range(index, stream, count)))?;
+                absolute(index, count).ok_or_else(|| scanner.place().error(out_of_range(index, stream, count)))?;
             triple[stream] = index;
         }
         if parts.next().is_some() {
-            return Err(scanner.place().fault(format!("expected {STREAMS}, found {}", quote(word))));
+            return Err(scanner.place().error(format!("expected {STREAMS}, found {}", quote(word))));
         }
         if triple[0] as usize >= counts[0] {
             self.notes.not_yet_defined(triple[0], scanner.place());
@@ -214,9 +216,9 @@ impl Reader {
     }
 }
 
-/// All pieces of a text put together.
+/// The joined pieces of a text.
 #[derive(Default)]
-struct Whole {
+struct ObjData {
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
@@ -224,8 +226,8 @@ struct Whole {
     notes: Notes,
 }
 
-impl Whole {
-    /// For as much as was counted, which the text really holds.
+impl ObjData {
+    /// Allocates memory for the counted statements, up to the limits.
     fn with_room_for(counted: &Start, limits: &Limits) -> Self {
         let [v, vt, vn] = counted.counts.map(|count| count.min(limits.vertices as usize));
         Self {
@@ -237,7 +239,7 @@ impl Whole {
         }
     }
 
-    fn append(&mut self, piece: Reader, limits: &Limits) -> Result<(), Fault> {
+    fn append(&mut self, piece: ObjPiece, limits: &Limits) -> Result<(), ImportErrorKind> {
         self.positions.extend(piece.positions);
         self.uvs.extend(piece.uvs);
         self.normals.extend(piece.normals);
@@ -245,37 +247,38 @@ impl Whole {
         self.welded.append(piece.welded, limits)
     }
 
-    fn finish(self, limits: &Limits) -> Result<Imported, Fault> {
+    fn finish(self, limits: &Limits) -> Result<Imported, ImportErrorKind> {
         let count = self.positions.len();
         if let Some((index, place)) = self.notes.furthest.filter(|(index, _)| *index as usize >= count) {
             let number = u64::from(index) + 1;
-            return Err(place.fault(format!("{} index {number}: the file has only {count}", NAMES[0])));
+            return Err(place.error(format!("{} index {number} is out of range: the file has only {count}", NAMES[0])));
         }
         let mut warnings = self.notes.in_words();
         let (mut keys, faces) = self.welded.finish(limits)?;
         drop_undefined(&mut keys, 1, self.uvs.len(), &mut warnings);
         drop_undefined(&mut keys, 2, self.normals.len(), &mut warnings);
-        let positions = all(&keys, 0, &self.positions);
-        let normals = if self.normals.is_empty() { Vec::new() } else { all(&keys, 2, &self.normals) };
+        let positions = gather(&keys, 0, &self.positions);
+        let normals = if self.normals.is_empty() { Vec::new() } else { gather(&keys, 2, &self.normals) };
         let without = keys.iter().filter(|key| key[1] == NONE).count();
-        let uvs = if without == keys.len() { Vec::new() } else { all(&keys, 1, &self.uvs) };
+        let uvs = if without == keys.len() { Vec::new() } else { gather(&keys, 1, &self.uvs) };
         if !uvs.is_empty() && without > 0 {
-            warnings.push(format!("{without} vertices have no surface coordinates and get 0 0"));
+            warnings.push(format!("{without} vertices have no texture coordinates and get 0 0"));
         }
-        Parts { positions, normals, uvs, faces, warnings }.assemble()
+        MeshParts { positions, normals, uvs, faces, warnings }.assemble()
     }
 }
 
-const NAMES: [&str; 3] = ["vertex (v)", "surface coordinate (vt)", "normal (vn)"];
-const STREAMS: &str = "a corner v, v/vt, v//vn or v/vt/vn of whole numbers";
+const NAMES: [&str; 3] = ["vertex (v)", "texture coordinate (vt)", "normal (vn)"];
+const STREAMS: &str = "a face vertex v, v/vt, v//vn or v/vt/vn of integers";
 
-/// `vt u [v [w]]`; v is 0 when absent.
-fn surface_coordinate(scanner: &mut Scanner<'_>) -> Result<Vec2, Fault> {
+/// Parses `vt u [v [w]]`; v is 0 if absent.
+fn texture_coordinates(scanner: &mut Scanner<'_>) -> Result<Vec2, ImportErrorKind> {
     let u = scanner.finite("u")?;
     Ok(vec2(u, if scanner.at_line_end() { 0.0 } else { scanner.finite("v")? }))
 }
 
-/// Index from 0 of an index that counts from 1 or backwards; `None` for 0 and what lies before the first.
+/// Converts an index that counts from 1 or backwards to an index from 0; `None` for 0 and before
+/// the first element.
 fn absolute(index: i64, count: usize) -> Option<u32> {
     let from_zero = if index > 0 { index - 1 } else { i64::try_from(count).ok()?.checked_add(index)? };
     let defined = index != 0 && from_zero >= 0 && from_zero < i64::from(NONE);
@@ -285,13 +288,13 @@ fn absolute(index: i64, count: usize) -> Option<u32> {
 fn out_of_range(index: i64, stream: usize, count: usize) -> String {
     let name = NAMES[stream];
     match index {
-        0 => format!("{name} index 0: indices count from 1"),
-        ..0 => format!("{name} index {index}: only {count} stand before this line"),
+        0 => format!("{name} index 0 is invalid: indices start at 1"),
+        ..0 => format!("{name} index {index} is out of range: only {count} precede this line"),
         _ => format!("{name} index {index} is too large"),
     }
 }
 
-/// Takes out indices beyond the last surface coordinate or normal.
+/// Removes indices beyond the last texture coordinates or normal.
 fn drop_undefined(keys: &mut [Key], stream: usize, count: usize, warnings: &mut Vec<String>) {
     let mut dropped = 0_u64;
     for index in keys.iter_mut().filter_map(|key| key.get_mut(stream)) {
@@ -301,11 +304,14 @@ fn drop_undefined(keys: &mut [Key], stream: usize, count: usize, warnings: &mut 
         }
     }
     if dropped > 0 {
-        warnings.push(format!("{dropped} vertices name a {} beyond the last, of {count}: ignored", NAMES[stream]));
+        warnings.push(format!(
+            "{dropped} vertices refer to an undefined {} (the file has {count}): ignored",
+            NAMES[stream]
+        ));
     }
 }
 
-/// One entry of each key, zero where a key has none.
-fn all<T: Copy + Default + Send + Sync>(keys: &[Key], stream: usize, values: &[T]) -> Vec<T> {
+/// Gathers the value of each key; the default for a key without one.
+fn gather<T: Copy + Default + Send + Sync>(keys: &[Key], stream: usize, values: &[T]) -> Vec<T> {
     keys.par_iter().map(|key| values.get(key[stream] as usize).copied().unwrap_or_default()).collect()
 }

@@ -1,24 +1,25 @@
-//! What is noticed in an OBJ beside the mesh: statements that are left out, positions that are not there yet.
+//! Observations while reading an OBJ: ignored statements, and positions used before their
+//! definition.
 
-use super::super::error::{Place, quote};
+use super::super::error::{FilePosition, quote};
 use std::collections::BTreeMap;
 
-/// Kinds of ignored statements that a warning names; a file of random words has more.
+/// Maximum number of ignored statements that a warning names; a file of random words has more.
 const NAMED_STATEMENTS: usize = 16;
 
-/// What was noticed.
+/// Observations of a piece or of all pieces.
 #[derive(Default)]
 pub(super) struct Notes {
-    /// The furthest position that was named before it was defined, and where.
-    pub furthest: Option<(u32, Place)>,
-    /// Positions with more than three numbers.
+    /// Highest index of a position used before its definition, and the line of the use.
+    pub furthest: Option<(u32, FilePosition)>,
+    /// Number of positions with more than three numbers.
     pub colors: u64,
     ignored: BTreeMap<String, u64>,
     other_ignored: u64,
 }
 
 impl Notes {
-    /// Counts a statement that has no place in a mesh.
+    /// Counts an ignored statement.
     pub fn ignore(&mut self, statement: &[u8]) {
         self.add(quote(statement), 1);
     }
@@ -33,14 +34,14 @@ impl Notes {
         }
     }
 
-    /// Remembers the first place where the furthest position is named.
-    pub fn not_yet_defined(&mut self, index: u32, place: Place) {
+    /// Records the first use of the highest undefined position.
+    pub fn not_yet_defined(&mut self, index: u32, place: FilePosition) {
         if self.furthest.is_none_or(|(known, _)| known < index) {
             self.furthest = Some((index, place));
         }
     }
 
-    /// Adds those of the next piece.
+    /// Adds the observations of the next piece.
     pub fn append(&mut self, piece: Self) {
         if let Some((index, place)) = piece.furthest {
             self.not_yet_defined(index, place);
@@ -50,11 +51,11 @@ impl Notes {
         piece.ignored.into_iter().for_each(|(name, count)| self.add(name, count));
     }
 
-    /// As warnings.
+    /// The observations as warnings.
     pub fn in_words(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.colors > 0 {
-            warnings.push(format!("{} vertices have colours or weights after x y z: ignored", self.colors));
+            warnings.push(format!("{} vertices have colors or weights after x y z: ignored", self.colors));
         }
         let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {

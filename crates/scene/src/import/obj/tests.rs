@@ -1,6 +1,6 @@
-//! The rules of OBJ, one by one.
+//! Tests of the OBJ reader, one rule each.
 
-use super::super::error::{Fault, Place};
+use super::super::error::{FilePosition, ImportErrorKind};
 use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
@@ -9,10 +9,10 @@ fn read(text: &str) -> Imported {
     super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap()
 }
 
-/// The line and the message of the fault.
-fn fault(text: &str) -> (u64, String) {
+/// Reads a malformed text and returns the line and the message of the error.
+fn error(text: &str) -> (u64, String) {
     match super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap_err() {
-        Fault::Malformed { place: Place::Line(line), message } => (line, message),
+        ImportErrorKind::Malformed { place: FilePosition::Line(line), message } => (line, message),
         other => panic!("expected a line: {other}"),
     }
 }
@@ -94,9 +94,9 @@ fn what_has_no_place_is_counted() {
     assert_eq!(
         warnings,
         [
-            "2 vertices have colours or weights after x y z: ignored",
+            "2 vertices have colors or weights after x y z: ignored",
             "ignored statements: 1 'g', 1 'l', 1 'mtllib', 1 'o', 1 'p', 1 's', 2 'usemtl'",
-            "1 faces with fewer than 3 corners left out",
+            "1 faces with fewer than 3 vertices ignored",
         ]
     );
 }
@@ -118,7 +118,7 @@ fn partly_missing_normals_and_uvs() {
     assert_eq!(mesh.triangles[1].map(|corner| mesh.uvs[corner as usize]), [Vec2::ZERO; 3]);
     assert_eq!(mesh.normals[..3], [vec3(0.0, 0.6, 0.8); 3]);
     assert!(warnings.iter().any(|warning| warning == "3 vertices have no normal and are shaded flat"));
-    assert!(warnings.iter().any(|warning| warning == "3 vertices have no surface coordinates and get 0 0"));
+    assert!(warnings.iter().any(|warning| warning == "3 vertices have no texture coordinates and get 0 0"));
 }
 
 #[test]
@@ -135,9 +135,9 @@ fn a_mesh_has_its_form_without_undefined_normals_and_uvs() {
     assert_eq!(
         warnings,
         [
-            "1 vertices name a surface coordinate (vt) beyond the last, of 1: ignored",
-            "3 vertices name a normal (vn) beyond the last, of 0: ignored",
-            "1 vertices have no surface coordinates and get 0 0",
+            "1 vertices refer to an undefined texture coordinate (vt) (the file has 1): ignored",
+            "3 vertices refer to an undefined normal (vn) (the file has 0): ignored",
+            "1 vertices have no texture coordinates and get 0 0",
         ]
     );
 }
@@ -150,21 +150,25 @@ fn faults_name_the_line_and_what_was_expected() {
         ("v 0 \\\n 0 nan\n", 2, "expected a finite number for z, found NaN"),
         ("v 1e60 0 0\n", 1, "expected a finite number for x, found inf"),
         ("vt inf\n", 1, "expected a finite number for u, found inf"),
-        ("v 0 0 0\nf 1 0 1\n", 2, "vertex (v) index 0: indices count from 1"),
-        ("f -4 -3 -2", 1, "vertex (v) index -4: only 0 stand before this line"),
-        ("v 0 0 0\nvt 0 0\nf 1/1 1/-2 1/1\n", 3, "surface coordinate (vt) index -2: only 1 stand before this line"),
-        ("v 0 0 0\nf 1 1 1\nf 1 3 2\nf 1 1 2\n", 3, "vertex (v) index 3: the file has only 1"),
+        ("v 0 0 0\nf 1 0 1\n", 2, "vertex (v) index 0 is invalid: indices start at 1"),
+        ("f -4 -3 -2", 1, "vertex (v) index -4 is out of range: only 0 precede this line"),
+        (
+            "v 0 0 0\nvt 0 0\nf 1/1 1/-2 1/1\n",
+            3,
+            "texture coordinate (vt) index -2 is out of range: only 1 precede this line",
+        ),
+        ("v 0 0 0\nf 1 1 1\nf 1 3 2\nf 1 1 2\n", 3, "vertex (v) index 3 is out of range: the file has only 1"),
         ("f 1 99999999999 1\n", 1, "vertex (v) index 99999999999 is too large"),
         ("f 1 4294967296 1\n", 1, "vertex (v) index 4294967296 is too large"),
     ];
     for (text, line, message) in cases {
-        assert_eq!(fault(text), (line, message.to_owned()), "{text}");
+        assert_eq!(error(text), (line, message.to_owned()), "{text}");
     }
     for word in ["1.0", "a", "1/2/3/4", "/1", "1/x", "99999999999999999999"] {
-        let (line, message) = fault(&format!("\nf 1 {word} 1\n"));
+        let (line, message) = error(&format!("\nf 1 {word} 1\n"));
         assert_eq!(line, 2);
         assert!(
-            message.starts_with("expected a corner v, v/vt, v//vn or v/vt/vn") && message.contains(word),
+            message.starts_with("expected a face vertex v, v/vt, v//vn or v/vt/vn") && message.contains(word),
             "{message}"
         );
     }
@@ -181,5 +185,5 @@ fn limits_are_kept_and_named() {
     check(seams, few, "at least 4 vertices, the limit is 3");
     let one = Limits { triangles: 1, ..Limits::default() };
     check(&format!("{SQUARE}f 1 2 3 4\n"), one, "at least 2 triangles, the limit is 1");
-    assert!(super::read(SQUARE.as_bytes(), &one, PIECE).unwrap_err().to_string().starts_with("holds no triangle"));
+    assert!(super::read(SQUARE.as_bytes(), &one, PIECE).unwrap_err().to_string().starts_with("contains no triangles"));
 }

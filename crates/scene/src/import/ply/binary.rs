@@ -1,6 +1,6 @@
-//! The numbers of a binary PLY, without gaps, in either byte order.
+//! The values of a binary PLY, tightly packed, in either byte order.
 
-use super::super::error::{Fault, Place};
+use super::super::error::{FilePosition, ImportErrorKind};
 use super::super::text::whole;
 use super::body::{Values, skip};
 use super::header::{ByteOrder, Element, Scalar};
@@ -14,13 +14,13 @@ pub(super) struct BinaryValues<'a> {
 }
 
 impl<'a> BinaryValues<'a> {
-    /// From byte `start` of the file on.
+    /// Creates a reader that starts at byte `start` of the file.
     pub fn new(file: &'a [u8], start: usize, order: ByteOrder) -> Self {
         Self { rest: file.get(start..).unwrap_or_default(), size: file.len(), order }
     }
 
     #[inline(always)]
-    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], ImportErrorKind> {
         let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else { return Err(self.too_short(N as u64)) };
         self.rest = rest;
         let mut bytes = *bytes;
@@ -30,14 +30,15 @@ impl<'a> BinaryValues<'a> {
         Ok(bytes)
     }
 
-    /// The next values of N bytes. What they are is asked once a list, not once a value.
+    /// Passes the next `count` values of `N` bytes to `take`. The type is dispatched once a list,
+    /// not once a value.
     #[inline]
     fn each<const N: usize>(
         &mut self,
         count: u64,
-        decode: impl Fn([u8; N], Place) -> Result<i64, Fault>,
-        mut take: impl FnMut(Place, i64) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+        decode: impl Fn([u8; N], FilePosition) -> Result<i64, ImportErrorKind>,
+        mut take: impl FnMut(FilePosition, i64) -> Result<(), ImportErrorKind>,
+    ) -> Result<(), ImportErrorKind> {
         for _ in 0..count {
             let place = self.place();
             let value = decode(self.bytes()?, place)?;
@@ -47,27 +48,27 @@ impl<'a> BinaryValues<'a> {
     }
 
     #[cold]
-    fn too_short(&self, needed: u64) -> Fault {
+    fn too_short(&self, needed: u64) -> ImportErrorKind {
         let found = self.rest.len();
-        self.place().fault(format!("expected {needed} more bytes, found the end of the file after {found}"))
+        self.place().error(format!("expected {needed} more bytes, found the end of the file after {found}"))
     }
 }
 
 impl Values for BinaryValues<'_> {
-    fn place(&self) -> Place {
-        Place::Byte((self.size - self.rest.len()) as u64)
+    fn place(&self) -> FilePosition {
+        FilePosition::Byte((self.size - self.rest.len()) as u64)
     }
 
-    fn begin_row(&mut self) -> Result<(), Fault> {
+    fn begin_row(&mut self) -> Result<(), ImportErrorKind> {
         Ok(())
     }
 
-    fn end_row(&mut self) -> Result<(), Fault> {
+    fn end_row(&mut self) -> Result<(), ImportErrorKind> {
         Ok(())
     }
 
     #[inline]
-    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, Fault> {
+    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, ImportErrorKind> {
         match kind {
             Scalar::F32 => self.bytes().map(f32::from_le_bytes),
             Scalar::F64 => self.bytes().map(|bytes| f64::from_le_bytes(bytes) as f32),
@@ -88,8 +89,8 @@ impl Values for BinaryValues<'_> {
         kind: Scalar,
         count: u64,
         what: &str,
-        take: impl FnMut(Place, i64) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+        take: impl FnMut(FilePosition, i64) -> Result<(), ImportErrorKind>,
+    ) -> Result<(), ImportErrorKind> {
         match kind {
             Scalar::I8 => self.each(count, |bytes, _| Ok(i8::from_le_bytes(bytes).into()), take),
             Scalar::U8 => self.each(count, |bytes, _| Ok(u8::from_le_bytes(bytes).into()), take),
@@ -102,14 +103,14 @@ impl Values for BinaryValues<'_> {
         }
     }
 
-    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault> {
+    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), ImportErrorKind> {
         let length = count.saturating_mul(kind.size());
         let rest = usize::try_from(length).ok().and_then(|length| self.rest.get(length..));
         self.rest = rest.ok_or_else(|| self.too_short(length))?;
         Ok(())
     }
 
-    fn pass_rows(&mut self, element: &Element, count: u64) -> Result<(), Fault> {
+    fn skip_rows(&mut self, element: &Element, count: u64) -> Result<(), ImportErrorKind> {
         if element.properties.iter().all(|property| property.length.is_none()) {
             let row = element.properties.iter().map(|property| property.item.size()).sum::<u64>();
             return self.skip(Scalar::U8, row.saturating_mul(count));
@@ -120,7 +121,7 @@ impl Values for BinaryValues<'_> {
         Ok(())
     }
 
-    fn least_size(&self, kind: Scalar) -> u64 {
+    fn min_size(&self, kind: Scalar) -> u64 {
         kind.size()
     }
 

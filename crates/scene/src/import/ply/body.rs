@@ -1,71 +1,73 @@
-//! The rows of a PLY, whichever way they are written.
+//! The rows after the header of a PLY, in any encoding.
 
-use super::super::assemble::Parts;
-use super::super::error::{Fault, Place, quote};
+use super::super::assemble::MeshParts;
+use super::super::error::{FilePosition, ImportErrorKind, quote};
 use super::super::faces::Faces;
 use super::super::pieces::read_pieces;
 use super::super::{Imported, Limits};
 use super::header::{Element, Header, Property, Scalar};
 use super::vertices::read_vertices;
 
-/// Numbers one after the other. A copy goes on from the same place.
+/// Reads a sequence of numbers. A clone continues from the same position.
 pub(super) trait Values: Clone + Sync {
-    /// Where the next value stands (in a text: the line of the last one).
-    fn place(&self) -> Place;
-    /// Goes to the start of the next row.
-    fn begin_row(&mut self) -> Result<(), Fault>;
-    /// Makes sure that the row has no more values.
-    fn end_row(&mut self) -> Result<(), Fault>;
-    /// The next value, rounded once.
-    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, Fault>;
-    /// The next values, which must be whole numbers, each with its place.
+    /// Position of the next value; in a text, the line of the last value.
+    fn place(&self) -> FilePosition;
+    /// Advances to the start of the next row.
+    fn begin_row(&mut self) -> Result<(), ImportErrorKind>;
+    /// Checks that the row has no more values.
+    fn end_row(&mut self) -> Result<(), ImportErrorKind>;
+    /// Reads the next value, rounded once to `f32`. `what` names it in errors.
+    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, ImportErrorKind>;
+    /// Reads the next `count` values, which must be integers, and passes each with its position to
+    /// `take`.
     fn integers(
         &mut self,
         kind: Scalar,
         count: u64,
         what: &str,
-        take: impl FnMut(Place, i64) -> Result<(), Fault>,
-    ) -> Result<(), Fault>;
-    /// Passes over values.
-    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault>;
-    /// Passes over rows of an element without a look at more than it takes to find their end.
-    fn pass_rows(&mut self, element: &Element, count: u64) -> Result<(), Fault>;
-    /// The least number of bytes that a value takes up.
-    fn least_size(&self, kind: Scalar) -> u64;
-    /// Bytes that are left.
+        take: impl FnMut(FilePosition, i64) -> Result<(), ImportErrorKind>,
+    ) -> Result<(), ImportErrorKind>;
+    /// Skips `count` values.
+    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), ImportErrorKind>;
+    /// Skips `count` rows of an element and parses only as much as is needed to find their end.
+    fn skip_rows(&mut self, element: &Element, count: u64) -> Result<(), ImportErrorKind>;
+    /// Minimum size of a value, in bytes.
+    fn min_size(&self, kind: Scalar) -> u64;
+    /// Number of bytes left.
     fn remaining(&self) -> u64;
 }
 
-/// Rows of an element, from where these values stand.
+/// A run of rows of an element.
 pub(super) struct Rows<V> {
-    /// The first value.
+    /// Reader at the first value of the first row.
     pub values: V,
-    /// How many rows.
+    /// Number of rows.
     pub count: u64,
 }
 
-/// What the header promises, and how to read it.
+/// Reader of the elements that the header declares.
 pub(super) struct Body<'h> {
     header: &'h Header,
-    /// The most that a file may hold.
+    /// Limits of the file's contents.
     pub limits: &'h Limits,
-    /// Rows that are read in one piece.
+    /// Number of rows of a piece.
     rows: u64,
 }
 
 impl<'h> Body<'h> {
-    /// To be read in pieces of about this many bytes.
+    /// Creates a reader that works in pieces of about `piece` bytes.
     pub fn new(header: &'h Header, limits: &'h Limits, piece: usize) -> Self {
-        // Rows have some sixteen bytes; pieces whose results stay in the cache are faster than large ones.
+        // A row usually takes about 16 bytes. Dividing by 256 gives smaller pieces, whose results
+        // stay in the cache.
         const ROW: u64 = 256;
         Self { header, limits, rows: (piece as u64 / ROW).max(1) }
     }
 
-    /// Reads it.
-    pub fn read(&self, mut values: impl Values) -> Result<Imported, Fault> {
+    /// Reads all elements and assembles the mesh.
+    pub fn read(&self, mut values: impl Values) -> Result<Imported, ImportErrorKind> {
         check_counts(self.header, &values)?;
         let warnings = self.header.warning.iter().cloned().collect();
-        let mut parts = Parts { warnings, ..Parts::default() };
+        let mut parts = MeshParts { warnings, ..MeshParts::default() };
         for element in &self.header.elements {
             match element.name.as_str() {
                 "vertex" => read_vertices(self, element, &mut values, &mut parts)?,
@@ -76,40 +78,47 @@ impl<'h> Body<'h> {
         parts.assemble()
     }
 
-    /// Reads the rows of an element in pieces.
+    /// Reads the rows of an element in pieces: `read` runs in parallel, `take` receives the results
+    /// in order.
     pub fn read_rows<V: Values, R: Send>(
         &self,
         element: &Element,
         values: &mut V,
-        read: impl Fn(Rows<V>) -> Result<R, Fault> + Sync,
-        take: impl FnMut(R) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+        read: impl Fn(Rows<V>) -> Result<R, ImportErrorKind> + Sync,
+        take: impl FnMut(R) -> Result<(), ImportErrorKind>,
+    ) -> Result<(), ImportErrorKind> {
         let mut pieces = Vec::new();
         let mut left = element.count;
         let mut passed = Ok(());
-        // Rows that have no end are the last that are read, and the reader knows better what is wrong with them.
+        // If the end of a row is not found, stop after this piece: its reader gives the better
+        // error.
         while left > 0 && passed.is_ok() {
             let count = left.min(self.rows);
             pieces.push((values.clone(), count));
-            passed = values.pass_rows(element, count);
+            passed = values.skip_rows(element, count);
             left -= count;
         }
         read_pieces(&pieces, |(values, count)| read(Rows { values: values.clone(), count: *count }), take)?;
         passed
     }
 
-    fn read_faces(&self, element: &Element, values: &mut impl Values, parts: &mut Parts) -> Result<(), Fault> {
+    fn read_faces(
+        &self,
+        element: &Element,
+        values: &mut impl Values,
+        parts: &mut MeshParts,
+    ) -> Result<(), ImportErrorKind> {
         let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
         let Some(column) = element.properties.iter().position(is_indices) else {
-            return Err(element.place.fault("expected a property 'vertex_indices' of the element 'face'"));
+            return Err(element.place.error("expected a property 'vertex_indices' of the element 'face'"));
         };
         if element.properties.get(column).is_none_or(|property| property.length.is_none()) {
-            return Err(element.place.fault("expected the property 'vertex_indices' to be a list"));
+            return Err(element.place.error("expected the property 'vertex_indices' to be a list"));
         }
         note_ignored(element, |index| index == column, &mut parts.warnings);
         let vertices = self.header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
         self.limits.check_vertices(vertices)?;
-        // Every row has been found to have its bytes, and most are one triangle.
+        // All rows are known to fit into the file, and most faces are one triangle.
         let most = element.count.min(u64::from(self.limits.triangles));
         let mut faces = Faces::with_capacity(usize::try_from(most).unwrap_or(0));
         self.read_rows(
@@ -123,35 +132,35 @@ impl<'h> Body<'h> {
     }
 }
 
-/// Refuses counts of rows for which the file is too short, before anything is reserved for them.
-fn check_counts(header: &Header, values: &impl Values) -> Result<(), Fault> {
+/// Rejects row counts for which the file is too short, before memory is allocated for them.
+fn check_counts(header: &Header, values: &impl Values) -> Result<(), ImportErrorKind> {
     let mut left = values.remaining();
     for element in &header.elements {
         let needed = element.count.saturating_mul(row_size(element, values));
-        // The last value of a text may go without a separator.
+        // The last value of a text needs no separator.
         if needed > left.saturating_add(1) {
             let (count, name) = (element.count, quote(element.name.as_bytes()));
-            let message = format!("{count} rows of {name} are announced, which need at least {needed} bytes");
-            return Err(element.place.fault(format!("{message}, but only {left} are left for them")));
+            let message = format!("the header declares {count} elements {name} of at least {needed} bytes");
+            return Err(element.place.error(format!("{message}, but only {left} remain")));
         }
         left = left.saturating_sub(needed);
     }
     Ok(())
 }
 
-/// The least number of bytes that a row can have.
+/// Minimum size of a row, in bytes.
 fn row_size(element: &Element, values: &impl Values) -> u64 {
-    element.properties.iter().map(|property| values.least_size(property.length.unwrap_or(property.item))).sum()
+    element.properties.iter().map(|property| values.min_size(property.length.unwrap_or(property.item))).sum()
 }
 
-/// Faces whose corners are in this column.
+/// Reads rows as faces whose corners are the list in this column.
 fn read_piece(
     element: &Element,
     column: usize,
     mut rows: Rows<impl Values>,
     vertices: u64,
     limits: &Limits,
-) -> Result<Faces, Fault> {
+) -> Result<Faces, ImportErrorKind> {
     let values = &mut rows.values;
     let mut faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
     let mut corners = Vec::new();
@@ -175,7 +184,7 @@ fn read_corners(
     item: Scalar,
     vertices: u64,
     corners: &mut Vec<u32>,
-) -> Result<(), Fault> {
+) -> Result<(), ImportErrorKind> {
     corners.clear();
     let count = list_length(values, length)?;
     values.integers(item, count, "a vertex index", |place, index| match u32::try_from(index) {
@@ -183,28 +192,35 @@ fn read_corners(
             corners.push(corner);
             Ok(())
         }
-        _ => Err(place.fault(format!("vertex index {index}: there are {vertices} vertices, from 0"))),
+        _ => {
+            Err(place
+                .error(format!("vertex index {index} is out of range: there are {vertices} vertices, starting at 0")))
+        }
     })
 }
 
-fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, Fault> {
+fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, ImportErrorKind> {
     let mut length = 0;
     values.integers(kind, 1, "the length of a list", |place, found| {
         length =
-            u64::try_from(found).map_err(|_| place.fault(format!("expected the length of a list, found {found}")))?;
+            u64::try_from(found).map_err(|_| place.error(format!("expected the length of a list, found {found}")))?;
         Ok(())
     })?;
     Ok(length)
 }
 
-/// Passes over one value or list.
-pub(super) fn skip(property: &Property, values: &mut impl Values) -> Result<(), Fault> {
+/// Skips one value or list.
+pub(super) fn skip(property: &Property, values: &mut impl Values) -> Result<(), ImportErrorKind> {
     let count = property.length.map_or(Ok(1), |kind| list_length(values, kind))?;
     values.skip(property.item, count)
 }
 
-fn skip_element(element: &Element, values: &mut impl Values, warnings: &mut Vec<String>) -> Result<(), Fault> {
-    warnings.push(format!("ignored: {} rows of {}", element.count, quote(element.name.as_bytes())));
+fn skip_element(
+    element: &Element,
+    values: &mut impl Values,
+    warnings: &mut Vec<String>,
+) -> Result<(), ImportErrorKind> {
+    warnings.push(format!("ignored: {} elements {}", element.count, quote(element.name.as_bytes())));
     if element.properties.is_empty() {
         return Ok(());
     }
@@ -216,7 +232,7 @@ fn skip_element(element: &Element, values: &mut impl Values, warnings: &mut Vec<
     Ok(())
 }
 
-/// One warning for all columns that are not read.
+/// Adds one warning that names all columns that are not read.
 pub(super) fn note_ignored(element: &Element, is_read: impl Fn(usize) -> bool, warnings: &mut Vec<String>) {
     const NAMED: usize = 16;
     let columns = element.properties.iter().enumerate().filter(|(index, _)| !is_read(*index));

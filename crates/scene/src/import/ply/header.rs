@@ -1,25 +1,25 @@
-//! The header of a PLY: how the numbers are written, and which rows of what follow in which order.
+//! The header of a PLY: encoding of the numbers, and the elements in their order.
 
-use super::super::error::{Fault, Place, quote};
+use super::super::error::{FilePosition, ImportErrorKind, quote};
 use super::super::text::{Scanner, integer};
 use crate::suggest::closest;
 
-/// The most elements of a file and properties of an element; real files have a handful, point clouds of
-/// Gaussians some sixty properties.
+/// Maximum number of elements of a file and of properties of an element. Real files have a handful;
+/// Gaussian splats have about sixty properties.
 const MAX_DECLARATIONS: usize = 1000;
 
-/// What the header promises.
+/// The declarations of a header.
 #[derive(Debug)]
 pub(super) struct Header {
-    /// How numbers are written.
+    /// Encoding of the numbers.
     pub encoding: Encoding,
-    /// What follows, in order.
+    /// The elements that follow, in order.
     pub elements: Vec<Element>,
-    /// Lines that are passed over although they are no comments, in words.
+    /// Warning about ignored lines that are not comments.
     pub warning: Option<String>,
 }
 
-/// How numbers are written.
+/// Encoding of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     /// As text.
@@ -28,26 +28,26 @@ pub(super) enum Encoding {
     Binary(ByteOrder),
 }
 
-/// Which byte of a number comes first.
+/// Byte order of binary numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
-    /// The least significant.
+    /// Least significant byte first.
     Little,
-    /// The most significant.
+    /// Most significant byte first.
     Big,
 }
 
-/// A table: `element NAME COUNT`, and its columns.
+/// A table of rows: `element NAME COUNT` and its properties.
 #[derive(Debug)]
 pub(super) struct Element {
     /// `vertex`, `face`, ...
     pub name: String,
-    /// Rows.
+    /// Number of rows.
     pub count: u64,
     /// Columns.
     pub properties: Vec<Property>,
-    /// Its line in the header.
-    pub place: Place,
+    /// Line of the declaration.
+    pub place: FilePosition,
 }
 
 /// A column: `property TYPE NAME` or `property list TYPE TYPE NAME`.
@@ -55,13 +55,13 @@ pub(super) struct Element {
 pub(super) struct Property {
     /// `x`, `vertex_indices`, ...
     pub name: String,
-    /// For a list, the type of its length.
+    /// Type of the length of a list; `None` for a single number.
     pub length: Option<Scalar>,
     /// Type of the value, or of each value in the list.
     pub item: Scalar,
 }
 
-/// Type of a number.
+/// Type of a number, by its PLY names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     /// `char`, `int8`
@@ -97,7 +97,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes of one in a binary file.
+    /// Size of a value in a binary file, in bytes.
     pub fn size(self) -> u64 {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -109,22 +109,22 @@ impl Scalar {
 }
 
 impl Element {
-    /// Number of this column, if there is one.
+    /// Index of the column with this name.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.properties.iter().position(|property| property.name == name)
     }
 }
 
 impl Header {
-    /// Reads up to and with the line `end_header`.
-    pub fn read(scanner: &mut Scanner<'_>) -> Result<Self, Fault> {
+    /// Reads the header up to and including the line `end_header`.
+    pub fn read(scanner: &mut Scanner<'_>) -> Result<Self, ImportErrorKind> {
         let first = scanner.word();
         if first != Some(b"ply") {
             return Err(scanner.expected("'ply'", first));
         }
         let mut encoding = None;
         let mut elements = Vec::new();
-        let mut strays = Strays::default();
+        let mut ignored = IgnoredLines::default();
         while scanner.next_line() {
             match scanner.word() {
                 None | Some(b"comment" | b"obj_info") => {}
@@ -134,40 +134,40 @@ impl Header {
                 Some(b"end_header") => {
                     let place = scanner.place();
                     scanner.next_line();
-                    let missing = || place.fault("expected a line 'format ...' before 'end_header'");
+                    let missing = || place.error("expected a line 'format ...' before 'end_header'");
                     let encoding = encoding.ok_or_else(missing)?;
-                    return Ok(Self { encoding, elements, warning: strays.warning() });
+                    return Ok(Self { encoding, elements, warning: ignored.warning() });
                 }
-                Some(word) => strays.pass(word, scanner)?,
+                Some(word) => ignored.pass(word, scanner)?,
             }
         }
-        Err(strays.fault.unwrap_or_else(|| scanner.expected("'end_header'", None)))
+        Err(ignored.error.unwrap_or_else(|| scanner.expected("'end_header'", None)))
     }
 }
 
 /// Lines of a header that are neither declarations nor comments, as some exporters write them.
 #[derive(Default)]
-struct Strays {
+struct IgnoredLines {
     count: u64,
-    /// The first such line as it may be shown.
+    /// The first such line with its line number, as shown in the warning.
     first: String,
-    /// What is wrong with the first such line if the header has no end.
-    fault: Option<Fault>,
+    /// Error about the first such line, reported if the header has no end.
+    error: Option<ImportErrorKind>,
 }
 
-impl Strays {
-    /// Passes over a line that begins with `word`, unless `word` looks like a misspelt keyword.
-    fn pass(&mut self, word: &[u8], scanner: &mut Scanner<'_>) -> Result<(), Fault> {
+impl IgnoredLines {
+    /// Skips a line that begins with `word`, unless `word` looks like a misspelled keyword.
+    fn pass(&mut self, word: &[u8], scanner: &mut Scanner<'_>) -> Result<(), ImportErrorKind> {
         const KEYWORDS: [&str; 3] = ["format", "element", "property"];
-        let fault = scanner.expected("'element', 'property', 'comment' or 'end_header'", Some(word));
+        let error = scanner.expected("'element', 'property', 'comment' or 'end_header'", Some(word));
         if str::from_utf8(word).is_ok_and(|word| closest(word, KEYWORDS).is_some()) {
-            return Err(fault);
+            return Err(error);
         }
         self.count += 1;
-        if self.fault.is_none() {
+        if self.error.is_none() {
             let line = [word, scanner.rest_of_line()].concat();
             self.first = format!("{}: {}", scanner.place(), quote(&line));
-            self.fault = Some(fault);
+            self.error = Some(error);
         }
         Ok(())
     }
@@ -175,13 +175,13 @@ impl Strays {
     fn warning(&self) -> Option<String> {
         match self.count {
             0 => None,
-            1 => Some(format!("ignored a line of the header that is no comment: {}", self.first)),
-            more => Some(format!("ignored {more} lines of the header that are no comments, the first {}", self.first)),
+            1 => Some(format!("ignored an unknown line of the header: {}", self.first)),
+            more => Some(format!("ignored {more} unknown lines of the header, the first {}", self.first)),
         }
     }
 }
 
-fn read_format(scanner: &mut Scanner<'_>) -> Result<Encoding, Fault> {
+fn read_format(scanner: &mut Scanner<'_>) -> Result<Encoding, ImportErrorKind> {
     let encoding = match scanner.word() {
         Some(b"ascii") => Encoding::Ascii,
         Some(b"binary_little_endian") => Encoding::Binary(ByteOrder::Little),
@@ -194,24 +194,24 @@ fn read_format(scanner: &mut Scanner<'_>) -> Result<Encoding, Fault> {
     }
 }
 
-fn add_element(elements: &mut Vec<Element>, scanner: &mut Scanner<'_>) -> Result<(), Fault> {
+fn add_element(elements: &mut Vec<Element>, scanner: &mut Scanner<'_>) -> Result<(), ImportErrorKind> {
     let name = name(scanner, "the element's name")?;
     let word = scanner.word();
     let count = word.and_then(integer).and_then(|count| u64::try_from(count).ok());
-    let count = count.ok_or_else(|| scanner.expected("the number of rows", word))?;
+    let count = count.ok_or_else(|| scanner.expected("the number of elements", word))?;
     if elements.iter().any(|element| element.name == name) {
-        return Err(scanner.place().fault(format!("element {} is declared twice", quote(name.as_bytes()))));
+        return Err(scanner.place().error(format!("element {} is declared twice", quote(name.as_bytes()))));
     }
     if elements.len() == MAX_DECLARATIONS {
-        return Err(scanner.place().fault(format!("more than {MAX_DECLARATIONS} elements")));
+        return Err(scanner.place().error(format!("more than {MAX_DECLARATIONS} elements")));
     }
     elements.push(Element { name, count, properties: Vec::new(), place: scanner.place() });
     Ok(())
 }
 
-fn add_property(elements: &mut [Element], scanner: &mut Scanner<'_>) -> Result<(), Fault> {
+fn add_property(elements: &mut [Element], scanner: &mut Scanner<'_>) -> Result<(), ImportErrorKind> {
     let Some(element) = elements.last_mut() else {
-        return Err(scanner.place().fault("expected 'element' before the first 'property'"));
+        return Err(scanner.place().error("expected 'element' before the first 'property'"));
     };
     let first = scanner.word();
     let (length, item) = if first == Some(b"list") {
@@ -221,22 +221,22 @@ fn add_property(elements: &mut [Element], scanner: &mut Scanner<'_>) -> Result<(
     };
     let name = name(scanner, "the property's name")?;
     if element.column(&name).is_some() {
-        return Err(scanner.place().fault(format!("property {} is declared twice", quote(name.as_bytes()))));
+        return Err(scanner.place().error(format!("property {} is declared twice", quote(name.as_bytes()))));
     }
     if element.properties.len() == MAX_DECLARATIONS {
-        return Err(scanner.place().fault(format!("more than {MAX_DECLARATIONS} properties of one element")));
+        return Err(scanner.place().error(format!("more than {MAX_DECLARATIONS} properties of one element")));
     }
     element.properties.push(Property { name, length, item });
     Ok(())
 }
 
-/// The type that this word names, or the next word.
-fn scalar(scanner: &mut Scanner<'_>, word: Option<&[u8]>) -> Result<Scalar, Fault> {
+/// Parses `word`, or the next word if it is `None`, as a type.
+fn scalar(scanner: &mut Scanner<'_>, word: Option<&[u8]>) -> Result<Scalar, ImportErrorKind> {
     let word = word.or_else(|| scanner.word());
     word.and_then(Scalar::named).ok_or_else(|| scanner.expected("a type (char, uchar, ..., float, double)", word))
 }
 
-fn name(scanner: &mut Scanner<'_>, what: &str) -> Result<String, Fault> {
+fn name(scanner: &mut Scanner<'_>, what: &str) -> Result<String, ImportErrorKind> {
     let word = scanner.word().ok_or_else(|| scanner.expected(what, None))?;
     Ok(String::from_utf8_lossy(word).into_owned())
 }

@@ -1,24 +1,26 @@
-//! Stanford PLY (Greg Turk, "The PLY Polygon File Format", 1994): text, little-endian or big-endian.
+//! Stanford PLY (Greg Turk, "The PLY Polygon File Format", 1994): text, little-endian or
+//! big-endian.
 //!
-//! Read are the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
-//! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or `vertex_index`), in any
-//! order, of any number type. Everything else is passed over, with a warning that names it; so are lines of
-//! the header that are neither declarations nor comments, such as `Created by Blender3D`. In a text, each
-//! line is one row of an element, as the header describes it.
+//! The reader uses the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
+//! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
+//! `vertex_index`), in any order and of any number type. It ignores everything else with a warning
+//! that names it, including lines of the header that are neither declarations nor comments, such as
+//! `Created by Blender3D`. In a text, each line is one row of an element, as the header describes
+//! it.
 
-mod announced;
 mod ascii;
 mod binary;
 mod body;
+mod declared;
 mod header;
 #[cfg(test)]
 mod tests;
 mod vertices;
 
-use announced::{Announced, announced};
+use declared::{DeclaredCounts, declared};
 
-use super::error::Fault;
-use super::estimate::{Counts, FACE, Survey, lines, scaled, words};
+use super::error::ImportErrorKind;
+use super::estimate::{Counts, FACE, FileSampler, lines, scaled, words};
 use super::format::MeshFormat;
 use super::text::Scanner;
 use super::{Imported, Limits};
@@ -39,21 +41,21 @@ impl MeshFormat for Ply {
     }
 
     fn is_content(&self, bytes: &[u8]) -> bool {
-        let mut scanner = Scanner::wavefront(bytes);
+        let mut scanner = Scanner::with_obj_rules(bytes);
         scanner.word_anywhere() == Some(b"ply") && scanner.word().is_none()
     }
 
-    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
         read(bytes, limits, piece)
     }
 
-    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
+    fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
         polygons(file)
     }
 }
 
-/// Reads a whole file in pieces of about this many bytes.
-pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+/// Reads a whole file in pieces of about `piece` bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
     let mut scanner = Scanner::new(bytes);
     let header = Header::read(&mut scanner)?;
     let body = Body::new(&header, limits, piece);
@@ -63,10 +65,10 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
     }
 }
 
-/// Of a PLY: what its header announces; how many triangles its faces are, a binary file's length says, and the last
-/// rows of a text.
-fn polygons(file: &mut Survey) -> io::Result<Counts> {
-    let Some(Announced { vertices, vertex, faces, corners }) = announced(&file.head, file.size) else {
+/// Estimates the counts of a PLY. The header gives the number of vertices and faces. The number of
+/// triangles follows from the length of a binary file, or from the last rows of a text.
+fn polygons(file: &mut FileSampler) -> io::Result<Counts> {
+    let Some(DeclaredCounts { vertices, vertex_bytes, faces, corners }) = declared(&file.head, file.size) else {
         return Ok(Counts::default());
     };
     let triangles = match corners {
@@ -80,7 +82,8 @@ fn polygons(file: &mut Survey) -> io::Result<Counts> {
         }
     }
     .max(faces);
-    // Polygons are kept as runs of triangles; arrays that turn out too small are copied into larger ones.
-    let aside = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
-    Ok(Counts { vertices, triangles, vertex, aside })
+    // Polygons are kept as runs of triangles. Arrays that turn out too small are copied into larger
+    // ones.
+    let temporary_bytes = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
+    Ok(Counts { vertices, triangles, vertex_bytes, temporary_bytes })
 }

@@ -1,6 +1,6 @@
-//! The rules of PLY, one by one.
+//! Tests of the PLY reader, one rule each.
 
-use super::super::error::{Fault, Place};
+use super::super::error::{FilePosition, ImportErrorKind};
 use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
@@ -9,9 +9,9 @@ fn read(bytes: impl AsRef<[u8]>) -> Imported {
     super::read(bytes.as_ref(), &Limits::default(), PIECE).unwrap()
 }
 
-fn fault(bytes: impl AsRef<[u8]>) -> (Place, String) {
+fn error(bytes: impl AsRef<[u8]>) -> (FilePosition, String) {
     match super::read(bytes.as_ref(), &Limits::default(), PIECE).unwrap_err() {
-        Fault::Malformed { place, message } => (place, message),
+        ImportErrorKind::Malformed { place, message } => (place, message),
         other => panic!("expected a place: {other}"),
     }
 }
@@ -20,7 +20,7 @@ const SQUARE: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\
                       element face 1\nproperty list uchar int vertex_indices\nend_header\n\
                       0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 
-/// A header for a square of one polygon, its values as bytes by `number(type, value)`.
+/// A binary PLY of one square polygon; `number(type, value)` encodes its values.
 fn binary(format: &str, scalar: &str, length: &str, index: &str, number: impl Fn(&str, u8) -> Vec<u8>) -> Vec<u8> {
     let mut bytes = format!(
         "ply\nformat {format} 1.0\ncomment x\nobj_info y\nelement face 1\nproperty list {length} {index} vertex_index\n\
@@ -130,7 +130,7 @@ fn unknown_elements_are_passed_over() {
         .replace("end_header\n", "end_header\n2 1 1 5\n0 6\n");
     let Imported { mesh, warnings } = read(text);
     assert_eq!(mesh.triangles.len(), 2);
-    assert_eq!(warnings, ["ignored: 4000000000 rows of 'empty'", "ignored: 2 rows of 'edge'"]);
+    assert_eq!(warnings, ["ignored: 4000000000 elements 'empty'", "ignored: 2 elements 'edge'"]);
 }
 
 #[test]
@@ -138,21 +138,22 @@ fn lines_of_the_header_that_are_no_comments_are_passed_over() {
     let stray = SQUARE.replacen("element vertex", "Created by Blender3D\nelement vertex", 1);
     let Imported { mesh, warnings } = read(&stray);
     assert_eq!(mesh, read(SQUARE).mesh);
-    assert_eq!(warnings, ["ignored a line of the header that is no comment: line 3: 'Created by Blender3D'"]);
+    assert_eq!(warnings, ["ignored an unknown line of the header: line 3: 'Created by Blender3D'"]);
     let several = stray.replacen("element face", "made for tests\nelement face", 1);
-    let words = "ignored 2 lines of the header that are no comments, the first line 3: 'Created by Blender3D'";
+    let words = "ignored 2 unknown lines of the header, the first line 3: 'Created by Blender3D'";
     assert_eq!(read(several).warnings, [words]);
     let mut file = binary("binary_big_endian", "float", "uchar", "int", big);
     file.splice(4..4, *b"by hand\n");
-    assert_eq!(read(file).warnings, ["ignored a line of the header that is no comment: line 2: 'by hand'"]);
-    let (place, message) = fault(SQUARE.replacen("element vertex", "elment vertex", 1));
+    assert_eq!(read(file).warnings, ["ignored an unknown line of the header: line 2: 'by hand'"]);
+    let (place, message) = error(SQUARE.replacen("element vertex", "elment vertex", 1));
     let expected = "expected 'element', 'property', 'comment' or 'end_header', found 'elment'";
-    assert_eq!((place, message.as_str()), (Place::Line(3), expected));
+    assert_eq!((place, message.as_str()), (FilePosition::Line(3), expected));
 }
 
 #[test]
 fn a_double_is_rounded_once_in_all_forms() {
-    // Just above the middle between two floats: by way of the nearest double it rounds as the binary form does.
+    // The value lies just above the midpoint of two floats. Rounded to double first, it rounds to
+    // float as in the binary form.
     let text = SQUARE.replace("float", "double").replace("1 1 0", "1.00000017881393432617187 1 0");
     let value = 1.000_000_178_813_934_3_f64;
     assert_eq!(read(text).mesh.positions[2].x, value as f32);
@@ -161,21 +162,21 @@ fn a_double_is_rounded_once_in_all_forms() {
 #[test]
 fn counts_that_the_file_cannot_hold_are_refused_at_once() {
     for count in ["4000000000", "9223372036854775807"] {
-        let (place, message) = fault(SQUARE.replace("vertex 4", &format!("vertex {count}")));
-        assert_eq!(place, Place::Line(3));
-        assert!(message.starts_with(&format!("{count} rows of 'vertex' are announced, which need at least ")));
-        assert!(message.ends_with(" bytes, but only 34 are left for them"), "{message}");
+        let (place, message) = error(SQUARE.replace("vertex 4", &format!("vertex {count}")));
+        assert_eq!(place, FilePosition::Line(3));
+        assert!(message.starts_with(&format!("the header declares {count} elements 'vertex' of at least ")));
+        assert!(message.ends_with(" bytes, but only 34 remain"), "{message}");
         let mut file = binary("binary_little_endian", "float", "uchar", "int", little);
         let at = file.windows(8).position(|bytes| bytes == b"vertex 4").unwrap();
         file.splice(at + 7..at + 8, count.bytes());
-        assert_eq!(fault(file).0, Place::Line(7));
+        assert_eq!(error(file).0, FilePosition::Line(7));
     }
     let mut file = binary("binary_little_endian", "float", "uint", "int", little);
     let body = file.windows(11).position(|bytes| bytes == b"end_header\n").unwrap() + 11;
     file[body..body + 4].copy_from_slice(&u32::MAX.to_le_bytes());
-    let (place, message) = fault(&file);
+    let (place, message) = error(&file);
     assert!(message.contains("vertex index") || message.contains("end of the file"), "{message}");
-    assert!(matches!(place, Place::Byte(byte) if byte > body as u64));
+    assert!(matches!(place, FilePosition::Byte(byte) if byte > body as u64));
 }
 
 #[test]
@@ -185,35 +186,35 @@ fn faults_name_the_place_and_what_was_expected() {
         ("ascii", "binary", 2, "expected 'ascii', 'binary_little_endian' or 'binary_big_endian', found 'binary'"),
         ("1.0", "2.0", 2, "expected version '1.0', found '2.0'"),
         ("format ascii 1.0", "", 9, "expected a line 'format ...' before 'end_header'"),
-        ("vertex 4", "vertex -4", 3, "expected the number of rows, found '-4'"),
-        ("vertex 4", "vertex", 3, "expected the number of rows, found the end of the line"),
+        ("vertex 4", "vertex -4", 3, "expected the number of elements, found '-4'"),
+        ("vertex 4", "vertex", 3, "expected the number of elements, found the end of the line"),
         ("float y", "half y", 5, "expected a type (char, uchar, ..., float, double), found 'half'"),
         ("float y", "float", 5, "expected the property's name, found the end of the line"),
         ("float y", "float x", 5, "property 'x' is declared twice"),
         ("face 1", "vertex 1", 7, "element 'vertex' is declared twice"),
-        ("float z", "float w", 3, "expected properties x, y and z of the element 'vertex', each one number"),
-        ("float z", "list uchar float z", 3, "expected properties x, y and z of the element 'vertex', each one number"),
+        ("float z", "float w", 3, "expected scalar properties x, y and z of the element 'vertex'"),
+        ("float z", "list uchar float z", 3, "expected scalar properties x, y and z of the element 'vertex'"),
         ("vertex_indices", "corners", 7, "expected a property 'vertex_indices' of the element 'face'"),
         ("list uchar int", "int", 7, "expected the property 'vertex_indices' to be a list"),
         ("element vertex 4", "", 4, "expected 'element' before the first 'property'"),
         ("end_header", "end", 9, "expected 'element', 'property', 'comment' or 'end_header', found 'end'"),
         ("\n1 0 0", "\n1 0", 11, "expected a number for z, found the end of the line"),
-        ("\n1 0 0", "\n1 0 0 0", 11, "expected the end of the line, as the header says, found '0'"),
+        ("\n1 0 0", "\n1 0 0 0", 11, "expected the end of the line, as the header declares, found '0'"),
         ("\n1 0 0", "\n1 x 0", 11, "expected a number for y, found 'x'"),
         ("\n1 0 0", "\n1 -inf 0", 11, "expected a finite number for y, found -inf"),
-        ("4 0 1 2 3", "4 0 1 2 4", 14, "vertex index 4: there are 4 vertices, from 0"),
-        ("4 0 1 2 3", "4 0 1 2 -1", 14, "vertex index -1: there are 4 vertices, from 0"),
+        ("4 0 1 2 3", "4 0 1 2 4", 14, "vertex index 4 is out of range: there are 4 vertices, starting at 0"),
+        ("4 0 1 2 3", "4 0 1 2 -1", 14, "vertex index -1 is out of range: there are 4 vertices, starting at 0"),
         ("4 0 1 2 3", "5 0 1 2 3", 14, "expected a vertex index, found the end of the line"),
         ("4 0 1 2 3", "-4 0 1 2 3", 14, "expected the length of a list, found -4"),
-        ("4 0 1 2 3\n", "", 14, "expected one more row, found the end of the file"),
+        ("4 0 1 2 3\n", "", 14, "expected one more element, found the end of the file"),
     ];
     for (old, new, line, message) in cases {
-        let (place, found) = fault(SQUARE.replacen(old, new, 1));
+        let (place, found) = error(SQUARE.replacen(old, new, 1));
         if old.ends_with("3\n") {
-            assert!(found.contains("1 rows of 'face' are announced"), "{found}");
+            assert!(found.contains("the header declares 1 elements 'face'"), "{found}");
             continue;
         }
-        assert_eq!((place, found.as_str()), (Place::Line(line), message), "{old} -> {new}");
+        assert_eq!((place, found.as_str()), (FilePosition::Line(line), message), "{old} -> {new}");
     }
 }
 
@@ -223,30 +224,32 @@ fn faults_of_binary_files_name_the_byte() {
     let body = (file.len() - 1 - 4 * 4 - 12 * 4) as u64;
     let mut wrong = file.clone();
     wrong[body as usize + 9] = 4;
-    let index = "vertex index 4: there are 4 vertices, from 0".to_owned();
-    assert_eq!(fault(wrong), (Place::Byte(body + 9), index));
+    let index = "vertex index 4 is out of range: there are 4 vertices, starting at 0".to_owned();
+    assert_eq!(error(wrong), (FilePosition::Byte(body + 9), index));
     let mut infinite = file.clone();
     infinite[body as usize + 17 + 12..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
     let number = "expected a finite number for x, found inf".to_owned();
-    assert_eq!(fault(infinite), (Place::Byte(body + 17 + 12), number));
+    assert_eq!(error(infinite), (FilePosition::Byte(body + 17 + 12), number));
     let fractional = binary("binary_big_endian", "float", "uchar", "double", |kind, value| {
         if kind == "double" && value == 2 { 2.5_f64.to_be_bytes().to_vec() } else { big(kind, value) }
     });
-    assert_eq!(fault(fractional).1, "expected a vertex index, found 2.5");
+    assert_eq!(error(fractional).1, "expected a vertex index, found 2.5");
     let cut = file.split_last().unwrap().1;
-    let end =
-        (Place::Byte(cut.len() as u64 - 3), "expected 4 more bytes, found the end of the file after 3".to_owned());
-    assert_eq!(fault(cut), end);
+    let end = (
+        FilePosition::Byte(cut.len() as u64 - 3),
+        "expected 4 more bytes, found the end of the file after 3".to_owned(),
+    );
+    assert_eq!(error(cut), end);
 }
 
 #[test]
 fn headers_have_an_end() {
     let elements: String = (0..2000).map(|index| format!("element e{index} 0\n")).collect();
-    let (place, message) = fault(SQUARE.replace("element vertex", &format!("{elements}element vertex")));
-    assert_eq!((place, message.as_str()), (Place::Line(1003), "more than 1000 elements"));
+    let (place, message) = error(SQUARE.replace("element vertex", &format!("{elements}element vertex")));
+    assert_eq!((place, message.as_str()), (FilePosition::Line(1003), "more than 1000 elements"));
     let properties: String = (0..2000).map(|index| format!("property int p{index}\n")).collect();
-    let (place, message) = fault(SQUARE.replace("property float x", &format!("{properties}property float x")));
-    assert_eq!((place, message.as_str()), (Place::Line(1004), "more than 1000 properties of one element"));
+    let (place, message) = error(SQUARE.replace("property float x", &format!("{properties}property float x")));
+    assert_eq!((place, message.as_str()), (FilePosition::Line(1004), "more than 1000 properties of one element"));
 }
 
 #[test]
@@ -257,6 +260,6 @@ fn limits_are_kept_and_named() {
     check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");
     check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
     let no_faces = SQUARE.replace("face 1", "face 0").replace("4 0 1 2 3\n", "");
-    let fault = super::read(no_faces.as_bytes(), &Limits::default(), PIECE).unwrap_err();
-    assert_eq!(fault.to_string(), "holds no triangle");
+    let error = super::read(no_faces.as_bytes(), &Limits::default(), PIECE).unwrap_err();
+    assert_eq!(error.to_string(), "contains no triangles");
 }

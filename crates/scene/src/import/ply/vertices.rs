@@ -1,7 +1,7 @@
-//! The element `vertex` of a PLY: which columns are what, and reading them.
+//! Reading the element `vertex` of a PLY: roles of its columns, and its rows.
 
-use super::super::assemble::Parts;
-use super::super::error::Fault;
+use super::super::assemble::MeshParts;
+use super::super::error::ImportErrorKind;
 use super::super::text::finite;
 use super::body::{Body, Rows, Values, note_ignored, skip};
 use super::header::Element;
@@ -10,10 +10,10 @@ use juggler_math::{vec2, vec3};
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 const SURFACE: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
-/// A row's values: position, normal, surface coordinates.
+/// Number of values of a row: position, normal, texture coordinates.
 const SLOTS: usize = 8;
 
-/// What becomes of each column: the slot of its value, or nothing.
+/// Slot of each column's value in a row; `None` if the column is ignored.
 struct Columns {
     slots: Vec<Option<usize>>,
     normals: bool,
@@ -21,10 +21,10 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(element: &Element) -> Result<Self, Fault> {
+    fn of(element: &Element) -> Result<Self, ImportErrorKind> {
         let mut slots = vec![None; element.properties.len()];
         if !assign(&mut slots, element, &POSITION, 0) {
-            return Err(element.place.fault("expected properties x, y and z of the element 'vertex', each one number"));
+            return Err(element.place.error("expected scalar properties x, y and z of the element 'vertex'"));
         }
         let normals = assign(&mut slots, element, &NORMAL, 3);
         let uvs = SURFACE.iter().any(|names| assign(&mut slots, element, names, 6));
@@ -32,7 +32,8 @@ impl Columns {
     }
 }
 
-/// Gives the columns of these names the slots from `first` on, if all are there.
+/// Assigns the slots from `first` on to the columns of these names. Returns false and assigns
+/// nothing unless all of them exist.
 fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first: usize) -> bool {
     let is_number = |column: &usize| element.properties.get(*column).is_some_and(|property| property.length.is_none());
     let columns: Vec<usize> = names.iter().filter_map(|name| element.column(name).filter(is_number)).collect();
@@ -47,19 +48,19 @@ fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first:
     true
 }
 
-/// Bytes that a vertex takes in the mesh.
+/// Bytes of a vertex in the mesh.
 pub(super) fn bytes_of_vertex(element: &Element) -> u64 {
     Columns::of(element)
         .map_or(12, |columns| 12 + if columns.normals { 12 } else { 0 } + if columns.uvs { 8 } else { 0 })
 }
 
-/// Reads all rows. The caller has made sure that the file is long enough for them.
+/// Reads all rows. The caller has checked that the file is long enough for them.
 pub(super) fn read_vertices(
     body: &Body<'_>,
     element: &Element,
     values: &mut impl Values,
-    parts: &mut Parts,
-) -> Result<(), Fault> {
+    parts: &mut MeshParts,
+) -> Result<(), ImportErrorKind> {
     let columns = Columns::of(element)?;
     note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
     body.limits.check_vertices(element.count)?;
@@ -77,15 +78,15 @@ pub(super) fn read_vertices(
     )
 }
 
-fn reserve(parts: &mut Parts, columns: &Columns, count: u64) {
+fn reserve(parts: &mut MeshParts, columns: &Columns, count: u64) {
     let count = usize::try_from(count).unwrap_or(0);
     parts.positions.reserve_exact(count);
     parts.normals.reserve_exact(if columns.normals { count } else { 0 });
     parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
 }
 
-fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<Parts, Fault> {
-    let mut parts = Parts::default();
+fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<MeshParts, ImportErrorKind> {
+    let mut parts = MeshParts::default();
     reserve(&mut parts, columns, rows.count);
     for _ in 0..rows.count {
         let [x, y, z, nx, ny, nz, u, v] = read_row(element, columns, &mut rows.values)?;
@@ -100,7 +101,7 @@ fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>)
     Ok(parts)
 }
 
-fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> Result<[f32; SLOTS], Fault> {
+fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> Result<[f32; SLOTS], ImportErrorKind> {
     let mut row = [0.0; SLOTS];
     values.begin_row()?;
     for (property, slot) in element.properties.iter().zip(&columns.slots) {
@@ -110,7 +111,7 @@ fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> R
         };
         let place = values.place();
         *entry = values.real(property.item, &property.name)?;
-        // A normal that is no direction is repaired later.
+        // Normals may be not finite here; `MeshParts::assemble` repairs them.
         if !matches!(slot, Some(3..6)) {
             finite(*entry, place, &property.name)?;
         }

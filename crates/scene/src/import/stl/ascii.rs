@@ -1,26 +1,27 @@
-//! ASCII STL: `solid`s of `facet`s, words in any case, on any lines.
+//! Text STL: `solid`s of `facet`s, with keywords in any case and on any line; coordinates are on
+//! the line of their `vertex`.
 
-use super::super::error::Fault;
+use super::super::error::ImportErrorKind;
 use super::super::pieces::{line_breaks, next_line_start, read_pieces};
 use super::super::text::Scanner;
 use super::super::{Imported, Limits};
-use super::{Soup, Soups};
+use super::{AllFacets, WeldedFacets};
 use juggler_math::{Vec3, vec3};
 
-/// Whether the file is without the zero bytes that a binary one has, at the latest in its count of facets
-/// (one with 2^24 facets and more has a length that says so).
+/// Whether the file has no zero byte near its start. A binary file has one in its facet count at
+/// the latest, since a count of 2^24 and more is recognized by the file's length.
 pub(super) fn is_text(bytes: &[u8]) -> bool {
     const ENOUGH: usize = 1024;
     !bytes.get(..ENOUGH).unwrap_or(bytes).contains(&0)
 }
 
-/// Reads all solids of a file in pieces of about this many bytes.
+/// Reads all solids of a file in pieces of about `piece` bytes.
 ///
-/// A text is cut where a line begins with the word `facet`, and a piece is read as if a facet of a solid began there.
-/// That is checked when the pieces are put together: one that does not begin where the piece before it ended is read
-/// once more.
-pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
-    let mut soups = Soups::default();
+/// The text is cut at lines that begin with the word `facet`, and each piece is read as if a facet
+/// inside a solid began there. When the pieces are joined, a piece that does not begin where the
+/// previous one ended is read again from there.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
+    let mut all_facets = AllFacets::default();
     let mut at = State { position: 0, inside: false };
     read_pieces(
         &cut(bytes, piece),
@@ -33,25 +34,25 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
                 piece.start = at;
                 found = read_piece(bytes, piece, limits);
             }
-            let (soup, end) =
-                found.map_err(|fault| fault.further_down(line_breaks(bytes.get(..at.position).unwrap_or_default())))?;
+            let (welded, end) =
+                found.map_err(|error| error.offset_lines(line_breaks(bytes.get(..at.position).unwrap_or_default())))?;
             at = end;
-            soups.append(soup, limits)
+            all_facets.append(welded, limits)
         },
     )?;
-    soups.finish(Vec::new(), limits)
+    all_facets.finish(Vec::new(), limits)
 }
 
-/// What there is to know between two facets.
+/// State of the reader between two facets.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct State {
-    /// Where the next word stands.
+    /// Position of the next word, in bytes.
     position: usize,
-    /// Whether a solid is open.
+    /// Whether the position is inside a solid.
     inside: bool,
 }
 
-/// Facets from `start` to the first that begins at `end` or later.
+/// Facets from `start` to the first facet that begins at byte `end` or later.
 #[derive(Clone, Copy)]
 struct Piece {
     start: State,
@@ -77,39 +78,45 @@ fn cut(bytes: &[u8], piece: usize) -> Vec<Piece> {
     pieces
 }
 
-/// The facets of a piece, and where it ends.
-fn read_piece(bytes: &[u8], piece: Piece, limits: &Limits) -> Result<(Soup, State), Fault> {
+/// Reads the facets of a piece. Returns them and the state at the end.
+fn read_piece(bytes: &[u8], piece: Piece, limits: &Limits) -> Result<(WeldedFacets, State), ImportErrorKind> {
     let mut scanner = Scanner::new(bytes.get(piece.start.position..).unwrap_or_default());
-    let mut soup = Soup::default();
+    let mut welded = WeldedFacets::default();
     let mut inside = piece.start.inside;
     loop {
         let more = scanner.skip_empty_lines();
         let position = piece.start.position + scanner.position();
         if position >= piece.end || !more && !inside {
-            return Ok((soup, State { position, inside }));
+            return Ok((welded, State { position, inside }));
         }
-        inside = statement(&mut scanner, inside, &mut soup, limits)?;
+        inside = statement(&mut scanner, inside, &mut welded, limits)?;
     }
 }
 
-/// A facet, or the start or end of a solid; whether one is open then.
-fn statement(scanner: &mut Scanner<'_>, inside: bool, soup: &mut Soup, limits: &Limits) -> Result<bool, Fault> {
+/// Reads a facet, or the start or end of a solid. Returns whether a solid is open afterwards.
+fn statement(
+    scanner: &mut Scanner<'_>,
+    inside: bool,
+    welded: &mut WeldedFacets,
+    limits: &Limits,
+) -> Result<bool, ImportErrorKind> {
     let word = scanner.word();
     let is = |keyword: &[u8]| word.is_some_and(|word| word.eq_ignore_ascii_case(keyword));
     if inside && is(b"facet") {
-        soup.push(facet(scanner)?, limits)?;
+        welded.push(facet(scanner)?, limits)?;
         return Ok(true);
     }
     if !is(if inside { b"endsolid" } else { b"solid" }) {
         return Err(scanner.expected(if inside { "'facet' or 'endsolid'" } else { "'solid'" }, word));
     }
-    // What stands behind is the solid's name.
+    // Skip the solid's name.
     scanner.rest_of_line();
     Ok(!inside)
 }
 
-/// What follows the word `facet`. The normal may be written in ways that are no numbers, as `-nan(ind)`.
-fn facet(scanner: &mut Scanner<'_>) -> Result<[Vec3; 3], Fault> {
+/// Reads a facet after its keyword. The normal is not parsed, since exporters write words such as
+/// `-nan(ind)` for it.
+fn facet(scanner: &mut Scanner<'_>) -> Result<[Vec3; 3], ImportErrorKind> {
     keyword(scanner, "normal")?;
     for axis in ["x", "y", "z"] {
         if scanner.word_anywhere().is_none() {
@@ -124,12 +131,12 @@ fn facet(scanner: &mut Scanner<'_>) -> Result<[Vec3; 3], Fault> {
     Ok(corners)
 }
 
-fn corner(scanner: &mut Scanner<'_>) -> Result<Vec3, Fault> {
+fn corner(scanner: &mut Scanner<'_>) -> Result<Vec3, ImportErrorKind> {
     keyword(scanner, "vertex")?;
     Ok(vec3(scanner.real("x")?, scanner.real("y")?, scanner.real("z")?))
 }
 
-fn keyword(scanner: &mut Scanner<'_>, expected: &str) -> Result<(), Fault> {
+fn keyword(scanner: &mut Scanner<'_>, expected: &str) -> Result<(), ImportErrorKind> {
     match scanner.word_anywhere() {
         Some(word) if word.eq_ignore_ascii_case(expected.as_bytes()) => Ok(()),
         word => Err(scanner.expected(&format!("'{expected}'"), word)),

@@ -1,6 +1,6 @@
-//! The rules of STL, one by one.
+//! Tests of the STL reader, one rule each.
 
-use super::super::error::{Fault, Place};
+use super::super::error::{FilePosition, ImportErrorKind};
 use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec3, vec3};
@@ -65,33 +65,33 @@ fn facets_that_are_not_numbers_are_left_out_and_counted() {
     let broken = [Vec3::ZERO, Vec3::NAN, Vec3::Y];
     let Imported { mesh, warnings } = read(&binary("", &[broken, LOWER, [Vec3::INFINITY; 3]]));
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
-    assert_eq!(warnings, ["2 facets with infinite or NaN coordinates left out"]);
+    assert_eq!(warnings, ["2 facets with infinite or NaN coordinates ignored"]);
     let text = format!("solid\n{}{}endsolid\n", facet(broken), facet(LOWER));
     assert_eq!(read(text.as_bytes()).mesh, mesh);
     let nothing = message(&binary("", &[broken]));
-    assert_eq!(nothing, "holds no triangle (1 facets with infinite or NaN coordinates left out)");
+    assert_eq!(nothing, "contains no triangles (1 facets with infinite or NaN coordinates ignored)");
 }
 
 #[test]
-fn colours_and_trailing_bytes_are_counted() {
+fn colors_and_trailing_bytes_are_counted() {
     let mut bytes = binary("COLOR=", &[LOWER, UPPER]);
     bytes[84 + 48] = 7;
     bytes.extend(b"more");
     let warnings = read(&bytes).warnings;
-    assert_eq!(warnings, ["attributes (colours) of 1 facets ignored", "4 bytes after the last facet ignored"]);
+    assert_eq!(warnings, ["attributes (colors) of 1 facets ignored", "4 bytes after the last facet ignored"]);
 }
 
 #[test]
 fn short_binary_files_are_refused_before_anything_is_reserved() {
     let mut bytes = binary("solid", &[LOWER, UPPER]);
     bytes.pop();
-    let expected = "byte 80: 2 facets of 50 bytes are announced, but the 99 bytes that follow hold only 1";
+    let expected = "byte 80: the header declares 2 facets of 50 bytes, but the 99 bytes that follow contain only 1";
     assert_eq!(message(&bytes), expected);
     bytes[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert!(message(&bytes).starts_with("byte 80: 4294967295 facets of 50 bytes are announced"));
+    assert!(message(&bytes).starts_with("byte 80: the header declares 4294967295 facets of 50 bytes"));
     assert_eq!(message(&bytes[..30]), "line 1: expected 'facet' or 'endsolid', found the end of the file");
     bytes[20] = 0;
-    assert!(message(&bytes[..70]).starts_with("byte 70: expected an STL"));
+    assert!(message(&bytes[..70]).starts_with("byte 70: expected an STL file"));
 }
 
 #[test]
@@ -111,13 +111,13 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
     for (old, new, line, message) in cases {
         let text = good.replacen(old, new, 1);
         match super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap_err() {
-            Fault::Malformed { place, message: found } => {
-                assert_eq!((place, found.as_str()), (Place::Line(line), message), "{old} -> {new}");
+            ImportErrorKind::Malformed { place, message: found } => {
+                assert_eq!((place, found.as_str()), (FilePosition::Line(line), message), "{old} -> {new}");
             }
             other => panic!("{other}"),
         }
     }
-    assert_eq!(message(b""), "holds no triangle");
+    assert_eq!(message(b""), "contains no triangles");
 }
 
 #[test]

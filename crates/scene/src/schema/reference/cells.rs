@@ -1,23 +1,23 @@
-//! The cells of the tables: what may stand at a field, and what stands there when nothing is said.
+//! Cells of the reference's tables: the allowed values and the default of a field.
 
 use crate::schema::{Schema, variants};
 use crate::validate::{family_noun, plural};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Longest default that is written out.
+/// Maximum length of a default in a table, in bytes; longer ones are left out.
 const MAX_DEFAULT: usize = 60;
 
-/// Writes cells.
+/// Formatter of table cells.
 pub struct Cells<'s> {
-    /// The format.
+    /// Schema of the format.
     pub schema: &'s Schema,
-    /// Where definitions are explained.
+    /// Anchors of the definitions' sections, by name of the definition.
     pub anchors: BTreeMap<String, String>,
 }
 
 impl Cells<'_> {
-    /// What may stand at a field, with its range and unit.
+    /// Describes the allowed values of a field with their range and unit.
     pub fn value(&self, field: &str, schema: &Value) -> String {
         let value = self.words(schema, false);
         match unit(field) {
@@ -26,7 +26,7 @@ impl Cells<'_> {
         }
     }
 
-    /// A value in words, or `many` of them.
+    /// Describes a value, in the plural if `many`.
     fn words(&self, schema: &Value, many: bool) -> String {
         let (name, target) = self.schema.follow(schema);
         if let Some(text) = name.and_then(|name| self.named(name, many)) {
@@ -53,11 +53,11 @@ impl Cells<'_> {
         }
     }
 
-    /// Definitions that have an entry of their own, or are best said in words.
+    /// Describes a definition that has its own section or a special wording.
     fn named(&self, name: &str, many: bool) -> Option<String> {
         let noun = |noun: &str| if many { plural(noun) } else { noun.to_owned() };
         Some(match name {
-            "Color" => format!("[{}](#colours)", noun("colour")),
+            "Color" => format!("[{}](#colors)", noun("color")),
             "GroupName" => "name of a group".into(),
             "CameraName" => "name of a camera".into(),
             "PathName" => "name of a [path](#path)".into(),
@@ -70,7 +70,7 @@ impl Cells<'_> {
         })
     }
 
-    /// A material or its name; a number, a texture or its name.
+    /// Describes alternative forms, such as a material or its name.
     fn alternatives(&self, branches: &[Value], many: bool) -> String {
         let is = |branch: &Value, t: &str| branch.get("type").is_some_and(|found| found == t);
         let named = |branch: &Value| matches!(self.schema.follow(branch).0, Some("AnyMaterial" | "AnyTexture"));
@@ -96,14 +96,15 @@ impl Cells<'_> {
         }
     }
 
-    /// The default of a field.
+    /// Formats the default of a field; empty if there is none or if it is too long.
     pub fn default(&self, field: &Value) -> String {
         let Some(default) = field.get("default").filter(|default| !default.is_null()) else { return String::new() };
         let text = self.short(field, default).to_string();
         if text.len() > MAX_DEFAULT { String::new() } else { format!("`{}`", spaced(&text)) }
     }
 
-    /// The shortest way to write a default: a kind by its name, an object without what is its own default.
+    /// Shortens a default: a kind to its name, an object to the members that differ from their
+    /// defaults.
     fn short(&self, schema: &Value, value: &Value) -> Value {
         let target = self.schema.follow(schema).1;
         if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
@@ -128,7 +129,7 @@ impl Cells<'_> {
     }
 }
 
-/// The unit that a field's name tells.
+/// Unit of a field, from the suffix of its name.
 fn unit(field: &str) -> Option<&'static str> {
     if field == "degrees" || field.ends_with("_degrees") {
         Some("degrees")
@@ -139,7 +140,7 @@ fn unit(field: &str) -> Option<&'static str> {
     }
 }
 
-/// The numbers that are allowed, as far as there are limits.
+/// Describes the limits of a number, if there are any.
 fn range(schema: &Value) -> String {
     let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
     match (bound("minimum"), bound("maximum")) {
@@ -153,13 +154,13 @@ fn range(schema: &Value) -> String {
     if limits.is_empty() { limits } else { format!(" {limits}") }
 }
 
-/// A limit, with an exponent where its digits would fill a line.
+/// Formats a limit, with an exponent if it is very large or very small.
 fn shown(bound: f64) -> String {
     let size = bound.abs();
     if size >= 1e16 || size > 0.0 && size < 1e-9 { format!("{bound:e}") } else { bound.to_string() }
 }
 
-/// Compact JSON with a blank after commas and colons.
+/// Adds a space after commas and colons of compact JSON.
 fn spaced(json: &str) -> String {
     let (mut text, mut in_string) = (String::new(), false);
     for character in json.chars() {

@@ -1,4 +1,5 @@
-//! The format's documentation: a short introduction written by hand, then every part of the schema as Markdown.
+//! Generator of the format's reference: an introduction written by hand, then every part of the
+//! schema as Markdown.
 
 use super::{Schema, variants};
 use crate::compile::{MAX_EDGE, MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
@@ -13,12 +14,12 @@ mod cells;
 
 use cells::Cells;
 
-/// What is written by hand.
+/// The introduction.
 const INTRODUCTION: &str = include_str!("introduction.md");
-/// The part of it about what moves.
+/// The introduction's section about animation.
 const ANIMATION: &str = include_str!("animation.md");
 
-/// The reference of the scene format, in Markdown.
+/// Generates the reference of the scene format in Markdown.
 pub fn reference() -> String {
     let schema = Schema::get();
     let mut plan = Plan { schema, entries: Vec::new(), seen: BTreeSet::new() };
@@ -38,53 +39,53 @@ pub fn reference() -> String {
     text
 }
 
-/// The functions of expressions, as they are written.
+/// List of the functions of expressions with their usage.
 fn functions() -> String {
     let functions: Vec<String> = FUNCTIONS.iter().map(|function| format!("`{}`", function.usage)).collect();
     let lines: Vec<String> = functions.chunks(6).map(|line| format!("  {}", line.join(", "))).collect();
     lines.join(",\n")
 }
 
-/// What is refused for its size.
+/// Table of the size limits.
 fn limits() -> String {
     let limits = [
         ("size of a scene file", format!("{} MiB", document::MAX_BYTES >> 20)),
         ("values in a scene file", document::MAX_VALUES.to_string()),
         ("nesting of arrays and objects", document::MAX_DEPTH.to_string()),
         ("scene files of a scene", document::MAX_FILES.to_string()),
-        ("objects, those of groups counted as often as they are placed", MAX_OBJECTS.to_string()),
-        ("objects in memory, those of large groups that repeat counted once", MAX_STORED.to_string()),
-        ("shapes that emit light, those of groups counted as often as they are placed", MAX_EMITTERS.to_string()),
+        ("objects, counted once for each placement of their group", MAX_OBJECTS.to_string()),
+        ("objects in memory (repeated large groups count once)", MAX_STORED.to_string()),
+        ("emissive shapes, counted once for each placement of their group", MAX_EMITTERS.to_string()),
         ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_material::MAX_NESTING.to_string()),
         ("nesting of textures", juggler_texture::MAX_NESTING.to_string()),
-        ("lookups of textures that one lookup leads to", juggler_texture::MAX_LOOKUPS.to_string()),
+        ("nested texture lookups per lookup", juggler_texture::MAX_LOOKUPS.to_string()),
         ("bytes of an expression", juggler_expression::MAX_LENGTH.to_string()),
         ("nesting of an expression", juggler_expression::MAX_DEPTH.to_string()),
         ("keys of a track", animate::MAX_KEYS.to_string()),
         ("points of a path", animate::MAX_POINTS.to_string()),
         ("nesting of value forms", animate::MAX_NESTING.to_string()),
-        ("side of a texture's picture, in pixels", compile::MAX_SIDE.to_string()),
-        ("pixels of a texture's picture", compile::MAX_TEXELS.to_string()),
-        ("edge of a picture, in pixels", MAX_EDGE.to_string()),
-        ("pixels of a picture", MAX_PIXELS.to_string()),
-        ("samples of a pixel", MAX_SAMPLES.to_string()),
+        ("width or height of a texture image, in pixels", compile::MAX_SIDE.to_string()),
+        ("pixels of a texture image", compile::MAX_TEXELS.to_string()),
+        ("width or height of an image, in pixels", MAX_EDGE.to_string()),
+        ("pixels of an image", MAX_PIXELS.to_string()),
+        ("samples per pixel", MAX_SAMPLES.to_string()),
     ];
     let rows: String = limits.iter().map(|(what, most)| format!("| {what} | {most} |\n")).collect();
-    format!("Numbers must be finite in 32 bits.\n\n| what | at most |\n|---|---|\n{rows}")
+    format!("Numbers must be finite as 32-bit floats.\n\n| limit | maximum |\n|---|---|\n{rows}")
 }
 
-/// A heading and what stands below it.
+/// A section of the reference.
 struct Entry<'s> {
     level: usize,
     heading: String,
-    /// The definition that it explains, where it has a name.
+    /// Name of the definition that the section explains, if it has one.
     name: Option<&'s str>,
     description: &'s str,
     schema: &'s Value,
 }
 
-/// What comes in which order: each section, then the sections that it leads to.
+/// Order of the sections: each section is followed by those that it refers to.
 struct Plan<'s> {
     schema: &'s Schema,
     entries: Vec<Entry<'s>>,
@@ -100,7 +101,7 @@ impl<'s> Plan<'s> {
         }
     }
 
-    /// A section of its own, for a family or a part of the scene.
+    /// Adds a section for a family or for a part of the scene.
     fn section(&mut self, name: &'s str, target: &'s Value) {
         if !self.seen.insert(name) {
             return;
@@ -122,7 +123,7 @@ impl<'s> Plan<'s> {
         }
     }
 
-    /// The kinds of a family, and the definitions that they lead to.
+    /// Adds the kinds of a family. Returns the definitions that they refer to.
     fn kinds(&mut self, noun: &str, family: &'s Value) -> Vec<(&'s str, &'s Value)> {
         let mut inner = Vec::new();
         for variant in variants(family) {
@@ -132,14 +133,15 @@ impl<'s> Plan<'s> {
                 continue;
             };
             let (name, target) = self.schema.follow(content);
-            let told = [variant, content, target].map(description).into_iter().find(|told| !told.is_empty());
-            self.entry(3, format!("{} `{kind}`", capital(noun)), name, told.unwrap_or_default(), target);
+            let text = [variant, content, target].map(description).into_iter().find(|text| !text.is_empty());
+            self.entry(3, format!("{} `{kind}`", capital(noun)), name, text.unwrap_or_default(), target);
             inner.extend(self.leads_to(target));
         }
         inner
     }
 
-    /// Something that only this section needs is explained in it; families get sections of their own.
+    /// Adds a definition that only this section uses as its subsection; families are deferred to
+    /// sections of their own.
     fn part(&mut self, noun: &str, name: &'s str, target: &'s Value, sections: &mut Vec<(&'s str, &'s Value)>) {
         if is_family(self.schema, target) {
             sections.push((name, target));
@@ -156,11 +158,11 @@ impl<'s> Plan<'s> {
         }
     }
 
-    fn entry(&mut self, level: usize, heading: String, name: Option<&'s str>, told: &'s str, schema: &'s Value) {
-        self.entries.push(Entry { level, heading, name, description: told, schema });
+    fn entry(&mut self, level: usize, heading: String, name: Option<&'s str>, description: &'s str, schema: &'s Value) {
+        self.entries.push(Entry { level, heading, name, description, schema });
     }
 
-    /// The definitions that a schema mentions, those inside nameless parts included.
+    /// The definitions that a schema refers to, including those inside unnamed parts.
     fn leads_to(&self, schema: &'s Value) -> Vec<(&'s str, &'s Value)> {
         let mut found = Vec::new();
         collect(self.schema, schema, &mut found);
@@ -222,13 +224,13 @@ fn write_entry(text: &mut String, entry: &Entry<'_>, cells: &Cells<'_>) {
             let _ = writeln!(text, "| `{name}` | {value} | {default} | {} |", meaning.replace('|', "\\|"));
         }
     } else if entry.schema.get("type").is_some_and(|t| t == "object") {
-        text.push_str("It has no settings.\n");
+        text.push_str("This kind has no settings.\n");
     } else {
-        let _ = writeln!(text, "Its value: {}.", cells.value("", entry.schema));
+        let _ = writeln!(text, "Value: {}.", cells.value("", entry.schema));
     }
 }
 
-/// Whether it is an object with settings of its own (or none), in a row of a table each.
+/// Whether a schema is an object with fixed settings (or none), which a table lists.
 fn is_table(schema: &Value) -> bool {
     schema.get("type").is_some_and(|t| t == "object")
         && schema.get("additionalProperties").is_none_or(|o| !o.is_object())
@@ -255,7 +257,7 @@ fn capital(text: &str) -> String {
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
-/// The link to a heading, as GitHub and others make it.
+/// Link target of a heading, as GitHub generates it.
 fn anchor(heading: &str) -> String {
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.flat_map(char::to_lowercase).collect::<String>().replace(' ', "-")

@@ -1,7 +1,7 @@
-//! A server over a small scene, and what talks to it: plain HTTP by hand, WebSockets by `tungstenite`.
+//! Test server of a small scene, with clients for plain HTTP and, by `tungstenite`, for WebSockets.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use juggler_serve::{Limits, Options, Running, Server};
+use juggler_serve::{Limits, Running, Server, ServerOptions};
 use juggler_session::Session;
 use serde_json::Value;
 use std::io::{Read, Write};
@@ -11,21 +11,21 @@ use std::time::{Duration, Instant};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
-/// Nothing takes longer, on a busy machine.
+/// Timeout of every wait, even on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A server at work.
+/// Running server.
 pub struct Serving {
     pub address: SocketAddr,
     pub url: String,
-    /// The cookie that stands for the token, as a header's value; none where requests need no token.
+    /// Value of the cookie header with the token; `None` if requests need no token.
     pub cookie: Option<String>,
     pub session: Session,
     pub log: Arc<Mutex<Vec<String>>>,
     _running: Running,
 }
 
-/// An answer.
+/// HTTP response.
 #[derive(Debug)]
 pub struct Answer {
     pub status: u16,
@@ -44,30 +44,30 @@ impl Answer {
     }
 }
 
-/// Opens a small picture of a built-in scene.
+/// Opens a session of a built-in scene with a small image.
 pub fn small_session() -> Session {
-    let options = juggler_session::Options { size: Some([64, 48]), threads: 1, ..Default::default() };
+    let options = juggler_session::SessionOptions { size: Some([64, 48]), threads: 1, ..Default::default() };
     Session::open("one-sphere", options)
 }
 
-/// On a free port of this machine, as it is by default: with a token.
+/// Starts a server with default options, and so with a token, on a free loopback port.
 pub fn serve() -> Serving {
-    serve_with(Options::default())
+    serve_with(ServerOptions::default())
 }
 
-/// Without a token, so that requests are let in or refused for other reasons.
+/// Starts a server without a token, so that other rules decide about requests.
 pub fn serve_open() -> Serving {
-    serve_with(Options { token: false, ..Options::default() })
+    serve_with(ServerOptions { token: false, ..ServerOptions::default() })
 }
 
-/// With other options; the port is free anyway.
-pub fn serve_with(options: Options) -> Serving {
+/// Starts a server with other options on a free port.
+pub fn serve_with(options: ServerOptions) -> Serving {
     let mut address = options.address;
     address.set_port(0);
     let log = Arc::new(Mutex::new(Vec::new()));
     let lines = Arc::clone(&log);
     let session = small_session();
-    let options = Options { address, ..options };
+    let options = ServerOptions { address, ..options };
     let server =
         Server::bind(session.clone(), options, move |line| lines.lock().unwrap().push(line.to_owned())).unwrap();
     let (address, url) = (server.address(), server.url());
@@ -76,7 +76,7 @@ pub fn serve_with(options: Options) -> Serving {
     Serving { address, cookie, session, log, _running: server.start().unwrap(), url }
 }
 
-/// Limits that tests need not wait for.
+/// Limits with short timeouts.
 pub fn short_limits() -> Limits {
     Limits { head: Duration::from_millis(300), ..Limits::default() }
 }
@@ -94,28 +94,28 @@ impl Serving {
         format!("127.0.0.1:{}", self.address.port())
     }
 
-    /// Sends a request as it is; headers are whole lines.
-    pub fn ask(&self, method: &str, path: &str, headers: &[&str]) -> Answer {
+    /// Sends a request with these headers, each a whole line.
+    pub fn request(&self, method: &str, path: &str, headers: &[&str]) -> Answer {
         let mut stream = self.connect();
         let lines: String = headers.iter().map(|line| format!("{line}\r\n")).collect();
-        // The other side may have read enough before all is sent.
+        // The server may answer before it has read everything.
         let _ = write!(stream, "{method} {path} HTTP/1.1\r\nConnection: close\r\n{lines}\r\n");
         answer(&mut stream)
     }
 
-    /// Asks as the page does, which has the cookie.
+    /// Sends a request with the cookie, as the page does.
     pub fn get(&self, path: &str) -> Answer {
         let cookie = self.cookie.iter().map(|cookie| format!("Cookie: {cookie}"));
         let lines: Vec<String> = cookie.chain([format!("Host: {}", self.host())]).collect();
-        self.ask("GET", path, &lines.iter().map(String::as_str).collect::<Vec<_>>())
+        self.request("GET", path, &lines.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
-    /// Whether the page is still given out.
+    /// Returns whether the server still delivers the page.
     pub fn is_alive(&self) -> bool {
         self.get("/").status == 200
     }
 
-    /// Tries to open a page's socket with these headers besides the usual ones.
+    /// Opens a WebSocket with these headers in addition to the usual ones.
     pub fn open(&self, path: &str, headers: &[(&'static str, &str)]) -> Result<Page, u16> {
         let mut request = format!("ws://{}{path}", self.host()).into_client_request().unwrap();
         for (name, value) in headers {
@@ -140,14 +140,14 @@ impl Serving {
         self.open("/socket", &cookie.chain([("Origin", origin.as_str())]).collect::<Vec<_>>())
     }
 
-    /// Waits until the log has a line with this in it.
+    /// Waits until a line of the log contains `part`.
     pub fn wait_for_line(&self, part: &str) {
         let has = || self.log.lock().unwrap().iter().any(|line| line.contains(part));
         wait_until(&format!("a line with `{part}` in {:?}", self.log), has);
     }
 }
 
-/// Reads until the other side closes.
+/// Reads until the server closes the connection.
 pub fn answer(stream: &mut TcpStream) -> Answer {
     let mut bytes = Vec::new();
     let _ = stream.read_to_end(&mut bytes);
@@ -157,7 +157,7 @@ pub fn answer(stream: &mut TcpStream) -> Answer {
     Answer { status, head, body: bytes.get(split + 4..).unwrap_or_default().to_vec() }
 }
 
-/// Waits, but not for ever.
+/// Waits for a condition, at most [`PATIENCE`].
 pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
     let start = Instant::now();
     while !condition() {
@@ -166,12 +166,12 @@ pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// A page's socket.
+/// WebSocket of a page.
 pub struct Page {
     pub socket: WebSocket<TcpStream>,
 }
 
-/// A frame's head.
+/// Header of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Head {
     pub serial: u32,
@@ -182,26 +182,26 @@ pub struct Head {
     pub samples: f32,
 }
 
-/// What a page hears.
+/// Message to a page.
 #[derive(Debug)]
-pub enum Heard {
+pub enum Received {
     Text(String, Value),
     Frame(Head, Vec<u8>),
 }
 
 impl Page {
-    pub fn say(&mut self, message: &str) {
+    pub fn send(&mut self, message: &str) {
         self.socket.send(Message::text(message)).unwrap();
     }
 
-    /// The next message; nothing when the socket was closed.
-    pub fn hear(&mut self) -> Option<Heard> {
+    /// Returns the next message; `None` once the socket is closed.
+    pub fn receive(&mut self) -> Option<Received> {
         loop {
             match self.socket.read() {
                 Ok(Message::Text(text)) => {
                     let message: Value = serde_json::from_str(&text).unwrap();
                     let (kind, value) = message.as_object().unwrap().iter().next().unwrap();
-                    return Some(Heard::Text(kind.clone(), value.clone()));
+                    return Some(Received::Text(kind.clone(), value.clone()));
                 }
                 Ok(Message::Binary(bytes)) => return Some(frame(&bytes)),
                 Ok(Message::Close(_)) | Err(_) => return None,
@@ -210,26 +210,26 @@ impl Page {
         }
     }
 
-    /// The next text of this kind that fits; pictures are acknowledged on the way.
-    pub fn told(&mut self, kind: &str, mut fits: impl FnMut(&Value) -> bool) -> Value {
+    /// Returns the next text message of a kind that fits, and acknowledges frames meanwhile.
+    pub fn next_text(&mut self, kind: &str, mut fits: impl FnMut(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
             assert!(start.elapsed() < PATIENCE, "no {kind}");
-            match self.hear().expect("the socket was closed") {
-                Heard::Text(name, value) if name == kind && fits(&value) => return value,
-                Heard::Frame(head, _) => self.say(&format!("{{\"ack\": {}}}", head.serial)),
-                Heard::Text(..) => {}
+            match self.receive().expect("the socket was closed") {
+                Received::Text(name, value) if name == kind && fits(&value) => return value,
+                Received::Frame(head, _) => self.send(&format!("{{\"ack\": {}}}", head.serial)),
+                Received::Text(..) => {}
             }
         }
     }
 
-    /// The next picture that fits; all are acknowledged.
-    pub fn shown(&mut self, mut fits: impl FnMut(&Head) -> bool) -> (Head, Vec<u8>) {
+    /// Returns the next frame that fits, and acknowledges all frames.
+    pub fn next_frame(&mut self, mut fits: impl FnMut(&Head) -> bool) -> (Head, Vec<u8>) {
         let start = Instant::now();
         loop {
             assert!(start.elapsed() < PATIENCE, "no picture");
-            if let Heard::Frame(head, image) = self.hear().expect("the socket was closed") {
-                self.say(&format!("{{\"ack\": {}}}", head.serial));
+            if let Received::Frame(head, image) = self.receive().expect("the socket was closed") {
+                self.send(&format!("{{\"ack\": {}}}", head.serial));
                 if fits(&head) {
                     return (head, image);
                 }
@@ -238,7 +238,7 @@ impl Page {
     }
 }
 
-fn frame(bytes: &[u8]) -> Heard {
+fn frame(bytes: &[u8]) -> Received {
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     let long = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
     let head = Head {
@@ -249,12 +249,12 @@ fn frame(bytes: &[u8]) -> Heard {
         size: [word(24), word(28)],
         samples: f32::from_bits(word(32)),
     };
-    Heard::Frame(head, bytes[juggler_serve::HEADER_BYTES..].to_vec())
+    Received::Frame(head, bytes[juggler_serve::HEADER_BYTES..].to_vec())
 }
 
 impl Page {
-    /// Answers what is asked for so long; whether the socket is still open.
-    pub fn hear_for(&mut self, time: Duration) -> bool {
+    /// Answers pings for some time. Returns whether the socket is still open.
+    pub fn receive_for(&mut self, time: Duration) -> bool {
         let start = Instant::now();
         self.socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).unwrap();
         while start.elapsed() < time {

@@ -1,4 +1,4 @@
-//! What was measured on one mesh, as a table and as JSON.
+//! Results for one mesh, as a table and as JSON.
 
 use crate::failure::Failure;
 use crate::format::counted;
@@ -8,11 +8,11 @@ use juggler_raybench::kernel::Kernel;
 use juggler_raybench::measure::Timing;
 use serde_json::{Value, json};
 
-/// Width of the first column, and of the others.
+/// Widths of the first column and of the other columns, in characters.
 const LABEL: usize = 32;
 const COLUMN: usize = 10;
 
-/// What a quality is called.
+/// Name of a build quality.
 pub fn quality(quality: Quality) -> &'static str {
     match quality {
         Quality::Fast => "fast",
@@ -21,16 +21,16 @@ pub fn quality(quality: Quality) -> &'static str {
     }
 }
 
-/// One tree.
+/// A built hierarchy.
 pub struct Build {
     pub quality: Quality,
-    /// Seconds on the wall's clock.
+    /// Median wall-clock time, in seconds.
     pub seconds: f64,
     pub bytes: usize,
     pub sah_cost: f64,
 }
 
-/// One way to trace one kind of rays.
+/// Rate of one kernel for one kind of rays.
 pub struct Rate {
     pub test: &'static str,
     pub kernel: Kernel,
@@ -40,8 +40,9 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Millions of rays a second: of one thread by its own time on the processor, of several by the wall's clock.
-    fn shown(&self) -> f64 {
+    /// Millions of rays per second: of CPU time for a single thread, of wall-clock time for
+    /// several.
+    fn mrays_per_second(&self) -> f64 {
         if self.threads == 1 { self.timing.cpu_rate() } else { self.timing.wall_rate() }
     }
 
@@ -50,7 +51,7 @@ impl Rate {
     }
 }
 
-/// All that was measured on one mesh.
+/// All results for one mesh.
 pub struct Report {
     mesh: String,
     triangles: usize,
@@ -64,17 +65,21 @@ impl Report {
         Self { mesh: mesh.to_owned(), triangles, threads, builds: Vec::new(), rates: Vec::new() }
     }
 
-    /// Adds a rate, unless its rays came to something else than the same rays before.
+    /// Adds a rate.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the checksum differs from that of another kernel for the same rays.
     pub fn add(&mut self, rate: Rate) -> Result<(), Failure> {
         let same = |other: &&Rate| other.kind == rate.kind && other.test == rate.test;
         match self.rates.iter().find(same) {
-            Some(other) if !other.timing.sums.agrees(&rate.timing.sums) => Err(Failure::System(format!(
+            Some(other) if !other.timing.summary.agrees(&rate.timing.summary) => Err(Failure::System(format!(
                 "{} rays on `{}`: {} for {}, {} for {}: this is a bug of Juggler",
                 rate.kind.name(),
                 self.mesh,
-                other.timing.sums,
+                other.timing.summary,
                 other.label(),
-                rate.timing.sums,
+                rate.timing.summary,
                 rate.label()
             ))),
             _ => {
@@ -84,7 +89,7 @@ impl Report {
         }
     }
 
-    /// The tables.
+    /// Renders the tables.
     pub fn to_words(&self) -> String {
         let mut lines = vec![format!("{}: {}", self.mesh, counted(self.triangles as u128, "triangle"))];
         let build = format!("build, {}", counted(self.threads as u128, "thread"));
@@ -104,7 +109,8 @@ impl Report {
             }
         }
         for label in labels {
-            let cells = self.rates.iter().filter(|rate| rate.label() == label).map(|rate| number(rate.shown()));
+            let cells =
+                self.rates.iter().filter(|rate| rate.label() == label).map(|rate| number(rate.mrays_per_second()));
             lines.push(row(&label, cells));
         }
         lines.join("\n")
@@ -126,7 +132,7 @@ impl Report {
                 "kind": rate.kind.name(),
                 "threads": rate.threads,
                 "rays": rate.timing.rays,
-                "hits": rate.timing.sums.hits,
+                "hits": rate.timing.summary.hits,
                 "mrays_per_second": finite(rate.timing.wall_rate()),
                 "mrays_per_cpu_second": finite(rate.timing.cpu_rate()),
             })
@@ -140,7 +146,7 @@ impl Report {
     }
 }
 
-/// All reports as one object.
+/// All reports as one JSON object.
 pub fn to_json(reports: &[Report]) -> String {
     let threads = reports.first().map_or(1, |report| report.threads);
     let meshes: Vec<Value> = reports.iter().map(Report::to_json).collect();
@@ -152,7 +158,7 @@ fn row(label: &str, cells: impl IntoIterator<Item = String>) -> String {
     format!("{label:LABEL$}{cells}")
 }
 
-/// A dash where nothing could be measured.
+/// Formats a number; a dash if it is not finite.
 fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.2}") } else { "-".into() }
 }
@@ -165,11 +171,11 @@ fn finite(value: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use juggler_raybench::clock::Elapsed;
-    use juggler_raybench::measure::Sums;
+    use juggler_raybench::measure::HitSummary;
 
     fn rate(kind: Kind, kernel: Kernel, threads: usize, hits: u64) -> Rate {
         let repeats = vec![Elapsed { wall: 0.25, cpu: 0.5 }];
-        let timing = Timing { rays: 1_000_000, repeats, sums: Sums { hits, distance: 0.0 } };
+        let timing = Timing { rays: 1_000_000, repeats, summary: HitSummary { hits, distance: 0.0 } };
         Rate { test: "watertight", kernel, kind, threads, timing }
     }
 

@@ -1,0 +1,115 @@
+//! Kind of output and its encoding.
+
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::output::STANDARD_OUTPUT;
+use juggler::imaging::{AnimationFormat, DisplayLook, ImageFormat, Options, SampleDepth};
+use std::path::Path;
+
+/// Extension of partial renders.
+pub const PART_ENDING: &str = "jfilm";
+
+/// Kind of output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputKind {
+    /// A picture.
+    Picture(Encoding),
+    /// A partial render.
+    Part,
+}
+
+/// File format and its options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Encoding {
+    /// File format.
+    pub format: ImageFormat,
+    /// Encoding options.
+    pub options: Options,
+}
+
+impl OutputKind {
+    /// Output kind from the output's extension and the flags.
+    pub fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
+        let is_part = match &args.format {
+            Some(name) => name == PART_ENDING,
+            None => Path::new(output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING)),
+        };
+        match output {
+            _ if !is_part && args.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
+                Err(Failure::Invalid(unknown_ending(output)))
+            }
+            _ if !is_part => {
+                let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
+                Ok(Self::Picture(encoding.with_look(args.look)))
+            }
+            STANDARD_OUTPUT => {
+                Err(Failure::Invalid("a partial render needs a file: it cannot be written to standard output".into()))
+            }
+            _ => Ok(Self::Part),
+        }
+    }
+}
+
+fn is_picture(output: &str) -> bool {
+    ImageFormat::from_path(Path::new(output)).is_ok()
+}
+
+/// Error message for an unknown extension, with all supported ones.
+fn unknown_ending(output: &str) -> String {
+    let ending = Path::new(output).extension().map(|ending| ending.to_string_lossy());
+    let wrong = match ending {
+        Some(ending) => format!("unknown extension `.{ending}`"),
+        None => "the name has no extension to select the format".to_owned(),
+    };
+    let (pictures, movies) = (ImageFormat::extensions(), AnimationFormat::extensions());
+    format!(
+        "`{output}`: {wrong}; supported: pictures {pictures}, movies {movies}, partial renders \
+         .{PART_ENDING} (or give --format)"
+    )
+}
+
+impl Encoding {
+    /// Encoding from `--format`, or else from the output's extension.
+    pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
+        let wrong = |message: String| Failure::Invalid(message);
+        let format = match format {
+            Some(name) => ImageFormat::from_path(Path::new(&format!("picture.{name}")))
+                .map_err(|_| wrong(unknown_format(name)))?,
+            None if output == STANDARD_OUTPUT => ImageFormat::Png,
+            None => ImageFormat::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
+        };
+        let mut options = Options::default();
+        if let Some(bits) = bits {
+            set_bits(&mut options, format, bits)?;
+        }
+        options.jpeg_quality = quality.unwrap_or(options.jpeg_quality);
+        Ok(Self { format, options })
+    }
+
+    /// Adds a display look.
+    pub fn with_look(mut self, look: Option<DisplayLook>) -> Self {
+        self.options.look = look.unwrap_or_default();
+        self
+    }
+}
+
+fn unknown_format(name: &str) -> String {
+    let (pictures, movies) = (ImageFormat::extensions(), AnimationFormat::extensions());
+    format!("unknown format `{name}`; supported: pictures {pictures}, movies {movies}").replace(" .", " ")
+}
+
+fn set_bits(options: &mut Options, format: ImageFormat, bits: u8) -> Result<(), Failure> {
+    let possible: &[u8] = match format {
+        ImageFormat::Png => &[8, 16],
+        ImageFormat::Exr => &[16, 32],
+        ImageFormat::Pfm => &[32],
+        ImageFormat::Jpeg | ImageFormat::Webp | ImageFormat::Hdr => &[8],
+    };
+    if !possible.contains(&bits) {
+        let possible = possible.iter().map(u8::to_string).collect::<Vec<_>>().join(" or ");
+        return Err(Failure::Invalid(format!("a {format} file has {possible} bits per channel, not {bits}")));
+    }
+    options.png_16_bit = bits == 16;
+    options.exr_depth = if bits == 16 { SampleDepth::Half } else { SampleDepth::Float };
+    Ok(())
+}

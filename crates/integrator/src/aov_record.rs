@@ -1,0 +1,255 @@
+//! Recording of AOVs: per-sample data beside radiance.
+
+use super::{PathKind, PathLog, VertexOutput};
+use juggler_bsdf::Scatter;
+use juggler_camera::aov::{self, DenoisingFeature, FilmAov, FilmAovs, LightGroup};
+use juggler_camera::film::{HitIds, MASKS};
+use juggler_material::Shading;
+use juggler_math::{DVec2, Ray, Rgb, Vec3};
+use juggler_world::frames::NeighborFrames;
+use juggler_world::{Vertex, World};
+use std::sync::Arc;
+
+/// AOVs of the samples of a pass.
+#[derive(Debug)]
+pub struct AovRecord {
+    aovs: FilmAovs,
+    /// Scene at neighboring frames, for motion vectors.
+    frames: Option<Arc<NeighborFrames>>,
+    /// Planes that receive light by number of path segments (emission, direct, indirect), and by
+    /// light group.
+    path_kinds: [Option<usize>; 3],
+    groups: Vec<Option<usize>>,
+    /// Plane that receives all light.
+    color: Option<usize>,
+    /// Filter weight of each sample.
+    weights: Vec<f32>,
+    /// Distance that each camera ray has traveled through surfaces with opacity, in scene units.
+    pass_distance: Vec<f32>,
+    /// Whether the denoising features of each sample are recorded.
+    has_features: Vec<bool>,
+    /// AOV values, `aovs.planes.len()` per sample.
+    pub planes: Vec<Rgb>,
+    /// Object, material and shape of each sample, for masks; empty unless masks are recorded.
+    pub hit_ids: Vec<HitIds>,
+    /// Log of path events; `None` unless requested.
+    pub log: Option<Box<PathLog>>,
+}
+
+impl AovRecord {
+    /// Creates a record of `aovs`; `frames` are needed by motion aovs.
+    pub fn new(aovs: &FilmAovs, frames: Option<&Arc<NeighborFrames>>) -> Self {
+        let path_kinds = [FilmAov::Emission, FilmAov::Direct, FilmAov::Indirect].map(|aov| aovs.index_of(aov));
+        let mut groups = Vec::new();
+        for (plane, aov) in aovs.planes.iter().enumerate() {
+            if let FilmAov::Group(LightGroup(number)) = *aov {
+                let number = usize::from(number);
+                groups.resize(groups.len().max(number + 1), None);
+                groups[number] = Some(plane);
+            }
+        }
+        let color = aovs.index_of(FilmAov::HalfFeature(DenoisingFeature::Color));
+        let aovs = aovs.clone();
+        Self {
+            aovs,
+            frames: frames.map(Arc::clone),
+            path_kinds,
+            groups,
+            color,
+            weights: Vec::new(),
+            pass_distance: Vec::new(),
+            has_features: Vec::new(),
+            planes: Vec::new(),
+            hit_ids: Vec::new(),
+            log: None,
+        }
+    }
+
+    /// Creates a record that only logs path events.
+    pub fn logging() -> Self {
+        Self { log: Some(Box::default()), ..Self::new(&aov::NO_AOVS, None) }
+    }
+
+    /// Starts samples with these filter weights.
+    pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
+        self.weights.clear();
+        self.weights.extend(weights);
+        self.pass_distance.clear();
+        self.pass_distance.resize(self.weights.len(), 0.0);
+        self.has_features.clear();
+        self.has_features.resize(self.weights.len(), false);
+        self.planes.clear();
+        self.planes.resize(self.weights.len() * self.aovs.planes.len(), Rgb::BLACK);
+        self.hit_ids.clear();
+        if self.aovs.masks {
+            self.hit_ids.resize(self.weights.len(), HitIds::EMPTY);
+        }
+    }
+
+    fn add(&mut self, slot: usize, plane: Option<usize>, value: Rgb) {
+        if let Some(plane) = plane {
+            self.planes[slot * self.aovs.planes.len() + plane] += value;
+        }
+    }
+
+    /// Adds light to the AOVs of a sample.
+    #[inline]
+    pub fn add_light(&mut self, slot: usize, path_kind: PathKind, group: LightGroup, radiance: Rgb) {
+        if let Some(log) = &mut self.log {
+            log.lights.push((slot, path_kind, group, radiance));
+        }
+        self.add(slot, self.color, radiance);
+        self.add(slot, self.path_kinds[path_kind as usize], radiance);
+        self.add(slot, self.groups.get(usize::from(group.0)).copied().flatten(), radiance);
+    }
+
+    /// Records the first hit of a sample's camera ray.
+    fn record_hit(&mut self, slot: usize, hit: &SurfaceHit) {
+        let SurfaceHit { ray, vertex, normal, albedo, .. } = *hit;
+        let (surface, weight) = (&vertex.surface, self.weights[slot]);
+        for plane in 0..self.aovs.planes.len() {
+            let value = match self.aovs.planes[plane] {
+                FilmAov::Coverage => Rgb::new(1.0, 0.0, 0.0),
+                FilmAov::Albedo => albedo,
+                FilmAov::Normal => to_rgb(normal),
+                FilmAov::GeometricNormal => to_rgb(surface.normal),
+                FilmAov::Depth => Rgb::new(self.pass_distance[slot] + ray.t_max, 1.0, 0.0),
+                FilmAov::Position => to_rgb(surface.point),
+                FilmAov::Motion(which) => {
+                    match self
+                        .frames
+                        .as_deref()
+                        .and_then(|frames| frames.motion_vector(which, hit.world, vertex, ray.time))
+                    {
+                        Some(motion) => motion_to_rgb(motion),
+                        None => continue,
+                    }
+                }
+                FilmAov::Uv => Rgb::new(surface.uv.x, surface.uv.y, 1.0),
+                FilmAov::Feature(DenoisingFeature::Depth) | FilmAov::HalfFeature(DenoisingFeature::Depth) => {
+                    Rgb::new(ray.t_max, 1.0, 0.0)
+                }
+                _ => continue,
+            };
+            self.add(slot, Some(plane), value * weight);
+        }
+        if let Some(hit_ids) = self.hit_ids.get_mut(slot) {
+            let ids: [u32; MASKS] = [hit.world.entry_of(vertex.shape), vertex.material.0, vertex.shape];
+            *hit_ids = HitIds { ids, weight };
+        }
+    }
+
+    /// Records the motion vector of the background.
+    fn record_miss(&mut self, slot: usize, ray: &Ray) {
+        let Some(frames) = &self.frames else { return };
+        for plane in 0..self.aovs.planes.len() {
+            let FilmAov::Motion(which) = self.aovs.planes[plane] else { continue };
+            if let Some(motion) = frames.background_motion_vector(which, ray.direction, ray.time) {
+                self.planes[slot * self.aovs.planes.len() + plane] += motion_to_rgb(motion) * self.weights[slot];
+            }
+        }
+    }
+
+    /// Records denoising features: the first surface that is not specular, with the throughput
+    /// `weight` of the specular path to it.
+    fn record_features(&mut self, slot: usize, weight: Rgb, hit: &SurfaceHit) {
+        if std::mem::replace(&mut self.has_features[slot], true) {
+            return;
+        }
+        for plane in 0..self.aovs.planes.len() {
+            let value = match self.aovs.planes[plane] {
+                FilmAov::Feature(DenoisingFeature::Albedo) | FilmAov::HalfFeature(DenoisingFeature::Albedo) => {
+                    hit.albedo * weight
+                }
+                FilmAov::Feature(DenoisingFeature::Normal) | FilmAov::HalfFeature(DenoisingFeature::Normal) => {
+                    to_rgb(hit.normal) * self.weights[slot]
+                }
+                _ => continue,
+            };
+            self.add(slot, Some(plane), value);
+        }
+    }
+}
+
+/// The surface that a ray hit.
+pub struct SurfaceHit<'a> {
+    /// World of the surface.
+    pub world: &'a World,
+    /// Ray that ends at the surface.
+    pub ray: &'a Ray,
+    /// Vertex on the surface.
+    pub vertex: &'a Vertex,
+    /// Unit shading normal, after normal and bump mapping.
+    pub normal: Vec3,
+    /// Albedo of the surface.
+    pub albedo: Rgb,
+    /// Whether the BSDF is purely specular, so that features come from the surface behind it.
+    pub is_specular: bool,
+    /// Kind of scattering of the strongest lobe that is not specular.
+    pub scatter: Scatter,
+}
+
+fn to_rgb(vector: Vec3) -> Rgb {
+    Rgb::new(vector.x, vector.y, vector.z)
+}
+
+/// Encodes a motion vector, with 1 as the mark of validity.
+fn motion_to_rgb(motion: DVec2) -> Rgb {
+    Rgb::new(motion.x as f32, motion.y as f32, 1.0)
+}
+
+impl VertexOutput<'_> {
+    /// Whether AOVs or a log are recorded.
+    #[inline]
+    pub fn is_recording(&self) -> bool {
+        self.buffers.record.is_some()
+    }
+
+    /// Records that the path passes straight through a surface.
+    pub fn record_pass_through(&mut self, ray: &Ray) {
+        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.depth == 0) {
+            record.pass_distance[self.path.slot as usize] += ray.t_max;
+        }
+    }
+
+    /// Records that the ray left the world.
+    pub fn record_miss(&mut self, ray: &Ray) {
+        let slot = self.path.slot as usize;
+        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.depth == 0) {
+            record.record_miss(slot, ray);
+        }
+    }
+
+    /// Records the surface that the path hit, as its material shades it.
+    #[inline]
+    pub fn record_shading(&mut self, world: &World, ray: &Ray, vertex: &Vertex, shading: &Shading) {
+        if self.is_recording() {
+            let (normal, albedo) = (shading.frame.normal, shading.albedo(-ray.direction));
+            let (is_specular, scatter) = (shading.bsdf.is_specular(), shading.bsdf.scatter());
+            self.record_hit(&SurfaceHit { world, ray, vertex, normal, albedo, is_specular, scatter });
+        }
+    }
+
+    /// Records the surface that a camera ray hit, for integrators that do not trace light.
+    pub fn record_unlit(&mut self, world: &World, ray: &Ray, vertex: &Vertex) {
+        if self.is_recording() {
+            let choice = if world.is_simple(vertex) { 0.0 } else { self.path.sampler.skipped(0).next_1d() };
+            self.record_shading(world, ray, vertex, &world.shade(vertex, -ray.direction, 1.0, choice));
+        }
+    }
+
+    /// Records a surface that the path hit.
+    pub fn record_hit(&mut self, hit: &SurfaceHit) {
+        let (slot, history) = (self.path.slot as usize, &self.path.history);
+        let Some(record) = &mut self.buffers.record else { return };
+        if let Some(log) = &mut record.log {
+            log.record_hit(slot, hit);
+        }
+        if self.path.depth == 0 {
+            record.record_hit(slot, hit);
+        }
+        if history.events.is_only_specular() && !hit.is_specular {
+            record.record_features(slot, self.beta, hit);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Conversion of the film's sums to AOV channels.
+
+use super::{Aov, AovSet, cryptomatte};
+use juggler_camera::aov::{AdjacentFrame, FilmAov, LightGroup};
+use juggler_camera::film::{AovSums, PixelStatistics, Rect, Tile};
+use juggler_math::Rgb;
+
+/// Indices of the film's masks.
+const OBJECTS: usize = 0;
+const MATERIALS: usize = 1;
+const SHAPES: usize = 2;
+
+/// Film data of one pixel.
+struct Pixel<'t> {
+    set: &'t AovSet,
+    tile: &'t Tile,
+    aov_sums: &'t AovSums,
+    number: usize,
+    count: f32,
+}
+
+impl AovSet {
+    /// Returns the channels of a band from its tiles: red, green and blue of the rendered image if
+    /// given, then those of [`AovSet::headers`]. Pixels without a tile are 0.
+    pub fn band(&self, band: &Rect, tiles: &[Tile], picture: Option<&[Rgb]>) -> Vec<Vec<f32>> {
+        let mut channels = vec![vec![0.0; band.area() as usize]; self.channels];
+        for tile in tiles {
+            channels
+                .iter_mut()
+                .zip(self.values(tile))
+                .for_each(|(row, values)| tile.pixels().copy_into(&values, band, row));
+        }
+        picture.map(channels_of).into_iter().flatten().chain(channels).collect()
+    }
+
+    /// Returns a tile's pixels with each light group scaled by its gain, by index. Unit gains
+    /// return the pixels of the film bit for bit.
+    pub fn relit(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
+        let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
+        let mut pixels = tile.means();
+        for (number, pixel) in pixels.iter_mut().enumerate() {
+            let data = Pixel { set: self, tile, aov_sums: &aov_sums, number, count };
+            for (group, gain) in (0..).zip(gains).filter(|(_, gain)| **gain != Rgb::WHITE) {
+                *pixel += data.mean(FilmAov::Group(LightGroup(group))) * (*gain - Rgb::WHITE);
+            }
+            // Rounding may leave small negative values.
+            *pixel = pixel.map(|channel| channel.max(0.0));
+        }
+        pixels
+    }
+
+    /// Returns the channels of a tile, each with its pixels row by row.
+    fn values(&self, tile: &Tile) -> Vec<Vec<f32>> {
+        let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
+        let mut channels: Vec<Vec<f32>> = vec![Vec::new(); self.channels];
+        let mut row = Vec::with_capacity(channels.len());
+        for number in 0..tile.pixels().area() as usize {
+            let pixel = Pixel { set: self, tile, aov_sums: &aov_sums, number, count };
+            row.clear();
+            self.aovs.iter().for_each(|aov| pixel.append(*aov, &mut row));
+            channels.iter_mut().zip(&row).for_each(|(channel, value)| channel.push(*value));
+        }
+        channels
+    }
+}
+
+impl Pixel<'_> {
+    /// Returns the mean of a layer over all samples.
+    fn mean(&self, layer: FilmAov) -> Rgb {
+        self.sum(layer) / self.count
+    }
+
+    fn sum(&self, layer: FilmAov) -> Rgb {
+        let planes = self.set.film_aovs.planes.len();
+        let place =
+            self.set.film_aovs.index_of(layer).and_then(|place| self.aov_sums.planes.get(self.number * planes + place));
+        place.copied().unwrap_or(Rgb::BLACK)
+    }
+
+    /// Returns the mean of a layer's first two channels over its third, which counts the valid
+    /// samples.
+    fn mean_of_valid(&self, layer: FilmAov) -> impl Iterator<Item = f32> {
+        let sum = self.sum(layer);
+        divide(sum, sum.b).into_iter().take(2)
+    }
+
+    /// Returns the coverages of a mask's objects, by increasing index.
+    fn coverages(&self, kind: usize) -> Vec<(u32, f32)> {
+        let mask = self.aov_sums.masks.get(kind).map(|mask| mask.pixel(self.number)).unwrap_or_default();
+        mask.iter().map(|(id, sum)| (*id, (sum / self.count).clamp(0.0, 1.0))).collect()
+    }
+
+    /// Returns the index of the object with the largest coverage, from 1; the first of equal ones,
+    /// 0 for none.
+    fn dominant(&self, kind: usize) -> f32 {
+        let coverages = self.coverages(kind);
+        let dominant =
+            coverages.iter().filter(|(_, coverage)| *coverage > 0.0).reduce(|a, b| if b.1 > a.1 { b } else { a });
+        dominant.map_or(0.0, |(id, _)| *id as f32 + 1.0)
+    }
+
+    fn append(&self, aov: Aov, row: &mut Vec<f32>) {
+        match aov {
+            Aov::Alpha => row.push(self.mean(FilmAov::Coverage).r),
+            Aov::Albedo => row.extend(self.mean(FilmAov::Albedo).to_array()),
+            Aov::Normal => row.extend(self.mean(FilmAov::Normal).to_array()),
+            Aov::GeometricNormal => row.extend(self.mean(FilmAov::GeometricNormal).to_array()),
+            Aov::Depth => {
+                let Rgb { r, g, .. } = self.sum(FilmAov::Depth);
+                row.push(if g > 0.0 { r / g } else { f32::INFINITY });
+            }
+            Aov::Position => row.extend(divide(self.sum(FilmAov::Position), self.sum(FilmAov::Coverage).r)),
+            Aov::Uv => row.extend(self.mean_of_valid(FilmAov::Uv)),
+            Aov::Motion => row.extend(self.mean_of_valid(FilmAov::Motion(AdjacentFrame::Next))),
+            Aov::MotionBack => row.extend(self.mean_of_valid(FilmAov::Motion(AdjacentFrame::Previous))),
+            Aov::Emission => row.extend(self.mean(FilmAov::Emission).to_array()),
+            Aov::Direct => row.extend(self.mean(FilmAov::Direct).to_array()),
+            Aov::Indirect => row.extend(self.mean(FilmAov::Indirect).to_array()),
+            Aov::LightGroups => {
+                for (number, _) in (0..).zip(&self.set.names.light_groups) {
+                    row.extend(self.mean(FilmAov::Group(LightGroup(number))).to_array());
+                }
+            }
+            Aov::ObjectId => row.push(self.dominant(OBJECTS)),
+            Aov::MaterialId => row.push(self.dominant(MATERIALS)),
+            Aov::InstanceId => row.push(self.dominant(SHAPES)),
+            Aov::CryptoObject => {
+                cryptomatte::append(self.coverages(OBJECTS), |number| self.set.names.object(number), row);
+            }
+            Aov::CryptoMaterial => {
+                cryptomatte::append(self.coverages(MATERIALS), |number| self.set.names.material(number), row);
+            }
+            Aov::Samples => row.push(self.count),
+            Aov::Variance => {
+                let PixelStatistics { variance, blocks, .. } = self.tile.statistics(self.number);
+                row.extend(variance.map(|value| if blocks < 2 { f32::INFINITY } else { value as f32 }));
+            }
+            Aov::NotFinite => row.push(self.sum(FilmAov::Coverage).g),
+            Aov::Clamped => row.push(self.sum(FilmAov::Coverage).b),
+        }
+    }
+}
+
+/// Splits pixels into red, green and blue channels.
+fn channels_of(pixels: &[Rgb]) -> Vec<Vec<f32>> {
+    (0..3).map(|channel| pixels.iter().map(|pixel| pixel.to_array()[channel]).collect()).collect()
+}
+
+/// Returns the mean over the covered samples; 0 without any.
+fn divide(sum: Rgb, weight: f32) -> [f32; 3] {
+    if weight > 0.0 { (sum / weight).to_array() } else { [0.0; 3] }
+}

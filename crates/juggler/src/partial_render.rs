@@ -1,0 +1,124 @@
+//! Rendering into a film: partial renders that can be stored, continued and merged.
+
+use crate::denoise::DenoiserInput;
+use crate::{Error, Limit, Picture};
+use juggler_camera::film::{Film, FilmDigest, FilmSummary, Tile, Tiling};
+use juggler_film::partial_render::{AovDescription, RenderDescription, ShardDescription, Stop};
+use juggler_imaging::layered::LayeredWriter;
+use juggler_imaging::{Header, RowWriter};
+use juggler_math::Rgb;
+use juggler_render::{Cancelled, Control};
+
+/// Origin of a partial render, beyond what the picture itself stores.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RenderOrigin {
+    /// Name of the scene.
+    pub scene: String,
+    /// Frame, which may lie between two.
+    pub frame: f64,
+    /// Command line that renders the whole image; empty if there is none.
+    pub command: String,
+}
+
+impl Picture {
+    /// Returns the layout of tiles.
+    pub fn tiling(&self) -> Tiling {
+        Tiling::new(self.region())
+    }
+
+    /// Creates an empty film for all pixels and samples.
+    pub fn film(&self) -> Film {
+        Film::new(self.tiling(), 0..self.samples())
+    }
+
+    /// Renders into a film until it is finished or `control` stops it. Samples of the film are
+    /// kept.
+    pub fn expose(&self, film: &Film, control: &Control) -> Result<(), Cancelled> {
+        juggler_render::render_progressive(&self.job(), film, self.limit().stop(), control)
+    }
+
+    /// Returns whether every tile of a film has enough samples.
+    pub fn is_finished(&self, film: &Film) -> bool {
+        matches!(self.limit(), Limit::Time { .. }) || juggler_render::is_finished(film, self.limit().stop())
+    }
+
+    /// Passes the pixel rows of a film to `rows`, from top to bottom, and returns their hash and
+    /// mean.
+    pub fn develop<E>(&self, film: &Film, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<FilmSummary, E> {
+        let [width, height] = self.size();
+        let mut digest = FilmDigest::new(width, height);
+        film.develop(|band: &[Rgb]| {
+            digest.update(band);
+            rows(band)
+        })?;
+        digest.add_clamped(film.clamped());
+        Ok(digest.finish())
+    }
+
+    /// Returns whether the integrator clamps contributions.
+    pub fn is_clamped(&self) -> bool {
+        self.job().integrator.clamp().is_some()
+    }
+
+    /// Writes a film as an image file.
+    pub fn write_film(&self, film: &Film, mut writer: Box<dyn RowWriter>) -> Result<FilmSummary, Error> {
+        let summary = self.develop(film, |rows| Ok::<(), Error>(writer.write_rows(rows)?))?;
+        writer.finish()?;
+        Ok(summary)
+    }
+
+    /// Writes the AOVs of a film, after `pixels` of the rendered image if given.
+    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, pixels: Option<&[Rgb]>) -> Result<(), Error> {
+        let tiling = film.tiling();
+        let mut rest = pixels;
+        for (row, band) in (0..).zip(tiling.bands()) {
+            let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
+            let rows = rest.as_mut().and_then(|rest| rest.split_off(..band.area() as usize));
+            writer.write_rows(&self.layers().band(&band, &tiles, rows))?;
+        }
+        Ok(writer.finish()?)
+    }
+
+    /// Gathers the denoiser's input from a film.
+    pub fn denoiser_input(&self, film: &Film) -> DenoiserInput {
+        let mut input = DenoiserInput::new(self.region());
+        film.tiles().for_each(|(_, tile)| input.add(self.layers(), &tile));
+        input
+    }
+
+    /// Returns the stop condition in the form that partial renders store.
+    pub fn end(&self) -> Stop {
+        match *self.limit() {
+            Limit::Samples => Stop::Samples,
+            Limit::Noise(level) => Stop::Noise { level: f64::from(level) },
+            Limit::Time { seconds } => Stop::Time { seconds },
+        }
+    }
+
+    /// Returns the description of a partial render of this picture; `header` is that of the image
+    /// file.
+    pub fn description(&self, origin: &RenderOrigin, header: &Header, shard: ShardDescription) -> RenderDescription {
+        let [width, height] = self.compiled().settings.size;
+        RenderDescription {
+            software: crate::picture::SOFTWARE.to_owned(),
+            command: origin.command.clone(),
+            scene: origin.scene.clone(),
+            frame: origin.frame,
+            size: [width, height],
+            region: self.region(),
+            samples: self.samples(),
+            stop: self.end(),
+            clamped: self.is_clamped(),
+            aovs: AovDescription {
+                neighbor_frames: self.neighbor_fingerprint().to_owned(),
+                ..self.layers().to_description()
+            },
+            shard,
+            finished: false,
+            fingerprint: self.fingerprint().parts().clone(),
+            tone: serde_json::to_value(self.tone()).unwrap_or_default(),
+            metadata: header.metadata.clone(),
+            viewpoint: header.viewpoint,
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Shading of a material at one point for one viewer: emission, opacity and BSDF.
+
+use super::lookup;
+use juggler_bsdf::{Bsdf, fresnel};
+use juggler_math::{Frame, Rgb, Vec3, hash};
+use juggler_shape::surface::{Surface, Tangents};
+use juggler_texture::TextureLookup;
+
+/// Smallest cosine between geometric normal and mirror direction. Below it, a mirror would reflect
+/// the surface itself.
+const MIN_MIRROR_COSINE: f32 = 0.01;
+
+/// Point of a surface with the direction to its viewer.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingView<'a> {
+    /// Surface in world space, with the normals of its shape.
+    pub surface: &'a Surface,
+    /// Tangents of the surface along u and v, if known.
+    pub tangents: Option<&'a Tangents>,
+    /// Unit shading normal in world space, on the side of the shape's normals, after the normal and
+    /// bump maps so far.
+    pub normal: Vec3,
+    /// Unit direction towards the viewer, in world space.
+    pub wo: Vec3,
+    /// Index of refraction outside the object, whichever side is seen.
+    pub outside_ior: f32,
+    /// Random number in [0, 1) that chooses among mixed materials.
+    pub u_choice: f32,
+}
+
+impl<'a> ShadingView<'a> {
+    /// View along the normal. Its random number is a hash of the point's coordinates.
+    #[inline]
+    pub fn along_normal(surface: &'a Surface) -> Self {
+        let [x, y, z] = surface.point.to_array().map(f32::to_bits);
+        let u_choice = hash::unit_f32(hash::combine(hash::combine(x, y), z));
+        let normal = surface.shading_normal;
+        ShadingView { surface, tangents: None, normal, wo: surface.normal, outside_ior: 1.0, u_choice }
+    }
+
+    /// Whether the viewer is on the side of the geometric normal.
+    #[inline]
+    pub fn is_outside(&self) -> bool {
+        self.surface.normal.dot(self.wo) >= 0.0
+    }
+
+    /// Texture lookup at the point.
+    pub(super) fn lookup(&self) -> TextureLookup {
+        lookup(self.surface)
+    }
+}
+
+/// Shading of a material at one point.
+#[derive(Clone, Debug)]
+pub struct Shading {
+    /// Radiance emitted towards the viewer.
+    pub emission: Rgb,
+    /// Opacity, 0 to 1: share of the light that interacts with the surface. The rest passes
+    /// straight through.
+    pub opacity: f32,
+    /// Frame of the BSDF in world space. Its z axis is the shading normal: outwards for materials
+    /// with an interior, otherwise on the viewer's side.
+    pub frame: Frame,
+    /// Scattering function in `frame`.
+    pub bsdf: Bsdf,
+    /// Whether the BSDF may transmit light.
+    pub transmissive: bool,
+    /// Factor on the contribution of the scene's lights, emissive shapes excepted: π for the
+    /// classic material, whose lights are measured so that radiance 1 makes a white surface white;
+    /// 1 with `inverse_pi` and for all other materials.
+    pub light_scale: f32,
+}
+
+impl Shading {
+    /// Shading of a surface that absorbs all light; the caller sets its frame. A function, not a
+    /// constant: a constant would be copied whole, unused lobes included.
+    #[inline(always)]
+    pub fn black() -> Self {
+        Self {
+            emission: Rgb::BLACK,
+            opacity: 1.0,
+            frame: Frame::AXES,
+            bsdf: Bsdf::new(),
+            transmissive: false,
+            light_scale: 1.0,
+        }
+    }
+
+    /// Sets the geometric normal, in world space, where a map has changed the shading normal;
+    /// requires `frame`. See [`Bsdf::set_geometric_normal`].
+    pub(super) fn set_geometric_normal(&mut self, normal: Vec3) {
+        self.bsdf.set_geometric_normal(self.frame.to_local(normal));
+    }
+
+    /// Directional albedo for `wo`, a unit vector in world space.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        self.bsdf.albedo(self.frame.to_local(wo))
+    }
+}
+
+/// Shading normal on the viewer's side, bent towards the geometric normal until the mirror
+/// direction lies above the surface (Keller et al., The Iray Light Transport Simulation and
+/// Rendering System, 2017, appendix A.3). Prevents black edges where both normals differ much.
+#[inline]
+pub fn facing_normal(view: &ShadingView, normal: Vec3) -> Vec3 {
+    let sign = if view.is_outside() { 1.0 } else { -1.0 };
+    let (ng, normal) = (view.surface.normal * sign, normal * sign);
+    if ng == normal {
+        return normal;
+    }
+    let reflected = fresnel::reflect(view.wo, normal);
+    let min_cosine = MIN_MIRROR_COSINE.min(0.9 * ng.dot(view.wo));
+    let cosine = reflected.dot(ng);
+    if cosine >= min_cosine && normal.dot(view.wo) > 0.0 {
+        return normal;
+    }
+    let along = (reflected - ng * cosine).normalize_or_zero() * (1.0 - min_cosine * min_cosine).sqrt();
+    (along + ng * min_cosine + view.wo).normalize_or(ng)
+}

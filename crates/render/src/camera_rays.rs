@@ -1,0 +1,203 @@
+//! Camera rays: film, lens and time samples of pixels, in packets of [`LANES`] rays.
+
+use super::{Job, Work};
+use juggler_camera::LANES;
+use juggler_camera::aov::is_in_second_half;
+use juggler_camera::sampler::Sampler;
+use juggler_integrator::{PathHistory, PathState, Queue, RayCone};
+use juggler_math::{Rgb, UVec2, Vec2};
+use std::ops::Range;
+
+/// Number of film samples drawn at once.
+const POINTS: usize = 64;
+/// Sample dimensions of camera rays: film position and lens position.
+const FILM_DIMENSIONS: u32 = 1;
+const LENS_DIMENSIONS: u32 = 1;
+/// Sample dimension of the time, beyond all dimensions that paths reach. Static scenes do not draw
+/// it.
+const TIME_DIMENSION: u32 = 1 << 31;
+/// Sampler branch of the second half of the samples, if half buffers are kept.
+const HALF_BRANCH: u32 = 1 << 31;
+
+/// Diameter of the ray cones of camera rays, in pixels. Below 1, since averaging a pixel's samples
+/// already filters textures.
+const CONE_WIDTH: f32 = 0.5;
+
+/// Initial state of camera paths.
+#[derive(Clone, Copy, Debug)]
+pub struct PathStart {
+    history: PathHistory,
+    cone: RayCone,
+}
+
+/// Initial state of paths: the solids that contain the camera at mid-shutter, and the ray cone.
+pub fn path_start(job: &Job) -> PathStart {
+    const MIDDLE: f32 = 0.5;
+    let camera = job.camera.projection_at(MIDDLE);
+    let [width, spread] = camera.pixel_footprint().map(|size| size * CONE_WIDTH);
+    let history = PathHistory { interiors: job.world.interiors_at(camera.eye(), MIDDLE), ..PathHistory::CAMERA };
+    PathStart { history, cone: RayCone { width, spread } }
+}
+
+/// Pushes the camera rays of `slots`, indices into the samples of `work`, pixel by pixel with
+/// `samples` per pixel.
+pub fn push_camera_rays(job: &Job, start: &PathStart, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+    let (sampler, halves) = (Sampler::new(job.pattern, job.seed), job.aovs.has_halves());
+    let context = PixelContext { job, start, sampler, halves };
+    if job.samples == 1 {
+        return push_center_rays(&context, work, slots, queue);
+    }
+    let mut points = [Vec2::ZERO; POINTS];
+    let mut slot = 0;
+    let mut at = slots.start;
+    while at < slots.end {
+        let index = at / samples;
+        let pixel = Pixel::new(&context, work, Pixel::place(work, index));
+        let count = (slots.end.min((index + 1) * samples) - at) as u32;
+        pixel.push_rays(work.samples.start + (at % samples) as u32, slot..slot + count, &mut points, queue);
+        slot += count;
+        at += u64::from(count);
+    }
+}
+
+/// Pushes a ray through the center of each pixel of `range`.
+fn push_center_rays(context: &PixelContext, work: &Work, range: Range<u64>, queue: &mut Queue) {
+    let mut next = Pixel::place(work, range.start);
+    for start in range.clone().step_by(LANES) {
+        let count = LANES.min((range.end - start) as usize);
+        // Lanes beyond the last pixel are ignored.
+        let pixels: [Pixel; LANES] = std::array::from_fn(|_| {
+            let place = next;
+            next.x += 1;
+            if next.x == work.pixels.width {
+                next = UVec2::new(0, next.y + 1);
+            }
+            Pixel::new(context, work, place)
+        });
+        let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
+        let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
+        context.job.camera.rays(&films, &lenses, &[0.5; LANES], count, &mut queue.rays);
+        let slot = (start - range.start) as u32;
+        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
+        queue.paths.extend((0..).zip(&pixels).take(count).map(path));
+    }
+}
+
+/// Data shared by all pixels.
+struct PixelContext<'j> {
+    job: &'j Job<'j>,
+    start: &'j PathStart,
+    sampler: Sampler,
+    /// Whether half buffers are kept.
+    halves: bool,
+}
+
+/// A pixel of the film.
+struct Pixel<'j> {
+    job: &'j Job<'j>,
+    start: &'j PathStart,
+    center: Vec2,
+    stream: Sampler,
+    /// Sampler of the second half of the samples, if half buffers are kept.
+    second_half: Option<Sampler>,
+    /// Whether the camera or the scene moves, so that samples need a time.
+    needs_time: bool,
+}
+
+impl<'j> Pixel<'j> {
+    /// Column and row within the work's rectangle of pixel `index` in row-major order.
+    fn place(work: &Work, index: u64) -> UVec2 {
+        let width = u64::from(work.pixels.width);
+        UVec2::new((index % width) as u32, (index / width) as u32)
+    }
+
+    /// Pixel at `place`, in pixels from the corner of the work's rectangle.
+    fn new(context: &PixelContext<'j>, work: &Work, place: UVec2) -> Self {
+        let PixelContext { job, start, sampler, halves } = context;
+        let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
+        let needs_time = job.camera.moves() || job.world.moves();
+        let stream = sampler.pixel(pixel);
+        let second_half = halves.then(|| stream.branch(HALF_BRANCH));
+        Self { job, start, center: pixel.as_vec2() + 0.5, stream, second_half, needs_time }
+    }
+
+    /// Sampler of a sample, at `dimension`.
+    fn sampler(&self, sample: u32, dimension: u32) -> Sampler {
+        let mut sampler = match &self.second_half {
+            None => self.stream.sample(sample),
+            Some(second_half) => {
+                (if is_in_second_half(sample) { second_half } else { &self.stream }).sample(sample / 2)
+            }
+        };
+        sampler.skip(dimension);
+        sampler
+    }
+
+    /// Lens sample in the unit square.
+    fn lens(&self, sample: u32) -> Vec2 {
+        if self.job.camera.needs_lens() { self.sampler(sample, FILM_DIMENSIONS).next_2d() } else { Vec2::splat(0.5) }
+    }
+
+    /// Time of a sample, from 0 (shutter opens) to 1 (shutter closes), stratified over the pixel's
+    /// samples independently of their film positions.
+    fn time(&self, sample: u32) -> f32 {
+        if self.needs_time { self.sampler(sample, TIME_DIMENSION).next_1d() } else { 0.0 }
+    }
+
+    fn path(&self, sample: u32, slot: u32, weight: f32) -> PathState {
+        PathState {
+            beta: Rgb::splat(weight),
+            depth: 0,
+            sampler: self.sampler(sample, FILM_DIMENSIONS + LENS_DIMENSIONS),
+            history: self.start.history,
+            cone: self.start.cone,
+            slot,
+        }
+    }
+
+    /// Pushes the rays of the samples `first` and following. `points` is scratch memory.
+    fn push_rays(&self, first: u32, slots: Range<u32>, points: &mut [Vec2; POINTS], queue: &mut Queue) {
+        for start in slots.clone().step_by(POINTS) {
+            let count = POINTS.min((slots.end - start) as usize);
+            let first = first + (start - slots.start);
+            let drawn = &mut points[..count.next_multiple_of(LANES)];
+            if self.second_half.is_none() {
+                self.stream.first_points(first, drawn);
+            } else {
+                (first..).zip(drawn).for_each(|(sample, place)| *place = self.sampler(sample, 0).next_2d());
+            }
+            for (packet, points) in points[..count].chunks(LANES).enumerate() {
+                let skipped = (packet * LANES) as u32;
+                self.push_packet(first + skipped, start + skipped, points, queue);
+            }
+        }
+    }
+
+    /// Pushes the rays of up to [`LANES`] samples.
+    fn push_packet(&self, first: u32, slot: u32, points: &[Vec2], queue: &mut Queue) {
+        let Job { camera, filter, .. } = self.job;
+        let (mut films, mut weights) = ([[self.center.x; LANES], [self.center.y; LANES]], [1.0; LANES]);
+        for (i, place) in points.iter().enumerate() {
+            let sample = filter.sample(*place);
+            films[0][i] += sample.offset.x;
+            films[1][i] += sample.offset.y;
+            weights[i] = sample.weight;
+        }
+        let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
+        let times = std::array::from_fn(|i| self.time(first + i as u32));
+        camera.rays(&films, &lenses, &times, points.len(), &mut queue.rays);
+        let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
+        queue.paths.extend((0..).zip(&weights).take(points.len()).map(path));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FILM_DIMENSIONS, LENS_DIMENSIONS, TIME_DIMENSION};
+
+    #[test]
+    fn dimensions_of_a_camera_ray_are_distinct() {
+        let dimensions = [0, FILM_DIMENSIONS, FILM_DIMENSIONS + LENS_DIMENSIONS, TIME_DIMENSION];
+        assert!(dimensions.is_sorted_by(|a, b| a < b), "{dimensions:?}");
+    }
+}

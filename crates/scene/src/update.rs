@@ -1,0 +1,72 @@
+//! Compilation after an edit, which keeps the parts of an earlier compilation that still hold.
+
+use crate::compile::{self, Compiled, area_lights};
+use crate::fingerprint::{digests, mesh_files};
+use crate::{Change, Changed, Scene, SceneError};
+use juggler_light::Area;
+use std::sync::Arc;
+
+impl Scene {
+    /// Builds the world, with all that still holds of `earlier`, the compilation of an earlier state
+    /// `before` of the scene. A change of cameras and settings keeps the whole world; a change of
+    /// materials, lights or background keeps the objects and their hierarchies; meshes in memory are
+    /// never prepared twice. The result equals that of [`Scene::compile`], bit for bit.
+    pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
+        let (tracks, wrong) = self.tracks();
+        let change = self.change_since(before);
+        let found = if self.has_world(before, &change) {
+            let (cameras, camera_keys, findings) = compile::cameras_of(&self.description, &tracks, &earlier.bounds);
+            let settings = (*self.description.render).clone();
+            let integrator = self.integrator_choice();
+            Some((Compiled { cameras, camera_keys, settings, integrator, ..earlier.clone() }, findings))
+        } else if self.has_objects(before, &change) {
+            compile::with_shading(&self.description, &tracks, self.files(), earlier)
+        } else {
+            None
+        };
+        let Some((compiled, findings)) = found else { return self.compile() };
+        let warnings = self.warnings(wrong, findings)?;
+        Ok(Compiled { warnings, ..compiled })
+    }
+
+    /// Whether both scenes have the same world, whatever their cameras and settings. Files are
+    /// compared by content.
+    pub fn has_world_of(&self, other: &Self) -> bool {
+        self.has_world(other, &self.change_since(other))
+    }
+
+    fn has_world(&self, other: &Self, change: &Change) -> bool {
+        use Changed::{Animation, Asset, Camera, Settings, Title, Tone};
+        let same_motion = || {
+            let (a, b) = (self.tracks().0, other.tracks().0);
+            Arc::ptr_eq(&a, &b) || (&a.objects, &a.groups, &a.lights) == (&b.objects, &b.groups, &b.lights)
+        };
+        let follows_paths = |scene: &Self| scene.integrator_choice().follows_paths();
+        // The conditions after the first tell whether the world depends on motion and assets that changed.
+        change.is_within(&[Title, Settings, Tone, Camera, Animation, Asset])
+            // The default lights depend on the integrator.
+            && (!self.description.lights.is_empty() || follows_paths(self) == follows_paths(other))
+            && digests(&self.description, &self.files()) == digests(&other.description, &other.files())
+            && same_motion()
+    }
+
+    /// Whether both scenes have the same objects and area lights, whatever their materials. Mesh files
+    /// are compared by content.
+    fn has_objects(&self, other: &Self, change: &Change) -> bool {
+        fn area_lights(scene: &Scene) -> Vec<(usize, &Area)> {
+            area_lights::iter(&scene.description.lights).collect()
+        }
+        let meshes = |scene: &Self| {
+            let files = mesh_files(&scene.description, &scene.files()).into_iter();
+            files.map(|file| scene.asset_cache.digest(&file)).collect::<Vec<_>>()
+        };
+        let (tracks, others) = (self.tracks().0, other.tracks().0);
+        let lights = area_lights(self);
+        !change.contains(Changed::Transform)
+            && !change.contains(Changed::Geometry)
+            && (&tracks.objects, &tracks.groups) == (&others.objects, &others.groups)
+            && lights == area_lights(other)
+            && (lights.is_empty() || tracks.lights == others.lights)
+            && meshes(self) == meshes(other)
+    }
+}

@@ -1,0 +1,144 @@
+//! Tests of the table: all its targets exist, and all its examples are valid.
+
+use super::*;
+use crate::document::{FileId, parse};
+use crate::path::PathRef;
+use crate::schema::reference;
+
+/// Rules with this noun in the table.
+fn named(owner: &str) -> Vec<&'static Rule> {
+    if owner == "scene" {
+        return Rule::root().into_iter().collect();
+    }
+    Rule::all().iter().filter(|rule| rule.name.is_some_and(|name| noun(name) == owner)).collect()
+}
+
+/// Rules of the kinds of a family, or the rule of an object itself.
+fn contents(rule: &'static Rule) -> Vec<&'static Rule> {
+    let kinds: Vec<_> = rule.kinds.iter().map(|(_, content)| content.get()).collect();
+    if kinds.is_empty() { vec![rule] } else { kinds }
+}
+
+fn has_field(rule: &Rule, key: &str) -> bool {
+    rule.fields.iter().flatten().any(|(name, _)| *name == key)
+}
+
+fn exists(target: &[&str]) -> bool {
+    match target {
+        [owner, name] => named(owner).into_iter().any(|rule| {
+            let listed = rule.words.contains(name) || rule.kinds.iter().any(|(kind, _)| kind == name);
+            listed || contents(rule).into_iter().any(|rule| has_field(rule, name))
+        }),
+        [family, kind, key] => named(family)
+            .into_iter()
+            .any(|rule| rule.kinds.iter().any(|(name, content)| name == kind && has_field(content.get(), key))),
+        _ => false,
+    }
+}
+
+/// Whether a text is valid by a rule, except for undefined names and missing sibling keys, since
+/// the table's examples are excerpts.
+fn is_right(text: &str, rule: &'static Rule) -> bool {
+    let Ok((node, _)) = parse(text, FileId::MAIN) else { return false };
+    let findings = super::super::by_rule(&node, rule, &PathRef::Root.key("example")).findings;
+    findings
+        .iter()
+        .all(|finding| ["is called", "missing here", "exactly one of"].iter().any(|of| finding.message_contains(of)))
+}
+
+#[test]
+fn every_line_leads_to_something_that_is_written_as_it_says() {
+    let lines = TABLE.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    assert_eq!(lines.count(), ENTRIES.len(), "every line is read");
+    assert!(ENTRIES.iter().map(|entry| entry.words.len()).sum::<usize>() > 1000);
+    let mut wrong = Vec::new();
+    for entry in ENTRIES.iter() {
+        assert!(exists(&entry.target), "nothing is called {:?}", entry.target);
+        let places: Vec<&str> = entry.owners.iter().flat_map(|owner| owner.split('.')).collect();
+        for owner in &entry.owners {
+            let known = owner.split_once('.').map_or_else(
+                || !named(owner).is_empty() || Rule::all().iter().any(|rule| owners(rule).contains(&(*owner).into())),
+                |(family, kind)| is_kind_of(family, kind),
+            );
+            assert!(known, "nothing is called {owner}");
+        }
+        let nouns = entry.target.iter().copied().chain(places).chain(["object", "scene", "render"]);
+        let rules: Vec<&Rule> = nouns.flat_map(named).flat_map(|rule| [vec![rule], contents(rule)].concat()).collect();
+        let alone = rules.iter().any(|rule| is_right(entry.example, rule));
+        let inside = rules.iter().any(|rule| is_right(&format!("{{{}}}", entry.example), rule));
+        wrong.extend((!alone && !inside).then_some(entry.example));
+    }
+    assert!(wrong.is_empty(), "cannot be written: {wrong:#?}");
+}
+
+#[test]
+fn each_word_stands_once_at_a_place() {
+    for (i, entry) in ENTRIES.iter().enumerate() {
+        for other in &ENTRIES[..i] {
+            let shared = entry.is_kind == other.is_kind && entry.owners.iter().any(|own| other.owners.contains(own));
+            let twice = entry.plain_words.iter().find(|word| shared && other.plain_words.contains(word));
+            // Pixel filters and texture filters are both called filters.
+            assert!(twice.is_none() || entry.owners == ["filter"], "{twice:?} of {:?}", entry.owners);
+        }
+    }
+}
+
+/// The innermost owner takes precedence, and a key that the kind lacks is not suggested.
+#[test]
+fn words_are_found_by_place() {
+    let light = |kind: &str| {
+        let family = Rule::named("AnyLight").unwrap();
+        family.kinds.iter().find(|(name, _)| *name == kind).unwrap().1.get()
+    };
+    let help = suggest_key("angle", light("spot")).unwrap();
+    assert!(help.starts_with("`angle` is called `cutoff_degrees` here: write \"cutoff_degrees\": 30"), "{help}");
+    assert!(suggest_key("angle", light("directional")).unwrap().contains("`angle_degrees`"));
+    assert!(suggest_key("location", light("point")).unwrap().contains("`position`"));
+    assert_eq!(suggest_key("location", light("directional")), None);
+    assert_eq!(
+        suggest_key("radius", light("directional")).is_some(),
+        suggest_key("size", light("directional")).is_some()
+    );
+    let camera = Rule::named("Perspective").unwrap();
+    assert!(suggest_key("FOV", camera).unwrap().starts_with("`FOV` is called `vertical_fov_degrees` here"));
+    let lens = suggest_key("aperture", camera).unwrap();
+    assert!(lens.starts_with("`aperture` is `lens_radius` of a `thin_lens` camera here"), "{lens}");
+    let shape = Rule::named("AnyShape").unwrap();
+    assert!(suggest_kind("BoxGeometry", shape).unwrap().contains("called `cuboid` here"));
+    assert_eq!(kind_name("cube", shape), Some("cuboid"));
+    assert_eq!(suggest_kind("teapot", shape), None);
+    let material = Rule::named("AnyMaterial").unwrap();
+    assert!(
+        suggest_kind("glass", material)
+            .unwrap()
+            .contains("called `dielectric` here: write {\"dielectric\": {\"ior\": 1.5}}")
+    );
+}
+
+#[test]
+fn links_of_the_page_lead_somewhere() {
+    let (page, reference) = (page(), reference());
+    let anchor = |heading: &str| heading.trim().to_lowercase().replace(['`', ':'], "").replace(' ', "-");
+    let headings = reference.lines().filter(|line| line.starts_with('#'));
+    let anchors: Vec<String> = headings.map(|line| anchor(line.trim_start_matches('#'))).collect();
+    let links: Vec<&str> = page.split("(scene-format.md#").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(links.len() > 100);
+    for link in links {
+        assert!(anchors.iter().any(|anchor| anchor == link), "nothing is at #{link}");
+    }
+}
+
+/// Words that are valid at their place need no help and are not listed on the page.
+#[test]
+fn known_words_are_left_out_of_the_page() {
+    let page = page();
+    for entry in ENTRIES.iter().filter(|entry| entry.is_kind && entry.owners != ["filter"]) {
+        let families: Vec<_> = entry.owners.iter().flat_map(|owner| named(owner)).collect();
+        let listed = |word: &str| families.iter().any(|rule| rule.kinds.iter().any(|(kind, _)| *kind == word));
+        for line in page.lines().filter(|line| line.contains(&format!("`{}` |", entry.example))) {
+            let words = line.split('|').nth(1).unwrap_or_default();
+            let known = entry.words.iter().find(|word| listed(word) && words.contains(&format!("`{word}`")));
+            assert_eq!(known, None, "{line}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Scenes and names to choose from.
+
+use crate::edits::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
+use juggler::camera::sampler::AnySampler;
+use juggler::imaging::AnyCurve;
+use juggler::integrator::AnyIntegrator;
+use juggler::scene::{BuiltIn, Scene, built_in_scenes};
+use juggler_session::Channel;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Scenes, integrators, samplers, tone curves and limits, as JSON.
+pub struct Catalog {
+    text: String,
+}
+
+impl Catalog {
+    /// Lists the built-in scenes, and the scene file with which the server was started.
+    pub fn new(scene: Option<&str>) -> Self {
+        Self { text: listing(scene).to_string() }
+    }
+
+    /// Returns the JSON text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+fn listing(scene: Option<&str>) -> Value {
+    let of = |scene: &BuiltIn| {
+        let title = Scene::built_in(scene.name).map(|scene| scene.description.title).unwrap_or_default();
+        json!({"name": scene.name, "title": title, "description": scene.description()})
+    };
+    let file = scene.filter(|name| built_in_scenes().iter().all(|one| one.name != *name) || Path::new(name).exists());
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenes": built_in_scenes().iter().map(of).collect::<Vec<_>>(),
+        "file": file.map(|name| json!({"name": name, "title": Path::new(name).file_name().map(|n| n.to_string_lossy())})),
+        "integrators": juggler::names::<AnyIntegrator>(),
+        "samplers": juggler::names::<AnySampler>(),
+        "tones": juggler::names::<AnyCurve>(),
+        "schedulers": ["work-stealing", "row-queue", "static-rows"],
+        "channels": Channel::ALL,
+        "most": {"edge": MAX_EDGE, "pixels": MAX_PIXELS, "samples": MAX_SAMPLES},
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_scene_is_listed() {
+        let catalog = Catalog::new(Some("mine.json"));
+        let listing: Value = serde_json::from_str(catalog.text()).unwrap();
+        assert_eq!(listing["scenes"].as_array().unwrap().len(), built_in_scenes().len());
+        assert!(listing["scenes"].as_array().unwrap().iter().all(|scene| scene["title"] != ""));
+        assert_eq!(listing["file"]["name"], "mine.json");
+        assert!(listing["integrators"].as_array().unwrap().contains(&json!("classic")));
+        assert_eq!(listing["channels"][0], "color");
+    }
+}

@@ -1,0 +1,127 @@
+//! Background builds: the worker's threads build a world while the previous image stays on display.
+
+use crate::Stage;
+use crate::build::{BuildError, BuildRequest};
+use crate::subject::Subject;
+use crate::worker::Worker;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Builds that take longer are reported as loading.
+pub const LOADING_DELAY: Duration = Duration::from_millis(100);
+
+/// Build that is running.
+#[derive(Clone, Copy)]
+pub struct RunningBuild {
+    /// Start of the build.
+    pub began: Instant,
+    /// Reason of the build.
+    pub reason: BuildReason,
+}
+
+/// Reason of a build.
+#[derive(Clone, Copy, PartialEq)]
+pub enum BuildReason {
+    /// Another scene is being opened.
+    OtherScene,
+    /// The scene's files may have changed.
+    Files,
+    /// A value of the scene, a setting that affects the film, or the frame has changed.
+    Edit,
+}
+
+impl Worker {
+    /// Starts a build; the result of a running one will be discarded.
+    pub fn build(&mut self, build: BuildRequest, reason: BuildReason) {
+        let shared = Arc::clone(&self.shared);
+        let number = {
+            let mut mailbox = shared.mailbox();
+            mailbox.built = None;
+            mailbox.build_number += 1;
+            mailbox.build_number
+        };
+        self.building = Some(RunningBuild { began: Instant::now(), reason });
+        if reason == BuildReason::OtherScene {
+            self.status.stage = Stage::Loading;
+            self.publish(None);
+        }
+        self.pool.spawn(move || {
+            // An uncaught panic in the pool would abort the program.
+            let result = catch_unwind(AssertUnwindSafe(|| build.run())).unwrap_or_else(|_| {
+                Err(BuildError {
+                    text: "error: cannot build the scene: this is a bug of Juggler".into(),
+                    files: Vec::new(),
+                })
+            });
+            shared.update(|mailbox| {
+                // A discarded build may end after the latest one.
+                if mailbox.build_number == number {
+                    mailbox.built = Some(result);
+                }
+            });
+        });
+    }
+
+    /// Adopts the result of a build that has ended.
+    pub fn adopt_build(&mut self) {
+        let Some(building) = self.building else { return };
+        let built = self.shared.mailbox().built.take();
+        let Some(built) = built else {
+            if building.began.elapsed() >= LOADING_DELAY && self.status.stage != Stage::Loading {
+                self.status.stage = Stage::Loading;
+                self.publish(None);
+            }
+            return;
+        };
+        self.building = None;
+        match built {
+            Ok(subject) => self.adopt_subject(subject, building),
+            Err(error) => self.report_build_error(error, building),
+        }
+    }
+
+    fn adopt_subject(&mut self, subject: Subject, building: RunningBuild) {
+        self.status.error = None;
+        if building.reason != BuildReason::Edit {
+            self.scene_error = None;
+            self.watch(&subject.files());
+        }
+        if building.reason == BuildReason::OtherScene {
+            (self.region, self.playing) = (None, None);
+            self.rate.forget();
+        }
+        let before = self.subject.replace(Arc::new(subject));
+        if let Some(before) = before {
+            self.adopt_view(before.picture());
+        } else {
+            self.needs_preview = true;
+        }
+        self.update_status();
+    }
+
+    fn report_build_error(&mut self, error: BuildError, building: RunningBuild) {
+        if building.reason != BuildReason::Edit {
+            self.scene_error = Some(error.text.clone());
+            let mut files = self.subject.as_ref().map_or_else(Vec::new, |subject| subject.files());
+            files.extend(error.files);
+            self.watch(&files);
+        }
+        (self.status.error, self.playing) = (Some(error.text), None);
+        self.update_status();
+        // The film continues, or is finished already.
+        match self.status.stage {
+            _ if self.subject.is_none() => self.status.stage = Stage::Finished,
+            Stage::Loading => self.status.stage = Stage::Moving,
+            _ => {}
+        }
+        self.publish(None);
+    }
+
+    fn watch(&mut self, files: &[PathBuf]) {
+        if let Some(watch) = &mut self.watch {
+            watch.set(files);
+        }
+    }
+}

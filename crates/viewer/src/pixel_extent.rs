@@ -1,0 +1,98 @@
+//! Size of an image pixel in angle and in scene units, to which navigation is scaled.
+
+use juggler::camera::AnyCamera;
+use juggler::math::{UVec2, Vec2, Vec3};
+use juggler_session::Status;
+
+/// Extent of a pixel at the image center.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelExtent {
+    /// Angle of a pixel, in degrees; 0 for parallel rays.
+    pub degrees_per_pixel: f32,
+    /// Size of a pixel at the distance of the point of interest, in scene units.
+    pub units_per_pixel: f32,
+    /// Reference distance of the flight speed, in scene units: the extent of the scene, or four
+    /// distances of the point of interest if that is less. Distant geometry so does not increase
+    /// the speed.
+    pub reach: f32,
+}
+
+/// Maximum reach in distances of the point of interest.
+const MAX_REACH: f32 = 4.0;
+
+impl PixelExtent {
+    /// Computes the extent for a status's camera.
+    pub fn from_status(status: &Status) -> Self {
+        Self::from_camera(status).unwrap_or(Self {
+            degrees_per_pixel: 0.1,
+            units_per_pixel: status.extent / 1000.0,
+            reach: status.extent,
+        })
+    }
+
+    fn from_camera(status: &Status) -> Option<Self> {
+        let camera: AnyCamera = serde_json::from_value(status.camera.clone()).ok()?;
+        let size = UVec2::from(status.size);
+        let projection = camera.projection(size).ok()?;
+        let middle = size.as_vec2() / 2.0;
+        let [here, below] = [middle, middle + Vec2::Y].map(|film| projection.ray(film, Vec2::splat(0.5), 0.0));
+        let interest = Vec3::from(status.interest);
+        let depth = (interest - here.origin).dot(here.direction).max(status.extent * 1e-3);
+        let [at, next] = [here, below].map(|ray| ray.origin + ray.direction * depth);
+        let extent = status.extent.max(f32::MIN_POSITIVE);
+        let pixel = Self {
+            degrees_per_pixel: here
+                .direction
+                .cross(below.direction)
+                .length()
+                .atan2(here.direction.dot(below.direction))
+                .to_degrees(),
+            units_per_pixel: at.distance(next),
+            reach: (here.origin.distance(interest) * MAX_REACH).clamp(extent * 0.01, extent),
+        };
+        (pixel.degrees_per_pixel.is_finite() && pixel.units_per_pixel.is_finite()).then_some(pixel)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn status(camera: serde_json::Value) -> Status {
+        Status { size: [200, 100], camera, interest: [0.0; 3], extent: 10.0, ..Status::default() }
+    }
+
+    #[test]
+    fn of_a_pinhole() {
+        let pixel =
+            PixelExtent::from_status(&status(json!({"perspective": {"eye": [0, 0, 5], "vertical_fov_degrees": 90}})));
+        // At distance 1 half the film height is 1, so a pixel measures 1/50; at the origin 5 times
+        // that.
+        assert!((pixel.units_per_pixel - 0.1).abs() < 1e-3, "{pixel:?}");
+        assert!((pixel.degrees_per_pixel - 0.02_f32.atan().to_degrees()).abs() < 1e-3, "{pixel:?}");
+    }
+
+    #[test]
+    fn a_far_horizon_makes_nobody_too_fast() {
+        let camera = json!({"perspective": {"eye": [0, 0, 5]}});
+        let pixel = PixelExtent::from_status(&Status { extent: 1e4, ..status(camera) });
+        assert_eq!(pixel.reach, 100.0);
+        let pixel =
+            PixelExtent::from_status(&Status { extent: 60.0, ..status(json!({"perspective": {"eye": [0, 0, 5]}})) });
+        assert!((pixel.reach - 20.0).abs() < 1e-3, "{pixel:?}");
+    }
+
+    #[test]
+    fn of_parallel_rays() {
+        let pixel = PixelExtent::from_status(&status(json!({"orthographic": {"eye": [0, 0, 5], "height": 20}})));
+        assert_eq!((pixel.degrees_per_pixel, pixel.reach), (0.0, 10.0));
+        assert!((pixel.units_per_pixel - 0.2).abs() < 1e-4, "{pixel:?}");
+    }
+
+    #[test]
+    fn of_nothing_that_is_known() {
+        let pixel = PixelExtent::from_status(&status(json!({"periscope": {}})));
+        assert!(pixel.degrees_per_pixel > 0.0 && pixel.units_per_pixel > 0.0);
+    }
+}
