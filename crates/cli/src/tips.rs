@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn flags_of_other_programs_lead_to_ours() {
-        for (typed, told) in [
+        for (typed, reported) in [
             ("--width 640", "--size WxH"),
             ("--width=640", "--size WxH"),
             ("-s 4", "--samples N"),
@@ -80,7 +80,7 @@ mod tests {
             ("-j 4", "--threads N"),
         ] {
             let message = refused(&format!("juggler render a {typed}"));
-            assert!(message.contains(&format!("tip: {told}")), "{message}");
+            assert!(message.contains(&format!("tip: {reported}")), "{message}");
             assert!(!message.contains("as a value") && !message.contains("--white-balance"), "{message}");
         }
     }

@@ -64,7 +64,7 @@ fn wrong_command_lines() {
 }
 
 #[test]
-fn wrong_colours_and_files() {
+fn wrong_colors_and_files() {
     refused(&[
         "render ball.json --tone sepia",
         "render ball.json --bits 12",

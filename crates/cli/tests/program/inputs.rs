@@ -88,10 +88,10 @@ fn a_broken_picture_is_told_as_such() {
     fs::write(folder.path("start.png"), [&b"x"[..], &good[1..]].concat()).unwrap();
     fs::write(folder.path("short.png"), &good[..20]).unwrap();
     fs::write(folder.path("empty.png"), "").unwrap();
-    let told = |name: &str| folder.bad(&format!("info {name}"), 3);
-    assert!(told("start.png").contains("cannot read `start.png`: its first bytes match no supported format"));
-    assert!(told("empty.png").contains("cannot read `empty.png`: its first bytes"));
-    assert!(told("short.png").contains("cannot read `short.png`: unexpected end of file at byte 20"));
+    let reported = |name: &str| folder.bad(&format!("info {name}"), 3);
+    assert!(reported("start.png").contains("cannot read `start.png`: its first bytes match no supported format"));
+    assert!(reported("empty.png").contains("cannot read `empty.png`: its first bytes"));
+    assert!(reported("short.png").contains("cannot read `short.png`: unexpected end of file at byte 20"));
 }
 
 #[test]

@@ -112,9 +112,9 @@ fn files_say_from_where_the_picture_was_taken() {
         let start = bytes.windows(head.len()).position(|window| window == head.as_bytes()).unwrap() + head.len();
         let found: Vec<f32> =
             bytes[start..start + 64].as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
-        let told = stats["camera"][key].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
-        let told: Vec<f32> = told.map(|number| number.as_f64().unwrap() as f32).collect();
-        assert_eq!(found, told, "{name}");
+        let reported = stats["camera"][key].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
+        let reported: Vec<f32> = reported.map(|number| number.as_f64().unwrap() as f32).collect();
+        assert_eq!(found, reported, "{name}");
     }
     folder.good(&format!("render {BALL} -o a.jfilm -q"));
     let merged = folder.good("merge a.jfilm -o b.exr -q --stats -").stdout;

@@ -220,8 +220,8 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
     );
     // The command in the metadata names the file itself, at its current path.
     fs::rename(folder.path("timed.png"), folder.path("moved.png")).unwrap();
-    let told = folder.good("info moved.png").stdout;
-    assert!(told.contains("--samples-from moved.png"), "{told}");
+    let reported = folder.good("info moved.png").stdout;
+    assert!(reported.contains("--samples-from moved.png"), "{reported}");
 }
 
 #[test]
@@ -254,8 +254,8 @@ fn pictures_that_end_by_noise_or_time_say_how_many_samples_they_got() {
     assert!(min >= 64.0 && min <= mean && mean <= max && max < 65_536.0, "{spread}");
     assert_eq!(stats["samples"].as_f64(), Some(max));
     assert!(run.stdout.contains(&format!("{min} to {max} samples, ")) || min == max, "{}", run.stdout);
-    let told = folder.good("info a.png").stdout;
-    assert!(told.contains(&format!("Samples      {min}")) && !told.contains("65536"), "{told}");
+    let reported = folder.good("info a.png").stdout;
+    assert!(reported.contains(&format!("Samples      {min}")) && !reported.contains("65536"), "{reported}");
     // The shards merge to identical bytes.
     for shard in 0..2 {
         folder.good(&format!("{line} -q --shard {shard}/2 -o {shard}.jfilm"));

@@ -141,7 +141,7 @@ fn exposure_and_tone_change_levels_only() {
 }
 
 #[test]
-fn wide_primaries_are_the_same_colours_in_other_numbers() {
+fn wide_primaries_are_the_same_colors_in_other_numbers() {
     let folder = Folder::new();
     folder.good("render ball.json -q -o a.exr");
     folder.good("render ball.json -q -o wide.exr --primaries acescg");

@@ -86,7 +86,7 @@ fn what_clamping_takes_is_always_told() {
     let integrator = r#""integrator": {"path": {"max_depth": 5, "clamp_direct": 0.4, "clamp_indirect": 0.02}}"#;
     let scene = SCENE.replace(r#""samples": 2"#, &format!(r#""samples": 2, {integrator}"#));
     fs::write(folder.path("clamped.json"), scene).unwrap();
-    let told = |flags: &str| {
+    let reported = |flags: &str| {
         let run = folder.run(&format!("{flags} --stats s.json"));
         assert_eq!(run.status, 0, "{}", run.stderr);
         let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("s.json")).unwrap()).unwrap();
@@ -95,19 +95,19 @@ fn what_clamping_takes_is_always_told() {
         stats["film"].clone()
     };
     let render = "render clamped.json --size 40x25 --samples 40";
-    let whole = told(&format!("{render} --threads 1 -o whole.png"));
+    let whole = reported(&format!("{render} --threads 1 -o whole.png"));
     let share = whole["clamped"]["share"].as_f64().unwrap();
     assert!(share > 0.001 && share < 0.9, "{share}");
     for threads in [2, 4] {
-        assert_eq!(told(&format!("{render} --threads {threads} -o whole.png")), whole);
+        assert_eq!(reported(&format!("{render} --threads {threads} -o whole.png")), whole);
     }
     for shard in 0..2 {
-        told(&format!("{render} --shard {shard}/2 -o {shard}.jfilm"));
+        reported(&format!("{render} --shard {shard}/2 -o {shard}.jfilm"));
     }
-    assert_eq!(told("merge 0.jfilm 1.jfilm -o merged.png"), whole);
+    assert_eq!(reported("merge 0.jfilm 1.jfilm -o merged.png"), whole);
     // Start with fewer samples, then resume.
-    told("render clamped.json --size 40x25 --samples 7 -o a.jfilm --checkpoint a.jfilm");
-    assert_eq!(told(&format!("{render} -o a.jfilm --checkpoint a.jfilm")), whole);
+    reported("render clamped.json --size 40x25 --samples 7 -o a.jfilm --checkpoint a.jfilm");
+    assert_eq!(reported(&format!("{render} -o a.jfilm --checkpoint a.jfilm")), whole);
     assert!(folder.good("info whole.png").stdout.contains("direct light at 0.4, indirect light at 0.02"));
     // Frames of a movie report clamping too.
     let film = folder.run("render clamped.json --frames 0..2 -o film.gif");
@@ -123,7 +123,7 @@ fn samples_that_are_not_finite_are_counted_and_black() {
         "lights": [{"point": {"position": [0, 4, 4], "intensity": 1e30}}],
         "objects": [{"shape": {"sphere": {}}, "material": {"phong": {"diffuse": [1e30, 1, 1]}}}]}"#;
     fs::write(folder.path("wild.json"), scene).unwrap();
-    let told = |flags: &str| {
+    let reported = |flags: &str| {
         let run = folder.run(&format!("render wild.json {flags} -o wild.exr --stats s.json"));
         assert_eq!(run.status, 0, "{}", run.stderr);
         let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("s.json")).unwrap()).unwrap();
@@ -133,9 +133,9 @@ fn samples_that_are_not_finite_are_counted_and_black() {
         assert!(stats["film"]["mean"].as_array().unwrap().iter().all(Value::is_number), "{}", stats["film"]);
         (lost, stats["film"]["hash"].clone())
     };
-    let whole = told("--threads 1");
-    assert_eq!(told("--threads 4"), whole);
-    assert_ne!(told("--samples 1"), whole);
+    let whole = reported("--threads 1");
+    assert_eq!(reported("--threads 4"), whole);
+    assert_ne!(reported("--samples 1"), whole);
     let run = folder.run("render wild.json -q -o wild.exr");
     assert!(run.stderr.contains("samples not finite, counted as black"), "{}", run.stderr);
 }

@@ -22,3 +22,4 @@ mod model;
 mod noise;
 mod scales;
 mod tree;
+mod words;

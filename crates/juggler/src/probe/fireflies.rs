@@ -66,7 +66,7 @@ pub struct Firefly {
 /// Group of paths with the same scattering events.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathGroup {
-    /// Scattering events: `diffuse > specular transmission > what shines`.
+    /// Scattering events: `diffuse > specular transmission > emission`.
     pub path: String,
     /// Number of outliers that such paths cause.
     pub pixels: usize,

@@ -90,10 +90,10 @@ fn coverage(parts: &Value, is_lit: &dyn Fn(usize, &Value) -> bool) -> Vec<f32> {
     let mut parts = parts.clone();
     for (place, object) in parts["objects"].as_array_mut().unwrap().iter_mut().enumerate() {
         let radiance = if is_lit(place, &object["material"]) { 1 } else { 0 };
-        let shining = json!({"emissive": {"radiance": radiance}});
+        let emissive = json!({"emissive": {"radiance": radiance}});
         match object["material"].get_mut("mask") {
-            Some(mask) => mask["material"] = shining,
-            None => object["material"] = shining,
+            Some(mask) => mask["material"] = emissive,
+            None => object["material"] = emissive,
         }
     }
     render(&scene(&parts, &json!({})), &[]).2

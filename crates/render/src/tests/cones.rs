@@ -28,9 +28,9 @@ fn floor(texture: &str) -> World {
         let material = compiler.compile(&read::<AnyMaterial>(material)).unwrap();
         Object::new(plane, Transform::translation(Vec3::Y * place), material)
     };
-    let shining = r#"{"phong": {"diffuse": 0, "emission": "noise"}}"#;
+    let emissive = r#"{"phong": {"diffuse": 0, "emission": "noise"}}"#;
     let mirror = r#"{"phong": {"diffuse": 0, "reflection": 1}}"#;
-    let objects = vec![plane(0.0, shining), plane(100.0, mirror)];
+    let objects = vec![plane(0.0, emissive), plane(100.0, mirror)];
     let background = AnyBackground::Solid(Solid { color: Rgb::BLACK });
     World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
 }

@@ -164,6 +164,6 @@ fn a_closed_sphere() {
     let light = r#"{"point": {"position": [0, 0, 1], "intensity": 12.566370614}}"#;
     let aside = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
     traced(aside, &shot, 256).is(SHOWN * 4.0 * PI / 9.0 + 0.5);
-    let glowing = r#"{"emissive": {"radiance": 0.5, "sides": "both", "material": {"diffuse": {"reflectance": 0.5}}}}"#;
-    traced(Scene::new().with(shell, Vec3::ZERO, glowing), &shot, 64).is(1.0);
+    let emissive = r#"{"emissive": {"radiance": 0.5, "sides": "both", "material": {"diffuse": {"reflectance": 0.5}}}}"#;
+    traced(Scene::new().with(shell, Vec3::ZERO, emissive), &shot, 64).is(1.0);
 }

@@ -185,13 +185,13 @@ impl Sample {
     pub fn obj_counts(&self) -> Counts {
         let [corners, positions] = self.distinct;
         let vertices = scaled(self.positions, corners, positions.min(corners)).min(self.corners);
-        let carried = if self.normals > 0 { 12 } else { 0 } + if self.uvs > 0 { 8 } else { 0 };
+        let attribute_bytes = if self.normals > 0 { 12 } else { 0 } + if self.uvs > 0 { 8 } else { 0 };
         let lists = self.positions * 12 + self.uvs * 8 + self.normals * 12;
         let polygons = if self.corners > self.triangles * 3 { self.triangles * 16 } else { 0 };
         Counts {
             vertices,
             triangles: self.triangles,
-            vertex_bytes: 12 + carried,
+            vertex_bytes: 12 + attribute_bytes,
             temporary_bytes: lists.saturating_add(vertices.saturating_mul(CORNER)).saturating_add(polygons),
         }
     }

@@ -96,7 +96,7 @@ fn steps_carry_anything() {
 }
 
 #[test]
-fn colours_are_mixed_as_light() {
+fn colors_are_mixed_as_light() {
     let form = json!({"animate": {"keys": [[0, "#ff0000"], [1, "#0000ff"], [2, [0, 1, 1]]]}});
     assert_eq!(value(form.clone(), 0.5), json!([0.5, 0, 0.5]));
     assert_eq!(value(form.clone(), 1.5), json!([0, 0.5, 1]));

@@ -63,15 +63,16 @@ impl<'n> Report<'n> {
     }
 
     fn to_words(&self) -> String {
-        let carried = [("normals", self.normals), ("surface coordinates", self.uvs)];
-        let carried: Vec<&str> = carried.into_iter().filter(|(_, is_there)| *is_there).map(|(what, _)| what).collect();
-        let carried = carried.join(", ");
+        let attributes = [("normals", self.normals), ("surface coordinates", self.uvs)];
+        let attributes: Vec<&str> =
+            attributes.into_iter().filter(|(_, is_there)| *is_there).map(|(what, _)| what).collect();
+        let attributes = attributes.join(", ");
         let speed = self.file_bytes as f64 / 1e6 / self.load.max(1e-9);
         let mut lines = vec![
             self.name.to_owned(),
             row("triangles", &self.triangles.to_string()),
             row("vertices", &self.vertices.to_string()),
-            row("with", if carried.is_empty() { "positions only" } else { &carried }),
+            row("with", if attributes.is_empty() { "positions only" } else { &attributes }),
             row("bounds", &bounds_text(&self.bounds)),
             row(
                 "memory",

@@ -58,9 +58,9 @@ fn kinds(found: &Fireflies) -> Vec<String> {
         let name = counted(others.len() as u128, "other kind");
         lines.push(kind_row(others.iter().map(|kind| kind.pixels).sum(), share, &name));
     }
-    let told: f64 = found.kinds.iter().map(|kind| kind.share).sum();
+    let reported: f64 = found.kinds.iter().map(|kind| kind.share).sum();
     if found.probed < found.count {
-        lines.push(kind_row(found.count - found.probed, 1.0 - told, "not probed"));
+        lines.push(kind_row(found.count - found.probed, 1.0 - reported, "not probed"));
     }
     lines
 }

@@ -109,9 +109,9 @@ impl Probe {
     }
 
     /// Writes JSON, and prints text unless JSON goes to standard output.
-    fn tell(&self, told: &impl Serialize, words: impl FnOnce() -> String) -> Result<(), Failure> {
+    fn tell(&self, reported: &impl Serialize, words: impl FnOnce() -> String) -> Result<(), Failure> {
         if let Some(file) = &self.stats {
-            output::write_text(file, &to_json(&self.scene, told))?;
+            output::write_text(file, &to_json(&self.scene, reported))?;
         }
         if self.stats.as_deref() == Some(STANDARD_OUTPUT) {
             return Ok(());
@@ -121,9 +121,9 @@ impl Probe {
 }
 
 /// Results as JSON; numbers that JSON cannot represent are null.
-fn to_json(scene: &str, told: &impl Serialize) -> String {
+fn to_json(scene: &str, reported: &impl Serialize) -> String {
     let mut object = json!({"version": 1, "scene": scene});
-    if let (Some(object), Ok(Value::Object(more))) = (object.as_object_mut(), serde_json::to_value(told)) {
+    if let (Some(object), Ok(Value::Object(more))) = (object.as_object_mut(), serde_json::to_value(reported)) {
         object.extend(more);
     }
     object.to_string()

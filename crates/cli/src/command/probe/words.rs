@@ -70,9 +70,9 @@ fn of_light(light: &LightOrigins) -> Vec<String> {
 }
 
 fn shares(shares: &[Share]) -> String {
-    let told: Vec<String> =
+    let reported: Vec<String> =
         shares.iter().map(|Share { name, share, .. }| format!("{name} {}", percent(*share))).collect();
-    if told.is_empty() { "none".into() } else { told.join(", ") }
+    if reported.is_empty() { "none".into() } else { reported.join(", ") }
 }
 
 fn branch(branch: &Branch, depth: usize, lines: &mut Vec<String>) {
@@ -155,8 +155,9 @@ mod tests {
 
     #[test]
     fn numbers_have_four_digits() {
-        let told = [0.0, 0.123_456, 12.345_6, 1.0, -2.5, 123_456.0, 1.5e-5, 99_999.4, 0.001, f64::INFINITY].map(number);
+        let reported =
+            [0.0, 0.123_456, 12.345_6, 1.0, -2.5, 123_456.0, 1.5e-5, 99_999.4, 0.001, f64::INFINITY].map(number);
         let expected = ["0", "0.1235", "12.35", "1", "-2.5", "1.235e5", "1.500e-5", "99999", "0.001", "inf"];
-        assert_eq!(told, expected);
+        assert_eq!(reported, expected);
     }
 }
