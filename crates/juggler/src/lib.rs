@@ -39,6 +39,7 @@ mod picture;
 pub mod prelude;
 pub mod probe;
 mod render_stats;
+mod scene_fingerprint;
 mod settings;
 mod viewpoint;
 

@@ -1,6 +1,7 @@
 //! Rendering of one image, from the scene to the file.
 
 use crate::neighbor_scenes::NeighborScenes;
+use crate::scene_fingerprint::SceneFingerprint;
 use crate::{AovSet, Error, Limit, RenderStats, Settings};
 use juggler_camera::film::{FilmDigest, FilmSummary, FilterSampler, Rect};
 use juggler_camera::{AnyCamera, Perspective, ShutterCamera};
@@ -13,7 +14,7 @@ use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_world::{SimdLevel, World};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Name of the program in files.
@@ -27,9 +28,9 @@ pub struct Picture {
     region: Rect,
     tone: Tone,
     limit: Limit,
-    fingerprint: Fingerprint,
-    /// Part of the fingerprint that the scene determines.
-    scene_fingerprint: Fingerprint,
+    /// Fingerprint, once it was needed.
+    fingerprint: OnceLock<Fingerprint>,
+    scene_fingerprint: SceneFingerprint,
     band_pixels: u64,
     aovs: Arc<AovSet>,
     neighbors: NeighborScenes,
@@ -69,28 +70,24 @@ impl Picture {
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let shutter_camera =
             compiled.shutter_camera(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let (tone, limit, mut scene_fingerprint) =
-            ((*scene.description.tone).clone(), settings.limit, scene.fingerprint());
-        scene_fingerprint.set_camera(&camera.1, &compiled.camera_keys);
-        let fingerprint = scene_fingerprint.clone();
+        let (tone, limit) = ((*scene.description.tone).clone(), settings.limit);
+        let scene_fingerprint =
+            SceneFingerprint::from_scene(scene.clone(), camera.1.clone(), compiled.camera_keys.clone());
         let aovs = Arc::new(AovSet::new(&settings.aovs, settings.denoiser, &compiled.names));
         aovs.check()?;
         let neighbors = NeighborScenes::build(plain, settings, &compiled, &shutter_camera, &aovs)?;
-        let band_pixels = BAND_PIXELS;
-        let mut picture = Self {
+        Ok(Self {
             shutter_camera,
             region,
             tone,
             limit,
-            fingerprint,
+            fingerprint: OnceLock::new(),
             scene_fingerprint,
             compiled,
-            band_pixels,
+            band_pixels: BAND_PIXELS,
             aovs,
             neighbors,
-        };
-        picture.complete_fingerprint();
-        Ok(picture)
+        })
     }
 
     /// Returns the current view.
@@ -129,14 +126,13 @@ impl Picture {
         let shutter_camera = picture.compiled.shutter_camera(UVec2::new(width, height));
         picture.shutter_camera = shutter_camera.map_err(|error| Error::Settings(error.to_string()))?;
         picture.neighbors = self.neighbors.with_camera(&picture.shutter_camera);
-        picture.scene_fingerprint = self.scene_fingerprint.with_view_of(&scene.fingerprint());
-        picture.scene_fingerprint.set_camera(&view.camera, &picture.compiled.camera_keys);
-        picture.fingerprint = picture.scene_fingerprint.clone();
+        let camera_keys = picture.compiled.camera_keys.clone();
+        picture.scene_fingerprint = self.scene_fingerprint.with_view(scene, view.camera, camera_keys);
+        picture.fingerprint = OnceLock::new();
         picture.compiled.settings = view.render;
         if integrator != *self.integrator() {
             picture.compiled.integrator = IntegratorChoice { integrator, reason: IntegratorReason::Settings };
         }
-        picture.complete_fingerprint();
         Ok(picture)
     }
 
@@ -197,13 +193,13 @@ impl Picture {
     }
 
     /// Returns the fingerprint of everything that determines the pixels. Films of equal
-    /// fingerprints can be continued and merged.
+    /// fingerprints can be continued and merged. The first call computes the fingerprint.
     pub fn fingerprint(&self) -> &Fingerprint {
-        &self.fingerprint
+        self.fingerprint.get_or_init(|| self.complete(self.scene_fingerprint.compute()))
     }
 
-    /// Adds program version and sampling pattern, which the scene's fingerprint lacks.
-    fn complete_fingerprint(&mut self) {
+    /// Adds program version and sampling pattern to the scene's fingerprint.
+    fn complete(&self, mut fingerprint: Fingerprint) -> Fingerprint {
         let Job { pattern, filter, samples, aovs, .. } = self.job();
         let grid = if let FilterSampler::Juggler(side) = filter {
             format!(", filter for {side} x {side}")
@@ -212,8 +208,9 @@ impl Picture {
         };
         let single = if samples == 1 { ", one through the centre" } else { "" };
         let halves = if aovs.has_halves() { ", halves apart" } else { "" };
-        self.fingerprint.insert("juggler", env!("CARGO_PKG_VERSION"));
-        self.fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}{halves}"));
+        fingerprint.insert("juggler", env!("CARGO_PKG_VERSION"));
+        fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}{halves}"));
+        fingerprint
     }
 
     /// Returns the stop condition.
@@ -238,7 +235,7 @@ impl Picture {
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let mut metadata = vec![
             text("Software", SOFTWARE),
-            text("Fingerprint", &self.fingerprint.hash()),
+            text("Fingerprint", &self.fingerprint().hash()),
             text("Seed", &self.compiled.settings.seed.to_string()),
         ];
         // The final number of samples is unknown under a noise or time limit.
