@@ -1,14 +1,14 @@
-// Hands on the picture: mouse, touch, wheel and keys become edits of the camera.
+// Input on the canvas: mouse, touch, wheel and keys become edits of the camera.
 
-/** Degrees of a drag across the whole picture. */
+/** Rotation by a drag across the whole image, in degrees. */
 const TURN = 120;
-/** Degrees a second of a key that turns. */
+/** Angular speed of rotation keys, in degrees per second. */
 const DEGREES = 60;
-/** The logarithm of the factor of a second of a key that zooms. */
+/** Logarithm of the zoom factor per second of zoom keys. */
 const ZOOM = 1;
-/** Fractions of the scene's extent a second of a key that moves. */
+/** Speed of movement keys, in extents of the scene per second. */
 const PACE = 0.15;
-/** Pixels of the window that a click may wander. */
+/** Maximum movement of the pointer during a click, in CSS pixels. */
 const STILL = 4;
 
 const MOVES = {
@@ -19,7 +19,8 @@ const MOVES = {
   KeyU: { roll_degrees: -1 }, KeyO: { roll_degrees: 1 }, KeyX: { zoom: 1 }, KeyC: { zoom: -1 },
 };
 
-/** `hands.edit(edit)` takes edits, `hands.extent()`, `hands.orbits()` and `hands.pixel(x, y)` tell what they need. */
+/** Listens for input. `hands.edit(edit)` receives the edits; `hands.extent()`, `hands.orbits()` and
+ * `hands.pixel(x, y)` describe the scene and the view. */
 export function listen(canvas, hands) {
   drags(canvas, hands);
   wheel(canvas, hands);
@@ -76,12 +77,12 @@ function wheel(canvas, hands) {
   }, { passive: false });
 }
 
-/** Whether a key press belongs to a field of the panel. */
+/** Whether a key event belongs to a field of the panel. */
 function elsewhere(event) {
   return event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
 }
 
-/** What the keys `held` add up to, each by the amount of its kind. */
+/** Sum of the movements of all held keys; `by` gives the step of each kind of movement. */
 function total(held, by) {
   const sum = {};
   for (const [axis, sign] of [...held].flatMap((code) => Object.entries(MOVES[code]))) {
@@ -96,7 +97,7 @@ function keys(hands) {
   let running = false;
   let before = null;
   let fast = false;
-  // Held keys move by the time that has passed, one edit a picture of the screen.
+  // Held keys move the camera in proportion to the elapsed time, once per animation frame.
   const fly = (now) => {
     running = held.size > 0;
     if (!running) {
@@ -117,7 +118,7 @@ function keys(hands) {
     if (!MOVES[event.code]) return;
     event.preventDefault();
     held.add(event.code);
-    // The first step at once: the shortest tap moves.
+    // Move at once, so that the shortest key press has an effect.
     if (!running) fly(performance.now());
   });
   addEventListener("keyup", (event) => {

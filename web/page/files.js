@@ -1,12 +1,12 @@
-// Files that people drop or choose: a scene and what it names.
+// Files that the user drops or selects: a scene and the files that it refers to.
 
-/** Largest sum of files, in bytes. */
+/** Maximum total size of the files, in bytes. */
 const MOST = 1 << 30;
 
-/** All files of a drop, folders included, as { name, file }: names have the folders that were dropped before them. */
+/** All files of a drop, folders included, as { name, file }; names include the dropped folders. */
 export async function dropped(transfer) {
   const files = [];
-  // The items themselves are gone as soon as anything is waited for.
+  // The browser discards the items at the first await.
   const entries = [...transfer.items].filter(({ kind }) => kind === "file").map((item) => {
     const entry = item.webkitGetAsEntry?.();
     if (!entry) files.push(...chosen([item.getAsFile()]));
@@ -32,7 +32,7 @@ async function walk(entry, files) {
 
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
 
-/** The scene among the files, the one in the fewest folders, and the bytes of all of them. */
+/** The scene among the files, which is the one in the fewest folders, and the bytes of all files. */
 export async function scene(files) {
   const depth = ({ name }) => name.split("/").length;
   const scenes = files.filter(({ name }) => name.toLowerCase().endsWith(".json")).sort((a, b) => depth(a) - depth(b));

@@ -1,4 +1,4 @@
-// The page: starts the workers, hands wishes to them and shows what comes back.
+// The page: starts the workers, sends requests to them and shows the results.
 
 import init, { scenes } from "./juggler.js";
 import { listen } from "./controls.js";
@@ -12,9 +12,9 @@ const cores = Math.max(1, navigator.hardwareConcurrency ?? 2);
 let view = null;
 let pool = null;
 let status = null;
-/** What is open: the name, files that were dropped, and the edits since then, which workers that join later make too. */
+/** The open scene: its name, dropped files, and the edits since then, which workers that start later repeat. */
 let source = { name: new URLSearchParams(location.search).get("scene") ?? "juggler", files: [], log: [] };
-/** What is being opened instead; where it has mistakes, the other stays. */
+/** The scene that is being opened; if it has errors, the open scene stays. */
 let next = null;
 let began = 0;
 let playing = null;
@@ -81,7 +81,7 @@ const news = {
   },
 };
 
-/** What the status says, into the fields of the panel, but for the one that somebody is at. */
+/** Updates the fields of the panel from the status, except the field that has the focus. */
 function tell(now) {
   status = now;
   const set = (id, value) => document.activeElement !== $(id) && ($(id).value = value);
@@ -116,7 +116,7 @@ function save() {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-/** Plays by the clock: what takes long to render is skipped, not waited for. */
+/** Plays in real time: frames that would be late are skipped. */
 function play(on) {
   cancelAnimationFrame(playing);
   playing = null;
@@ -183,7 +183,7 @@ function drops() {
 
 let module = null;
 
-/** Starts as many workers as are wished for; they open what is open and make all edits made so far. */
+/** Starts the requested number of workers; they open the current scene and repeat all edits. */
 function begin() {
   pool?.close();
   const count = Number($("workers").value);

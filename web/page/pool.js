@@ -1,21 +1,21 @@
-// The workers: what one is told, all are told, so that all have the same scene from the same camera.
+// The worker pool. Every message goes to all workers, so all of them have the same scene and camera.
 
 import { RenderRate } from "./juggler.js";
 
-/** Seconds that a coarse frame may take. */
+/** Time budget of a coarse frame, in seconds. */
 const BUDGET = 0.03;
 
 export class Pool {
-  /** `news` is called with ("opened", status), ("frame", answer), ("tiles", message), ("failed", text). */
+  /** Calls `news` with ("opened", status), ("frame", answer), ("tiles", message) or ("failed", text). */
   constructor(module, count, news) {
     this.news = news;
     this.number = 0;
     this.rate = new RenderRate();
-    /** Of the picture, as soon as there is one. */
+    /** Size of the image, once it is known. */
     this.size = null;
     this.waiting = [];
     this.busy = null;
-    /** Whether a worker can go on no more: only another pool helps. */
+    /** Whether a worker has failed for good, so that the pool must be replaced. */
     this.lost = false;
     this.workers = Array.from({ length: count }, (_, index) => {
       const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
@@ -38,13 +38,13 @@ export class Pool {
     this.workers.forEach((worker) => worker.postMessage({ ...message, number: this.number }));
   }
 
-  /** Opens a scene; the edits of its `log` are made at once. */
+  /** Opens a scene and applies the edits of its `log`. */
   open({ name, files, log }) {
     this.waiting = [...log];
     this.tell({ type: "open", name, files });
   }
 
-  /** Asks for changes. While a frame is on its way they wait for each other, so that no worker falls behind. */
+  /** Queues edits. While a frame is being rendered, they are collected, so that no worker falls behind. */
   edit(...edits) {
     this.waiting.push(...edits);
     if (!this.busy && this.size) this.flush();
@@ -58,11 +58,11 @@ export class Pool {
   }
 
   heard(index, message) {
-    // Tiles on their way when an edit was made count when it turns out that it leaves the samples as they are.
+    // Keep tiles that were sent before an edit: they are valid if the edit leaves the samples unchanged.
     if (message.type === "tiles" && this.busy && message.number === this.number - 1) this.busy.late.push(message);
     if (message.number !== this.number || message.type === "ready") return;
     if (message.type === "tiles") {
-      // What comes before the coarse frame is whole has to wait, or that would cover it.
+      // Hold tiles back until the coarse frame is complete, which would overwrite them.
       if (this.busy) this.busy.tiles.push(message);
       else this.news("tiles", message);
       return;

@@ -1,4 +1,4 @@
-// The canvas: coarse frames stretched over it, and the picture's tiles as they come.
+// The canvas: shows coarse frames, scaled to its size, and the tiles of the image as they arrive.
 
 import { Compositor, PixelRects } from "./juggler.js";
 
@@ -11,19 +11,19 @@ export class View {
     this.compositor = null;
   }
 
-  /** For another picture; what is shown stays until the first frame. */
+  /** Prepares for another image; the old one stays visible until the first frame. */
   open(info) {
     this.compositor?.free();
     this.compositor = new Compositor(JSON.stringify(info));
     this.size = info.size;
   }
 
-  /** Pixels of the module's memory as the browser draws them. */
+  /** ImageData of pixels in the module's memory. */
   image(at, width, height) {
     return new ImageData(new Uint8ClampedArray(this.memory.buffer, at, 4 * width * height), width, height);
   }
 
-  /** Width and height follow the first pixels, so that the old picture stays until then. */
+  /** Resizes the canvas when the first pixels arrive, so that the old image stays visible until then. */
   fit() {
     const [width, height] = this.size;
     if (this.canvas.width !== width || this.canvas.height !== height) {
@@ -48,7 +48,7 @@ export class View {
     }
   }
 
-  /** Tile by tile, as what lies between them may still be of the coarse frame. */
+  /** Draws tile by tile, because pixels between tiles may still show the coarse frame. */
   paint(bounds, stride) {
     this.fit();
     const image = this.image(this.compositor.rgba(), ...this.size);
@@ -57,13 +57,13 @@ export class View {
     }
   }
 
-  /** Another tone, more samples: the light so far stays. */
+  /** Continues with other tone settings or more samples and keeps the radiance so far. */
   resume(info) {
     this.compositor.resume(JSON.stringify(info));
     this.paint(this.compositor.tiles(), 4);
   }
 
-  /** The picture's pixel under a place of the window. */
+  /** Pixel of the image at a position in the window. */
   pixel(x, y) {
     const box = this.canvas.getBoundingClientRect();
     return [((x - box.left) / box.width) * this.size[0], ((y - box.top) / box.height) * this.size[1]];

@@ -1,22 +1,23 @@
-// One of the workers: a whole renderer of its own that renders its share of the picture, in slices short enough to hear what
-// the page says between them.
+// A worker: a complete renderer that renders its share of the image, in time slices that are short
+// enough to receive messages of the page in between.
 
 import init, { WorkerRenderer } from "./juggler.js";
 
-/** Milliseconds of a slice. */
+/** Length of a time slice, in milliseconds. */
 const SLICE = 12;
-/** Milliseconds after which tiles are sent for the second time, and longest: what the page shows costs time too. */
+/** First and longest interval between messages with tiles, in milliseconds: showing tiles costs the
+ * page time, too. */
 const FIRST_SHOW = 40;
 const LAST_SHOW = 400;
 
 let renderer = null;
-/** Number of the page's last wish; what is rendered belongs to it. */
+/** Number of the page's latest request, to which the results belong. */
 let number = 0;
 let refining = false;
-/** Whether nothing of the scene has been shown yet. */
+/** Whether nothing of the scene is visible yet. */
 let fresh = true;
 
-/** Tiles that wait to be sent, when they are, and how long the next ones will wait. */
+/** Tiles to be sent, the time when they are due, and the next interval. */
 let [held, due, interval] = [[], 0, FIRST_SHOW];
 
 const again = new MessageChannel();
@@ -53,7 +54,7 @@ function hold(rects) {
   rects.free();
 }
 
-/** Sends the tiles that wait. */
+/** Sends the collected tiles. */
 function show() {
   if (held.length > 0) postMessage({ type: "tiles", number, parts: held }, held.flatMap(({ bounds, radiance }) => [bounds.buffer, radiance.buffer]));
   held = [];
@@ -61,7 +62,8 @@ function show() {
   interval = Math.min(interval * 1.5, LAST_SHOW);
 }
 
-/** What the renderer itself says is a text. Anything else is the end of it: its memory may be in any state. */
+/** Reports an error. Errors of the renderer are strings; after any other error its memory is in an
+ * unknown state and the worker is lost. */
 function fail(error) {
   refining = false;
   const lost = typeof error !== "string";
@@ -76,7 +78,7 @@ const answers = {
     send({ type: "ready" });
   },
 
-  /** Another scene: a built-in one by name, or one of the files that come along. */
+  /** Opens a scene: a built-in one by name, or one of the files in the message. */
   open({ name, files }) {
     [refining, fresh] = [false, true];
     for (const { name, bytes } of files) renderer.addFile(name, new Uint8Array(bytes));
@@ -84,7 +86,7 @@ const answers = {
     send({ type: "opened", status: JSON.parse(renderer.status()) });
   },
 
-  /** Edits, and the size of the coarse frame that is to show them at once. */
+  /** Applies edits and renders a coarse frame of the given size. */
   edit({ edits, coarse }) {
     const kept = renderer.edit(JSON.stringify(edits)) && !fresh;
     fresh = false;
@@ -96,11 +98,11 @@ const answers = {
   },
 };
 
-/** Messages in their order, though the first takes its time. */
+/** Chain of promises that answers messages in order, although the first one takes long. */
 let turn = Promise.resolve();
 
 async function answer(message) {
-  // Tiles from before may count after it too.
+  // Send earlier tiles first: they may stay valid.
   show();
   number = message.number ?? number;
   try {
