@@ -12,7 +12,8 @@ const cores = Math.max(1, navigator.hardwareConcurrency ?? 2);
 let view = null;
 let pool = null;
 let status = null;
-/** The open scene: its name, dropped files, and the edits since then, which workers that start later repeat. */
+/** The open scene: its name, dropped files, and the edits since then, which workers that start
+ * later repeat. */
 let source = { name: new URLSearchParams(location.search).get("scene") ?? "juggler", files: [], log: [] };
 /** The scene that is being opened; if it has errors, the open scene stays. */
 let next = null;

@@ -1,4 +1,5 @@
-// The worker pool. Every message goes to all workers, so all of them have the same scene and camera.
+// The worker pool. Every message goes to all workers, so all of them have the same scene and
+// camera.
 
 import { RenderRate } from "./juggler.js";
 
@@ -6,7 +7,8 @@ import { RenderRate } from "./juggler.js";
 const BUDGET = 0.03;
 
 export class Pool {
-  /** Calls `news` with ("opened", status), ("frame", answer), ("tiles", message) or ("failed", text). */
+  /** Calls `news` with ("opened", status), ("frame", answer), ("tiles", message) or ("failed",
+   * text). */
   constructor(module, count, news) {
     this.news = news;
     this.number = 0;
@@ -44,7 +46,8 @@ export class Pool {
     this.tell({ type: "open", name, files });
   }
 
-  /** Queues edits. While a frame is being rendered, they are collected, so that no worker falls behind. */
+  /** Queues edits. While a frame is being rendered, they are collected, so that no worker falls
+   * behind. */
   edit(...edits) {
     this.waiting.push(...edits);
     if (!this.busy && this.size) this.flush();
@@ -58,7 +61,8 @@ export class Pool {
   }
 
   heard(index, message) {
-    // Keep tiles that were sent before an edit: they are valid if the edit leaves the samples unchanged.
+    // Keep tiles that were sent before an edit: they are valid if the edit leaves the samples
+    // unchanged.
     if (message.type === "tiles" && this.busy && message.number === this.number - 1) this.busy.late.push(message);
     if (message.number !== this.number || message.type === "ready") return;
     if (message.type === "tiles") {

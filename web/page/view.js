@@ -23,7 +23,8 @@ export class View {
     return new ImageData(new Uint8ClampedArray(this.memory.buffer, at, 4 * width * height), width, height);
   }
 
-  /** Resizes the canvas when the first pixels arrive, so that the old image stays visible until then. */
+  /** Resizes the canvas when the first pixels arrive, so that the old image stays visible until
+   * then. */
   fit() {
     const [width, height] = this.size;
     if (this.canvas.width !== width || this.canvas.height !== height) {

@@ -58,18 +58,19 @@ pub struct Field {
 
 /// All numbers of the scene format.
 pub fn fields() -> Vec<Field> {
-    let schema: Value = serde_json::from_str(&schema_json()).unwrap_or_default();
-    let walk = Walk { definitions: schema.get("$defs").cloned().unwrap_or_default(), visits: None };
-    let found = walk.placeholders(&schema, &mut Vec::new(), "");
-    found.into_iter().map(|(path, scene)| Field { path, scene: complete(scene) }).collect()
+    walk(None)
 }
 
 /// Every field of every definition of the format: numbers, words and switches, each on a few paths.
 /// Words and switches have their possible values after the placeholder.
 pub fn all_fields() -> Vec<Field> {
+    walk(Some(RefCell::default()))
+}
+
+/// Fields that a walk over the schema finds.
+fn walk(visits: Option<RefCell<BTreeMap<String, u32>>>) -> Vec<Field> {
     let schema: Value = serde_json::from_str(&schema_json()).unwrap_or_default();
-    let definitions = schema.get("$defs").cloned().unwrap_or_default();
-    let walk = Walk { definitions, visits: Some(RefCell::default()) };
+    let walk = Walk { definitions: schema.get("$defs").cloned().unwrap_or_default(), visits };
     let found = walk.placeholders(&schema, &mut Vec::new(), "");
     found.into_iter().map(|(path, scene)| Field { path, scene: complete(scene) }).collect()
 }
@@ -131,7 +132,7 @@ pub fn render(text: &str) -> Result<bool, String> {
 }
 
 /// Walk over the definitions of the schema.
-pub(crate) struct Walk {
+struct Walk {
     definitions: Value,
     /// Number of paths to each member of each definition so far, if words and switches count as
     /// fields and each field is visited a few times only.

@@ -24,8 +24,8 @@ pub fn render_progressive(job: &Job, film: &Film, stop: StopCriterion, control: 
     if control.is_cancelled() { Err(Cancelled) } else { Ok(()) }
 }
 
-/// Progressive render of a film by any number of [`Worker`]s. [`render_progressive`] runs one on each thread; a
-/// single one never waits, so it also works step by step without threads.
+/// Progressive render of a film by any number of [`Worker`]s. [`render_progressive`] runs one on
+/// each thread; a single one never waits, so it also works step by step without threads.
 pub struct ProgressiveRender<'j> {
     job: &'j Job<'j>,
     rounds: Rounds<'j>,
@@ -50,9 +50,9 @@ pub struct Worker<'e> {
 }
 
 impl Worker<'_> {
-    /// Renders the next round of a tile, by at most `max_samples` samples per pixel, and returns the
-    /// tile's index. Returns `None` if all tiles are finished or `control` requests an end. Blocks
-    /// only while other workers render the remaining rounds.
+    /// Renders the next round of a tile, by at most `max_samples` samples per pixel, and returns
+    /// the tile's index. Returns `None` if all tiles are finished or `control` requests an end.
+    /// Blocks only while other workers render the remaining rounds.
     pub fn step(&mut self, max_samples: u32, control: &Control) -> Option<usize> {
         let prefix = RoundGuard::next(self.rounds, max_samples, control)?;
         Some(prefix.render(&mut self.engine, control))

@@ -184,8 +184,8 @@ pub struct RoundGuard<'f> {
 }
 
 impl<'f> RoundGuard<'f> {
-    /// Waits for a round and takes at most `max_samples` of its samples. Returns `None` if no round is
-    /// left.
+    /// Waits for a round and takes at most `max_samples` of its samples. Returns `None` if no round
+    /// is left.
     pub fn next(rounds: &'f Rounds<'f>, max_samples: u32, control: &Control) -> Option<Self> {
         rounds.next(max_samples, control).map(|round| Self { rounds, round })
     }

@@ -89,8 +89,8 @@ impl<'j> Engine<'j> {
         Ok((means, removed))
     }
 
-    /// Traces all samples and passes them to `consume` in order; `consume` returns how many were not
-    /// finite.
+    /// Traces all samples and passes them to `consume` in order; `consume` returns how many were
+    /// not finite.
     fn passes(
         &mut self,
         work: &Work,

@@ -85,7 +85,7 @@ impl Scene {
     ///     .frames(30, 30.0)
     ///     .add(Object::new(Sphere::default()).at(0.0, 2.0, 0.0))
     ///     .animate("/objects/0/transform/0/translate/1", fall)?
-    ///     .animate("/objects/0/shape/sphere/radius", ValueSource::expression("1 + seconds / 10"))?;
+    ///     .animate("/objects/0/shape/sphere/radius", ValueSource::expression("1 + seconds/10"))?;
     /// let (first, last) = (scene.compile()?, scene.at_frame(30.0)?.compile()?);
     /// assert_eq!((first.bounds.max.y, last.bounds.max.y), (3.0, 1.1));
     /// # Ok::<(), juggler_scene::SceneError>(())

@@ -43,7 +43,8 @@ pub enum Changed {
 /// use juggler_shape::Sphere;
 ///
 /// let scene = Scene::new().add(Object::new(Sphere::default()));
-/// let edited = scene.with_value("/objects/0/transform", serde_json::json!({"translate": [0, 1, 0]}))?;
+/// let up = serde_json::json!({"translate": [0, 1, 0]});
+/// let edited = scene.with_value("/objects/0/transform", up)?;
 /// let change = edited.change_since(&scene);
 /// assert!(change.contains(Changed::Transform) && !change.contains(Changed::Geometry));
 /// assert_eq!(change.paths()[0].pointer(), "/objects/0");
@@ -71,8 +72,8 @@ impl Change {
         self.kinds.iter().all(|kind| kinds.contains(kind))
     }
 
-    /// Paths of the items that changed, were added or removed. A list whose length changed counts as
-    /// one.
+    /// Paths of the items that changed, were added or removed. A list whose length changed counts
+    /// as one.
     pub fn paths(&self) -> &[Path] {
         &self.paths
     }
@@ -86,7 +87,11 @@ impl Change {
 
     fn add(&mut self, kind: Changed, path: impl Into<Path>) {
         self.kinds.insert(kind);
-        self.paths.push(path.into());
+        let path = path.into();
+        // An item may change in several ways, one after the other.
+        if self.paths.last() != Some(&path) {
+            self.paths.push(path);
+        }
     }
 
     fn add_if(&mut self, differs: bool, kind: Changed, path: &PathRef<'_>) {
@@ -124,19 +129,12 @@ impl Change {
     }
 
     fn compare_object(&mut self, a: &Object, b: &Object, at: &PathRef<'_>) {
-        let moves = a.transform != b.transform;
-        self.add_if(moves, Changed::Transform, at);
-        let (inner, others) = (a.objects.as_ref(), b.objects.as_ref());
-        if let (Some(inner), Some(others)) = (inner, others) {
-            self.compare_objects(inner, others, &at.key("objects"));
-        }
+        self.add_if(a.transform != b.transform, Changed::Transform, at);
         let kept = Object { transform: a.transform.clone(), objects: a.objects.clone(), ..b.clone() };
-        let differs = kept != *a || inner.is_some() != others.is_some();
-        if differs {
-            self.kinds.insert(Changed::Geometry);
-            if !moves {
-                self.paths.push(at.into());
-            }
+        let differs = kept != *a || a.objects.is_some() != b.objects.is_some();
+        self.add_if(differs, Changed::Geometry, at);
+        if let (Some(inner), Some(others)) = (&a.objects, &b.objects) {
+            self.compare_objects(inner, others, &at.key("objects"));
         }
     }
 
@@ -160,6 +158,9 @@ impl Change {
 
     fn compare_lights(&mut self, a: &Description, b: &Description) {
         let (a, b, at) = (&a.lights, &b.lights, PathRef::Root.key("lights"));
+        if a.is_same(b) {
+            return;
+        }
         if a.len() != b.len() {
             return self.add(Changed::Light, &at);
         }
@@ -184,8 +185,8 @@ impl Change {
 }
 
 impl Scene {
-    /// Everything that changed since an earlier state of the scene. Items that both states share are
-    /// not compared, so the time depends on what was edited.
+    /// Everything that changed since an earlier state of the scene. Items that both states share
+    /// are not compared, so the time depends on what was edited.
     pub fn change_since(&self, before: &Self) -> Change {
         let mut change = Change::default();
         change.compare(&self.description, &before.description);

@@ -97,8 +97,8 @@ impl Fingerprint {
         }
     }
 
-    /// Sets the camera, for scenes that leave it open, and its `camera_keys` of motion while the shutter
-    /// is open.
+    /// Sets the camera, for scenes that leave it open, and its `camera_keys` of motion while the
+    /// shutter is open.
     pub fn set_camera(&mut self, camera: &AnyCamera, camera_keys: &[AnyCamera]) {
         self.0.insert("camera".into(), digest_of(camera));
         self.0.remove("camera.course");

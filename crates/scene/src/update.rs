@@ -7,10 +7,11 @@ use juggler_light::Area;
 use std::sync::Arc;
 
 impl Scene {
-    /// Builds the world, with all that still holds of `earlier`, the compilation of an earlier state
-    /// `before` of the scene. A change of cameras and settings keeps the whole world; a change of
-    /// materials, lights or background keeps the objects and their hierarchies; meshes in memory are
-    /// never prepared twice. The result equals that of [`Scene::compile`], bit for bit.
+    /// Builds the world and reuses the parts that still hold of `earlier`, the compilation of an
+    /// earlier state `before` of the scene. A change of cameras and settings keeps the whole world;
+    /// a change of materials, lights or background keeps the objects and their hierarchies; meshes
+    /// in memory are never prepared twice. The result equals the result of [`Scene::compile`], bit
+    /// for bit.
     pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
         let (tracks, wrong) = self.tracks();
         let change = self.change_since(before);
@@ -42,7 +43,8 @@ impl Scene {
             Arc::ptr_eq(&a, &b) || (&a.objects, &a.groups, &a.lights) == (&b.objects, &b.groups, &b.lights)
         };
         let follows_paths = |scene: &Self| scene.integrator_choice().follows_paths();
-        // The conditions after the first tell whether the world depends on motion and assets that changed.
+        // The conditions after the first tell whether the world depends on motion and assets that
+        // changed.
         change.is_within(&[Title, Settings, Tone, Camera, Animation, Asset])
             // The default lights depend on the integrator.
             && (!self.description.lights.is_empty() || follows_paths(self) == follows_paths(other))
@@ -50,8 +52,8 @@ impl Scene {
             && same_motion()
     }
 
-    /// Whether both scenes have the same objects and area lights, whatever their materials. Mesh files
-    /// are compared by content.
+    /// Whether both scenes have the same objects and area lights, whatever their materials. Mesh
+    /// files are compared by content.
     fn has_objects(&self, other: &Self, change: &Change) -> bool {
         fn area_lights(scene: &Scene) -> Vec<(usize, &Area)> {
             area_lights::iter(&scene.description.lights).collect()

@@ -55,8 +55,8 @@ fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
 fn what_leans_gives_back_as_much_as_what_does_not() {
     for (name, upright, bsdf, _, wo) in leaning() {
         let (expected, energy) = (furnace(&upright, wo, 32), furnace(&bsdf, wo, 32));
-        // Samples of a single white lobe have a weight of 1 in any direction; those of sums and
-        // panes have it on average.
+        // Samples of a single white lobe have a weight of 1 in any direction; samples of sums
+        // and panes have this weight on average.
         let near = if ["plastic", "pane", "half glass"].iter().any(|kind| name.contains(kind)) { 0.015 } else { 1e-3 };
         assert!(close(energy.g, expected.g, near), "{name}: {energy:?}, upright {expected:?}");
         assert_eq!(bsdf.albedo(wo), upright.albedo(wo), "{name}");

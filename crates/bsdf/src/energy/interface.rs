@@ -6,8 +6,8 @@
 //! perfect mirrors. Interpolation is by cubic Lagrange polynomials along the larger alpha, the
 //! index of refraction η and the ratio of both alphas, and linear along the direction. All of that
 //! is linear in the entries, and the positions of entries along the direction depend neither on
-//! alpha nor on η; so the tabulated means are those of [`InterfaceLoss::at`], except where it
-//! clamps values near 0.
+//! alpha nor on η; so the tabulated means equal the means of [`InterfaceLoss::at`], except
+//! where it clamps values near 0.
 //!
 //! Directions fall into three zones, each with entries of its own: those in the thinner medium, and
 //! those in the denser one below and above the critical angle. Entries have the same positions for

@@ -8,8 +8,8 @@
 //! Interpolation is linear in √alpha, in √((η - 1) / (η + 1)) and in √cos; for mirrors, whose loss
 //! depends on cos / alpha alone when polished, in `√(cos (1 + alpha) / (cos + alpha))` instead.
 //! Tables of the reflection of interfaces hold small corrections to a value that is exact for
-//! polished ones. Means over the hemisphere are those of the interpolated functions, so that
-//! compensation adds exactly the energy that was lost.
+//! polished ones. Each tabulated mean is the mean of the interpolated function over the
+//! hemisphere, so that compensation adds exactly the energy that was lost.
 
 mod anisotropic;
 mod cells;

@@ -42,7 +42,8 @@ const LICENSES: &[&str] = &[
     "Ubuntu-font-1.0",
 ];
 
-fn root() -> PathBuf {
+/// Root of the repository.
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 

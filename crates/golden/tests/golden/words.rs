@@ -1,6 +1,7 @@
 //! Retired words: names and phrases that gave way to the field's terms do not come back.
 //! CONTRIBUTING lists the terms.
 
+use crate::tree::root;
 use juggler_golden::rust_files;
 use std::path::{Path, PathBuf};
 
@@ -96,10 +97,6 @@ const PHRASES: &[Retired] = &[
     ("is told that", "receives", &[]),
     ("polished ball", "specular sphere", &[]),
 ];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// Code of a file without comments and strings.
 fn code(text: &str) -> String {

@@ -252,8 +252,8 @@ impl Inspector<'_> {
         }
     }
 
-    /// Adds up the contributions of a segment, in order: the first `emission_count` are emission that paths
-    /// hit; light samples through specular spheres come last.
+    /// Adds up the contributions of a segment, in order: the first `emission_count` are emission
+    /// that paths hit; light samples through specular spheres come last.
     fn record_contributions(&mut self, queue: &Queue, segment: &SegmentHits, emission_count: usize) {
         let lights = self.log().map(|log| log.lights.clone()).unwrap_or_default();
         for (number, (slot, path_kind, group, radiance)) in lights.into_iter().enumerate() {
