@@ -124,7 +124,7 @@ pub fn render(text: &str) -> Result<bool, String> {
         return Ok(false);
     }
     let picture = Picture::new(&scene, &settings).map_err(|error| format!("checked, but not rendered: {error}"))?;
-    let image = picture.image(&Default::default()).map_err(|error| format!("not rendered: {error}"))?;
+    let image = picture.render_image(&Default::default()).map_err(|error| format!("not rendered: {error}"))?;
     match image.pixels().iter().find(|pixel| !pixel.is_finite()) {
         Some(pixel) => Err(format!("a pixel is not finite: {pixel:?}")),
         None => Ok(true),

@@ -2,6 +2,8 @@
 //!
 //! - [`targets`]: one function per reader, for mutations and for cargo-fuzz (folder `cargo-fuzz`);
 //! - [`seeds`]: valid files, by the program's own writers where they exist;
+//! - [`streams`]: seeds of compressed arrays and pictures, by the reference encoders;
+//! - [`models`]: seeds of the format glTF, and its reader;
 //! - [`mutate`]: seeded mutations of a file, with optional repair of checksums;
 //! - [`fields`]: every number of the scene format at extreme values;
 //! - [`cases`]: runs such cases in separate processes with a limited address space;
@@ -10,6 +12,8 @@
 pub mod bombs;
 pub mod cases;
 pub mod fields;
+pub mod models;
 pub mod mutate;
 pub mod seeds;
+pub mod streams;
 pub mod targets;

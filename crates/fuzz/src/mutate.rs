@@ -1,5 +1,6 @@
 //! Mutations of a file, seeded by the case number: identical on every machine.
 
+use crate::models;
 use juggler_math::testing::Random;
 
 /// Edge cases of numbers in text.
@@ -30,10 +31,11 @@ pub fn mutate(seeds: &[Vec<u8>], case: u64) -> Vec<u8> {
     for _ in 0..=random.below(4) {
         change(&mut bytes, seeds, &mut random);
     }
-    // Repair the checksums of half of the files, to reach the code behind them.
+    // Repair the checksums and lengths of half of the files, to reach the code behind them.
     if random.below(2) == 0 {
         repair_png(&mut bytes);
         repair_film(&mut bytes);
+        models::repair(&mut bytes);
     }
     bytes
 }

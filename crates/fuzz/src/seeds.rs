@@ -1,5 +1,6 @@
 //! Valid files for every reader, made by the program's own writers where they exist.
 
+use crate::{models, streams};
 use juggler::film::{self, RenderDescription, ShardDescription};
 use juggler::imaging::{Destination, ExrCompression, Header, ImageFormat, Options, SampleDepth, writer};
 use juggler::math::{Image, Rgb};
@@ -67,6 +68,11 @@ pub fn for_target(target: &str) -> Vec<Vec<u8>> {
         "ies" => texts(&[IES]),
         "message" => texts(&MESSAGES),
         "jfilm" => parts(),
+        "meshopt" => streams::meshopt(),
+        "draco" => streams::draco(),
+        "ktx2" => streams::ktx2(),
+        "gltf" => models::texts(),
+        "glb" => models::binaries(),
         other => pictures(other),
     }
 }
@@ -160,7 +166,7 @@ fn part([width, height]: [u32; 2], aovs: Vec<Aov>) -> Option<Vec<u8>> {
     let scene = Scene::new().size(width, height).add(Object::new(Sphere::default()));
     let picture = Picture::new(&scene, &Settings { samples: Some(16), aovs, ..Settings::default() }).ok()?;
     let film = picture.film();
-    picture.expose(&film, &Control::default()).ok()?;
+    picture.render_film(&film, &Control::default()).ok()?;
     let origin = RenderOrigin { scene: "a".to_owned(), frame: 0.0, command: "juggler render a".to_owned() };
     let description = picture.description(&origin, &picture.header(Options::default()), ShardDescription::whole(16));
     let folder = tempfile::tempdir().ok()?;

@@ -1,6 +1,8 @@
 //! One function per reader, which accepts arbitrary bytes and returns. Every panic is a bug of the
 //! reader.
 
+use crate::models;
+use crate::streams::{FILTERS, MESHOPT_HEAD, MODES};
 use juggler::film::{Merge, MergeGoal, PartialRender};
 use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
 use juggler::light::IesProfile;
@@ -9,6 +11,10 @@ use juggler::scene::Scene;
 use juggler::scene::import::{self, parse};
 use juggler::{AovSet, Settings};
 use juggler_expression::{Names, PointEvaluator, Program, Quantity};
+use juggler_import::gltf::document::ComponentType;
+use juggler_import::gltf::draco::{self, DracoAttribute};
+use juggler_import::gltf::ktx2::{self, Ktx2Error};
+use juggler_import::gltf::meshopt;
 use juggler_math::Rgb;
 use std::io::Cursor;
 use std::path::Path;
@@ -27,7 +33,7 @@ pub struct Target {
 }
 
 /// All readers.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 19] = [
     Target { name: "scene", read: scene },
     Target { name: "expression", read: expression },
     Target { name: "obj", read: |bytes| mesh("a.obj", bytes) },
@@ -42,6 +48,11 @@ pub const TARGETS: [Target; 14] = [
     Target { name: "ies", read: ies },
     Target { name: "jfilm", read: part },
     Target { name: "message", read: message },
+    Target { name: "meshopt", read: meshopt_stream },
+    Target { name: "draco", read: draco_stream },
+    Target { name: "ktx2", read: ktx2_file },
+    Target { name: "gltf", read: |bytes| models::read("a.gltf", bytes) },
+    Target { name: "glb", read: |bytes| models::read("a.glb", bytes) },
 ];
 
 /// Reader of this name.
@@ -112,6 +123,41 @@ fn part(bytes: &[u8]) -> bool {
 
 fn message(bytes: &[u8]) -> bool {
     juggler_serve::is_allowed(&String::from_utf8_lossy(bytes))
+}
+
+fn meshopt_stream(bytes: &[u8]) -> bool {
+    let Some((head, stream)) = bytes.split_first_chunk::<MESHOPT_HEAD>() else { return false };
+    let [mode, filter, stride @ .., a, b, c, d] = *head;
+    let (mode, filter) = (MODES.get(usize::from(mode)), FILTERS.get(usize::from(filter)));
+    let (Some(mode), Some(filter)) = (mode, filter) else { return false };
+    let (stride, count) = (usize::from(u16::from_le_bytes(stride)), u32::from_le_bytes([a, b, c, d]) as usize);
+    let decoded = meshopt::decode(*mode, *filter, count, stride, stream);
+    decoded.is_ok_and(|bytes| {
+        assert_eq!(bytes.len(), count * stride, "the result has another size");
+        true
+    })
+}
+
+fn draco_stream(bytes: &[u8]) -> bool {
+    let (name, component) = ("POSITION", ComponentType::F32);
+    let positions = DracoAttribute { name, unique_id: 0, component, components: 3 };
+    draco::decode(bytes, &[positions], SCENE_BYTES).is_ok_and(|mesh| {
+        assert!(mesh.indices.iter().all(|index| (*index as usize) < mesh.vertices), "an index is out of range");
+        assert!(mesh.attributes.iter().all(|values| values.len() == 12 * mesh.vertices), "a vertex has no position");
+        true
+    })
+}
+
+fn ktx2_file(bytes: &[u8]) -> bool {
+    let head = ktx2::read_head(bytes);
+    match ktx2::decode(bytes, MAX_PIXELS) {
+        Ok(picture) => {
+            assert!(head.is_ok_and(|head| head.width == picture.width), "the head was not checked");
+            true
+        }
+        Err(Ktx2Error::Disabled) => head.is_ok(),
+        Err(_) => false,
+    }
 }
 
 /// Writes the bytes to a temporary file and returns the result of `read`.

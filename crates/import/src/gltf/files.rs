@@ -1,0 +1,46 @@
+//! Reading of the files that a document names: buffers and images beside it.
+
+use std::collections::BTreeMap;
+
+/// Why a file cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FileError {
+    /// There is no such file.
+    #[error("no such file")]
+    Missing,
+    /// The file exceeds the limit.
+    #[error("the file has {found} bytes, the limit is {limit}")]
+    TooLarge {
+        /// Size of the file in bytes.
+        found: u64,
+        /// Maximum size in bytes.
+        limit: u64,
+    },
+    /// The system cannot read the file.
+    #[error("cannot be read: {0}")]
+    Read(String),
+}
+
+/// Source of the files that a document names.
+pub trait Files {
+    /// Reads a file. `name` is relative to the folder of the document, with the separators `/`, and
+    /// does not leave that folder.
+    ///
+    /// # Errors
+    ///
+    /// The file does not exist, has more than `limit` bytes (known before memory is reserved), or
+    /// cannot be read.
+    fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError>;
+}
+
+/// Files in memory by their names.
+impl Files for BTreeMap<String, Vec<u8>> {
+    fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        let bytes = self.get(name).ok_or(FileError::Missing)?;
+        let found = bytes.len() as u64;
+        if found > limit {
+            return Err(FileError::TooLarge { found, limit });
+        }
+        Ok(bytes.clone())
+    }
+}

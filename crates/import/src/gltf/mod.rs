@@ -1,0 +1,48 @@
+//! The format glTF 2.0 (Khronos Group, ISO/IEC 12113): documents, decoded arrays and poses.
+//!
+//! The modules know the format, not scenes. A file passes through them in this order:
+//!
+//! | step | result |
+//! |---|---|
+//! | [`Gltf::open`]: container, JSON, structure | a [`document`] that is valid, and warnings |
+//! | [`Gltf::load`] by [`Files`] | [`GltfData`]: the document with the contents of its buffers |
+//! | [`GltfData::vec3`] and similar methods | arrays of accessors |
+//! | [`GltfData::assemble`] | vertices and faces of a primitive |
+//! | [`pose`] | transforms, morphed and skinned vertices at a time |
+//!
+//! All bytes may be hostile. [`Limits`] bound what a file may demand, and a [`Fault`] names the
+//! place of an error.
+
+mod accessor;
+mod check;
+mod container;
+mod data;
+pub mod document;
+pub mod draco;
+mod error;
+pub mod extensions;
+mod files;
+mod json;
+pub mod ktx2;
+pub mod ktx2_head;
+mod limits;
+mod location;
+pub mod meshopt;
+mod open;
+pub mod pose;
+mod primitive;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod uri;
+mod warning;
+
+pub use container::is_binary;
+pub use data::GltfData;
+pub use error::{Fault, GltfError, Place};
+pub use files::{FileError, Files};
+pub use limits::Limits;
+pub use open::Gltf;
+pub use primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, JointSet, PrimitiveArrays};
+pub use warning::{Warning, Warnings};
