@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Everything that must hold before a change lands. CI runs exactly this; cheap steps, and those
-# likely to fail, come first.
-#   ./check.sh                  lint, unit, features, windows and golden
-#   ./check.sh STEP...          single steps: lint unit features golden windows web
-#   ./check.sh changed [BASE]   lint, and the tests of every package that the changes since BASE can
-#                               break; BASE is the merge base with main by default, with nothing
-#                               changed since that the commit before
-#   ./check.sh deep [PART...]   the long checks: dist matrix noise rays furnaces memory kills kinds
-#                               fuzz bombs web cluster; parts that passed on the very same source are not run again
-# CONTRIBUTING.md says what each step does and how long it takes.
+# Runs all checks that a change must pass, as CI does. Steps that are cheap or likely to fail come
+# first.
+#   ./check.sh                  runs lint, unit, features, windows and golden
+#   ./check.sh STEP...          runs single steps: lint unit features golden windows web
+#   ./check.sh changed [BASE]   runs lint and the tests of every package that the changes since BASE
+#                               can break; the default BASE is the merge base with main, or the
+#                               previous commit if nothing has changed since the merge base
+#   ./check.sh deep [PART...]   runs the long checks: dist matrix noise rays furnaces memory kills
+#                               kinds fuzz bombs web cluster; a part that passed on the same source
+#                               does not run again
+# CONTRIBUTING.md describes each step and its duration.
 set -euo pipefail
 cd "$(dirname "$0")"
 # shellcheck source=tests/check/steps.sh
@@ -23,8 +24,8 @@ usage() {
   exit 2
 }
 
-# What commands in the background print, and what could not run on this machine: one line each,
-# written here and by the tests themselves.
+# Folder for the output of background commands. The file `skipped` has one line for each check that
+# this machine cannot run; this script and the tests append to it.
 logs=$(mktemp -d)
 export JUGGLER_SKIPPED=$logs/skipped
 touch "$JUGGLER_SKIPPED"

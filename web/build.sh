@@ -1,5 +1,6 @@
 #!/bin/sh
-# Builds the page that renders in the browser alone: plain files in web/dist/, for any static file server. See docs/web.md.
+# Builds the page that renders in the browser alone: plain files in web/dist/, for any static file
+# server. See docs/web.md.
 set -eu
 cd "$(dirname "$0")"
 
@@ -9,10 +10,10 @@ tools=$(./toolchain.sh)
 rustc=$(echo "$tools" | sed -n 1p)
 linker=$(echo "$tools" | sed -n 2p)
 
-# The generated JavaScript fits the module only when both are of one version.
+# The generated JavaScript fits the module only if both have the same version of wasm-bindgen.
 version=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p;}' ../Cargo.lock)
 if ! grep -q "wasm-bindgen-cli-support = \"=$version\"" bindgen/Cargo.toml; then
-  echo "web/bindgen/Cargo.toml must ask for wasm-bindgen-cli-support =$version, as Cargo.lock has wasm-bindgen" >&2
+  echo "web/bindgen/Cargo.toml must require wasm-bindgen-cli-support =$version, as Cargo.lock has wasm-bindgen" >&2
   exit 1
 fi
 cargo build --release --locked --manifest-path bindgen/Cargo.toml --target-dir "$built/bindgen"

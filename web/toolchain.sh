@@ -1,7 +1,8 @@
 #!/bin/sh
-# Prints the `rustc` that compiles for wasm32-unknown-unknown, and the linker for it (empty: the compiler's own).
-# Where rustup has the target, that is rustup's. Otherwise Debian's `rustc-web` is unpacked into a folder of its own and
-# its standard library is built once; nothing is installed, and no right to do so is needed.
+# Prints the `rustc` that compiles for wasm32-unknown-unknown, and its linker (an empty line for the
+# compiler's own). These are rustup's if it has the target. Otherwise the script unpacks Debian's
+# `rustc-web` into a folder of its own and builds its standard library once. It installs nothing and
+# needs no special rights.
 set -eu
 
 target=wasm32-unknown-unknown
@@ -21,11 +22,11 @@ version=$(apt-cache policy rustc-web | sed -n 's/ *Candidate: //p')
 prefix=$cache/rustc-$version
 lock=$cache/lock
 mkdir -p "$cache"
-# One at a time; a second caller finds the work done.
+# Run one instance at a time; a second one finds the result of the first.
 exec 9> "$lock"
 flock 9
 
-# The packages that would be installed if that were wanted: what is here already is left out.
+# Lists the packages that an installation would add to those that are installed.
 packages() {
   apt-get install -s --no-install-recommends rustc-web libstd-rust-web-dev rust-web-src lld-19 |
     sed -n 's/^Inst \([^ ]*\).*/\1/p'
@@ -53,8 +54,8 @@ wrapper() { # name, program
   chmod +x "$prefix/$1"
 }
 
-# An empty crate built with `build-std` leaves the libraries of std; where the compiler looks for them, they serve as if
-# they had come with it.
+# Builds the standard library: an empty crate built with `build-std` leaves the libraries of std,
+# which are copied to the compiler's own folder for them.
 standard_library() {
   crate=$(mktemp -d)
   mkdir "$crate/src"

@@ -1,4 +1,4 @@
-// A server, a browser, and what tests ask of them.
+// A server, a browser, and the operations that tests need.
 
 import { spawn } from "node:child_process";
 import { strict as assert } from "node:assert";
@@ -11,7 +11,7 @@ const PATIENCE = 60000;
 
 export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
-/// Starts the program and reads where it serves.
+/// Starts the program and reads its address.
 export async function startServer(program, words) {
   const child = spawn(program, ["serve", ...words], { stdio: ["ignore", "pipe", "pipe"] });
   const server = { child, log: "" };
@@ -33,7 +33,7 @@ export async function startBrowser(executablePath) {
   return chromium.launch({ executablePath, args });
 }
 
-/// Waits for what a function says, and gives it back.
+/// Waits until a condition is truthy and returns its value.
 export async function until(what, condition, patience = PATIENCE) {
   const start = performance.now();
   for (;;) {
@@ -44,7 +44,7 @@ export async function until(what, condition, patience = PATIENCE) {
   }
 }
 
-/// A page, with all that the server tells it, and all that goes wrong in it.
+/// A page with the messages from its server and the errors in it.
 export class Tab {
   constructor(page, pictures) {
     Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [] });
@@ -63,7 +63,7 @@ export class Tab {
     return tab;
   }
 
-  /// What the canvas says about the picture on it.
+  /// Returns the data that the canvas has about its picture.
   shown() {
     return this.page.evaluate(() => {
       const { revision, number, kind, latency } = document.getElementById("picture").dataset;
@@ -78,17 +78,18 @@ export class Tab {
     });
   }
 
-  told(what, fits, patience) {
+  /// Waits for a status from the server that fits.
+  reported(what, fits, patience) {
     return until(what, () => this.status && fits(this.status) && this.status, patience);
   }
 
-  /// The exact picture.
+  /// Waits for the finished picture.
   async finished() {
-    await this.told("a finished picture", (status) => status.stage === "finished");
+    await this.reported("a finished picture", (status) => status.stage === "finished");
     await this.frame(({ kind }) => kind === 2);
   }
 
-  /// The picture in 16 by 16 fields, as numbers from 0 to 255.
+  /// Returns the picture scaled to 16 by 16 pixels, as numbers from 0 to 255.
   fields() {
     return this.page.evaluate(() => {
       const small = new OffscreenCanvas(16, 16).getContext("2d");
@@ -106,7 +107,7 @@ export class Tab {
   }
 }
 
-/// How different two pictures are, 0 to 255.
+/// Returns the mean difference of two pictures, 0 to 255.
 export function difference(one, other) {
   return one.reduce((sum, value, index) => sum + Math.abs(value - other[index]), 0) / one.length;
 }

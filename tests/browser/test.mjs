@@ -42,13 +42,13 @@ async function open(context, url = server.url) {
   return tab;
 }
 
-/// What changed on the screen by something.
+/// Returns the mean difference of the picture before and after an action.
 async function change(tab, act) {
   await tab.finished();
   const [before, { revision }] = [await tab.fields(), await tab.shown()];
   await act();
   await tab.frame((shown) => shown.revision > revision);
-  await tab.told("the change", (status) => status.revision > revision);
+  await tab.reported("the change", (status) => status.revision > revision);
   await tab.finished();
   return difference(before, await tab.fields());
 }
@@ -93,13 +93,17 @@ async function dragAndKeys(tab) {
   assert(dragged > 1, `a drag changed ${dragged}`);
   const eye = () => Object.values(tab.status.camera)[0].eye;
   const before = eye();
+  const flightSpeed = tab.status.flight_speed;
   const flown = await change(tab, async () => {
     await keyboard.down("w");
     await pause(300);
     await keyboard.up("w");
   });
-  const way = Math.hypot(...eye().map((value, axis) => value - before[axis]));
-  assert(flown > 0.2 && way > 0.01 * tab.status.extent, `W changed ${flown}, moved ${way}`);
+  const distance = Math.hypot(...eye().map((value, axis) => value - before[axis]));
+  assert(flown > 0.2 && distance > 0.01 * tab.status.extent, `W changed ${flown}, moved ${distance}`);
+  const step = tab.sent.map(String).map((text) => /"forward":([0-9.e-]+)/.exec(text)).find(Boolean);
+  const speed = Number(step[1]) * 60;
+  assert(Math.abs(speed / flightSpeed - 1) < 1e-3, `the first step of W is one of ${speed} per second, not ${flightSpeed}`);
   assert((await change(tab, () => mouse.wheel(0, -300))) > 0.2, "the wheel");
   assert((await change(tab, () => keyboard.press("x", { delay: 200 }))) > 0.2, "X zooms");
   await keyboard.press("m");
@@ -141,10 +145,10 @@ async function tools(tab) {
   await mouse.move(560, 480, { steps: 4 });
   await mouse.up();
   await keyboard.up("r");
-  await tab.told("a region", (status) => status.region);
+  await tab.reported("a region", (status) => status.region);
   await tab.screenshot("4-region");
   await keyboard.press("t");
-  await tab.told("no region", (status) => !status.region);
+  await tab.reported("no region", (status) => !status.region);
   const brighter = await change(tab, () => tab.page.locator("#exposure").fill("1"));
   assert(brighter > 2, "exposure");
   await change(tab, () => tab.page.locator("#exposure").fill("0"));
@@ -152,18 +156,18 @@ async function tools(tab) {
   await change(tab, () => tab.page.locator("#camera").selectOption("main"));
   await tab.page.locator("#samples").fill("8");
   await keyboard.press("Enter");
-  await tab.told("samples", (status) => status.samples_wanted === 8 && status.stage === "finished");
+  await tab.reported("samples", (status) => status.samples_wanted === 8 && status.stage === "finished");
   await tab.page.locator("#size").selectOption("320 180");
-  await tab.told("a smaller picture", (status) => status.size[0] === 320);
+  await tab.reported("a smaller picture", (status) => status.size[0] === 320);
   await tab.page.locator("#denoise").click();
-  await tab.told("a denoised picture", (status) => status.denoised && status.stage === "finished");
+  await tab.reported("a denoised picture", (status) => status.denoised && status.stage === "finished");
   assert.equal(await tab.page.locator("#denoise").getAttribute("aria-pressed"), "true");
   await tab.screenshot("14-denoised");
   await tab.page.locator("#picture").focus();
   await keyboard.press("n");
-  await tab.told("the noisy picture again", (status) => !status.denoise && !status.denoised && status.stage === "finished");
+  await tab.reported("the noisy picture again", (status) => !status.denoise && !status.denoised && status.stage === "finished");
   await tab.page.locator("#size").selectOption("640 480");
-  await tab.told("the old size", (status) => status.size[0] === 640 && status.stage === "finished");
+  await tab.reported("the old size", (status) => status.size[0] === 640 && status.stage === "finished");
   await tab.page.locator("#picture").focus();
   await keyboard.press("?");
   await until("the help", () => tab.visible("#help"));
@@ -192,25 +196,25 @@ async function scenes(tab) {
   await tab.screenshot("6-scenes");
   await tab.page.locator("#scene-search").fill("three mirror balls juggled");
   await tab.page.locator(".card:visible").first().click();
-  await tab.told("the other scene", (status) => status.scene === "juggler" && status.frames === 30);
+  await tab.reported("the other scene", (status) => status.scene === "juggler" && status.frames === 30);
   await until("its picture", async () => (await tab.shown()).revision >= tab.status.revision);
   const still = await tab.fields();
   await tab.page.locator("#picture").focus();
   await tab.page.keyboard.press(" ");
-  await tab.told("it plays", (status) => status.playing && status.frame > 0);
+  await tab.reported("it plays", (status) => status.playing && status.frame > 0);
   await pause(700);
   await tab.page.keyboard.press(" ");
-  await tab.told("it stops", (status) => !status.playing);
+  await tab.reported("it stops", (status) => !status.playing);
   assert(difference(still, await tab.fields()) > 0.2, "nothing moved");
   await tab.page.locator("#time").fill("7");
-  await tab.told("frame 7", (status) => status.frame === 7);
+  await tab.reported("frame 7", (status) => status.frame === 7);
   await tab.frame(({ revision }) => revision === tab.status.revision);
   await pause(1500);
   await tab.screenshot("7-juggler");
   await tab.page.keyboard.press("g");
   await tab.page.locator("#scene-search").fill("started with");
   await tab.page.locator(".card:visible").first().click();
-  await tab.told("the file again", (status) => status.frames <= 1);
+  await tab.reported("the file again", (status) => status.frames <= 1);
 }
 
 async function liveEdits(tab) {
@@ -241,19 +245,19 @@ async function liveEdits(tab) {
 async function reconnect(tab) {
   const { port } = server;
   assert.equal(await server.stop("SIGINT"), 130);
-  await until("the loss is said", () => tab.visible("#connection"));
+  await until("the message about the lost connection", () => tab.visible("#connection"));
   const last = tab.status;
   await pause(1200);
   await tab.screenshot("9-lost");
   assert(/trying again/.test(await tab.page.locator("#connection").innerText()));
   server = await startServer(program, words(port));
-  await until("the new token is told of", async () => /new token/.test(await tab.page.locator("#connection").innerText()));
+  await until("the message about the new token", async () => /new token/.test(await tab.page.locator("#connection").innerText()));
   assert.equal(await server.stop("SIGINT"), 130);
-  // A server that lets everybody in: the page comes back by itself.
+  // Start a server without a token: the page reconnects by itself.
   server = await startServer(program, [...words(port), "--no-token"]);
   assert.equal(server.url, `http://127.0.0.1:${port}/`);
-  await until("it is there again", async () => !(await tab.visible("#connection")));
-  // The new server numbers its pictures anew: what is compared with must be one of them.
+  await until("the connection", async () => !(await tab.visible("#connection")));
+  // The new server numbers its pictures from the start, so wait for one of them.
   await until("a picture of the new server", async () => tab.status !== last && (await tab.shown()).revision === tab.status.revision);
   await change(tab, () => tab.page.keyboard.press("d"));
 }
@@ -263,7 +267,7 @@ async function wheel(tab) {
   await until("it watches", () => other.visible("#watching"));
   const { revision } = await other.shown();
   await other.page.keyboard.press("d");
-  await until("it is told so", () => other.visible("#toast"));
+  await until("a message that the page only watches", () => other.visible("#toast"));
   await other.screenshot("10-watching");
   assert.equal((await other.shown()).revision, revision);
   await other.page.locator("#take-wheel").click();

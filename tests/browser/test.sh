@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# The page of `juggler serve` driven in a real browser: first picture, drag, keys, scenes, edits of the file, mistakes,
-# a server that comes back, two pages and the wheel, a phone, saving; and how long a key takes to be seen.
+# Drives the page of `juggler serve` in a real browser: the first picture, drags, keys, scenes,
+# edits of the file, errors, a server that restarts, two pages of which one steers, a phone, and
+# saving. It also measures the latency from a key to the picture.
 #   tests/browser/test.sh PATH/TO/juggler [FOLDER FOR SCREENSHOTS]
-# Needs node, npm (one package, playwright-core, by the lock file) and Chromium: apt-get install -y chromium nodejs npm
+# Needs node, npm (one package, playwright-core, pinned by the lock file) and Chromium:
+#   apt-get install -y chromium nodejs npm
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 juggler=$(realpath "${1:?usage: tests/browser/test.sh PATH/TO/juggler [FOLDER]}")

@@ -1,8 +1,8 @@
-# `check.sh changed`: what a change can break, by the graph of packages.
+# `check.sh changed`: tests the packages that a change can break, by the dependency graph.
 # shellcheck shell=bash
 
-# The commit that a change is compared with: where the branch left main, on main itself the last
-# commit, and the one before where nothing has changed since.
+# Prints the commit to compare with: the merge base with main, which on main is the last commit, or
+# the commit before it if nothing has changed since.
 changed_base() {
   local base
   base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || git rev-parse HEAD)
@@ -10,14 +10,14 @@ changed_base() {
   echo "$base"
 }
 
-# Files that differ from a commit, those included that git does not know yet.
+# Lists the files that differ from a commit, untracked files included.
 changed_files() {
   git diff --name-only "$1" --
   git ls-files --others --exclude-standard
 }
 
-# A package and all packages that build on it, tests included; packages are named by their folders
-# in crates/.
+# Lists a package and all packages that depend on it, also for tests only. The names are those of
+# the folders in crates/.
 dependents() {
   local name
   name=$(sed -n 's/^name = "\(.*\)"/\1/p' "crates/$1/Cargo.toml" | head -1)
@@ -25,7 +25,7 @@ dependents() {
     sed -n 's|^juggler[a-z-]* v[^ ]* (.*/crates/\([a-z]*\)).*|\1|p'
 }
 
-# The package whose tests read a file outside of crates/.
+# Prints the package whose tests read a file outside of crates/.
 readers() {
   case "$1" in
     scenes/* | schema/* | docs/scene-format.md) echo scene ;;
@@ -35,25 +35,25 @@ readers() {
   esac
 }
 
-# Whether a Rust file differs from a commit in comments alone: in lines that are empty or begin with
-# `//`. Lines of texts that begin so are taken for comments too; the whole check finds what they
-# break.
+# Succeeds if a Rust file differs from a commit in comments alone, that is in lines that are empty
+# or begin with `//`. Such lines of string literals count as comments too; the whole check finds
+# errors in them.
 is_commented() {
   [[ $2 == *.rs && -f $2 ]] && git cat-file -e "$1:$2" 2>/dev/null || return 1
   git diff -U0 "$1" -- "$2" |
     awk '/^[-+]/ && !/^(---|\+\+\+) / && !/^[-+][[:space:]]*(\/\/.*)?$/ { code = 1 } END { exit code }'
 }
 
-# The packages to test, one a line, by their folders; `all` where everything may be concerned. What
-# is built on a package sees its code, not its comments: those reach its own tests and, as
-# descriptions, the scene format.
+# Lists the packages to test by their folders, one per line; `all` if the change can affect all of
+# them. A dependent package sees the code of a package but not its comments, which only affect the
+# tests of the package itself and, as `descriptions`, the scene format.
 affected_packages() {
   local base=$1 file package direct=
   while read -r file; do
     if [[ $file != crates/*/* ]]; then
       direct+="$(readers "$file")"$'\n'
     elif is_commented "$base" "$file"; then
-      printf '%s\nscene\n' "$(cut -d/ -f2 <<< "$file")"
+      printf '%s\ndescriptions\n' "$(cut -d/ -f2 <<< "$file")"
     else
       direct+="$(cut -d/ -f2 <<< "$file")"$'\n'
     fi
@@ -77,22 +77,26 @@ check_changed() {
     # shellcheck disable=SC2086
     run_test_programs $packages
   fi
-  if grep -qE '^(crates/(session|viewer|serve)|tests/(viewer|browser|films))/' <<< "$files"; then step_windows; fi
+  if grep -qE '^(crates/(session|viewer|serve)|tests/(viewer|browser|movies))/' <<< "$files"; then step_windows; fi
 }
 
-# Builds all tests together, as the whole check does, so that nothing is built twice in two shapes;
-# runs those of packages, and the rules of the tree.
+# Builds and runs the tests of packages, and the tests of the source tree. The build is that of the
+# whole workspace, as in the whole check, so that no package is built twice with different features.
 run_test_programs() {
-  local package program built left_out
+  local package program built filter
   heading "changed: build"
   built=$(mktemp)
-  cargo test --workspace --locked --no-run --message-format=json-render-diagnostics > "$built"
+  # shellcheck disable=SC2046
+  cargo test --workspace --locked --no-run --message-format=json-render-diagnostics $(test_targets "$@") > "$built"
   for package in "$@"; do
-    left_out=()
-    if [ "$package" = golden ]; then left_out=("${golden_left_out[@]}"); fi
+    filter=()
+    case "$package" in
+      golden) filter=("${golden_left_out[@]}") ;;
+      descriptions) package=scene filter=(format:: units::) ;;
+    esac
     test_programs "$package" "$built" | while read -r program; do
       heading "changed: $package, ${program##*/}"
-      (cd "crates/$package" && "$program" --quiet "${left_out[@]}" < /dev/null)
+      (cd "crates/$package" && "$program" --quiet "${filter[@]}" < /dev/null)
     done
   done
   if [[ " $* " != *" golden "* ]]; then
@@ -104,7 +108,25 @@ run_test_programs() {
   cargo test --workspace --locked --doc --quiet
 }
 
-# The test programs of a package, one a line, in what cargo printed.
+# Prints the flags of cargo that select the test programs of packages and of the source tree. Since
+# cargo selects targets by name for all packages, a few others are built, too.
+test_targets() {
+  local package file
+  printf '%s\n' --lib --test=golden
+  for package in "$@"; do
+    if [ "$package" = descriptions ]; then package=scene; fi
+    for file in "crates/$package"/tests/*.rs "crates/$package"/tests/*/main.rs; do
+      case "$file" in
+        *'*'*) ;;
+        */main.rs) basename "$(dirname "$file")" ;;
+        *) basename "$file" .rs ;;
+      esac
+    done | sed 's/^/--test=/'
+    if [ -e "crates/$package/src/main.rs" ] || [ -e "crates/$package/src/bin" ]; then echo --bins; fi
+  done | sort -u
+}
+
+# Extracts the test programs of a package, one per line, from cargo's JSON messages.
 test_programs() {
   sed -n "/\"package_id\":\"[^\"]*\/crates\/$1#/{/\"profile\":{[^}]*\"test\":true}/s/.*\"executable\":\"\([^\"]*\)\".*/\1/p}" "$2"
 }

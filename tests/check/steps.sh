@@ -1,15 +1,15 @@
-# The steps of check.sh.
+# Steps of check.sh.
 # shellcheck shell=bash
 
 programs=${CARGO_TARGET_DIR:-target}
-# Named as a target, this machine shares build scripts and macros with builds for which it is not
-# named.
+# Target triple of this machine. With an explicit target, RUSTFLAGS do not apply to build scripts
+# and macros, so that both builds share them.
 host=$(rustc -vV | sed -n 's/^host: //p')
 
-# Announces what begins, and how many seconds have passed.
+# Prints a heading with the seconds since the start.
 heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
 
-# Everything. What is only built is built while windows are driven, which leaves the machine idle.
+# Runs all steps of CI. Since driving windows leaves the machine mostly idle, builds run meanwhile.
 check_all() {
   run_steps lint unit
   in_background "golden: optimized programs" at_leisure build_golden
@@ -26,15 +26,15 @@ run_steps() {
   for name in "$@"; do "step_$name"; done
 }
 
-# Notes a check that cannot run for want of a package. CI installs packages first (.ci/run), so that
-# nothing is missing there.
+# Records a check that cannot run because a package is missing. In CI that is an error, since
+# .ci/run installs the packages first.
 skip() {
   if [ "${CI:-}" = true ]; then echo "error: $1, and CI skips nothing that a package gives" >&2; exit 1; fi
   echo "SKIPPED: $1"
   echo "$1" >> "$JUGGLER_SKIPPED"
 }
 
-# How the check ends: what was skipped, and why.
+# Prints the result: the skipped checks and their reasons.
 report() {
   heading "all checks passed"
   if [ -s "$JUGGLER_SKIPPED" ]; then
@@ -45,8 +45,7 @@ report() {
   fi
 }
 
-# Starts a command beside what follows, as a process group; what it prints is kept until it is
-# waited for.
+# Starts a command in the background, as a process group. `finish_background` prints its output.
 in_background() {
   local name=$1
   shift
@@ -57,13 +56,13 @@ in_background() {
 }
 declare -A background=()
 
-# Runs a command whenever nothing else runs.
+# Runs a command at the lowest priority.
 at_leisure() {
   renice -n 19 "$BASHPID" >/dev/null
   "$@"
 }
 
-# Waits for a command in the background, and prints what it printed.
+# Waits for a background command and prints its output.
 finish_background() {
   local name=$1 status=0
   [ -n "${background[$name]:-}" ] || return 0
@@ -85,14 +84,15 @@ step_lint() {
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
 }
 
-# Tests of every package but those of the whole, unoptimized, with overflow checks.
+# Tests every package except `golden`, unoptimized, with overflow checks.
 step_unit() {
   heading "unit: tests of each package, and of its documentation"
   cargo test --workspace --locked --exclude juggler-golden
 }
 
-# Each feature alone and none: the workspace builds them only all together. The program without
-# features holds the libraries without theirs, `juggler-web` the session without threads and clocks.
+# Checks each feature alone and no features, since the workspace builds only all of them together.
+# The program without features uses the libraries without features; `juggler-web` uses the session
+# without threads and clocks.
 step_features() {
   local line
   heading "features: packages by themselves"
@@ -107,7 +107,8 @@ step_features() {
 -p juggler-cli --no-default-features --features view
 -p juggler-web
 END
-  # The page itself needs a compiler that few machines have (step web), its list of packages does not.
+  # Check only the list of packages: building the page needs a compiler that few machines have (see
+  # step web).
   heading "features: packages of the page in WebAssembly"
   if cargo tree --locked -p juggler-web --target wasm32-unknown-unknown --edges normal --prefix none |
     grep -E '^(libloading|notify|rav1e|rustix|signal-hook|tokio) '; then
@@ -116,8 +117,9 @@ END
   fi
 }
 
-# Hashes of pictures in every build that people make: they must be the same to the bit. Statistics
-# of whole pictures are optimized, the rules of the tree are read once.
+# Compares hashes of pictures in every kind of build; they must be equal to the bit. Statistics of
+# whole pictures run in the optimized build only, and tests of the source tree in the unoptimized
+# one.
 step_golden() {
   heading "golden: pictures and hashes, unoptimized, with overflow checks"
   cargo test --workspace --locked --test golden -- "${golden_left_out[@]}"
@@ -127,21 +129,21 @@ step_golden() {
   RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: hits:: matrix::
 }
 
-# Statistics of whole pictures, which take too long unoptimized.
+# Leaves out statistics of whole pictures, which take too long unoptimized.
 golden_left_out=(--skip noise:: --skip blur::)
 golden_optimized=(--release --locked -p juggler-golden --test golden)
-# Texts of scenes are not worth their time here.
+# Optimizes the crate `scene` less: reading scenes takes less time here than compiling it.
 golden_native=("${golden_optimized[@]}" --target "$host"
   --config "profile.release.package.juggler-scene.opt-level=1")
 
-# Builds the optimized programs of `golden`, to run later.
+# Builds the optimized test programs of `golden` in advance.
 build_golden() {
   cargo test "${golden_optimized[@]}" --no-run
   RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" --no-run
 }
 
-# Builds the program as the tests do: without them, other features of its dependencies would build
-# all of them again.
+# Builds the program together with the tests. A build without them would select other features of
+# its dependencies and compile all of them again.
 build_debug_program() { cargo test --workspace --locked --no-run --quiet; }
 
 step_windows() {
@@ -149,24 +151,24 @@ step_windows() {
   finish_windows
 }
 
-# The window is driven beside the page: most of the time each waits for pictures.
+# Drives the window and the page concurrently: both wait for pictures most of the time.
 start_windows() {
   heading "windows: the program that is driven"
   build_debug_program
-  heading "windows: the window, the page and films are driven"
+  heading "windows: the window, the page and movies are driven"
   drive "windows: the window" drive_window "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
-  drive "windows: the page and films" drive_page "chromium nodejs npm ffmpeg" chromium node npm
+  drive "windows: the page and movies" drive_page "chromium nodejs npm ffmpeg" chromium node npm
 }
 
 finish_windows() {
-  finish_background "windows: the page and films"
+  finish_background "windows: the page and movies"
   finish_background "windows: the window"
 }
 
 drive_window() { tests/viewer/test.sh "$programs/debug/juggler"; }
-drive_page() { tests/browser/test.sh "$programs/debug/juggler" && tests/films/test.sh "$programs/debug/juggler"; }
+drive_page() { tests/browser/test.sh "$programs/debug/juggler" && tests/movies/test.sh "$programs/debug/juggler"; }
 
-# Starts a test that drives a program from outside, where its tools are there.
+# Starts a test that drives a program from outside if the tools for it are installed.
 drive() {
   local name=$1 test=$2 packages=$3 tool
   shift 3
@@ -179,8 +181,8 @@ drive() {
   in_background "$name" "$test"
 }
 
-# The page that renders in the browser alone; not in CI, since its compiler and standard library are
-# large downloads.
+# Builds and drives the page that renders in the browser alone. CI leaves it out, since its compiler
+# and standard library are large downloads.
 step_web() {
   heading "web: the page that renders in the browser alone"
   build_debug_program

@@ -1,5 +1,5 @@
-# A Slurm of three nodes on this machine, with its own keys, ports and folder: nothing of a Slurm that is installed here is
-# touched. For test.sh, which sets $work.
+# A Slurm cluster of three nodes on this machine, with its own keys, ports and folder; it does not
+# touch an installed Slurm. test.sh sources this file and sets $work.
 
 started=no
 
@@ -34,7 +34,7 @@ SlurmctldHost=$host(127.0.0.1)
 SlurmctldPort=$port
 SlurmUser=root
 AuthType=auth/munge
-# Also how long a task that is queued again has to wait, usually two minutes.
+# This is also the delay of a task that is queued again, usually two minutes.
 AuthInfo=socket=$slurm/munge,cred_expire=5
 StateSaveLocation=$slurm/state
 SlurmctldPidFile=$slurm/slurmctld.pid
@@ -48,9 +48,9 @@ TaskPlugin=task/none
 MpiDefault=none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU_Memory
-# A dead node is noticed after so many seconds.
+# Seconds until Slurm notices a dead node.
 SlurmdTimeout=10
-# Tasks start at once, not every two seconds.
+# Start tasks immediately instead of every two seconds.
 SchedulerParameters=sched_min_interval=100000,bf_interval=2
 PartitionName=all Nodes=n1,n2,n3 Default=YES MaxTime=INFINITE State=UP
 END
@@ -59,7 +59,8 @@ END
   done
 }
 
-# Processes of this Slurm: its daemons and their tasks; all have its configuration in their environment.
+# Lists the processes of this cluster, that is its daemons and their tasks. All have the cluster's
+# configuration in their environment.
 processes() {
   local environment
   for environment in /proc/[0-9]*/environ; do
@@ -67,7 +68,8 @@ processes() {
   done
 }
 
-# Kills a node as a loss of power does: its daemon, the task, and the process that watches over the task.
+# Kills a node as a power failure would: its daemon, the task, and the process that supervises the
+# task.
 kill_node() {
   local process pids
   pids=$(cat "$slurm/$1.pid")

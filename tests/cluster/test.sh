@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The commands of docs/cluster.md, run as they stand there: on a small Slurm of three nodes on this machine, one of which
-# dies half way, then with shards missing; and by ssh, with a stand-in for it. Each time the picture must be the bytes of
-# a plain render. Needs root (Slurm starts tasks as others) and installs Debian's Slurm when it is missing.
+# Runs the commands of docs/cluster.md as the page states them: on a small Slurm cluster of three
+# nodes on this machine, of which one dies halfway; then with missing shards; and by a stand-in for
+# ssh. Each picture must have the same bytes as that of a plain render. Needs root, since Slurm
+# starts tasks as other users, and installs Debian's Slurm if it is missing.
 #   tests/cluster/test.sh PATH/TO/juggler
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -28,12 +29,12 @@ trap 'exit 130' INT TERM
 say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
 fail() { echo "error: $*" >&2; exit 1; }
 
-# The block of the page that is called so.
+# Prints the code block of the page with this name.
 block() {
   awk -v name="$1" '/^```/ { inside = $2 == name; next } inside' "$page" | grep . || fail "the page has no block $1"
 }
 
-# Waits for at most 120 seconds.
+# Waits at most 120 seconds until a command succeeds.
 until_true() {
   local start=$SECONDS
   until "$@"; do
@@ -42,7 +43,7 @@ until_true() {
   done
 }
 
-# A folder with a scene of so many samples, and what one machine makes of it.
+# Makes a folder with a scene of this many samples, and the picture that one machine renders.
 begin() {
   mkdir "$work/$1" && cd "$work/$1"
   sed "s/\"samples\": 16/\"samples\": $2/" "$here/scene.json" > scene.json
@@ -51,7 +52,7 @@ begin() {
 
 same() { cmp "$1" "$2" && say "$1: the bytes of one machine"; }
 
-# What is running on node n2, once some of its work is kept.
+# Succeeds once the task on node n2 has written a checkpoint.
 has_kept_something() {
   task=$(squeue -h -w n2 -t R -o %K)
   [ -n "$task" ] && [ -f "part$task.jfilm" ] && juggler info "part$task.jfilm" | grep -q 'not finished'
@@ -59,7 +60,8 @@ has_kept_something() {
 
 node_dies() {
   begin slurm 1024
-  # The one difference to the page: checkpoints each second, because this picture takes seconds.
+  # Differs from the page in one respect: checkpoints every second, since this picture takes
+  # seconds.
   block shards.sbatch | sed 's/--checkpoint /--checkpoint-every 1 &/' > shards.sbatch
   block slurm-submit > submit.sh
   bash -e submit.sh &
@@ -98,7 +100,7 @@ frames() {
   same frame_0000.png straight.png
 }
 
-# Three hosts, one of which is never there: first its shards are missing, then it is left out.
+# Uses three hosts of which one is down: first its shards are missing, then it is left out.
 by_ssh() {
   begin ssh 16
   cat > "$work/bin/ssh" <<'END'
@@ -109,7 +111,7 @@ exit 255
 END
   chmod +x "$work/bin/ssh"
   printf '%s\n' one dead two > hosts
-  # The one difference to the page: nobody waits a minute for the dead.
+  # Differs from the page in one respect: does not wait a minute for a dead host.
   block ssh-shards | sed 's/sleep 60/sleep 3/' > shards.sh
   bash -e shards.sh && fail "a host was dead, and nobody noticed"
   [ ! -e scene.png ] || fail "a picture without all its parts"

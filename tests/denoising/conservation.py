@@ -1,15 +1,17 @@
-"""Checks of the own filter: it keeps the mean of the picture and leaves no single bright pixels.
+"""Checks that the built-in denoiser keeps the mean of the picture and leaves no bright pixels.
 
     python3 tests/denoising/conservation.py [JUGGLER] [FOLDER] [SEEDS]
 
-JUGGLER is the program (target/release/juggler), SEEDS is the number of seeds (32). FOLDER keeps references and the films that the
-filter starts from, so that an interrupted run continues and another filter is tried without rendering anew. The scenes are those of
-table.py at half their size. The script fails if
+JUGGLER is the program (target/release/juggler), SEEDS is the number of seeds (32). FOLDER keeps the
+references and the partial renders that the filter reads, so that an interrupted run continues and
+another filter needs no new renders. The scenes are those of table.py at half their size. The script
+fails if
 
-- the denoised mean of any seed and channel differs from the mean of the filter's own input by more than 0.5 %. A film part
-  (`juggler render --denoise -o PART.jfilm --stats`) reports the mean of that input, `juggler merge PART.jfilm` denoises it;
-- a denoised pixel is brighter than 3 times the brightest of the 48 pixels around it, and neither that pixel of the reference nor
-  one beside it is.
+- the denoised mean of any seed and channel differs from the mean of the filter's input by more than
+  0.5 %. `juggler render --denoise -o PART.jfilm --stats` reports the mean of that input, and
+  `juggler merge PART.jfilm` denoises it;
+- a denoised pixel is brighter than 3 times the brightest of the 48 pixels around it, and neither
+  this pixel of the reference nor one of its neighbors is.
 """
 import array
 import json
@@ -20,14 +22,14 @@ from table import ROOT, SCENES, run
 
 SAMPLES = (4, 16, 64)
 SEEDS = 32
-# Largest deviation of the mean.
+# Maximum relative deviation of the mean.
 MEAN = 0.005
-# Largest brightness of a pixel, in parts of the brightest pixel around it, and how far around that is.
+# Maximum ratio of a pixel to the brightest pixel around it, and the radius of that neighborhood.
 BRIGHT, REACH = 3, 3
 
 
 def brightness(file):
-    """Width and sums of the channels of a PFM, row by row."""
+    """Returns the width of a PFM and the sum of the channels of each pixel, row by row."""
     data = open(file, "rb").read()
     _, size, _, pixels = data.split(b"\n", 3)
     numbers = array.array("f", pixels)
@@ -35,12 +37,12 @@ def brightness(file):
 
 
 def bright(width, pixels):
-    """Pixels that outshine their surroundings."""
+    """Returns the pixels that are much brighter than their surroundings."""
     found, height = set(), len(pixels) // width
     for y in range(height):
         for x in range(width):
             own = pixels[y * width + x]
-            # Most pixels have a neighbor of like brightness.
+            # Most pixels have a neighbor of similar brightness, so test the nearest ones first.
             near = [(y, x - 1), (y, x + 1), (y - 1, x), (y + 1, x)]
             if any(0 <= v < height and 0 <= u < width and own <= BRIGHT * pixels[v * width + u] for v, u in near):
                 continue
@@ -53,7 +55,7 @@ def bright(width, pixels):
 
 
 def picture(program, folder, scene, samples, seed, flags, name):
-    """A rendered file of that name and the mean of its light per channel; both are kept."""
+    """Renders to a file of this name and returns it with its mean per channel; keeps both."""
     output = os.path.join(folder, name)
     figures = output + ".json"
     if not os.path.exists(figures):
@@ -68,13 +70,15 @@ def picture(program, folder, scene, samples, seed, flags, name):
 
 
 def reference(program, folder, scene):
-    """Bright pixels of a picture of many samples, with their neighbors: noise may move them by a pixel."""
+    """Returns the bright pixels of a picture of many samples, with their neighbors, since noise may
+    move them by a pixel."""
     file, _ = picture(program, folder, scene, SCENES[scene][1], 99, [], f"reference-{scene}.pfm")
     return {(x + u, y + v) for x, y in bright(*brightness(file)) for u in (-1, 0, 1) for v in (-1, 0, 1)}
 
 
 def measure(program, folder, scene, samples, seed):
-    """Means per channel of the filter's input and of the denoised picture, and the latter's bright pixels."""
+    """Returns the means per channel of the filter's input and of the denoised picture, and the
+    bright pixels of the denoised picture."""
     part, before = picture(program, folder, scene, samples, seed, ["--denoise"], f"{scene}-{samples}-{seed}.jfilm")
     denoised = os.path.join(folder, "denoised.pfm")
     after = run(program, "merge", part, "-o", denoised, "--quiet")["film"]["mean"]

@@ -1,11 +1,12 @@
-"""Error before and after denoising, as the table of docs/denoising.md.
+"""Prints errors before and after denoising, as in the table of docs/denoising.md.
 
     python3 tests/denoising/table.py [JUGGLER] [FOLDER]
 
-JUGGLER is the program (target/release/juggler). FOLDER keeps pictures, figures and the films that the filters start from, so that an
-interrupted run continues and another filter is tried without rendering anew. Where JUGGLER_OIDN names the folder of Open Image
-Denoise, it takes part. References are rendered with another seed. Errors and FLIP are those of `juggler compare`, seconds those of
-`--stats`: of rendering, and with a denoiser of `juggler merge` too, which reads and writes files besides.
+JUGGLER is the program (target/release/juggler). FOLDER keeps pictures, figures and the partial
+renders that the filters read, so that an interrupted run continues and another filter needs no new
+renders. If JUGGLER_OIDN names the folder of Open Image Denoise, the table includes it. References
+have another seed. Errors and FLIP are those of `juggler compare`. Seconds are those of `--stats`:
+of rendering, plus, with a denoiser, those of `juggler merge`, which also reads and writes files.
 """
 import json
 import os
@@ -22,13 +23,14 @@ SCENES = {
     "material-balls": ("400x225", 1024),
 }
 SAMPLES = (4, 16, 64, 256)
-# What a denoised picture of 16 samples is measured by.
+# Number of samples whose error a denoised picture of 16 samples should reach.
 GOAL = 128
-WAYS = {"input": [], "own": ["--denoise"], "oidn": ["--denoise", "oidn"]}
+FILTERS = {"input": [], "own": ["--denoise"], "oidn": ["--denoise", "oidn"]}
 
 
 def run(program, *arguments):
-    """The statistics that the program writes; status 1 is a comparison that says no."""
+    """Returns the statistics that the program writes; status 1 means that compared pictures
+    differ."""
     done = subprocess.run([program, *arguments, "--stats", "-"], capture_output=True, text=True)
     if done.returncode > 1:
         raise SystemExit(f"{' '.join(arguments)}: {done.stderr}")
@@ -36,7 +38,8 @@ def run(program, *arguments):
 
 
 def render(program, folder, scene, samples, seed, flags):
-    """A picture or, with flags of a denoiser, the film that it starts from, and the seconds of rendering; both are kept."""
+    """Renders a picture or, with flags of a denoiser, the partial render that the denoiser reads.
+    Returns the file and the seconds; keeps both."""
     name = "-".join([scene, str(samples), str(seed), *(flag.strip("-") for flag in flags)])
     picture, figures = (os.path.join(folder, name + ending) for ending in (".jfilm" if flags else ".pfm", ".json"))
     if not os.path.exists(figures):
@@ -49,10 +52,10 @@ def render(program, folder, scene, samples, seed, flags):
         return picture, json.load(kept)
 
 
-def measure(program, folder, scene, samples, way):
-    """relMSE, FLIP and seconds of a picture, denoised or not."""
-    picture, seconds = render(program, folder, scene, samples, 0, WAYS[way])
-    if WAYS[way]:
+def measure(program, folder, scene, samples, filter_name):
+    """Returns relMSE, FLIP and seconds of a picture, denoised or not."""
+    picture, seconds = render(program, folder, scene, samples, 0, FILTERS[filter_name])
+    if FILTERS[filter_name]:
         denoised = picture.removesuffix("jfilm") + "pfm"
         seconds += run(program, "merge", picture, "-o", denoised, "--quiet")["seconds"]["total"]
         picture = denoised
@@ -70,18 +73,18 @@ def main():
     program = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "target/release/juggler")
     folder = sys.argv[2] if len(sys.argv) > 2 else "denoising"
     os.makedirs(folder, exist_ok=True)
-    ways = [way for way in WAYS if way != "oidn" or "JUGGLER_OIDN" in os.environ]
-    print("| scene | samples |" + "".join(f" {way}: relMSE | FLIP | seconds |" for way in ways))
-    print("|---|---|" + "---|" * (3 * len(ways)))
+    filters = [filter_name for filter_name in FILTERS if filter_name != "oidn" or "JUGGLER_OIDN" in os.environ]
+    print("| scene | samples |" + "".join(f" {filter_name}: relMSE | FLIP | seconds |" for filter_name in filters))
+    print("|---|---|" + "---|" * (3 * len(filters)))
     for scene in SCENES:
         for samples in SAMPLES:
-            found = [measure(program, folder, scene, samples, way) for way in ways]
+            found = [measure(program, folder, scene, samples, filter_name) for filter_name in filters]
             print(f"| {scene} | {samples} | " + " | ".join(cells(one) for one in found) + " |", flush=True)
             if samples == 16:
                 denoised = found[1:]
         goal = measure(program, folder, scene, GOAL, "input")
-        met = ["yes" if one[0] <= goal[0] else "no" for one in denoised]
-        print(f"| {scene} | {GOAL} | {cells(goal)} | as good with 16, denoised: {', '.join(met)} |", flush=True)
+        reached = ["yes" if one[0] <= goal[0] else "no" for one in denoised]
+        print(f"| {scene} | {GOAL} | {cells(goal)} | as good with 16, denoised: {', '.join(reached)} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
-"""Whether `juggler compare` and the authors' own evaluator see the same differences.
+"""Compares FLIP by `juggler compare` with the evaluator of its authors.
 
     python3 -m venv flip && flip/bin/pip install flip-evaluator==1.7
     mkdir pairs
     JUGGLER_FLIP_PICTURES=$PWD/pairs cargo test -p juggler-imaging --lib flip::tests::the_authors
     flip/bin/python tests/flip/agree.py pairs target/release/juggler
 
-The test leaves eleven pairs there, NAME.picture.png or .exr and NAME.reference.png or .exr, made by formula. Of each the means of
-both programs are printed, and the exit status is 1 when any two means
-differ by more than 1e-3. The means of the column `evaluator` stand in crates/imaging/src/flip/tests.rs. Without a
-program only these are printed.
+The test writes eleven pairs of procedural pictures, NAME.picture.png or .exr and NAME.reference.png
+or .exr. The script prints the mean of each pair by both programs; the exit status is 1 if two means
+differ by more than 1e-3. crates/imaging/src/flip/tests.rs contains the means of the column
+`evaluator`. Without a program, the script prints only these.
 """
 
 import json
@@ -38,9 +38,9 @@ def main():
         _, mean, _ = flip_evaluator.evaluate(str(reference), str(picture), kind, applyMagma=False)
         line = f"{picture.name.split('.')[0]:12} {kind}    {mean:.6f}"
         if program:
-            found, told = ours(program, picture, reference)
+            found, kind_found = ours(program, picture, reference)
             worst = max(worst, abs(found - mean))
-            line += f"    {found:.6f}" + ("" if told == kind.lower() else f" ({told}!)")
+            line += f"    {found:.6f}" + ("" if kind_found == kind.lower() else f" ({kind_found}!)")
         print(line)
     if program:
         print(f"{len(pictures)} pairs, the largest difference of means is {worst:.2e}")

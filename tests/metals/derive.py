@@ -2,7 +2,7 @@
 
     python3 -m venv metals && metals/bin/pip install -r tests/metals/requirements.txt
     metals/bin/python tests/metals/derive.py FOLDER             # a row for each metal and channel
-    metals/bin/python tests/metals/derive.py FOLDER --rust      # also as metals.rs and its tests have them
+    metals/bin/python tests/metals/derive.py FOLDER --rust      # also as lines of metals.rs
     metals/bin/python tests/metals/derive.py FOLDER --table gold=Au.eta.spd
 
 FOLDER holds the tables as the refractiveindex.info database (public domain) publishes them, below
@@ -23,7 +23,7 @@ The script
    eta is the one whose largest deviation over all angles is least, which leaves the reflectance of
    such a channel just below 1.
 
-The exit status is 1 when a fit deviates by more than 0.01 anywhere, or when a table of SECOND
+The exit status is 1 if a fit deviates by more than 0.01 anywhere, or if a table of SECOND
 differs by more than 0.04 at normal incidence.
 """
 
@@ -36,7 +36,7 @@ from pathlib import Path
 import numpy as np
 
 with warnings.catch_warnings():
-    # The package warns of optional packages that nothing here needs.
+    # The package warns about optional packages that this script does not need.
     warnings.simplefilter("ignore")
     import color
 
@@ -56,7 +56,8 @@ METALS = {
     "tungsten": ("Rakić et al. 1998, Brendel-Bormann model", "main/W/nk/Rakic-BB.yml"),
     "zinc": ("Werner et al. 2009", "main/Zn/nk/Werner.yml"),
 }
-# Independent measurements of the two metals of the most color; further tables show how far samples differ.
+# Independent measurements of the two most colored metals; further tables show the spread of
+# samples.
 SECOND = {
     "gold": ("Olmon et al. 2012, single crystal", "main/Au/nk/Olmon-sc.yml"),
     "copper": ("Hagemann et al. 1975", "main/Cu/nk/Hagemann.yml"),
@@ -68,15 +69,15 @@ FURTHER = {
 CHANNELS = "red", "green", "blue"
 WAVELENGTHS = np.arange(380, 781, dtype=float)
 DEGREES = np.arange(0, 81)
-# Angles of the rows that metals.rs's tests hold.
+# Angles of the rows in the tests of metals.rs.
 TESTED_DEGREES = 0, 40, 60, 70, 75, 80
-# Chromaticities of the primaries (IEC 61966-2-1), a column each.
+# Chromaticities of the primaries (IEC 61966-2-1), one column per primary.
 PRIMARIES = np.array([[0.64, 0.33, 0.03], [0.30, 0.60, 0.10], [0.15, 0.06, 0.79]]).T
 FIT_TOLERANCE, SECOND_TOLERANCE = 0.01, 0.04
 
 
 def read_yaml(path):
-    """Wavelengths in nanometers, n and k of the database's `tabulated nk`."""
+    """Reads wavelengths in nanometers, n and k from the database's `tabulated nk`."""
     text = path.read_text(encoding="utf-8")
     if "type: tabulated nk" not in text:
         sys.exit(f"{path}: no `tabulated nk` in it")
@@ -87,13 +88,13 @@ def read_yaml(path):
 
 
 def read_spectra(path):
-    """The same of a pair of spectra."""
+    """Reads wavelengths in nanometers, n and k from a pair of spectra."""
     eta, k = np.loadtxt(path), np.loadtxt(str(path).replace(".eta.spd", ".k.spd"))
     return eta[:, 0], eta[:, 1], np.interp(eta[:, 0], k[:, 0], k[:, 1])
 
 
 def read_table(path):
-    """n and k at WAVELENGTHS."""
+    """Returns n and k at WAVELENGTHS."""
     try:
         wavelengths, n, k = read_spectra(path) if path.name.endswith(".eta.spd") else read_yaml(path)
     except OSError as error:
@@ -104,7 +105,8 @@ def read_table(path):
 
 
 def srgb_weights():
-    """Weights of each wavelength in the three channels of linear sRGB; each column adds up to 1."""
+    """Returns the weights of each wavelength in the channels of linear sRGB; each column sums to
+    1."""
     shape = color.SpectralShape(WAVELENGTHS[0], WAVELENGTHS[-1], 1)
     observer = color.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape).values
     d65 = color.SDS_ILLUMINANTS["D65"]
@@ -115,7 +117,7 @@ def srgb_weights():
 
 
 def reflectance(cos, eta, k):
-    """Fresnel's equations for unpolarized light in air on a conductor."""
+    """Evaluates Fresnel's equations for unpolarized light in air on a conductor."""
     n2 = (eta + 1j * k) ** 2
     behind = np.sqrt(n2 - (1 - cos * cos))
     s = (cos - behind) / (cos + behind)
@@ -124,17 +126,18 @@ def reflectance(cos, eta, k):
 
 
 def spectral_curve(table, weights):
-    """Unclamped linear sRGB at DEGREES, a row each."""
+    """Returns unclamped linear sRGB at DEGREES, one row per angle."""
     return np.array([reflectance(cos, *table) @ weights for cos in np.cos(np.radians(DEGREES))])
 
 
 def at_degrees(eta, k):
-    """Reflectance of one or more pairs at DEGREES, a row each."""
+    """Returns the reflectance of one or more pairs at DEGREES, one row per angle."""
     return np.array([reflectance(cos, eta, k) for cos in np.cos(np.radians(DEGREES))])
 
 
 def on_circle(normal):
-    """All pairs whose reflectance at normal incidence is `normal`: ((eta - 1)² + k²) / ((eta + 1)² + k²)."""
+    """Returns the pairs whose reflectance at normal incidence is `normal`:
+    ((eta - 1)² + k²) / ((eta + 1)² + k²)."""
     root = np.sqrt(normal)
     eta = np.geomspace((1 - root) / (1 + root), (1 + root) / (1 - root), 20_001)
     k2 = (normal * (eta + 1) ** 2 - (eta - 1) ** 2) / (1 - normal)
@@ -142,7 +145,7 @@ def on_circle(normal):
 
 
 def fit(curve, mean_k):
-    """eta and k of one channel, to four digits, whose reflectance is next to `curve`."""
+    """Fits eta and k of one channel to `curve`, rounded to four digits."""
     if curve[0] < 1:
         eta, k = on_circle(curve[0])
         best = ((at_degrees(eta, k) - curve[:, None]) ** 2).sum(axis=0).argmin()
@@ -154,7 +157,8 @@ def fit(curve, mean_k):
 
 
 def derive(path, weights):
-    """The unclamped and the clamped curve, the pairs of eta and k, and how far each is off at most."""
+    """Returns the unclamped and the clamped curve, the pairs of eta and k, and the maximum
+    deviation of each."""
     table = read_table(path)
     unclamped = spectral_curve(table, weights)
     curve = unclamped.clip(0, 1)
@@ -190,7 +194,8 @@ def print_rust(derived, second):
 
 
 def compare(folder, derived, weights):
-    """Reflectance at normal incidence by the second tables, and whether it is near enough."""
+    """Prints the reflectance at normal incidence by the second tables; returns whether all are
+    close enough."""
     second, near = {}, True
     print("\ntables of other samples, clamped, at normal incidence")
     for name, (source, file) in SECOND.items():

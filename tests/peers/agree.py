@@ -1,22 +1,29 @@
-"""Do Juggler, Mitsuba and Cycles make the same pictures? The neutral scenes at many seeds, compared block by block.
+"""Compares pictures of the neutral scenes by Juggler, Mitsuba and Cycles over many seeds.
 
     OURS_BIN=target/release/juggler PYTHON tests/peers/agree.py PACK SCENES OUT [--seeds 10] [--threads 2]
         [--only cornell,mesh-env] [--peers mitsuba-llvm,cycles] [--scale 1] [--worst 10]
 
-PACK is the comparison pack (render_peer.py and adapters/), SCENES the folder of its make_scenes.py, PYTHON one with numpy and
-Pillow; PEERS_HOME as for the pack. OUT keeps every picture: a second call renders only what is missing and compares anew.
+PACK is the comparison pack (render_peer.py and adapters/), SCENES is the folder of its
+make_scenes.py, PYTHON is one with numpy and Pillow, and PEERS_HOME is that of the pack. OUT keeps
+all pictures: a second run renders only missing ones and repeats the comparison.
 
-Each program renders each scene once for each seed. Of each pixel (and each block of 4x4 and 8x8) and channel two programs then have a
-mean and a variance over the seeds; Welch's t of their difference, turned into the normal deviate z that is as unlikely, would
-be normal if nothing but noise kept the pictures apart. Told are: the fraction of |z| beyond 2, 3 and 4 (of a normal one 4.55 %,
-0.27 %, 0.006 %), the mean of z^2 (1; the chi-squared of all blocks over their number), and the difference of the mean colors
-in percent with its own deviation. Noise is not normal: where one path in many carries most of the light, a mean of few
-samples lies too low more often than too high, together with its variance. So blocks are the test and pixels the magnifying glass, and
-every program stands also against itself, one half of its seeds against the other: that is what "the same" looks like here.
-Two means count as equal where they differ by much less than FLOOR of their value, whatever their noise: rounding is none.
+Each program renders each scene once per seed. For each pixel, each block of 4x4 and 8x8 pixels and
+each channel, two programs then have means and variances over the seeds. Welch's t of their
+difference is converted to the normal deviate z of equal probability, whose distribution is normal
+if the pictures differ by noise only. The script prints the fractions of |z| beyond 2, 3 and 4
+(4.55 %, 0.27 % and 0.006 % for a normal distribution), the mean of z^2 (1 for a normal distribution;
+the chi-squared of all blocks divided by their number), and the difference of the mean colors in
+percent with its standard deviation.
 
-OUT/SCENE.A.B.png shows z of the pixels, beside it of the blocks: red where A is brighter, blue where B is, black where equal,
-full color at 5; --worst 10 prints the ten small blocks that differ most with their means.
+Noise is not normal: where few paths carry most of the light, the mean of few samples is too low
+more often than too high, and so is its variance. Blocks therefore decide, pixels show details, and
+each program is also compared with itself, one half of its seeds with the other. Two means count as
+equal if they differ by much less than FLOOR of their value, whatever their noise, since rounding is
+not noise.
+
+OUT/SCENE.A.B.png shows z of the pixels and, beside it, of the blocks: red where A is brighter, blue
+where B is, black where both are equal, full color at 5. --worst 10 prints the ten small blocks that
+differ most, with their means.
 """
 import argparse
 import os
@@ -29,7 +36,7 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 FLOOR = 2e-4
 BLOCKS = (4, 8)
-# Size, and samples of each program at each seed.
+# Size, and number of samples of each program per seed.
 SCENES = {
     "cornell": ((128, 128), {"juggler": 64, "mitsuba-llvm": 256, "cycles": 64}),
     "mesh-env": ((160, 90), {"juggler": 64, "mitsuba-llvm": 256, "cycles": 64}),
@@ -39,7 +46,7 @@ SCENES = {
 
 
 def render(arguments, scene, program, seed):
-    """One picture, kept as scene.program.seed.npy."""
+    """Renders one picture, or reads it from scene.program.seed.npy."""
     kept = os.path.join(arguments.out, f"{scene}.{program}.{seed}.npy")
     if os.path.exists(kept):
         return np.load(kept)
@@ -49,7 +56,7 @@ def render(arguments, scene, program, seed):
     if program == "juggler":
         import juggler_peer
 
-        # Seeds of different programs need not differ, for their noise has nothing in common.
+        # Different programs may use the same seeds, since their noise is independent.
         how = SimpleNamespace(scene=folder, width=width, height=height, spp=spp, threads=arguments.threads, seed=seed)
         picture, _ = juggler_peer.run(how)
     else:
@@ -66,38 +73,40 @@ def render(arguments, scene, program, seed):
 
 
 def blocks(pictures, edge):
-    """Means over blocks of edge x edge pixels (what is left at the right and below is dropped)."""
+    """Returns means over blocks of edge x edge pixels, without incomplete blocks."""
     n, h, w, c = pictures.shape
     h, w = h // edge, w // edge
     return pictures[:, : h * edge, : w * edge].reshape(n, h, edge, w, edge, c).mean((2, 4), dtype="f8")
 
 
 def normal_of(t, freedom):
-    """The normal deviate that is as unlikely as Student's t of that many degrees of freedom (Wallace 1959, within 1 % from 5 on)."""
+    """Converts Student's t to the normal deviate of equal probability (Wallace 1959; within 1 %
+    from 5 degrees of freedom on)."""
     return np.sign(t) * (8 * freedom + 1) / (8 * freedom + 3) * np.sqrt(freedom * np.log1p(t * t / freedom))
 
 
 def welch(a, b):
-    """z of the difference of two sets of pictures (first axis: seeds), each of their pixels for itself (Welch 1947)."""
+    """Returns z of the difference of two sets of pictures for each pixel (Welch 1947); the first
+    axis is that of the seeds."""
     mean = a.mean(0), b.mean(0)
     share = a.var(0, ddof=1) / len(a), b.var(0, ddof=1) / len(b)
-    # What both have without noise may still be rounded differently.
+    # Values without noise may still be rounded differently.
     floor = (FLOOR * (0.5 * (mean[0] + mean[1]) + 1e-3)) ** 2
     sum_of_shares = share[0] + share[1]
-    # Rounding counts as noise that is well known.
+    # Treat rounding as noise of known variance.
     squares = share[0] ** 2 / (len(a) - 1) + share[1] ** 2 / (len(b) - 1)
     freedom = (sum_of_shares + floor) ** 2 / (squares + 1e-3 * floor**2)
     return normal_of((mean[0] - mean[1]) / np.sqrt(sum_of_shares + floor), freedom)
 
 
 def color_difference(a, b):
-    """Of the mean colors, percent, and its deviation; each channel."""
+    """Returns the difference of the mean colors in percent and its deviation, per channel."""
     a, b = a.mean((1, 2), dtype="f8"), b.mean((1, 2), dtype="f8")
     spread = np.sqrt(a.var(0, ddof=1) / len(a) + b.var(0, ddof=1) / len(b))
     return 100 * (a.mean(0) / b.mean(0) - 1), 100 * spread / b.mean(0)
 
 
-def told(z):
+def statistics(z):
     size = np.abs(z)
     beyond = " ".join(f"{100 * (size > limit).mean():6.3f}" for limit in (2, 3, 4))
     return f"{beyond}  z2 {np.mean(z * z):6.3f} median z2 {np.median(z * z) / 0.4549:6.3f}  worst {size.max():5.1f}"
@@ -109,7 +118,7 @@ def compare(arguments, scene, names, a, b):
     z = {edge: welch(blocks(a, edge), blocks(b, edge)) for edge in (1, *BLOCKS)}
     print(f"{scene:15} {names[0]:>12} - {names[1]:12} color % {colors}")
     for edge, of in z.items():
-        print(f"{'':15} {edge:2} x {edge:2} {told(of)}", flush=True)
+        print(f"{'':15} {edge:2} x {edge:2} {statistics(of)}", flush=True)
     if names[0] != names[1]:
         paint(os.path.join(arguments.out, f"{scene}.{names[0]}.{names[1]}.png"), z)
         if arguments.worst:

@@ -1,11 +1,13 @@
-"""What the lamps of many-lights send straight to a point of its floor, by a closed form: Lambert's formula for each triangle of
-the lamps times the share of it that nothing hides. Boxes are left out. Some seconds; needs numpy.
+"""Computes the direct light at a point of the floor of many-lights by a closed form.
+
+The script sums Lambert's formula for each triangle of the lights, times the visible fraction of the
+triangle. It ignores boxes, takes some seconds, and needs numpy.
 
     PYTHON tests/peers/direct_light.py SCENES [--point 0.3,0,3] [--points 4] [--end 1e-5] [--scene FOLDER]
 
---points N asks N x N places of each triangle whether they are seen; --end E lets what is nearer to the lamp than a share E of the way hide
-nothing, as some renderers do. --scene writes the scene that a renderer has to show: the floor around the point, seen from above,
-paths of two stretches.
+--points N tests the visibility of N x N points of each triangle. --end E ignores occluders on the
+last fraction E of the distance to the light, as some renderers do. --scene writes the scene that a
+renderer has to show: the floor around the point, seen from above, with paths of two segments.
 """
 import argparse
 import json
@@ -18,7 +20,7 @@ FLOOR = 0.7  # reflectance
 
 
 def triangles(path):
-    """Corners of a binary PLY's triangles, n x 3 x 3."""
+    """Reads the corners of the triangles of a binary PLY file, n x 3 x 3."""
     head, body = open(path, "rb").read().split(b"end_header\n", 1)
     count = lambda what: int(head.decode().split(f"element {what} ")[1].split()[0])
     floats = head.decode().split("element vertex")[1].split("element face")[0].count("property float")
@@ -27,26 +29,26 @@ def triangles(path):
     return vertices[faces["i"]]
 
 
-def hidden(origin, ways, scene, end):
-    """Which of the places at origin + ways something stands before (Moller and Trumbore 1997)."""
+def hidden(origin, offsets, scene, end):
+    """Returns which of the points at origin + offsets are occluded (Moller and Trumbore 1997)."""
     corner, a, b = scene[:, 0], scene[:, 1] - scene[:, 0], scene[:, 2] - scene[:, 0]
-    found = np.zeros(len(ways), bool)
-    for first in range(0, len(ways), 256):
-        way = ways[first : first + 256, None]
-        p, s = np.cross(way, b), (origin - corner)[None]
+    found = np.zeros(len(offsets), bool)
+    for first in range(0, len(offsets), 256):
+        offset = offsets[first : first + 256, None]
+        p, s = np.cross(offset, b), (origin - corner)[None]
         determinant = (p * a).sum(-1)
         determinant = np.where(abs(determinant) < 1e-14, 1e-14, determinant)
         q = np.cross(s, a[None])
-        u, v, t = (p * s).sum(-1) / determinant, (way * q).sum(-1) / determinant, (q * b).sum(-1) / determinant
+        u, v, t = (p * s).sum(-1) / determinant, (offset * q).sum(-1) / determinant, (q * b).sum(-1) / determinant
         found[first : first + 256] = ((u >= 0) & (v >= 0) & (u + v <= 1) & (t > 1e-5) & (t < 1 - end)).any(1)
     return found
 
 
-def irradiance(point, lamp):
-    """Of the floor, by triangles of radiance 1 (Lambert 1760)."""
-    edges = lamp - point
+def irradiance(point, light):
+    """Returns the irradiance of the floor by each triangle of radiance 1 (Lambert 1760)."""
+    edges = light - point
     edges /= np.linalg.norm(edges, axis=-1, keepdims=True)
-    total = np.zeros(len(lamp))
+    total = np.zeros(len(light))
     for k in range(3):
         normal = np.cross(edges[:, k], edges[:, (k + 1) % 3])
         sine = np.linalg.norm(normal, axis=-1)
@@ -77,14 +79,14 @@ def main():
     grid = (np.arange(arguments.points) + 0.5) / arguments.points
     places = np.array([(u, v) if u + v < 1 else (1 - u, 1 - v) for u in grid for v in grid])
     radiance = np.zeros(3)
-    for lamp, emission in meshes:
+    for light, emission in meshes:
         if not emission:
             continue
-        faces = np.cross(lamp[:, 1] - lamp[:, 0], lamp[:, 2] - lamp[:, 0])
-        lamp = lamp[((point - lamp[:, 0]) * faces).sum(-1) > 0]
-        on = lamp[:, None, 0] + places[:, :1] * (lamp[:, None, 1] - lamp[:, None, 0]) + places[:, 1:] * (lamp[:, None, 2] - lamp[:, None, 0])
-        seen = 1 - hidden(point, (on - point).reshape(-1, 3), everything, arguments.end).reshape(len(lamp), -1).mean(1)
-        radiance += (irradiance(point, lamp) * seen).sum() * np.array(emission)
+        faces = np.cross(light[:, 1] - light[:, 0], light[:, 2] - light[:, 0])
+        light = light[((point - light[:, 0]) * faces).sum(-1) > 0]
+        on = light[:, None, 0] + places[:, :1] * (light[:, None, 1] - light[:, None, 0]) + places[:, 1:] * (light[:, None, 2] - light[:, None, 0])
+        seen = 1 - hidden(point, (on - point).reshape(-1, 3), everything, arguments.end).reshape(len(light), -1).mean(1)
+        radiance += (irradiance(point, light) * seen).sum() * np.array(emission)
     print(*(radiance * FLOOR / np.pi))
 
 

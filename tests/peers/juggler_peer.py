@@ -1,7 +1,8 @@
-"""Adapter of the peer benchmark pack for Juggler: a neutral scene becomes a Juggler scene, `juggler` renders it.
+"""Adapter of the peer benchmark pack: converts a neutral scene to Juggler's format and renders it.
 
-Copy it into the pack's adapters/ and set OURS_BIN to the program. OURS_FLAGS adds options, OURS_INTEGRATOR (JSON) replaces
-the integrator, OURS_SAMPLER (JSON) the sampler. As a program it only converts: juggler_peer.py SCENE_FOLDER > scene.json
+Copy it into the pack's adapters/ and set OURS_BIN to the program. OURS_FLAGS adds options;
+OURS_INTEGRATOR and OURS_SAMPLER (JSON) replace integrator and sampler. As a program it only
+converts: juggler_peer.py SCENE_FOLDER > scene.json
 """
 import json
 import os
@@ -50,7 +51,7 @@ def placed(s, folder):
 def integrator(neutral):
     depth = neutral["max_depth"]
     if neutral["type"] == "whitted":
-        # The pack counts surfaces of a chain, Juggler what follows the first.
+        # The pack counts all surfaces of a path, Juggler those after the first.
         return {"classic": {"max_depth": depth - 1, "min_weight": 0}}
     return {"path": {"max_depth": depth, "roulette_depth": neutral.get("rr_depth")}}
 

@@ -1,8 +1,8 @@
-"""Error against samples of each sampler on four scenes, as the tables of docs/samplers.md.
+"""Prints errors by number of samples for each sampler and four scenes, as in docs/samplers.md.
 
     python3 tests/samplers/error_table.py [JUGGLER] [FOLDER]
 
-JUGGLER is the program (target/release/juggler), FOLDER keeps the pictures. Needs numpy.
+JUGGLER is the program (target/release/juggler). FOLDER keeps the pictures. The script needs numpy.
 """
 import os
 import subprocess
@@ -12,7 +12,7 @@ import numpy
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SIZE = (160, 120)
-# Pictures that errors are means of, by samples a pixel.
+# Number of pictures per error, by samples per pixel.
 SAMPLES = {1: 4, 4: 4, 16: 4, 64: 2, 256: 1}
 REFERENCE = 2048
 SAMPLERS = ("independent", "stratified", "sobol", "blue_noise")
@@ -22,7 +22,7 @@ SCENES = {
     "lens": ("scenes/depth-of-field.json", []),
     "many lights": ("tests/peers/scenes/many-lights.json", []),
 }
-# Standard deviation in pixels of the blur that stands for an eye.
+# Standard deviation, in pixels, of the blur that models an eye.
 BLUR = 1.5
 
 
@@ -61,18 +61,18 @@ def blurred(image):
 
 
 def shown(picture):
-    """On a screen, nothing is brighter than white; else the edges of lamps would be all that counts."""
+    """Clips to white, as a screen does; otherwise the edges of lights would dominate the error."""
     return numpy.minimum(picture, 1)
 
 
 def relative_mse(picture, reference):
-    """As the program defines it for --noise: over the square of the mean, kept off zero by 0.01."""
+    """Relative error as --noise defines it: divided by the square of the mean plus 0.01."""
     gray = reference.mean(axis=2)
     return (((picture - reference) ** 2).mean(axis=2) / (gray**2 + 0.01)).mean()
 
 
 def number(error):
-    """In thousandths, two digits."""
+    """Formats a number in thousandths, with two digits."""
     return f"{1000 * error:.2g}" if error < 0.0995 else str(round(100 * error) * 10)
 
 

@@ -1,11 +1,14 @@
-"""What `--noise` costs against as many samples for every pixel, at equal error, as the table of docs/samplers.md.
+"""Prints the cost of `--noise` relative to equal samples per pixel, at equal error.
 
     python3 tests/samplers/noise_table.py [JUGGLER] [FOLDER]
 
-JUGGLER is the program (target/release/juggler), FOLDER keeps pictures and figures, so that a run that was broken off goes on.
-Each scene is rendered until its noise is LEVEL, then with even samples, from fewer to more than it took on average; where the error of these
-is the same is found between two of them, on straight lines of logarithms. Errors are relMSE of `juggler compare`, against another seed. The cost is the
-processor's time and the number of rays, which is the same in every run.
+The table is that of docs/samplers.md. JUGGLER is the program (target/release/juggler). FOLDER keeps
+pictures and figures, so that an interrupted run continues.
+
+The script renders each scene until its noise is LEVEL, then with equal samples per pixel, from
+fewer to more than the mean of the first render. It interpolates the cost at equal error between two of
+these, linearly in logarithms. Errors are the relMSE of `juggler compare`, against a reference with
+another seed. Costs are CPU time and the number of rays, which is the same in every run.
 """
 import json
 import math
@@ -15,7 +18,7 @@ import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Size, level, the samples that it may take.
+# Size, noise level, maximum number of samples.
 SCENES = {
     "cornell-box": ("300x300", 0.035, 1024),
     "furnace": ("360x300", 0.025, 1024),
@@ -29,7 +32,8 @@ STEPS = (0.9, 1.4, 2.2)
 
 
 def run(program, *arguments):
-    """The statistics that the program writes, and the processor's seconds; status 1 is a comparison that says no."""
+    """Returns the statistics that the program writes, and its CPU seconds; status 1 means that
+    compared pictures differ."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run([program, *arguments, "--stats", "-"], capture_output=True, text=True)
     if done.returncode > 1:
@@ -51,7 +55,7 @@ def render(program, folder, scene, samples, seed, flags=()):
 
 
 def measure(program, folder, scene, samples, flags=()):
-    """Error, millions of rays, seconds and samples a pixel."""
+    """Returns error, millions of rays, seconds, and samples per pixel."""
     picture, stats = render(program, folder, scene, samples, 0, flags)
     reference, _ = render(program, folder, scene, REFERENCE, 9)
     width, height = stats["size"]
@@ -60,7 +64,7 @@ def measure(program, folder, scene, samples, flags=()):
 
 
 def at_error(error, evens):
-    """Rays, seconds and samples of an even picture of this error."""
+    """Returns rays, seconds and samples of a picture of this error with equal samples per pixel."""
     evens = sorted(evens)
     for low, high in zip(evens, evens[1:]):
         if low[0] <= error <= high[0]:

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Drives the window of `juggler view` as a person would, on a display in memory: keys, drags, the wheel, fields, a file that is
-# edited under it. Whether a thing happened is seen in the window's title and in screenshots.
+# Drives the window of `juggler view` as a person would, on a virtual display: keys, drags, the
+# wheel, fields, and a file that is edited meanwhile. The window's title and screenshots show the
+# effects.
 #   tests/viewer/test.sh PATH/TO/juggler [FOLDER FOR THE SCREENSHOTS]
-# Needs Xvfb, xdotool, ImageMagick's import, and what a window needs; on Debian
-#   apt-get install xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0
+# Needs Xvfb, xdotool, ImageMagick's import, and the libraries of windows. On Debian:
+#   apt-get install xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libx11-xcb1 libxcursor1 libxi6 \
+#     libxkbcommon-x11-0
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 juggler=$(realpath "$1")
@@ -28,7 +30,7 @@ trap 'exit 130' INT TERM
 say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
 fail() { echo "error: $*" >&2; exit 1; }
 
-# Waits for at most 60 seconds.
+# Waits at most 60 seconds until a command succeeds.
 until_true() {
   local start=$SECONDS
   until "$@"; do
@@ -41,8 +43,8 @@ title() { xdotool getwindowname "$window" 2>/dev/null || true; }
 titled() { [[ $(title) == $1 ]]; }
 finished() { titled "juggler - scene - frame * - 16/16"; }
 
-# Screenshots: the whole window, and of that the picture alone (the panel is 316 wide, the strip of time 34 high).
-# Without dates, equal pictures are equal files.
+# Screenshots of the whole window and of the picture alone; the panel is 316 pixels wide, the
+# timeline 34 pixels high. The files contain no dates, so equal pictures are equal files.
 grab() { import -window "$window" -define png:exclude-chunks=date,time "$@"; }
 shoot() { grab "PNG24:$shots/$1.png"; }
 shoot_picture() { grab -crop 900x700+0+0 +repage "PNG24:$shots/$1.png"; }
@@ -51,19 +53,19 @@ rmse() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" --tolerance 0 | awk 
 differ() { ! equal "$1" "$2" && awk -v e="$(rmse "$1" "$2")" 'BEGIN { exit !(e > 0.01) }'; }
 same() { equal "$1" "$2" || "$juggler" compare "$shots/$1.png" "$shots/$2.png" >/dev/null; }
 
-# The display is drawn to some time after it was asked to, later on a busy machine: screenshots are taken until the picture
-# alone looks like an earlier one, or unlike it.
+# The display shows an image some time after the program has drawn it, later on a busy machine. So
+# take screenshots until the picture equals an earlier one, or differs from it.
 shot_like() { shoot_picture "$2" && same "$1" "$2"; }
 shot_unlike() { shoot_picture "$2" && differ "$1" "$2"; }
 like() { until_true shot_like "$1" "$2"; }
 unlike() { until_true shot_unlike "$1" "$2"; }
 shot_again() { cp "$shots/$1.png" "$shots/last.png" && shoot_picture "$1" && same last "$1"; }
-# The picture as soon as it does not change any more.
+# Takes a screenshot of the picture as soon as it no longer changes.
 steady() { shoot_picture "$1"; until_true shot_again "$1"; }
 small() { [[ $(xdotool getwindowgeometry "$window") == *700x500* ]]; }
 
 point() { xdotool mousemove --window "$window" "$1" "$2"; sleep 0.2; }
-# From, to, button.
+# Drags from one point to another: X Y X Y BUTTON.
 drag() {
   point "$1" "$2"
   xdotool mousedown "$5"; sleep 0.1
@@ -74,9 +76,9 @@ drag() {
 }
 hold() { xdotool keydown "$1"; sleep 0.4; xdotool keyup "$1"; }
 press() { xdotool key "$1"; sleep 0.15; }
-# After something that changes the picture: waits until it is whole again.
+# Waits until the picture is finished again after a change.
 settle() { sleep 0.3; until_true finished; sleep 0.3; }
-# Back to the first picture.
+# Returns to the first view.
 home() { press Home; point 5 5; like start back; }
 
 find_window() { window=$(xdotool search --pid "$viewer" --name juggler 2>/dev/null | tail -1); [ -n "$window" ]; }
@@ -88,7 +90,7 @@ open() {
   until_true has_focus
   sleep 0.5
 }
-# The window was asked to close: the program ends, and says nothing.
+# Checks that the program ends without a message after its window was closed.
 ended() {
   local status=0
   wait "$viewer" || status=$?
@@ -104,7 +106,7 @@ env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET "$juggler" view one-sphere 2
   fail "without a display: status $status, $(cat "$work/none")"
 say "without a display: an error and status 3"
 
-# Without `-noreset` the display starts anew when its last client leaves it, and refuses others meanwhile.
+# Without `-noreset`, the display resets when its last client leaves, and refuses clients meanwhile.
 mkfifo "$work/display"
 Xvfb -displayfd 7 -screen 0 1280x800x24 -nolisten tcp -noreset 7>"$work/display" 2>/dev/null &
 server=$!
@@ -176,7 +178,7 @@ press Tab; sleep 0.5; shoot folded; press Tab; sleep 0.5; like start back
 say "the keys under ?, the panel folds"
 
 press ctrl+s; until_true test -s scene.png; unlike start saved-picture; shoot saved; like start back
-say "what was saved is told over the picture, for a while"
+say "a message over the picture names the saved file for a while"
 "$juggler" render scene.json -o straight.png -q
 "$juggler" compare scene.png straight.png >/dev/null || fail "the saved picture is not that of juggler render"
 say "the saved picture is that of juggler render"
@@ -189,7 +191,7 @@ press n; like start back
 say "N shows the picture that juggler render --denoise writes"
 
 ticks() { awk '{ print $14 + $15 }' "/proc/$viewer/stat"; }
-# Other work on the machine may delay the last frame: one quiet stretch of ten is enough.
+# Other work on the machine may delay the last frame, so one quiet interval of ten is enough.
 idle() { local before; before=$(ticks); sleep 4; used=$(($(ticks) - before)); [ "$used" -le 4 ]; }
 for try in 1 2 3 4 5 6 7 8 9 10; do
   if idle; then break; fi

@@ -1,4 +1,4 @@
-// A file server, the program to compare with, a browser, and what tests ask of them.
+// A file server, the program to compare with, a browser, and the operations that tests need.
 
 import { spawnSync } from "node:child_process";
 import { strict as assert } from "node:assert";
@@ -9,10 +9,10 @@ import { extname, join, normalize } from "node:path";
 import { chromium } from "playwright-core";
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
-/** Milliseconds that anything may take. */
+/** Timeout of every operation, in milliseconds. */
 const PATIENCE = 180_000;
 
-/** Serves a folder as it is, without a header of its own but the type. */
+/** Serves a folder, with no header except the type. */
 export async function serve(folder) {
   const server = createServer(({ url }, answer) => {
     const path = normalize(decodeURIComponent(new URL(url, "http://x").pathname)).replace(/\/$/, "/index.html");
@@ -27,7 +27,7 @@ export async function serve(folder) {
   return { url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-/** The program. */
+/** The program `juggler`, with a folder for its files. */
 export class Program {
   constructor(path) {
     this.path = path;
@@ -39,7 +39,7 @@ export class Program {
     return spawnSync(this.path, words, { encoding: "utf8", env: { ...process.env, NO_COLOR: "1" } });
   }
 
-  /** Makes a picture; the hash of its film. */
+  /** Renders a picture and returns the statistics of its film. */
   render(scene, ...words) {
     const stats = join(this.folder, "stats.json");
     const { status, stderr } = this.run("render", scene, "-o", this.picture, "--stats", stats, ...words);
@@ -48,7 +48,7 @@ export class Program {
   }
 }
 
-/** A browser with one page, and all that goes wrong in it. */
+/** A browser with one page and the errors in it. */
 export class Browser {
   static async start(executablePath, pictures) {
     const args = ["--no-sandbox", "--disable-dev-shm-usage", "--force-color-profile=srgb"];
@@ -73,7 +73,7 @@ export class Browser {
     return this.page.locator(selector).textContent();
   }
 
-  /** The hash of the finished picture. */
+  /** Waits for the finished picture and returns its hash. */
   async hash() {
     await this.page.waitForFunction(() => document.getElementById("hash").textContent.length === 64, null, { timeout: PATIENCE });
     return this.text("#hash");
@@ -99,7 +99,7 @@ export class Browser {
     }, count);
   }
 
-  /** Drops files, as { name: text }, on the page. */
+  /** Drops files on the page; `files` maps names to texts. */
   async drop(files) {
     await this.page.evaluate((files) => {
       const dataTransfer = new DataTransfer();
@@ -108,7 +108,7 @@ export class Browser {
     }, files);
   }
 
-  /** The picture in 16 by 16 fields, as numbers from 0 to 255. */
+  /** Returns the picture scaled to 16 by 16 pixels, as numbers from 0 to 255. */
   fields() {
     return this.page.evaluate(() => {
       const small = new OffscreenCanvas(16, 16).getContext("2d");
@@ -122,7 +122,7 @@ export class Browser {
   }
 }
 
-/** How different two pictures are, 0 to 255. */
+/** Returns the mean difference of two pictures, 0 to 255. */
 export function difference(one, other) {
   return one.reduce((sum, value, index) => sum + Math.abs(value - other[index]), 0) / one.length;
 }

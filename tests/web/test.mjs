@@ -13,7 +13,7 @@ const browser = await Browser.start(chromium, pictures);
 const began = performance.now();
 const say = (text) => console.log(`${((performance.now() - began) / 1000).toFixed(1).padStart(6)} s  ${text}`);
 
-/** A scene of several files: it includes one and names a mesh. */
+/** Files of a scene with an include and a mesh. */
 const FILES = {
   "pyramid.json": `{
     "version": 1,
@@ -121,7 +121,7 @@ async function takesFiles() {
   await browser.drop(FILES);
   for (const [name, text] of Object.entries(FILES)) writeFileSync(join(juggler.folder, name), text);
   await page.waitForFunction(() => document.getElementById("size").textContent === "320 × 240");
-  // On the disk the mesh lies where the scene says.
+  // The browser drops folders from names; on disk, the scene must name the place of the mesh.
   const text = FILES["pyramid.json"].replace("models/", "");
   writeFileSync(join(juggler.folder, "pyramid.json"), text);
   const { hash } = juggler.render(join(juggler.folder, "pyramid.json"));
@@ -148,7 +148,7 @@ async function saysWhatIsWrong() {
   await page.selectOption("#scene", "red-cube");
   await page.waitForSelector("#error", { state: "hidden" });
   await browser.hash();
-  say("mistakes: the words of juggler check over the last good picture");
+  say("errors: the messages of juggler check over the last good picture");
 }
 
 async function fitsAPhone() {
@@ -162,7 +162,7 @@ async function fitsAPhone() {
   say("a phone: the panel below, or away");
 }
 
-/** How much faster two workers render than one: the medians of some renders in turn. */
+/** Returns the speedup of two workers over one: the ratio of the medians of alternating renders. */
 async function twoAreFaster() {
   const scene = "cornell-cube";
   await browser.open(`${site.url}?scene=${scene}`);

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# The page of web/dist driven in a real browser, from a plain file server: hashes of scenes equal to those of the program,
-# dropped files, flying, saving, mistakes, a phone, and that two workers are faster than one. After web/build.sh.
+# Drives the page of web/dist in a real browser, from a plain file server: compares hashes of scenes
+# with those of the program, drops files, flies, saves, makes errors, emulates a phone, and checks
+# that two workers are faster than one. Run web/build.sh first.
 #   tests/web/test.sh PATH/TO/juggler [FOLDER FOR SCREENSHOTS]
-# Needs node, npm (one package, playwright-core, by the lock file) and Chromium: apt-get install -y chromium nodejs npm
+# Needs node, npm (one package, playwright-core, pinned by the lock file) and Chromium:
+#   apt-get install -y chromium nodejs npm
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 juggler=$(realpath "${1:?usage: tests/web/test.sh PATH/TO/juggler [FOLDER]}")

@@ -6,8 +6,6 @@ const TURN = 120;
 const DEGREES = 60;
 /** Logarithm of the zoom factor per second of zoom keys. */
 const ZOOM = 1;
-/** Speed of movement keys, in extents of the scene per second. */
-const PACE = 0.15;
 /** Maximum movement of the pointer during a click, in CSS pixels. */
 const STILL = 4;
 
@@ -19,8 +17,8 @@ const MOVES = {
   KeyU: { roll_degrees: -1 }, KeyO: { roll_degrees: 1 }, KeyX: { zoom: 1 }, KeyC: { zoom: -1 },
 };
 
-/** Listens for input. `hands.edit(edit)` receives the edits; `hands.extent()`, `hands.orbits()` and
- * `hands.pixel(x, y)` describe the scene and the view. */
+/** Listens for input. `hands.edit(edit)` receives the edits; `hands.flightSpeed()`, in scene units
+ * per second, `hands.orbits()` and `hands.pixel(x, y)` describe the scene and the view. */
 export function listen(canvas, hands) {
   drags(canvas, hands);
   wheel(canvas, hands);
@@ -106,7 +104,7 @@ function keys(hands) {
     }
     const seconds = before === null ? 1 / 60 : Math.min(0.1, Math.max(0.001, (now - before) / 1000));
     before = now;
-    const step = hands.extent() * PACE * seconds * (fast ? 4 : 1);
+    const step = hands.flightSpeed() * seconds * (fast ? 4 : 1);
     const { zoom = 0, ...sum } = total(held, { step, turn: DEGREES * seconds, zoom: ZOOM * seconds });
     if (Object.keys(sum).length > 0) hands.edit({ fly: sum });
     if (zoom !== 0) hands.edit({ zoom: Math.exp(zoom) });

@@ -32,7 +32,7 @@ async function walk(entry, files) {
 
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
 
-/** The scene among the files, which is the one in the fewest folders, and the bytes of all files. */
+/** Finds the scene, which is in the fewest folders, and reads the bytes of all files. */
 export async function scene(files) {
   const depth = ({ name }) => name.split("/").length;
   const scenes = files.filter(({ name }) => name.toLowerCase().endsWith(".json")).sort((a, b) => depth(a) - depth(b));

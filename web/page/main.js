@@ -203,7 +203,7 @@ async function start() {
   for (const { name, title } of JSON.parse(scenes())) $("scene").append(Object.assign(new Option(name), { title }));
   const hands = {
     edit,
-    extent: () => status?.extent ?? 1,
+    flightSpeed: () => status?.flight_speed ?? 1,
     orbits: () => document.querySelector("[name=drag]:checked").value === "orbit",
     pixel: (x, y) => view.pixel(x, y),
   };

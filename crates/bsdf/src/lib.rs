@@ -43,7 +43,7 @@ pub mod testing;
 
 pub use curve::Fresnel;
 pub use lobe::{Deltas, ScatteringLobe};
-pub use phong::{Highlight, PhongParameters, RayCone};
+pub use phong::{ConeSampling, Highlight, PhongParameters};
 pub use plastic::Plastic;
 pub use principled::Principled;
 pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};

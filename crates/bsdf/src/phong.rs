@@ -17,16 +17,16 @@ pub enum Highlight {
     PhongCosine,
 }
 
-/// Cone of rays around a direction, for glossy reflection and blurry transmission.
+/// Directions sampled in a cone around an axis, for glossy reflection and blurry transmission.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayCone {
+pub struct ConeSampling {
     /// Half of the opening angle, in radians; 0 for a single sharp ray.
     pub half_angle_radians: f32,
     /// Rays per sample, at least 1; they share the weight.
     pub rays: u32,
 }
 
-impl RayCone {
+impl ConeSampling {
     /// One ray exactly along the direction.
     pub const SHARP: Self = Self { half_angle_radians: 0.0, rays: 1 };
 }
@@ -57,11 +57,11 @@ pub struct PhongParameters {
     /// Filter of the reflected ray; black for none.
     pub mirror: Rgb,
     /// Cone of the reflected ray.
-    pub glossy: RayCone,
+    pub glossy: ConeSampling,
     /// Filter of the transmitted ray and of shadow rays; black for none.
     pub transparency: Rgb,
     /// Cone of the transmitted ray.
-    pub blurry: RayCone,
+    pub blurry: ConeSampling,
     /// Index of refraction inside over outside; 1 transmits in a straight line.
     pub ior: f32,
     /// Divides light between reflection and transmission by Fresnel's equations.
@@ -81,9 +81,9 @@ impl PhongParameters {
         highlight: Highlight::Phong,
         both_sides: false,
         mirror: Rgb::BLACK,
-        glossy: RayCone::SHARP,
+        glossy: ConeSampling::SHARP,
         transparency: Rgb::BLACK,
-        blurry: RayCone::SHARP,
+        blurry: ConeSampling::SHARP,
         ior: 1.0,
         fresnel: false,
     };

@@ -56,6 +56,8 @@ pub struct LightGroup(pub u16);
 impl LightGroup {
     /// Group of all light without a named group.
     pub const REST: Self = Self(0);
+    /// Maximum number of light groups of a scene, [`Self::REST`] included.
+    pub const MAX_COUNT: usize = 1 << 16;
 }
 
 /// Denoising feature.

@@ -122,7 +122,7 @@ fn vertical_angle_is_the_zoom_angle_of_scalablitz() {
 }
 
 #[test]
-fn looks_where_it_is_told() {
+fn looks_where_its_description_says() {
     for camera in ["perspective", "thin_lens", "orthographic"] {
         let json = |fields: &str| format!(r#"{{"{camera}": {{"eye": [1, 2, 3], {fields}}}}}"#);
         let to = Vec3::new(4.0, -2.0, 3.0) - Vec3::new(1.0, 2.0, 3.0);

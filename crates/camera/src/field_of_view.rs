@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 #[schemars(rename = "Screen")]
 pub struct VirtualScreen {
     /// Width in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub width: f32,
     /// Distance from the eye in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub distance: f32,
 }
 
@@ -23,13 +23,13 @@ pub struct VirtualScreen {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ViewPlane {
     /// Width in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub width: f32,
     /// Height in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub height: f32,
     /// Distance from the eye in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub distance: f32,
 }
 

@@ -20,12 +20,12 @@ const DEFAULT_HEIGHT: f32 = 4.0;
 #[serde(default)]
 pub struct Orthographic {
     /// Position of the camera, in world space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub eye: Vec3,
     /// Point that the camera looks at before yaw, pitch and roll, in world space. The default is
     /// the origin, unless `direction` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<[f32; 3]>")]
+    #[schemars(with = "Option<[f32; 3]>", extend("x-unit" = "scene units"))]
     pub look_at: Option<Vec3>,
     /// View direction, of any length; replaces `look_at`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,11 +36,14 @@ pub struct Orthographic {
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
     /// Rotation to the right about the camera's up axis, in degrees.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub yaw_degrees: f32,
     /// Upward rotation about the camera's right axis, in degrees, after yaw.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub pitch_degrees: f32,
     /// Clockwise rotation of the camera about the view direction, in degrees, after pitch; its top
     /// leans to the right.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub roll_degrees: f32,
     /// Translation along the camera's axes, after the rotations.
     pub r#move: LocalTranslation,
@@ -48,11 +51,11 @@ pub struct Orthographic {
     /// ratio of the picture gives the height, so pixels are square. If both are given, the picture
     /// is stretched. The default is 4.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub height: Option<f32>,
     /// Width of the visible area in scene units, above 0. The default follows from `height`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub width: Option<f32>,
 }
 

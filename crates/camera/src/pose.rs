@@ -26,10 +26,13 @@ use serde::{Deserialize, Serialize};
 #[schemars(rename = "Move")]
 pub struct LocalTranslation {
     /// Distance to the picture's right.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub right: f32,
     /// Distance to the picture's top.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub up: f32,
     /// Distance into the picture.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub forward: f32,
 }
 

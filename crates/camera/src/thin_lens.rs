@@ -20,12 +20,12 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct ThinLens {
     /// Position of the camera, in world space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub eye: Vec3,
     /// Point that the camera looks at before yaw, pitch and roll, in world space. The default is
     /// the origin, unless `direction` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<[f32; 3]>")]
+    #[schemars(with = "Option<[f32; 3]>", extend("x-unit" = "scene units"))]
     pub look_at: Option<Vec3>,
     /// View direction, of any length; replaces `look_at`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,22 +36,25 @@ pub struct ThinLens {
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
     /// Rotation to the right about the camera's up axis, in degrees.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub yaw_degrees: f32,
     /// Upward rotation about the camera's right axis, in degrees, after yaw.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub pitch_degrees: f32,
     /// Clockwise rotation of the camera about the view direction, in degrees, after pitch; its top
     /// leans to the right.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub roll_degrees: f32,
     /// Translation along the camera's axes, after the rotations.
     pub r#move: LocalTranslation,
     /// Vertical field of view in degrees, between 0 and 180. At most one of `vertical_fov_degrees`,
     /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; the default is 40.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180, "x-unit" = "degrees"))]
     pub vertical_fov_degrees: Option<f32>,
     /// Horizontal field of view in degrees, between 0 and 180.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180, "x-unit" = "degrees"))]
     pub horizontal_fov_degrees: Option<f32>,
     /// Field of view as a screen of a given width at a given distance; pixels are square.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,11 +64,11 @@ pub struct ThinLens {
     pub view_plane: Option<ViewPlane>,
     /// Radius of the lens in scene units, 0 or more. Larger lenses blur more outside the focal
     /// plane; 0 is a pinhole.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
     pub lens_radius: f32,
     /// Distance from the eye to the plane in focus along the view direction, in scene units. It
     /// must be above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub focus_distance: f32,
 }
 

@@ -245,8 +245,8 @@ pub struct RenderArgs {
     /// Render part I of N, to be joined by `juggler merge`
     ///
     /// All parts cost about the same. I counts from 0; `auto` reads it from SLURM_ARRAY_TASK_ID,
-    /// JOB_COMPLETION_INDEX or HQ_TASK_ID. A part of a picture is a partial render (.jfilm). A part
-    /// of a movie or of numbered pictures is every N-th frame; for a movie, the same command
+    /// JOB_COMPLETION_INDEX or HQ_TASK_ID. For a picture, the part is a partial render (.jfilm).
+    /// For a movie or numbered pictures, it is every N-th frame; for a movie, the same command
     /// without --shard then encodes all frames.
     #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
     pub shard: Option<Shard>,

@@ -184,7 +184,7 @@ pub fn missing_folder(file: &str) -> Option<String> {
 /// Description of a system error in plain words.
 pub fn plain(error: &std::io::Error) -> String {
     match error.kind() {
-        ErrorKind::NotFound => "no such file or folder".into(),
+        ErrorKind::NotFound => "file or folder not found".into(),
         ErrorKind::PermissionDenied => "permission denied".into(),
         ErrorKind::IsADirectory => "it is a folder, not a file".into(),
         ErrorKind::NotADirectory => "a component of its path is not a folder".into(),

@@ -15,7 +15,7 @@ pub use view::end_warning;
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::output::{self, STANDARD_OUTPUT};
+use crate::output::{STANDARD_OUTPUT, at_most_one_stream, has_number, numbered};
 use crate::progress::Progress;
 use crate::source;
 use crate::value::FrameRange;
@@ -106,7 +106,7 @@ impl Plan {
         if output.is_empty() {
             return Err(Failure::Invalid("--output needs the name of a file".into()));
         }
-        output::at_most_one_stream(&output, args.stats.as_deref())?;
+        at_most_one_stream(&output, args.stats.as_deref())?;
         let movie = Movie::new(&args, &output)?;
         let output = movie.as_ref().map_or(output, Movie::frames);
         let output_kind = match movie {
@@ -180,17 +180,12 @@ impl Plan {
     ///
     /// Fails if the range of frames is empty.
     pub fn frame_outputs(&self, length: u32, frames_per_second: f64) -> Result<Vec<FrameOutput>, Failure> {
-        let single = |frame: f64| FrameOutput {
-            frame,
-            output: self.output.clone(),
-            aov_output: self.aov_output.clone(),
-            stats: self.stats.clone(),
-            checkpoint: self.checkpoint.as_ref().map(|checkpoint| checkpoint.file.clone()),
-            shard: self.shard,
-        };
         match self.times {
-            TimeSelection::Frame(frame) => Ok(vec![single(f64::from(frame))]),
-            TimeSelection::At(seconds) => Ok(vec![single(seconds * frames_per_second)]),
+            TimeSelection::Frame(frame) => {
+                let name = |name: &str| if has_number(name) { numbered(name, frame) } else { name.into() };
+                Ok(vec![self.single(f64::from(frame), name)])
+            }
+            TimeSelection::At(seconds) => Ok(vec![self.single(seconds * frames_per_second, str::to_owned)]),
             TimeSelection::Frames(_) => {
                 let frames = self.frames(length);
                 if frames.is_empty() {
@@ -214,9 +209,20 @@ impl Plan {
         }
     }
 
+    /// One picture, whose files `name` names.
+    fn single(&self, frame: f64, name: impl Fn(&str) -> String) -> FrameOutput {
+        FrameOutput {
+            frame,
+            output: name(&self.output),
+            aov_output: self.aov_output.as_deref().map(&name),
+            stats: self.stats.as_deref().map(&name),
+            checkpoint: self.checkpoint.as_ref().map(|checkpoint| name(&checkpoint.file)),
+            shard: self.shard,
+        }
+    }
+
     fn numbered(&self, frames: Range<u32>) -> Vec<FrameOutput> {
-        let name =
-            |name: &str, frame| if name == STANDARD_OUTPUT { name.into() } else { output::numbered(name, frame) };
+        let name = |name: &str, frame| if name == STANDARD_OUTPUT { name.into() } else { numbered(name, frame) };
         let frame_output = |frame: u32, shard: Shard| FrameOutput {
             frame: f64::from(frame),
             output: name(&self.output, frame),

@@ -23,7 +23,7 @@ const FOREIGN_FLAGS: &[(&[&str], &str)] = &[
     (&["--gamma", "--tonemap", "--tonemapper", "--tone-mapping"], "--tone CURVE sets the tone curve"),
     (&["--ev", "--gain"], "--exposure STOPS makes the picture brighter or darker"),
     (&["--cam", "--view"], "--camera NAME chooses one of the scene's cameras"),
-    (&["--region", "--window", "--cropwindow"], "--crop X,Y,W,H renders a part of the picture"),
+    (&["--region", "--window", "--cropwindow"], "--crop X,Y,W,H renders a rectangle of the picture"),
     (&["--resume", "--continue"], "--checkpoint FILE saves progress; the same command resumes from it"),
     (&["-v", "--verbose"], "--progress bar shows the progress, --stats FILE writes statistics"),
     (&["-V"], "`juggler --version` prints the version"),

@@ -29,7 +29,7 @@ fn film(name: &str, blocks: u32) -> Result<Vec<Tile>, Box<dyn Error>> {
     for block in 0..blocks {
         let seed = Some(block.into());
         let settings = Settings { size: Some(SIZE), samples: Some(BLOCK_SAMPLES), seed, ..Settings::default() };
-        let image = Picture::new(&scene, &settings)?.image(&Control::default())?;
+        let image = Picture::new(&scene, &settings)?.render_image(&Control::default())?;
         for tile in &mut tiles {
             let Rect { x, y, width, .. } = tile.pixels();
             let place = |pixel: u32| (y + pixel / width) * SIZE[0] + x + pixel % width;

@@ -90,27 +90,29 @@ fn create_temporary(folder: &Path, name: &OsStr, permissions: Option<&Permission
 /// file.
 fn is_ours(file: &NamedTempFile) -> bool {
     // On file systems without locks no process removes files, so treat an unlocked file as ours.
-    !matches!(file.as_file().try_lock(), Err(fs::TryLockError::WouldBlock)) && is_same(file.as_file(), file.path())
+    !matches!(file.as_file().try_lock(), Err(fs::TryLockError::WouldBlock)) && is_still_at(file.as_file(), file.path())
 }
 
 /// Removes a file that no process has locked; returns whether it did.
 fn remove_abandoned(path: &Path) -> bool {
     let is_file = fs::symlink_metadata(path).is_ok_and(|file| file.is_file());
     let Some(file) = is_file.then(|| regular::open(path).ok()).flatten() else { return false };
-    file.try_lock().is_ok() && is_same(&file, path) && fs::remove_file(path).is_ok()
+    file.try_lock().is_ok() && is_still_at(&file, path) && fs::remove_file(path).is_ok()
 }
 
-/// Whether `path` still refers to this file.
+/// Whether `path` still refers to the open `file`: another process may have removed or replaced the
+/// file since it was opened. Follows symbolic links.
 #[cfg(unix)]
-fn is_same(file: &File, path: &Path) -> bool {
+pub fn is_still_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let (here, there) = (file.metadata(), fs::symlink_metadata(path));
-    here.is_ok_and(|here| there.is_ok_and(|there| (here.dev(), here.ino()) == (there.dev(), there.ino())))
+    let (opened, found) = (file.metadata(), fs::metadata(path));
+    opened.is_ok_and(|opened| found.is_ok_and(|found| (opened.dev(), opened.ino()) == (found.dev(), found.ino())))
 }
 
-/// Windows does not let other processes remove an open file.
+/// Whether `path` still refers to the open `file`; always true, since systems other than Unix do
+/// not let a process remove a file that another one has open.
 #[cfg(not(unix))]
-fn is_same(_file: &File, _path: &Path) -> bool {
+pub fn is_still_at(_file: &File, _path: &Path) -> bool {
     true
 }
 

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub struct AmbientOcclusion {
     /// Maximum distance of occluders, in scene units, above 0. The default is half of the diagonal
     /// of the scene's bounding box; smaller values confine darkening to corners.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub distance: Option<f32>,
 }
 

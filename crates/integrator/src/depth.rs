@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub struct Depth {
     /// Distance that is shown as 1 (white), in scene units, above 0. Without it the value is the
     /// distance itself, for EXR and PFM files.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub far: Option<f32>,
 }
 

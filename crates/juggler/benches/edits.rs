@@ -87,7 +87,7 @@ fn million_triangles() -> Result<(), Error> {
 
 /// Measures edits of the scene that `picture` renders.
 fn edits(scene: &Scene, picture: &Picture) -> Result<(), Error> {
-    let after = |edited: &Scene| picture.after(scene, edited, &Settings::default());
+    let after = |edited: &Scene| picture.rebuild(scene, edited, &Settings::default());
     timed("another camera, to a picture that is ready", RUNS, || {
         let mut edited = scene.clone();
         let camera = Perspective { eye: vec3(1.0, 1.5, 2.2), look_at: Vec3::ZERO.into(), ..Default::default() };

@@ -18,9 +18,9 @@ fn main() -> Result<(), Error> {
     // `Scene::load("name.json")` reads a file.
     let scene = Scene::from_json(SCENE, "lesson.json")?;
     let picture = Picture::new(&scene, &Settings::default())?;
-    picture.image(&Control::default())?.save("lesson.png")?;
+    picture.render_image(&Control::default())?.save("lesson.png")?;
     let above = Perspective { eye: vec3(0.0, 8.0, 2.0), look_at: vec3(0.0, 0.0, 0.0).into(), ..Default::default() };
-    let from_above = picture.seen(View { camera: above.into(), ..picture.view() })?;
-    from_above.image(&Control::default())?.save("from_above.png")?;
+    let from_above = picture.with_view(View { camera: above.into(), ..picture.view() })?;
+    from_above.render_image(&Control::default())?.save("from_above.png")?;
     Ok(())
 }

@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     let picture = Picture::new(&scene, &Settings::default())?;
     let control = Control::default();
     let image = thread::scope(|scope| {
-        let render = scope.spawn(|| picture.image(&control));
+        let render = scope.spawn(|| picture.render_image(&control));
         let start = Instant::now();
         while !render.is_finished() {
             let percent = 100.0 * control.samples() as f64 / picture.total_samples() as f64;

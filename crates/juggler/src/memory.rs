@@ -44,7 +44,7 @@ pub struct Effort {
     /// Number of threads, at least 1.
     pub threads: usize,
     /// Number of pixels held in memory when rows are written directly to a file, see
-    /// [`Picture::with_bands`].
+    /// [`Picture::with_band_pixels`].
     pub band_pixels: u64,
 }
 

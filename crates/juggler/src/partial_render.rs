@@ -33,7 +33,7 @@ impl Picture {
 
     /// Renders into a film until it is finished or `control` stops it. Samples of the film are
     /// kept.
-    pub fn expose(&self, film: &Film, control: &Control) -> Result<(), Cancelled> {
+    pub fn render_film(&self, film: &Film, control: &Control) -> Result<(), Cancelled> {
         juggler_render::render_progressive(&self.job(), film, self.limit().stop(), control)
     }
 
@@ -74,7 +74,7 @@ impl Picture {
         for (row, band) in (0..).zip(tiling.bands()) {
             let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..band.area() as usize));
-            writer.write_rows(&self.layers().band(&band, &tiles, rows))?;
+            writer.write_rows(&self.aovs().band_values(&band, &tiles, rows))?;
         }
         Ok(writer.finish()?)
     }
@@ -82,12 +82,12 @@ impl Picture {
     /// Gathers the denoiser's input from a film.
     pub fn denoiser_input(&self, film: &Film) -> DenoiserInput {
         let mut input = DenoiserInput::new(self.region());
-        film.tiles().for_each(|(_, tile)| input.add(self.layers(), &tile));
+        film.tiles().for_each(|(_, tile)| input.add(self.aovs(), &tile));
         input
     }
 
     /// Returns the stop condition in the form that partial renders store.
-    pub fn end(&self) -> Stop {
+    pub fn stop(&self) -> Stop {
         match *self.limit() {
             Limit::Samples => Stop::Samples,
             Limit::Noise(level) => Stop::Noise { level: f64::from(level) },
@@ -107,11 +107,11 @@ impl Picture {
             size: [width, height],
             region: self.region(),
             samples: self.samples(),
-            stop: self.end(),
+            stop: self.stop(),
             clamped: self.is_clamped(),
             aovs: AovDescription {
                 neighbor_frames: self.neighbor_fingerprint().to_owned(),
-                ..self.layers().to_description()
+                ..self.aovs().to_description()
             },
             shard,
             finished: false,

@@ -55,8 +55,9 @@ impl Picture {
         Self::from_compiled(scene, &adjusted, settings, compiled)
     }
 
-    /// Compiles an edited scene; the world of `before` is reused ([`Scene::compile_after`]).
-    pub fn after(&self, before: &Scene, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+    /// Compiles an edited scene. `before` is the scene of this picture, whose world is reused where
+    /// it still holds ([`Scene::compile_after`]).
+    pub fn rebuild(&self, before: &Scene, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         let (adjusted, before) = (settings.apply(scene)?, settings.apply(before)?);
         let compiled = adjusted.compile_after(&before, &self.compiled)?;
         Self::from_compiled(scene, &adjusted, settings, compiled)
@@ -102,7 +103,7 @@ impl Picture {
 
     /// Returns another view of the same world, without crop and limits. The camera's name is kept;
     /// motion vectors assume a static camera.
-    pub fn seen(&self, mut view: View) -> Result<Self, Error> {
+    pub fn with_view(&self, mut view: View) -> Result<Self, Error> {
         let integrator = view.render.integrator.get_or_insert_with(|| self.integrator().clone()).clone();
         let mut scene = Scene::new();
         let description = &mut scene.description;
@@ -157,7 +158,7 @@ impl Picture {
     /// Sets how many pixels are in memory when rows are written directly to a file, rounded to
     /// whole rows of tiles. The default is 2^22; the image does not depend on it.
     #[must_use]
-    pub fn with_bands(mut self, pixels: u64) -> Self {
+    pub fn with_band_pixels(mut self, pixels: u64) -> Self {
         self.band_pixels = pixels;
         self
     }
@@ -253,7 +254,7 @@ impl Picture {
     }
 
     /// Returns the AOVs.
-    pub fn layers(&self) -> &AovSet {
+    pub fn aovs(&self) -> &AovSet {
         &self.aovs
     }
 
@@ -325,7 +326,7 @@ impl Picture {
     }
 
     /// Renders into memory.
-    pub fn image(&self, control: &Control) -> Result<Image, Cancelled> {
+    pub fn render_image(&self, control: &Control) -> Result<Image, Cancelled> {
         let [width, height] = self.size();
         let mut image = Image::filled(width, height, Rgb::BLACK);
         let mut rest = image.pixels_mut();
@@ -350,7 +351,7 @@ impl Picture {
 /// # Ok::<(), juggler::Error>(())
 /// ```
 pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
-    Ok(Picture::new(scene, settings)?.image(&Control::default())?)
+    Ok(Picture::new(scene, settings)?.render_image(&Control::default())?)
 }
 
 /// Renders a scene to a file of any size, row by row; the extension selects the format. The file
@@ -373,7 +374,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seen_otherwise_it_is_the_picture_of_a_scene_that_says_so() {
+    fn another_view_is_the_picture_of_a_scene_with_that_view() {
         let object = juggler_scene::Object::new(juggler_shape::Sphere::default());
         let plain = Scene::new().size(16, 12).add(object);
         let camera = Perspective { vertical_fov_degrees: Some(30.0), ..Perspective::default() };
@@ -383,10 +384,10 @@ mod tests {
             let many = Settings { samples: Some(7), camera: name, ..Settings::default() };
             let picture = Picture::new(&scene, &few).unwrap();
             let expected = Picture::new(&scene, &many).unwrap();
-            let seen = picture.seen(View { render: expected.view().render, ..picture.view() }).unwrap();
-            assert_eq!(seen.fingerprint(), expected.fingerprint());
+            let viewed = picture.with_view(View { render: expected.view().render, ..picture.view() }).unwrap();
+            assert_eq!(viewed.fingerprint(), expected.fingerprint());
             let other = Perspective { vertical_fov_degrees: Some(50.0), ..Perspective::default() };
-            let moved = picture.seen(View { camera: other.into(), ..picture.view() }).unwrap();
+            let moved = picture.with_view(View { camera: other.into(), ..picture.view() }).unwrap();
             assert_ne!(moved.fingerprint(), picture.fingerprint());
         }
     }

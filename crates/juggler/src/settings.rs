@@ -1,7 +1,7 @@
 //! Settings that override values of a scene.
 
 use crate::kinds::{by_name, check_name};
-use crate::{Aov, Denoiser, Error};
+use crate::{Aov, Denoiser, Error, Picture};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_imaging::{Primaries, Tone, WhiteBalance};
 use juggler_integrator::AnyIntegrator;
@@ -9,6 +9,7 @@ use juggler_render::StopCriterion;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
 use juggler_scene::{IntegratorChoice, Scene};
+use std::ops::RangeInclusive;
 
 /// Default maximum number of samples per pixel under a noise limit.
 const MAX_SAMPLES_NOISE: u32 = 1 << 16;
@@ -167,15 +168,29 @@ impl Settings {
     }
 }
 
+impl Picture {
+    /// Returns the maximum path depth with its range: specular bounces under the integrator
+    /// `classic`, path segments under `path`. `None` for integrators without one.
+    pub fn max_depth(&self) -> Option<(u32, RangeInclusive<u32>)> {
+        max_depth(&mut self.integrator().clone()).map(|(depth, range)| (*depth, range))
+    }
+}
+
+/// Returns the maximum depth of an integrator with the range of the scene format; `None` if the
+/// integrator has none.
+fn max_depth(integrator: &mut AnyIntegrator) -> Option<(&mut u32, RangeInclusive<u32>)> {
+    match integrator {
+        AnyIntegrator::Classic(classic) => Some((&mut classic.max_depth, 0..=1000)),
+        AnyIntegrator::Path(path) => Some((&mut path.max_depth, 1..=10_000)),
+        _ => None,
+    }
+}
+
 /// Sets the maximum depth of an integrator that has one, within the range of the scene format.
 fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
-    let (place, range) = match integrator {
-        AnyIntegrator::Classic(classic) => (&mut classic.max_depth, 0..=1000),
-        AnyIntegrator::Path(path) => (&mut path.max_depth, 1..=10_000),
-        other => {
-            let name = other.name();
-            return Err(Error::Settings(format!("the integrator `{name}` has no maximum depth")));
-        }
+    let name = integrator.name();
+    let Some((place, range)) = max_depth(integrator) else {
+        return Err(Error::Settings(format!("the integrator `{name}` has no maximum depth")));
     };
     if !range.contains(&depth) {
         let (least, most) = (range.start(), range.end());

@@ -17,7 +17,7 @@ pub struct Ambient {
     /// Color of the light, linear RGB.
     pub color: Rgb,
     /// Factor on `color`.
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W/(scene unit² sr)"))]
     pub intensity: f32,
 }
 

@@ -26,7 +26,7 @@ pub struct Area {
     /// Form and size of the surface.
     pub shape: AreaShape,
     /// Center of the surface, world space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub position: Vec3,
     /// Direction that the front faces, of any length. Without it and without `look_at`, the front
     /// faces straight down. A sphere has no front.
@@ -35,19 +35,19 @@ pub struct Area {
     pub direction: Option<Vec3>,
     /// Point that the front faces, in world space; replaces `direction`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<[f32; 3]>")]
+    #[schemars(with = "Option<[f32; 3]>", extend("x-unit" = "scene units"))]
     pub look_at: Option<Vec3>,
     /// Color of the light, linear RGB; a factor on `radiance` or `power`.
     pub color: Rgb,
     /// Radiance of the front in watts per square scene unit and steradian, times `color`. It
     /// determines how bright the surface looks. The default is 1, unless `power` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W/(scene unit² sr)"))]
     pub radiance: Option<f32>,
     /// Radiant flux of the whole surface in watts per channel, times `color`; replaces `radiance`.
     /// At the same power, a larger surface has a lower radiance.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W"))]
     pub power: Option<f32>,
     /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,18 +62,19 @@ pub enum AreaShape {
     Rectangle {
         /// Width and height in scene units. The width is horizontal.
         #[schemars(extend("items" = {"type": "number", "format": "float", "exclusiveMinimum": 0}))]
+        #[schemars(extend("x-unit" = "scene units"))]
         size: [f32; 2],
     },
     /// A disk that emits to one side.
     Disk {
         /// Radius in scene units.
-        #[schemars(extend("exclusiveMinimum" = 0))]
+        #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
         radius: f32,
     },
     /// A sphere that emits outwards.
     Sphere {
         /// Radius in scene units.
-        #[schemars(extend("exclusiveMinimum" = 0))]
+        #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
         radius: f32,
     },
 }
@@ -251,7 +252,7 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn it_faces_where_it_is_told_its_width_level() {
+    fn it_faces_its_direction_with_its_width_level() {
         let facing = |area: &Area| area.shape_and_transform().unwrap().1.normal(Vec3::Y);
         assert_eq!(facing(&Area::default()), Vec3::NEG_Y);
         let along = Area { direction: Some(Vec3::new(0.0, 0.0, 5.0)), ..Area::default() };

@@ -17,7 +17,7 @@ fn sampled_point(from: Vec3, sample: &LightSample) -> Vec3 {
 }
 
 #[test]
-fn samples_are_finite_and_unit_wherever_they_are_asked() {
+fn samples_are_finite_and_unit_at_any_point() {
     let mut random = Random::new(91);
     for light in prepared_examples() {
         light.check().unwrap();
@@ -199,7 +199,7 @@ fn json_goes_round() {
     for mut light in AnyLight::examples() {
         // The JSON does not contain the photometric data of the file.
         if let Some(ies) = light.ies() {
-            *ies = Ies::from_file("lamp.ies");
+            *ies = Ies::from_file("luminaire.ies");
         }
         let text = serde_json::to_string(&light).unwrap();
         assert_eq!(serde_json::from_str::<AnyLight>(&text).unwrap(), light, "{text}");

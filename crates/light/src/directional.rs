@@ -23,17 +23,17 @@ pub struct Directional {
     /// Color of the light, linear RGB.
     pub color: Rgb,
     /// Factor on `color`. The product is the irradiance on a surface that faces the light.
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W/scene unit²"))]
     pub intensity: f32,
     /// Angular diameter of the light's disk, in degrees. Larger angles give softer shadows; the sun
     /// has 0.53. The default, 0, gives hard shadows.
     #[serde(skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0, max = 180))]
+    #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     pub angle_degrees: f32,
     /// Number of shadow rays per shading point, sampled over the disk. Only the classic integrator
     /// uses it. More samples give less noise in penumbras. Without an angle it has no effect.
     #[serde(skip_serializing_if = "is_one")]
-    #[schemars(range(min = 1, max = 10_000))]
+    #[schemars(range(min = 1, max = 10_000), extend("x-unit" = "samples"))]
     pub samples: u32,
     /// Light group; the light of each group is written to its own AOV.
     #[serde(skip_serializing_if = "Option::is_none")]

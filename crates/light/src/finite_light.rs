@@ -35,13 +35,13 @@ pub enum Extent {
     /// Sphere. The hemisphere that faces the lit point emits uniformly.
     Sphere {
         /// Radius in scene units, 0 or more.
-        #[schemars(range(min = 0))]
+        #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
         radius: f32,
     },
     /// Square that always faces the lit point.
     Square {
         /// Edge length in scene units, 0 or more.
-        #[schemars(range(min = 0))]
+        #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
         side: f32,
     },
 }

@@ -24,7 +24,7 @@ pub struct Ies {
     /// counterclockwise as seen from behind the luminaire. At 0, the horizontal angle 0 points
     /// along +X if the luminaire hangs down.
     #[serde(default)]
-    #[schemars(range(min = -10000, max = 10000))]
+    #[schemars(range(min = -10000, max = 10000), extend("x-unit" = "degrees"))]
     pub rotation_degrees: f32,
     /// Whether the intensity is multiplied by the file's candelas. By default it is multiplied by
     /// the candelas relative to their maximum, so that the file changes only the distribution.
@@ -199,7 +199,7 @@ pub(super) mod tests {
 
     /// Luminaire that emits downward and to one side.
     pub fn luminaire() -> Ies {
-        let mut ies = Ies::from_file("lamp.ies");
+        let mut ies = Ies::from_file("luminaire.ies");
         let text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 4 1 2 0 0 0\n1 1 20\n0 30 90 120\n0 90 180 270\n\
             100 80 20 5\n100 60 10 0\n100 40 5 0\n100 60 30 1\n";
         ies.load(text).unwrap();

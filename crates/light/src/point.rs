@@ -9,7 +9,7 @@
 //! gives I = Φ / 4π, times `color` per channel.
 //!
 //! A photometric file gives the light the measured distribution of a luminaire:
-//! `"ies": {"file": "lamp.ies"}`.
+//! `"ies": {"file": "luminaire.ies"}`.
 
 use super::finite_light::{self, Attenuation, Extent};
 use super::strength::Strength;
@@ -25,7 +25,7 @@ use std::f32::consts::PI;
 #[serde(default)]
 pub struct Point {
     /// Center of the light, in world space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub position: Vec3,
     /// Color of the light, linear RGB.
     pub color: Rgb,
@@ -33,12 +33,12 @@ pub struct Point {
     /// facing surface at distance 1 with the default attenuation. The default is 1, unless `power`
     /// is given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W/sr"))]
     pub intensity: Option<f32>,
     /// Radiant flux in watts per channel, times `color`; replaces `intensity`. The intensity is
     /// power / 4π. A photometric file distributes the same flux over directions.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W"))]
     pub power: Option<f32>,
     /// Falloff with distance.
     pub attenuation: Attenuation,
@@ -48,7 +48,7 @@ pub struct Point {
     /// Number of shadow rays per shading point, sampled over the extent. Only the classic
     /// integrator uses it. More samples give less noise in penumbras. Without an extent it has no
     /// effect.
-    #[schemars(range(min = 1, max = 10_000))]
+    #[schemars(range(min = 1, max = 10_000), extend("x-unit" = "samples"))]
     pub samples: u32,
     /// Photometric file with the measured distribution of intensity over directions.
     #[serde(skip_serializing_if = "Option::is_none")]

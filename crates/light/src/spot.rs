@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Spot {
     /// Center of the light, in world space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub position: Vec3,
     /// Axis of the cone, in world space, of any length.
     #[schemars(with = "[f32; 3]")]
@@ -40,23 +40,23 @@ pub struct Spot {
     /// irradiance of a facing surface on the axis at distance 1 with the default attenuation. The
     /// default is 1, unless `power` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W/sr"))]
     pub intensity: Option<f32>,
     /// Radiant flux of the whole cone in watts per channel, times `color`; replaces `intensity`. At
     /// the same power, a narrower cone is brighter.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1e30))]
+    #[schemars(range(min = 0, max = 1e30), extend("x-unit" = "W"))]
     pub power: Option<f32>,
     /// Falloff with distance.
     pub attenuation: Attenuation,
     /// Angle from the axis up to which the intensity is constant, in degrees. Between
     /// `beam_degrees` and `cutoff_degrees` the intensity falls linearly with the angle itself, not
     /// with its cosine, and without a smooth step.
-    #[schemars(range(min = 0, max = 180))]
+    #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     pub beam_degrees: f32,
     /// Cut-off angle: the angle from the axis beyond which the light emits nothing, in degrees;
     /// `beam_degrees` or more.
-    #[schemars(range(min = 0, max = 180))]
+    #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     pub cutoff_degrees: f32,
     /// Exponent of the cosine of the angle from the axis. Larger values concentrate the light
     /// around the axis; 0 has no effect.
@@ -68,7 +68,7 @@ pub struct Spot {
     /// Number of shadow rays per shading point, sampled over the extent. Only the classic
     /// integrator uses it. More samples give less noise in penumbras. Without an extent it has no
     /// effect.
-    #[schemars(range(min = 1, max = 10_000))]
+    #[schemars(range(min = 1, max = 10_000), extend("x-unit" = "samples"))]
     pub samples: u32,
     /// Photometric file with the measured distribution of intensity over directions.
     #[serde(skip_serializing_if = "Option::is_none")]

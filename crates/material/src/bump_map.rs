@@ -26,6 +26,7 @@ pub struct BumpMap {
     pub height: Input<f32>,
     /// Displacement that a height of 1 stands for, in scene units, -1e6 to 1e6. Negative values
     /// turn bumps into dents.
+    #[schemars(range(min = -1e6, max = 1e6), extend("x-unit" = "scene units"))]
     pub distance: f32,
     /// Material that the bumped normals shade.
     pub material: MaterialRef,
@@ -58,8 +59,8 @@ impl Material for BumpMap {
         Ok(CompiledMaterial::BumpMap(CompiledBumpMap { height, distance: self.distance, material }))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        vec![&self.material]
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        vec![("material", &self.material)]
     }
 }
 

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Checkerboard {
     /// Edge length of a cell, in units of object space.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub size: f32,
     /// Coordinate plane of the cells. The pattern is constant along the third axis.
     pub plane: Plane,
@@ -68,8 +68,8 @@ impl Material for Checkerboard {
         Ok(CompiledMaterial::Checkerboard(CompiledCheckerboard { size: self.size, plane: self.plane, even, odd }))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        vec![&self.even, &self.odd]
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        vec![("even", &self.even), ("odd", &self.odd)]
     }
 }
 

@@ -10,7 +10,9 @@
 use super::error::in_range;
 use super::input::{check_unit_color, unit_color};
 use super::roughness::Roughness;
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView,
+};
 use juggler_bsdf::metals::Metal;
 use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
 use juggler_math::Rgb;
@@ -49,6 +51,7 @@ pub struct Conductor {
     /// surface's u, negative values along v.
     pub anisotropy: Input<f32>,
     /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
+    #[schemars(extend("x-unit" = "turns"))]
     pub anisotropy_rotation: Input<f32>,
     /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017):
     /// rough white metal stays white. Set it to `false` to match renderers with single scattering
@@ -156,19 +159,34 @@ impl Material for Conductor {
         }
         Ok(CompiledMaterial::scattering(compiled))
     }
+
+    fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
+        let default = Self::default();
+        let indices = [("eta", self.eta.is_some()), ("k", self.k.is_some())];
+        let edge_tint = ("edge_tint", self.edge_tint != default.edge_tint);
+        let colors = [("reflectance", self.reflectance != default.reflectance), edge_tint];
+        let colors = colors.into_iter().chain([("grazing", self.grazing.is_some())]);
+        let (replaced_by, fields) = match (self.metal, self.eta.and(self.k), self.grazing) {
+            (Some(_), ..) => ("metal", indices.into_iter().chain(colors).collect()),
+            (None, Some(_), _) => ("eta", colors.collect()),
+            (None, None, Some(_)) => ("grazing", vec![edge_tint]),
+            (None, None, None) => ("", Vec::new()),
+        };
+        let given = fields.into_iter().filter(|(_, is_given)| *is_given);
+        given.map(|(field, _)| IneffectiveSetting { field, replaced_by }).collect()
+    }
 }
 
 impl Conductor {
     fn color(&self, textures: &TextureTable) -> Result<Color, MaterialError> {
+        let channels = |color: Option<Rgb>| color.into_iter().flat_map(Rgb::to_array);
+        channels(self.eta).try_for_each(|v| in_range("eta", v, 1e-3, 1e3))?;
+        channels(self.k).try_for_each(|v| in_range("k", v, 0.0, 1e3))?;
         if let Some(metal) = self.metal {
             return Ok(Color::Measured(metal.fresnel()));
         }
         match (self.eta, self.k) {
-            (Some(eta), Some(k)) => {
-                eta.to_array().iter().try_for_each(|v| in_range("eta", *v, 1e-3, 1e3))?;
-                k.to_array().iter().try_for_each(|v| in_range("k", *v, 0.0, 1e3))?;
-                Ok(Color::Measured(Fresnel::Complex { eta, k }))
-            }
+            (Some(eta), Some(k)) => Ok(Color::Measured(Fresnel::Complex { eta, k })),
             (None, None) => {
                 let f0 = textures.resolve("reflectance", &self.reflectance)?;
                 Ok(match self.grazing {
@@ -268,6 +286,7 @@ impl Conductor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MaterialCompiler;
     use juggler_bsdf::metals::METALS;
 
     fn parse(name: &str) -> Result<MetalName, serde_json::Error> {
@@ -282,6 +301,43 @@ mod tests {
             assert_eq!(serde_json::to_value(name).unwrap(), metal.name);
         }
         assert!(parse("unobtainium").is_err() && parse("Gold").is_err());
+    }
+
+    fn compile(conductor: &Conductor) -> Result<(), (String, String)> {
+        let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
+        let compiled = compiler.compile(&conductor.clone().into());
+        compiled.map(drop).map_err(|error| (error.path(), error.to_string()))
+    }
+
+    #[test]
+    fn indices_beside_a_metal_are_checked_and_named_as_ineffective() {
+        let of = |json: &str| serde_json::from_str::<Conductor>(json).unwrap();
+        let wrong = [
+            (r#"{"metal": "gold", "eta": [5000, 1, 1]}"#, "conductor.eta"),
+            (r#"{"metal": "gold", "k": [1, -1, 1]}"#, "conductor.k"),
+            (r#"{"eta": [1, 1, 1], "k": [1, 1, 5000]}"#, "conductor.k"),
+            (r#"{"eta": [1, 1, 1]}"#, "conductor.k"),
+        ];
+        for (json, path) in wrong {
+            assert_eq!(compile(&of(json)).unwrap_err().0, path, "{json}");
+        }
+        let known: [(&str, &str, &[&str]); 6] = [
+            (r#"{"metal": "gold", "roughness": 0.2}"#, "", &[]),
+            (r#"{"metal": "gold", "eta": [1, 1, 1]}"#, "metal", &["eta"]),
+            (
+                r#"{"metal": "gold", "eta": [1, 1, 1], "k": [1, 1, 1], "grazing": [1, 1, 1]}"#,
+                "metal",
+                &["eta", "k", "grazing"],
+            ),
+            (r#"{"eta": [1, 1, 1], "k": [1, 1, 1], "reflectance": [0.5, 0.5, 0.5]}"#, "eta", &["reflectance"]),
+            (r#"{"grazing": [1, 1, 1], "edge_tint": [0.5, 0.5, 0.5]}"#, "grazing", &["edge_tint"]),
+            (r#"{"reflectance": [0.5, 0.5, 0.5], "edge_tint": [0.5, 0.5, 0.5]}"#, "", &[]),
+        ];
+        for (json, replaced_by, fields) in known {
+            assert_eq!(compile(&of(json)), Ok(()), "{json}");
+            let expected: Vec<_> = fields.iter().map(|&field| IneffectiveSetting { field, replaced_by }).collect();
+            assert_eq!(of(json).ineffective_settings(), expected, "{json}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Contract of all materials, and values of the classic material.
 
 use super::*;
-use juggler_bsdf::{Highlight, PhongParameters, RayCone};
+use juggler_bsdf::{ConeSampling, Highlight, PhongParameters};
 use juggler_math::{Frame, Rgb, Vec2, Vec3};
 use juggler_shape::surface::Tangents;
 use juggler_texture::AnyTexture;
@@ -53,8 +53,8 @@ fn weights_and_colors_multiply() {
     assert!(near(lobe.transparency, [0.0, 0.5, 1.0]));
     assert_eq!((lobe.shininess, lobe.highlight, lobe.occlusion), (53.0, Highlight::PhongCosine, 0.5));
     assert_eq!((lobe.ior, lobe.fresnel, lobe.both_sides), (1.5, true, true));
-    assert_eq!(lobe.glossy, RayCone { half_angle_radians: std::f32::consts::FRAC_PI_6, rays: 64 });
-    assert_eq!(lobe.blurry, RayCone { half_angle_radians: std::f32::consts::FRAC_PI_4, rays: 1 });
+    assert_eq!(lobe.glossy, ConeSampling { half_angle_radians: std::f32::consts::FRAC_PI_6, rays: 64 });
+    assert_eq!(lobe.blurry, ConeSampling { half_angle_radians: std::f32::consts::FRAC_PI_4, rays: 1 });
 }
 
 #[test]

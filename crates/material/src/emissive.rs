@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Emissive {
     /// Emitted radiance, 0 to 1e30 per channel, also after multiplication by `scale`.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub radiance: Input<Rgb>,
     /// Factor on the radiance.
     #[schemars(range(min = 0, max = 1e30))]
@@ -66,8 +67,8 @@ impl Material for Emissive {
         Ok(CompiledMaterial::Emissive(CompiledEmissive::new(radiance, self.scale, self.sides, material)))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        self.material.iter().collect()
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        self.material.iter().map(|material| ("material", material)).collect()
     }
 
     fn is_area_light(&self) -> bool {

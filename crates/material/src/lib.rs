@@ -95,6 +95,15 @@ impl<'de> Deserialize<'de> for MaterialRef {
     }
 }
 
+/// Setting of a material that has no effect because another setting replaces it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IneffectiveSetting {
+    /// Name of the field without effect.
+    pub field: &'static str,
+    /// Name of the field that replaces it.
+    pub replaced_by: &'static str,
+}
+
 /// Resolves the names in a material's description while it is compiled.
 pub trait MaterialResolver {
     /// The scene's textures.
@@ -110,8 +119,14 @@ pub trait Material: Send + Sync {
     /// Checks the description and resolves its names.
     fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError>;
 
-    /// Materials nested in this one.
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
+    /// Materials nested in this one, each with the name of its field.
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        Vec::new()
+    }
+
+    /// Settings that have no effect because other settings replace them, nested materials not
+    /// counted. They are no errors.
+    fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
         Vec::new()
     }
 

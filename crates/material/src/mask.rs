@@ -50,8 +50,8 @@ impl Material for Mask {
         Ok(CompiledMaterial::Mask(CompiledMask::new(opacity, self.cutoff, material)))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        vec![&self.material]
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        vec![("material", &self.material)]
     }
 }
 

@@ -44,8 +44,8 @@ impl Material for Mix {
         Ok(CompiledMaterial::Mix(CompiledMix { amount, a, b }))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        vec![&self.a, &self.b]
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        vec![("a", &self.a), ("b", &self.b)]
     }
 }
 

@@ -59,8 +59,8 @@ impl Material for NormalMap {
         Ok(CompiledMaterial::NormalMap(CompiledNormalMap { texture, strength, material }))
     }
 
-    fn nested_materials(&self) -> Vec<&MaterialRef> {
-        vec![&self.material]
+    fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
+        vec![("material", &self.material)]
     }
 }
 

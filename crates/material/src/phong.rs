@@ -20,7 +20,7 @@
 
 use super::error::in_range;
 use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, Sides, SurfaceEmission};
-use juggler_bsdf::{Highlight, PhongParameters, RayCone};
+use juggler_bsdf::{ConeSampling, Highlight, PhongParameters};
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
@@ -34,6 +34,7 @@ use std::borrow::Cow;
 #[serde(default)]
 pub struct Phong {
     /// Emitted radiance, 0 or more per channel.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub emission: Input<Rgb>,
     /// Weight of ambient light, 0 or more per channel; a factor on `diffuse`.
     pub ambient: Input<Rgb>,
@@ -101,7 +102,7 @@ impl DiffuseNormalization {
 #[serde(default)]
 pub struct Spread {
     /// Half of the cone's opening angle, in degrees. 0 gives sharp images, larger values blur more.
-    #[schemars(range(min = 0, max = 90))]
+    #[schemars(range(min = 0, max = 90), extend("x-unit" = "degrees"))]
     pub half_angle_degrees: f32,
     /// Rays per sample in the integrator `classic`. More rays reduce noise.
     #[schemars(range(min = 1, max = 10_000))]
@@ -239,8 +240,8 @@ impl Phong {
 }
 
 impl Spread {
-    fn cone(self) -> RayCone {
-        RayCone { half_angle_radians: self.half_angle_degrees.to_radians(), rays: self.rays }
+    fn cone(self) -> ConeSampling {
+        ConeSampling { half_angle_radians: self.half_angle_degrees.to_radians(), rays: self.rays }
     }
 }
 

@@ -32,6 +32,7 @@ pub struct Plastic {
     /// surface's u, negative values along v.
     pub anisotropy: Input<f32>,
     /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
+    #[schemars(extend("x-unit" = "turns"))]
     pub anisotropy_rotation: Input<f32>,
     /// Tint of the coating's reflection, 0 to 1 per channel. White is physical.
     pub reflection_tint: Input<Rgb>,

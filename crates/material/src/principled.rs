@@ -47,6 +47,7 @@ pub struct Principled {
     /// u.
     pub anisotropy: Input<f32>,
     /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
+    #[schemars(extend("x-unit" = "turns"))]
     pub anisotropy_rotation: Input<f32>,
     /// Coverage by the clearcoat, 0 to 1.
     pub clearcoat: Input<f32>,
@@ -65,6 +66,7 @@ pub struct Principled {
     #[schemars(range(min = 1, max = 10))]
     pub iridescence_ior: f32,
     /// Thickness of the thin film in nanometers, 0 to 1e6.
+    #[schemars(extend("x-unit" = "nm"))]
     pub iridescence_thickness: Input<f32>,
     /// Share of glass in the part that is not metal, 0 to 1. The rest is plastic.
     pub transmission: Input<f32>,
@@ -83,6 +85,7 @@ pub struct Principled {
     pub priority: i32,
     /// Emitted radiance on both sides, 0 to 1e30 per channel, also after multiplication by
     /// `emissive_strength`. Black emits nothing.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub emissive: Input<Rgb>,
     /// Factor on `emissive`.
     #[schemars(range(min = 0, max = 1e30))]
@@ -365,7 +368,7 @@ impl Principled {
             alpha_cutoff: Some(0.1),
             ..Self::default()
         };
-        let lamp = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
-        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, lamp]
+        let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
+        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter]
     }
 }

@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn uniform_scales_are_told_from_others() {
+    fn uniform_scales_are_recognized() {
         let mut random = Random::new(97);
         for factor in [1e-4, -0.5, 1.0, 700.0] {
             let t = Transform::scale(Vec3::splat(factor)).unwrap().then(&random.rotation());

@@ -158,7 +158,7 @@ fn mirror_furnace_keeps_its_filter() {
 }
 
 #[test]
-fn a_lamp_over_a_floor_obeys_the_inverse_square() {
+fn a_light_over_a_floor_obeys_the_inverse_square() {
     let material = r#"{"phong": {"diffuse": 0.5, "ambient": 0, "specular": 0}}"#;
     let objects = [(r#"{"plane": {}}"#, Vec3::ZERO, material)];
     let light = r#"{"point": {"position": [3, 4, 0], "intensity": 100}}"#;
@@ -185,7 +185,7 @@ fn occlusion_of_an_endless_wall_is_a_half() {
 }
 
 #[test]
-fn glass_ball_shows_fresnel_and_bends_light() {
+fn a_glass_sphere_shows_fresnel_and_bends_light() {
     // Through the center of a sphere of index 1.5 in a white field: (1 − R)² of the light is
     // transmitted and R is reflected. Internal reflections are followed, so that no energy is lost.
     let material = r#"{"phong": {"diffuse": 0, "ambient": 0, "specular": 0, "reflection": 1, "transparency": 1,
@@ -201,7 +201,7 @@ fn glass_ball_shows_fresnel_and_bends_light() {
 }
 
 #[test]
-fn transparent_things_cast_colored_shadows() {
+fn transparent_objects_cast_colored_shadows() {
     let floor = r#"{"phong": {"diffuse": 1, "ambient": 0, "specular": 0}}"#;
     let pane = r#"{"phong": {"diffuse": 0, "ambient": 0, "transparency": [1, 0.5, 0.25]}}"#;
     let objects = [

@@ -161,6 +161,6 @@ impl IntegratorRequirements {
         } else if parts.is_empty() {
             self.physical = self.physical.take().or_else(|| part(false));
         }
-        parts.into_iter().for_each(|part| self.inline(part, path));
+        parts.into_iter().for_each(|(_, part)| self.inline(part, path));
     }
 }

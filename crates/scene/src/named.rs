@@ -48,12 +48,12 @@ pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'
     let near = |names: &[String]| closest(file_name, names.iter().map(String::as_str)).map(str::to_owned);
     if path.extension().is_some() || !folder.as_os_str().is_empty() {
         let meant = near(&files).map(|near| folder.join(near).display().to_string());
-        return UnknownName { message: format!("no file is called `{name}`{}", question(meant)), is_file: true };
+        return UnknownName { message: format!("file not found: `{name}`{}", question(meant)), is_file: true };
     }
     // A colon precedes the size of a built-in mesh.
     let bare = file_name.split(':').next().unwrap_or_default();
     let meant = closest(bare, built_in).map(str::to_owned).or_else(|| near(&files));
-    let message = format!("no file and no built-in {what} is called `{name}`{}", question(meant));
+    let message = format!("unknown {what} `{name}`: neither a file nor a built-in {what}{}", question(meant));
     UnknownName { message, is_file: false }
 }
 

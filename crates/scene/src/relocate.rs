@@ -87,9 +87,9 @@ mod tests {
 
     #[test]
     fn the_way_from_a_folder_to_a_file() {
-        let way = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
-        assert_eq!(way("/none/a", "/none/a/b/c.obj"), Path::new("b/c.obj"));
-        assert_eq!(way("/none/a/d/e", "/none/a/b/c.obj"), Path::new("../../b/c.obj"));
-        assert_eq!(way("/none/a", "/other/c.obj"), Path::new("../../other/c.obj"));
+        let path = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
+        assert_eq!(path("/none/a", "/none/a/b/c.obj"), Path::new("b/c.obj"));
+        assert_eq!(path("/none/a/d/e", "/none/a/b/c.obj"), Path::new("../../b/c.obj"));
+        assert_eq!(path("/none/a", "/other/c.obj"), Path::new("../../other/c.obj"));
     }
 }

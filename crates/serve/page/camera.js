@@ -1,6 +1,6 @@
 // Conversion of key presses and drags to edits, with the same constants as in the native window.
 
-const SIZES_PER_SECOND = 0.25, DEGREES_PER_SECOND = 60, ZOOM_PER_SECOND = 1, FAST = 4;
+const DEGREES_PER_SECOND = 60, ZOOM_PER_SECOND = 1, FAST = 4;
 const ORBIT_DEGREES = 0.35, PARALLEL_DEGREES = 0.15, WHEEL_POINTS = 400;
 const LONGEST_STEP = 0.1;
 const DEFAULT_FIELD = 40, DEFAULT_HEIGHT = 4;
@@ -33,10 +33,11 @@ function halfHeight(camera, shape) {
   return Math.tan(((camera.vertical_fov_degrees ?? DEFAULT_FIELD) * RADIANS) / 2);
 }
 
-/// Returns the edits of keys that were held for some seconds.
-export function held(motions, fast, seconds, extent) {
+/// Returns the edits of keys that were held for some seconds; `flightSpeed` is in scene units per
+/// second.
+export function held(motions, fast, seconds, flightSpeed) {
   const time = Math.min(seconds, LONGEST_STEP) * (fast ? FAST : 1);
-  const step = extent * SIZES_PER_SECOND * steering.speed * time;
+  const step = flightSpeed * steering.speed * time;
   const fly = {};
   let zoom = 0;
   for (const [axis, sign] of motions) {

@@ -187,7 +187,7 @@ function stepFrame(step) {
 
 const keys = new Keys({
   commands,
-  hold: (motions, fast, seconds) => status && held(motions, fast, seconds, status.extent).forEach(edit),
+  hold: (motions, fast, seconds) => status && held(motions, fast, seconds, status.flight_speed).forEach(edit),
   isBlocked: () => document.querySelector("dialog[open]") !== null,
 });
 

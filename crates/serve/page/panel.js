@@ -116,6 +116,7 @@ export function showStatus(status, title, edit) {
   byId("denoise").ariaPressed = `${status.denoise}`;
   show("samples", status.samples_wanted);
   byId("depth-row").hidden = status.max_depth === null;
+  [byId("max-depth").min, byId("max-depth").max] = status.depth_range;
   show("max-depth", status.max_depth ?? "");
   byId("size").options[0].textContent = `${status.size[0]} × ${status.size[1]}`;
   for (const [axis, id] of ["width", "height"].entries()) if (byId("own-size").hidden) byId(id).value = status.size[axis];

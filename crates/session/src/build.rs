@@ -93,7 +93,7 @@ impl BuildRequest {
         let mut picture = self.picture(&scene)?;
         let upward = picture.view().camera.up();
         if let Some(camera) = &self.camera {
-            picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
+            picture = picture.with_view(View { camera: camera.clone(), ..picture.view() })?;
         }
         let Self { name, values, frame, settings, size, camera, bookmarks, gains, .. } = self;
         let chosen = self.interest.filter(|_| camera.is_some());
@@ -148,7 +148,7 @@ impl BuildRequest {
 
     fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
         match &self.previous {
-            Some((before, picture)) => picture.after(before, scene, &self.settings),
+            Some((before, picture)) => picture.rebuild(before, scene, &self.settings),
             _ => Picture::new(scene, &self.settings),
         }
     }

@@ -56,9 +56,9 @@ impl Worker {
         let picture = subject.picture();
         let denoised = self.run_cancellable(Duration::ZERO, &control, || {
             let mut input = DenoiserInput::new(picture.region());
-            film.tiles().for_each(|(_, tile)| input.add(picture.layers(), &tile));
+            film.tiles().for_each(|(_, tile)| input.add(picture.aovs(), &tile));
             // The own denoiser cannot fail; it returns `None` only when cancelled.
-            input.denoise(picture.layers().denoiser()?, None, &control).ok()?
+            input.denoise(picture.aovs().denoiser()?, None, &control).ok()?
         });
         if denoised.is_none() && self.shared.mailbox().has_work() {
             return;

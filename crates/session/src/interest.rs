@@ -32,6 +32,16 @@ impl Subject {
         object.filter(|bounds| !bounds.is_empty()).unwrap_or(all)
     }
 
+    /// Returns the speed of the keys that move the camera, in scene units per second: the camera
+    /// covers its distance to the point of interest in one second. The speed is at least 1/400 and
+    /// at most 1/4 of the scene's extent, so that neither a surface in front of the camera stops it
+    /// nor a distant one makes it too fast.
+    pub fn flight_speed(&self) -> f32 {
+        let extent = self.extent();
+        let distance = self.picture.view().camera.axes().map_or(extent, |axes| axes.eye.distance(self.interest));
+        distance.clamp(extent / 400.0, extent / 4.0)
+    }
+
     /// Sets the point of interest of a new camera: its `look_at` if in view and within the scene,
     /// else the visible point at the image center.
     pub(crate) fn init_interest(&mut self) {
@@ -95,5 +105,39 @@ impl Subject {
         let ahead = (center - axes.eye).dot(axes.forward);
         let ahead = if ahead > 0.0 { ahead } else { self.extent() };
         self.interest = axes.eye + axes.forward * ahead;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{BuildRequest, Edit, Fly, Subject};
+    use juggler::scene::Scene;
+
+    /// A sphere at the origin, seen from a distance of 100, between spheres 20,000 apart.
+    fn subject() -> Subject {
+        let sphere = |x: i32| format!(r#"{{"shape": "sphere", "transform": [{{"translate": [{x}, 0, 0]}}]}}"#);
+        let objects = [-10_000, 0, 10_000].map(sphere).join(", ");
+        let text = format!(
+            r#"{{"version": 1, "render": {{"size": [32, 24]}}, "objects": [{objects}],
+                "camera": {{"perspective": {{"eye": [0, 0, 101], "direction": [0, 0, -1]}}}}}}"#
+        );
+        let scene = Scene::from_json(text, "scene.json").unwrap();
+        BuildRequest::from_scene(scene, "scene.json", None).run().unwrap()
+    }
+
+    #[test]
+    fn flying_slows_down_near_objects() {
+        let mut subject = subject();
+        let mut at = |forward: f32| {
+            subject.apply(&Edit::Fly(Fly { forward, ..Fly::default() })).unwrap();
+            subject.flight_speed()
+        };
+        // The camera sees the front of the sphere, at z = 1.
+        assert!((at(0.0) - 100.0).abs() < 1e-2);
+        assert!((at(25.0) - 75.0).abs() < 1e-2);
+        let least = at(74.99);
+        assert!((least - 20_002.0 / 400.0).abs() < 0.1, "{least}");
+        let most = at(-1e6);
+        assert!((most - 20_002.0 / 4.0).abs() < 1.0, "{most}");
     }
 }

@@ -31,7 +31,7 @@ fn relit(job: &Job, region: Rect, layers: &AovSet, gains: &[Rgb], control: &Cont
     let film = Film::new(Tiling::new(region), 0..1);
     render::render_progressive(job, &film, StopCriterion::Samples, control)?;
     let mut pixels = vec![Rgb::BLACK; region.area() as usize];
-    film.tiles().for_each(|(_, tile)| tile.pixels().copy_into(&layers.relit(&tile, gains), &region, &mut pixels));
+    film.tiles().for_each(|(_, tile)| tile.pixels().copy_into(&layers.relight(&tile, gains), &region, &mut pixels));
     Ok(pixels)
 }
 
@@ -60,7 +60,7 @@ pub fn render_preview(
     let job = Job { camera: &camera, integrator, samples: 1, ..job };
     let region = Rect { x: 0, y: 0, width, height };
     if !gains.is_empty() && channel.is_light() {
-        return Ok(Preview { size, pixels: relit(&job, region, picture.layers(), gains, control)? });
+        return Ok(Preview { size, pixels: relit(&job, region, picture.aovs(), gains, control)? });
     }
     let job = Job { aovs: &aov::NO_AOVS, ..job };
     let mut pixels = Vec::new();

@@ -225,13 +225,13 @@ impl Worker {
             mailbox.job_ended = false;
         }
         (self.status.stage, self.status.coarseness) = (Stage::Refining, 1);
-        self.expose(&subject, &film, &control);
+        self.render_film(&subject, &film, &control);
         true
     }
 
     /// Renders into the film and displays it periodically, until it is finished, is due for
     /// denoising, or there is new work.
-    fn expose(&mut self, subject: &Subject, film: &Film, control: &Control) {
+    fn render_film(&mut self, subject: &Subject, film: &Film, control: &Control) {
         let picture = subject.picture();
         let (shared, pool) = (Arc::clone(&self.shared), Arc::clone(&self.pool));
         let (began, mut interval) = (Instant::now(), FIRST_SHOW);

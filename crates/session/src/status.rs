@@ -62,9 +62,11 @@ pub struct Status {
     pub scheduler: String,
     /// Name of the integrator.
     pub integrator: String,
-    /// Maximum number of specular bounces of the integrator `classic`; `None` for other
-    /// integrators.
+    /// Maximum path depth: specular bounces under `classic`, path segments under `path`; `None`
+    /// for integrators without one.
     pub max_depth: Option<u32>,
+    /// Smallest and largest maximum path depth of the integrator; zeros if it has none.
+    pub depth_range: [u32; 2],
     /// Whether denoising is switched on.
     pub denoise: bool,
     /// Whether the displayed frame is denoised.
@@ -83,9 +85,11 @@ pub struct Status {
     pub camera: Value,
     /// Point of interest, in world space.
     pub interest: [f32; 3],
-    /// Length of the diagonal of the box around all bounded objects, in scene units; navigation
-    /// speeds scale with it.
+    /// Length of the diagonal of the box around all bounded objects, in scene units.
     pub extent: f32,
+    /// Speed of the keys that move the camera, in scene units per second; see
+    /// [`Subject::flight_speed`](crate::Subject::flight_speed).
+    pub flight_speed: f32,
     /// Displayed frame of the animation.
     pub frame: f64,
     /// Number of frames of the animation; 0 without one.
@@ -97,4 +101,40 @@ pub struct Status {
     /// BLAKE3 hash of the finished film: equal to that of `juggler render`, with `--denoise` if
     /// [`Self::denoise`] is on.
     pub hash: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Status;
+    use crate::{BuildRequest, Edit, Setting, Subject};
+    use juggler::scene::Scene;
+
+    fn depth(subject: &Subject) -> (Option<u32>, [u32; 2]) {
+        let mut status = Status::default();
+        subject.write_status(&mut status);
+        (status.max_depth, status.depth_range)
+    }
+
+    #[test]
+    fn the_maximum_depth_is_that_of_the_integrator() {
+        let text =
+            r#"{"version": 1, "render": {"size": [8, 6], "integrator": {"path": {"max_depth": 7}}}, "objects": []}"#;
+        let scene = Scene::from_json(text, "scene.json").unwrap();
+        let mut subject = BuildRequest::from_scene(scene, "scene.json", None).run().unwrap();
+        assert_eq!(depth(&subject), (Some(7), [1, 10_000]));
+        let mut set = |setting| {
+            let done = subject.apply(&Edit::Setting(setting)).map(drop);
+            (done.is_ok(), depth(&subject))
+        };
+        assert_eq!(set(Setting::MaxDepth(3)), (true, (Some(3), [1, 10_000])));
+        assert_eq!(set(Setting::MaxDepth(0)), (false, (Some(3), [1, 10_000])));
+        // Another integrator has a depth of its own.
+        for (name, expected) in [("classic", Some(10)), ("normals", None), ("path", Some(7))] {
+            let (done, (depth, range)) = set(Setting::Integrator(name.into()));
+            assert!(
+                done && depth == expected && (range == [0, 0]) == expected.is_none(),
+                "{name}: {depth:?} {range:?}"
+            );
+        }
+    }
 }

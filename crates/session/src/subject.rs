@@ -6,7 +6,6 @@ use crate::{Edit, Setting, Status, pose};
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
 use juggler::denoise::Denoiser;
-use juggler::integrator::AnyIntegrator;
 use juggler::math::{Rgb, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
@@ -238,7 +237,7 @@ impl Subject {
             Setting::Denoise(on) => return self.denoise(*on),
             Setting::Threads(_) | Setting::Scheduler(_) => return Ok(EditEffect::Nothing),
         }
-        if matches!(setting, Setting::Integrator(name) if name != "classic") {
+        if matches!(setting, Setting::Integrator(name) if name != self.picture.integrator().name()) {
             settings.max_depth = None;
         }
         let description = &self.scene.description;
@@ -265,7 +264,7 @@ impl Subject {
     }
 
     fn set_gain(&mut self, group: &str, factors: [f32; 3]) -> Result<EditEffect, String> {
-        let known = self.picture.layers().light_groups();
+        let known = self.picture.aovs().light_groups();
         juggler::check_name("light group", group, known.iter().map(String::as_str)).map_err(|e| error_text(&e))?;
         if !factors.iter().all(|factor| (0.0..=MAX_GAIN).contains(factor)) {
             return Err(format!("error: factors of light groups are 0 to {MAX_GAIN}"));
@@ -281,7 +280,7 @@ impl Subject {
 
     /// Returns the gains of the picture's light groups, by index; empty if all are 1.
     pub fn gains(&self) -> Vec<Rgb> {
-        let groups = self.picture.layers().light_groups();
+        let groups = self.picture.aovs().light_groups();
         let gains: Vec<Rgb> = groups.iter().map(|group| self.gain(group)).collect();
         if gains.iter().all(|gain| *gain == Rgb::WHITE) { Vec::new() } else { gains }
     }
@@ -289,17 +288,17 @@ impl Subject {
     /// Returns the mean radiance of a tile's pixels with the light groups scaled by `gains`, see
     /// [`Self::gains`].
     pub fn light(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
-        if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, gains) }
+        if gains.is_empty() { tile.means() } else { self.picture.aovs().relight(tile, gains) }
     }
 
     /// Returns whether denoising is on and possible: relit light groups cannot be denoised.
     #[cfg(feature = "native")]
     pub(crate) fn is_denoised(&self) -> bool {
-        self.picture.layers().denoiser().is_some() && self.gains().is_empty()
+        self.picture.aovs().denoiser().is_some() && self.gains().is_empty()
     }
 
     fn set_view(&mut self, view: View) -> Result<(), String> {
-        self.picture = Arc::new(self.picture.seen(view).map_err(|error| error_text(&error))?);
+        self.picture = Arc::new(self.picture.with_view(view).map_err(|error| error_text(&error))?);
         Ok(())
     }
 
@@ -370,20 +369,20 @@ impl Subject {
         status.size = render.size;
         status.samples_wanted = render.samples;
         status.integrator = self.picture.integrator().name().to_owned();
-        status.max_depth = match self.picture.integrator() {
-            AnyIntegrator::Classic(classic) => Some(classic.max_depth),
-            _ => None,
-        };
+        let max_depth = self.picture.max_depth();
+        status.depth_range = max_depth.as_ref().map_or([0; 2], |(_, range)| [*range.start(), *range.end()]);
+        status.max_depth = max_depth.map(|(depth, _)| depth);
         status.denoise = self.settings.denoiser.is_some();
         status.sampler = name_of(&render.sampler);
         status.tone = name_of(&tone.curve);
         status.exposure = tone.exposure_stops;
-        let groups = self.picture.layers().light_groups();
+        let groups = self.picture.aovs().light_groups();
         status.light_groups = groups.iter().map(|name| (name.clone(), self.gain(name).to_array())).collect();
         status.cameras = self.cameras();
         status.camera = camera_json(&camera);
         status.interest = self.interest.to_array();
         status.extent = self.extent();
+        status.flight_speed = self.flight_speed();
         status.frame = self.frame;
         let animation = self.animation();
         status.frames = animation.map_or(0, |animation| animation.frames);

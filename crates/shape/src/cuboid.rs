@@ -28,10 +28,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Cuboid {
     /// Corner of the smallest coordinates, in scene units.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub min: Vec3,
     /// Corner of the largest coordinates, in scene units, each greater than that of `min`.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub max: Vec3,
 }
 

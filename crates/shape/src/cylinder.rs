@@ -30,11 +30,13 @@ use std::f32::consts::PI;
 #[serde(default)]
 pub struct Cylinder {
     /// Radius in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
     /// Lower end on the y axis, in scene units.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub y_min: f32,
     /// Upper end on the y axis, in scene units; greater than `y_min`.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub y_max: f32,
     /// Whether disks close both ends and make the cylinder a solid; without them, the inside is
     /// visible.

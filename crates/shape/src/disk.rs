@@ -26,10 +26,10 @@ use std::f32::consts::PI;
 #[serde(default)]
 pub struct Disk {
     /// Outer radius in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
     /// Radius of the hole in scene units, 0 to less than `radius`; 0 for no hole.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
     pub inner_radius: f32,
 }
 

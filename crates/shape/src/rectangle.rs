@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 pub struct Rectangle {
     /// Edge lengths along x and z in scene units, above 0.
     #[schemars(extend("items" = {"type": "number", "format": "float", "exclusiveMinimum": 0}))]
+    #[schemars(extend("x-unit" = "scene units"))]
     pub size: [f32; 2],
 }
 

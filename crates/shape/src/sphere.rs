@@ -31,7 +31,7 @@ use std::f32::consts::PI;
 #[serde(default)]
 pub struct Sphere {
     /// Radius in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
 }
 

@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Triangle {
     /// The three corners in scene units, not collinear.
-    #[schemars(with = "[[f32; 3]; 3]")]
+    #[schemars(with = "[[f32; 3]; 3]", extend("x-unit" = "scene units"))]
     pub vertices: [Vec3; 3],
     /// Shading normals at the corners, of any length above 0, interpolated over the triangle.
     /// Without them, the triangle is shaded flat.

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Tube {
     /// Radius in scene units, above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
 }
 

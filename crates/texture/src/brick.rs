@@ -27,16 +27,17 @@ pub struct Brick {
     /// Color of the mortar joints.
     pub mortar: Input<Rgb>,
     /// Width of a brick with its joint, in units of the pattern.
-    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "pattern units"))]
     pub width: f32,
     /// Height of a row with its joint, in units of the pattern.
-    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "pattern units"))]
     pub height: f32,
     /// Width of the mortar joints, in units of the pattern. At most `width` and `height`, which
     /// include it.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e6), extend("x-unit" = "pattern units"))]
     pub mortar_width: f32,
     /// Offset of each row against the row below, in brick widths, -1e6 to 1e6.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub shift: f32,
     /// Largest random darkening of bricks, as a share of their color. 0 makes all bricks equal.
     #[schemars(range(min = 0, max = 1))]

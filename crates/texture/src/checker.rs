@@ -22,7 +22,7 @@ use std::sync::Arc;
 #[serde(default)]
 pub struct Checker {
     /// Edge length of a cell, in units of `space`.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "units of space"))]
     pub size: f32,
     /// Color of the cell on the positive side of `offset`.
     pub even: Input<Rgb>,
@@ -33,7 +33,7 @@ pub struct Checker {
     /// Axes that the cells divide. The pattern is constant along all others.
     pub axes: Axes,
     /// Position of a corner of the cells, in `space`.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub offset: Vec3,
 }
 

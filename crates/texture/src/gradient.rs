@@ -30,10 +30,10 @@ pub struct Gradient {
     /// Coordinate space of `start` and `end`.
     pub space: Space,
     /// Point of position 0; the center of a radial gradient.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub start: Vec3,
     /// Point of position 1, different from `start`.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub end: Vec3,
     /// Shape of the gradient.
     pub shape: GradientShape,

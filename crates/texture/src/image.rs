@@ -36,6 +36,7 @@ pub struct Image {
     pub invert: bool,
     /// Factor on the values, -1e6 to 1e6.
     #[serde(default = "one")]
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub factor: f32,
     /// Continuation beyond the image's borders.
     #[serde(default)]

@@ -20,9 +20,10 @@ pub struct Mapping {
     pub scale: Scale,
     /// Rotation of the pattern about its origin, right-handed: first about x, then about y, then
     /// about z. Over (u, v), only the rotation about z is meaningful.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub rotate_degrees: [f32; 3],
     /// Position of the pattern's origin, in `space`.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub offset: Vec3,
 }
 

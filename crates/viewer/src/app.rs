@@ -7,7 +7,6 @@ use crate::keys::{self, Command, HeldKeys};
 use crate::overlay;
 use crate::panel::{Panel, PanelContext, next_name};
 use crate::picture::{FrameTexture, Placement};
-use crate::pixel_extent::PixelExtent;
 use crate::pointer::PointerInput;
 use crate::probe::{self, Probing};
 use crate::saving::Saving;
@@ -92,7 +91,7 @@ impl Viewer {
         let (held, fast, seconds) =
             context.input(|input| (self.held.update(input), input.modifiers.shift, input.stable_dt));
         if !held.is_empty() {
-            edits.extend(self.pointer.controls.keys(&held, fast, seconds, PixelExtent::from_status(status).reach));
+            edits.extend(self.pointer.controls.keys(&held, fast, seconds, status.flight_speed));
             context.request_repaint_after(STEP);
         }
         commands

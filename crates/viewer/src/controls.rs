@@ -4,8 +4,6 @@ use crate::keys::Motion;
 use crate::pixel_extent::PixelExtent;
 use juggler_session::{Edit, Fly, Orbit};
 
-/// Flight distance in one second at speed 1, as a fraction of [`PixelExtent::reach`].
-const REACH_PER_SECOND: f32 = 0.25;
 /// Rotation speed of the keys, in degrees per second.
 const DEGREES_PER_SECOND: f32 = 60.0;
 /// Zoom speed of the keys: logarithm of the factor per second.
@@ -48,7 +46,7 @@ impl Mode {
 pub struct Controls {
     /// Effect of a drag.
     pub mode: Mode,
-    /// Speed of the keys; at 1, the camera flies a quarter of [`PixelExtent::reach`] per second.
+    /// Factor of [`Status::flight_speed`](juggler_session::Status) of the keys.
     pub speed: f32,
 }
 
@@ -67,11 +65,12 @@ impl Controls {
         self.speed = (self.speed * SPEED_STEP.powi(steps)).clamp(*Self::SPEEDS.start(), *Self::SPEEDS.end());
     }
 
-    /// Returns the edits of keys that were held for some seconds.
-    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, reach: f32) -> Vec<Edit> {
+    /// Returns the edits of keys that were held for some seconds; `flight_speed` is in scene units
+    /// per second.
+    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, flight_speed: f32) -> Vec<Edit> {
         let seconds = seconds.min(LONGEST_STEP) * if fast { FAST } else { 1.0 };
         let mut zoom = 0.0;
-        let (step, turn) = (reach * REACH_PER_SECOND * self.speed * seconds, DEGREES_PER_SECOND * seconds);
+        let (step, turn) = (flight_speed * self.speed * seconds, DEGREES_PER_SECOND * seconds);
         let mut fly = Fly::default();
         for motion in held {
             match motion {
@@ -135,7 +134,7 @@ impl Controls {
 mod tests {
     use super::*;
 
-    const EXTENT: PixelExtent = PixelExtent { degrees_per_pixel: 0.1, units_per_pixel: 0.02, reach: 10.0 };
+    const EXTENT: PixelExtent = PixelExtent { degrees_per_pixel: 0.1, units_per_pixel: 0.02 };
 
     fn flown(edit: Option<Edit>) -> Fly {
         match edit {
@@ -164,7 +163,7 @@ mod tests {
     fn speed_follows_the_scene_and_the_time() {
         let controls = Controls::default();
         let slow = flown(only(controls.keys(&[Motion::Forward], false, 0.02, 10.0)));
-        assert_eq!(slow, Fly { forward: 0.02 * 10.0 * REACH_PER_SECOND, ..Fly::default() });
+        assert_eq!(slow, Fly { forward: 10.0 * 0.02, ..Fly::default() });
         let large = flown(only(controls.keys(&[Motion::Forward], false, 0.02, 1e6)));
         assert!((large.forward / slow.forward - 1e5).abs() < 1.0);
         let fast = flown(only(controls.keys(&[Motion::Forward], true, 0.02, 10.0)));

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn no_key_means_two_things() {
+    fn no_key_has_two_actions() {
         let mut seen = HashSet::new();
         for row in bindings() {
             for key in row.keys {

@@ -140,7 +140,8 @@ impl Panel {
         let samples = row(ui, "samples", |ui| number(ui, status.samples_wanted, 1..=16384, true));
         samples.map(Setting::Samples).map(&mut set);
         if let Some(depth) = status.max_depth {
-            let depth = row(ui, "max depth", |ui| number(ui, depth, 0..=64, false));
+            let [least, most] = status.depth_range;
+            let depth = row(ui, "max depth", |ui| number(ui, depth, least..=most.min(64).max(depth), false));
             depth.map(Setting::MaxDepth).map(&mut set);
         }
         self.color(ui, context);

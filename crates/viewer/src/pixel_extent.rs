@@ -11,23 +11,12 @@ pub struct PixelExtent {
     pub degrees_per_pixel: f32,
     /// Size of a pixel at the distance of the point of interest, in scene units.
     pub units_per_pixel: f32,
-    /// Reference distance of the flight speed, in scene units: the extent of the scene, or four
-    /// distances of the point of interest if that is less. Distant geometry so does not increase
-    /// the speed.
-    pub reach: f32,
 }
-
-/// Maximum reach in distances of the point of interest.
-const MAX_REACH: f32 = 4.0;
 
 impl PixelExtent {
     /// Computes the extent for a status's camera.
     pub fn from_status(status: &Status) -> Self {
-        Self::from_camera(status).unwrap_or(Self {
-            degrees_per_pixel: 0.1,
-            units_per_pixel: status.extent / 1000.0,
-            reach: status.extent,
-        })
+        Self::from_camera(status).unwrap_or(Self { degrees_per_pixel: 0.1, units_per_pixel: status.extent / 1000.0 })
     }
 
     fn from_camera(status: &Status) -> Option<Self> {
@@ -39,7 +28,6 @@ impl PixelExtent {
         let interest = Vec3::from(status.interest);
         let depth = (interest - here.origin).dot(here.direction).max(status.extent * 1e-3);
         let [at, next] = [here, below].map(|ray| ray.origin + ray.direction * depth);
-        let extent = status.extent.max(f32::MIN_POSITIVE);
         let pixel = Self {
             degrees_per_pixel: here
                 .direction
@@ -48,7 +36,6 @@ impl PixelExtent {
                 .atan2(here.direction.dot(below.direction))
                 .to_degrees(),
             units_per_pixel: at.distance(next),
-            reach: (here.origin.distance(interest) * MAX_REACH).clamp(extent * 0.01, extent),
         };
         (pixel.degrees_per_pixel.is_finite() && pixel.units_per_pixel.is_finite()).then_some(pixel)
     }
@@ -74,19 +61,9 @@ mod tests {
     }
 
     #[test]
-    fn a_far_horizon_makes_nobody_too_fast() {
-        let camera = json!({"perspective": {"eye": [0, 0, 5]}});
-        let pixel = PixelExtent::from_status(&Status { extent: 1e4, ..status(camera) });
-        assert_eq!(pixel.reach, 100.0);
-        let pixel =
-            PixelExtent::from_status(&Status { extent: 60.0, ..status(json!({"perspective": {"eye": [0, 0, 5]}})) });
-        assert!((pixel.reach - 20.0).abs() < 1e-3, "{pixel:?}");
-    }
-
-    #[test]
     fn of_parallel_rays() {
         let pixel = PixelExtent::from_status(&status(json!({"orthographic": {"eye": [0, 0, 5], "height": 20}})));
-        assert_eq!((pixel.degrees_per_pixel, pixel.reach), (0.0, 10.0));
+        assert_eq!(pixel.degrees_per_pixel, 0.0);
         assert!((pixel.units_per_pixel - 0.2).abs() < 1e-4, "{pixel:?}");
     }
 

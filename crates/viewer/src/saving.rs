@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_saved_is_told_for_a_while_and_a_failure_until_it_is_seen() {
+    fn a_saved_file_is_named_for_a_while_and_a_failure_until_it_is_seen() {
         let mut saving = Saving::default();
         assert_eq!(saving.notice(0.0), None);
         saving.result = Some((Ok("/pictures/a.png".into()), 10.0));

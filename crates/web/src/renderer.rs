@@ -33,8 +33,8 @@ struct WorkerStatus {
     camera: String,
     cameras: Vec<String>,
     exposure: f32,
-    /// Diagonal of the box around all bounded objects, in scene units; step lengths scale with it.
-    extent: f32,
+    /// Speed of the keys that move the camera, in scene units per second.
+    flight_speed: f32,
     frame: f64,
     frames: u32,
     frame_rate: f64,
@@ -130,7 +130,7 @@ fn worker_status(subject: &Subject) -> WorkerStatus {
         camera: picture.compiled().cameras.first().map(|(name, _)| name.clone()).unwrap_or_default(),
         cameras: subject.cameras(),
         exposure: picture.tone().exposure_stops,
-        extent: subject.extent(),
+        flight_speed: subject.flight_speed(),
         frame: subject.frame(),
         frames: animation.as_ref().map_or(0, |animation| animation.frames),
         frame_rate: animation.map_or(0.0, |animation| animation.frames_per_second),
@@ -175,9 +175,11 @@ mod tests {
         assert!(last.radiance.iter().any(|radiance| *radiance > 0.0), "there is something to be seen");
         let status = status(&renderer);
         assert_eq!((&status["outline"]["size"], &status["frames"]), (&serde_json::json!([20, 10]), &0.into()));
+        let speed = renderer.scene.as_ref().unwrap().subject.flight_speed();
+        assert_eq!(status["flight_speed"].as_f64().map(|speed| speed as f32), Some(speed));
         let mut without = WorkerRenderer::new(WorkerShare { index: 0, count: 1 });
         let error = without.open("scene.json", files()[..2].to_vec()).unwrap_err();
-        assert!(error.contains("cannot read `models/leaf.obj`: there is no such file"), "{error}");
+        assert!(error.contains("cannot read `models/leaf.obj`: file not found"), "{error}");
         assert!(without.is_finished() && without.status() == "null");
     }
 

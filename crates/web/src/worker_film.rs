@@ -109,7 +109,7 @@ mod tests {
 
     fn native(picture: &Picture) -> String {
         let film = picture.film();
-        picture.expose(&film, &Control::default()).unwrap();
+        picture.render_film(&film, &Control::default()).unwrap();
         picture.develop(&film, |_| Ok::<(), ()>(())).unwrap().hash
     }
 

@@ -167,7 +167,7 @@ fn equals_brute_force(world: &World, rounds: usize) {
         world.transmittance_batch(&rays, ShadowMode::Filtered, &mut through);
         assert_eq!(through, open, "shadow batch, round {round}");
     }
-    assert!(hit_count > rounds * 3 / 2, "only {hit_count} rays met anything");
+    assert!(hit_count > rounds * 3 / 2, "only {hit_count} rays hit an object");
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn albedos_are_what_comes_out() {
 }
 
 #[test]
-fn light_goes_both_ways_alike() {
+fn scattering_is_reciprocal() {
     let mut random = Random::new(91);
     for Example { name, bsdf, .. } in examples() {
         let mut seen = 0;

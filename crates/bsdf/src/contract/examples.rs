@@ -2,8 +2,8 @@
 
 use crate::metals::Metal;
 use crate::{
-    Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, OrenNayar, PhongParameters, Plastic, RayCone,
-    Sheen, ThinDielectric, ThinFilm,
+    Bsdf, Conductor, ConeSampling, Dielectric, DiffuseTransmission, Fresnel, Lambert, OrenNayar, PhongParameters,
+    Plastic, Sheen, ThinDielectric, ThinFilm,
 };
 use juggler_math::{Rgb, Vec2};
 
@@ -134,8 +134,8 @@ fn diffuse() -> Vec<Example> {
     let mut all = vec![];
     for roughness in [0.0, 0.3, 1.0] {
         let orange = OrenNayar::new(Rgb::new(0.9, 0.5, 0.1), roughness);
-        all.push(Example::new(format!("rough matt {roughness}"), orange));
-        all.push(Example::new(format!("white matt {roughness}"), OrenNayar::new(Rgb::WHITE, roughness)).white(0.01));
+        all.push(Example::new(format!("rough diffuse {roughness}"), orange));
+        all.push(Example::new(format!("white diffuse {roughness}"), OrenNayar::new(Rgb::WHITE, roughness)).white(0.01));
     }
     let leaf =
         DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0), ior: 1.0 };
@@ -198,11 +198,11 @@ fn classics() -> Vec<Example> {
         ..glass
     };
     let glossy =
-        PhongParameters { mirror: Rgb::splat(0.9), glossy: RayCone { half_angle_radians: 0.9, rays: 1 }, ..black };
+        PhongParameters { mirror: Rgb::splat(0.9), glossy: ConeSampling { half_angle_radians: 0.9, rays: 1 }, ..black };
     vec![
         Example::new("shiny", Bsdf::with_lobes(|bsdf| shiny.add_lobes(true, bsdf))),
         Example::new(
-            "matt highlight",
+            "diffuse highlight",
             Bsdf::with_lobes(|bsdf| PhongParameters { shininess: 0.0, ..shiny }.add_lobes(true, bsdf)),
         ),
         Example::new("overbright", Bsdf::with_lobes(|bsdf| overbright.add_lobes(true, bsdf))),

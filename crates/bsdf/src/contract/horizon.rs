@@ -12,7 +12,7 @@ fn white() -> Vec<(&'static str, Bsdf, bool)> {
     let rough = Vec2::splat(0.3);
     let (half, glass) = (Rgb::splat(0.5), Principled { transmission: 0.5, roughness: 0.6, ..Principled::default() });
     vec![
-        ("matt", Lambert { albedo: Rgb::WHITE }.into(), false),
+        ("diffuse", Lambert { albedo: Rgb::WHITE }.into(), false),
         ("metal", Conductor::compensated(Fresnel::WHITE, rough).into(), false),
         ("brushed metal", Conductor::compensated(Fresnel::WHITE, Vec2::new(0.6, 0.3)).into(), false),
         ("plastic", Plastic { albedo: Rgb::WHITE, alpha: rough, ..Plastic::default() }.into(), false),

@@ -11,16 +11,16 @@ use juggler_math::testing::chi_squared;
 const SIGNIFICANCE: f64 = 1e-3;
 const COUNT: u32 = 1_000_000;
 
-/// Expected number of samples in a cell that received `met`: integrated in ever finer steps until a
-/// step changes little. Features between the steps show in `met`, so refinement continues while it
+/// Expected number of samples in a cell that received `observed`: integrated in ever finer steps until a
+/// step changes little. Features between the steps show in `observed`, so refinement continues while it
 /// disagrees with the density.
-fn expected_in(chart: &Chart, pdf: &impl Fn(Vec3) -> f32, cell: usize, met: f64) -> f64 {
+fn expected_in(chart: &Chart, pdf: &impl Fn(Vec3) -> f32, cell: usize, observed: f64) -> f64 {
     let count = f64::from(COUNT);
     let (mut steps, mut last) = (7, chart.integral(pdf, cell, 4) * count);
     loop {
         let next = chart.integral(pdf, cell, steps) * count;
         let is_steady = (next - last) * (next - last) <= 0.02 * next.max(5.0);
-        let agrees = (met - next) * (met - next) <= 9.0 * next.max(1.0);
+        let agrees = (observed - next) * (observed - next) <= 9.0 * next.max(1.0);
         if steps >= 350 || is_steady && agrees {
             // The horizon may cut off a corner of a cell that no midpoint lies in.
             return next.max(1e-3);
@@ -63,7 +63,7 @@ fn follows(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, significance: f64) 
     let pdf = |wi: Vec3| pdf(wi) + 1e-7;
     let cells = observed[..2 * CELLS].iter().enumerate();
     let mut expected: Vec<f64> =
-        cells.map(|(cell, met)| expected_in(&charts[cell / CELLS], &pdf, cell % CELLS, *met)).collect();
+        cells.map(|(cell, observed)| expected_in(&charts[cell / CELLS], &pdf, cell % CELLS, *observed)).collect();
     let (total, count) = (expected.iter().sum::<f64>(), f64::from(COUNT));
     if total > count * 1.003 {
         return Err(format!("the density integrates to {}", total / count));

@@ -49,7 +49,7 @@ pub(super) fn examples() -> Vec<Example> {
 fn whites() -> Vec<Example> {
     let white = Principled::default();
     let whites = [
-        ("matt", Principled { specular: 0.0, ..white }, 1e-4),
+        ("diffuse", Principled { specular: 0.0, ..white }, 1e-4),
         ("plastic", white, 0.01),
         ("polished", Principled { roughness: 0.0, ..white }, 0.01),
         ("rough", Principled { roughness: 1.0, ..white }, 0.01),
@@ -78,7 +78,7 @@ fn white_ones() -> Vec<(&'static str, Principled, f32)> {
     let varnished = |base: Principled, clearcoat_roughness| Principled { clearcoat: 1.0, clearcoat_roughness, ..base };
     let velvet = |base: Principled| Principled { sheen_color: Rgb::WHITE, sheen_roughness: 0.5, ..base };
     vec![
-        ("matt", Principled { specular: 0.0, ..white }, 0.9999),
+        ("diffuse", Principled { specular: 0.0, ..white }, 0.9999),
         ("plastic", white, 0.995),
         ("metal", metal, 0.995),
         ("half metal", Principled { metallic: 0.5, ..white }, 0.99),

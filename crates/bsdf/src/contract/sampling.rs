@@ -37,24 +37,21 @@ fn directions_of_the_others_follow_their_density_too() {
 /// refraction, and light that other microfacets block continues as multiple scattering.
 #[test]
 fn rough_glass_never_scatters_more_than_there_was() {
+    // The energy of a sample is at most 1 exactly: it is a ratio of shadowing terms, or 1 with the
+    // multiple scattering. The slack is for rounding; with this seed the largest excess is 2e-6.
+    const MOST: f32 = 1.0 + 1e-5;
     let mut random = Random::new(85);
     for ior in [1.1, 1.33, 1.5, 2.4] {
         for alpha in [0.05, 0.3, 1.0] {
             let alpha = Vec2::splat(alpha);
-            let once = [Bsdf::from(Dielectric::new(ior, alpha)), ThinDielectric::new(ior, alpha).into()];
+            let single = [Bsdf::from(Dielectric::new(ior, alpha)), ThinDielectric::new(ior, alpha).into()];
             let all = [Bsdf::from(Dielectric::compensated(ior, alpha)), ThinDielectric::compensated(ior, alpha).into()];
-            for (number, bsdf) in once.iter().chain(&all).enumerate() {
-                let mut energies = Vec::new();
+            for (number, bsdf) in single.iter().chain(&all).enumerate() {
                 for wo in views(true).into_iter().flat_map(|wo| [wo; 1000]) {
                     let sample = bsdf.sample(wo, random.vec2(), random.f32());
-                    energies.extend(sample.map(|sample| energy_of(&sample).g));
+                    let energy = sample.map_or(0.0, |sample| energy_of(&sample).g);
+                    assert!(energy <= MOST, "{number} {ior} {alpha} {wo}: {energy}");
                 }
-                energies.sort_by(f32::total_cmp);
-                let (most, nearly) = (energies[energies.len() - 1], energies[energies.len() * 999 / 1000]);
-                // With selection by the mean reflectance around the viewer, a thousandth would have
-                // 8.6 and more.
-                let limit = if number == 2 { 1.002 } else { 1.001 };
-                assert!(if number == 3 { nearly < 5.5 } else { most < limit }, "{ior} {alpha}: {most} {nearly}");
             }
         }
     }

@@ -31,7 +31,7 @@ fn particle(bsdf: &Bsdf, side: f32, random: &mut Random) -> f64 {
 
 /// Mean and standard error over as many particles as bring the latter down to `noise`, a million at
 /// most.
-fn ball(bsdf: &Bsdf, side: f32, noise: f64) -> (f64, f64) {
+fn mean_albedo(bsdf: &Bsdf, side: f32, noise: f64) -> (f64, f64) {
     let (mut random, mut count) = (Random::new(88), 0.0);
     let (mut sum, mut squares) = (0.0, 0.0);
     loop {
@@ -107,7 +107,7 @@ fn cases() -> Vec<(Principled, f32)> {
 fn failures(cases: &[(Principled, f32)], noise: f64, deviations: f64) -> Vec<String> {
     let failure = |(numbers, side): &(Principled, f32)| {
         let bsdf = Bsdf::with_lobes(|bsdf| numbers.add_lobes(numbers.ior, bsdf));
-        let (mean, sigma) = ball(&bsdf, *side, noise);
+        let (mean, sigma) = mean_albedo(&bsdf, *side, noise);
         let allowed = deviations * sigma;
         let is_wrong = mean < LEAST - allowed || mean > MOST + allowed || sigma > 3.0 * noise;
         is_wrong.then(|| format!("{mean:.4} ± {sigma:.4} from side {side}: {numbers:?}"))

@@ -64,7 +64,7 @@ fn flat_coincident_huge_and_tiny_boxes() {
 }
 
 #[test]
-fn boxes_without_end_are_met() {
+fn infinite_boxes_are_hit() {
     let half_space = Aabb { min: Vec3::NEG_INFINITY, max: vec3(f32::INFINITY, -1.0, f32::INFINITY) };
     let boxes = [Aabb::INFINITE, half_space, Aabb { min: Vec3::ZERO, max: Vec3::ONE }];
     for quality in Quality::ALL {

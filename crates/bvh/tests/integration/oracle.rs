@@ -139,7 +139,7 @@ impl Shape for Exact {
 /// Rays that hit points exactly, despite all rounding of the box tests. Each point occurs many
 /// times, so a hit must not hide the others at its distance.
 #[test]
-fn points_are_met_and_none_hides_the_others() {
+fn points_are_hit_and_none_hides_the_others() {
     let random = &mut Random::new(81);
     // Directions with few bits, so that small multiples are exact.
     let directions: Vec<Vec3> = (0..60).map(|_| (random.point() * 4096.0).round() + 0.5).collect();

@@ -188,7 +188,7 @@ impl Merge {
             interrupts.check()?;
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
             if let Some((writer, with_picture)) = &mut aov_writer {
-                writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
+                writer.write_rows(&set.band_values(band, tiles, with_picture.then_some(rows)))?;
             }
             Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
         })?;

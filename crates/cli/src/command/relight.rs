@@ -98,7 +98,7 @@ impl Relight {
 /// Relights a row of tiles.
 fn relit(set: &AovSet, gains: &[Rgb], band: &Rect, tiles: &[Tile]) -> Vec<Rgb> {
     let mut pixels = vec![Rgb::BLACK; band.area() as usize];
-    tiles.iter().for_each(|tile| tile.pixels().copy_into(&set.relit(tile, gains), band, &mut pixels));
+    tiles.iter().for_each(|tile| tile.pixels().copy_into(&set.relight(tile, gains), band, &mut pixels));
     pixels
 }
 

@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_a_picture_are_film_parts() {
+    fn shards_of_a_picture_are_partial_renders() {
         assert!(refused("a --shard 0/2 -o a.png").unwrap().contains(".jfilm"));
         assert!(refused("a --sample-range 0..16 -o a.png").unwrap().contains(".jfilm"));
         assert!(refused("a --sample-range 0..16 -o a.gif").unwrap().contains(".jfilm"));

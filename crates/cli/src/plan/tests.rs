@@ -120,7 +120,7 @@ fn moments_become_shots() {
 }
 
 #[test]
-fn standard_output_holds_one_thing() {
+fn standard_output_holds_one_output() {
     assert!(refused("a -o - --frames 0..2").contains("one picture"));
     assert!(refused("a -o - --stats -").contains("standard output"));
     assert!(plan("a -o -").unwrap().uses_standard_output() && plan("a --stats -").unwrap().uses_standard_output());

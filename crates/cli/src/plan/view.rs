@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_that_there_are_are_told() {
+    fn errors_state_the_range_of_frames() {
         assert_eq!((end_warning(29, 30), end_warning(7, 1)), (None, None));
         assert!(end_warning(40, 30).is_some_and(|message| message.contains("30 frames, 0 to 29")));
     }

@@ -15,7 +15,7 @@ fn snapshots_as_text() {
 }
 
 #[test]
-fn limits_of_time_and_noise_are_told() {
+fn limits_of_time_and_noise_are_reported() {
     let goal_progress = Some(GoalProgress::Time(Duration::from_millis(2_600), Duration::from_secs(10)));
     let timed = Snapshot { eta: Some(Duration::from_secs(7)), goal_progress, ..SNAPSHOT };
     assert_eq!(timed.text(), " 25.5 %, 3s of 10.0s, 1.50 million rays/s");

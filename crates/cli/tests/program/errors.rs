@@ -88,9 +88,9 @@ fn rays_that_cannot_be_measured() {
         assert!(!folder.bad(&format!("bench rays {line}"), 2).trim().is_empty(), "{line}");
     }
     let message = folder.bad("bench rays blbo", 2);
-    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`; did you mean `blob`?\n");
+    assert_eq!(message, "error: unknown mesh `blbo`: neither a file nor a built-in mesh; did you mean `blob`?\n");
     assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
-    assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
+    assert_eq!(folder.bad("bench rays none.ply", 3), "error: file not found: `none.ply`\n");
     assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
 }
 
@@ -98,7 +98,10 @@ fn rays_that_cannot_be_measured() {
 fn names_that_were_probably_meant() {
     let folder = Folder::new();
     let message = folder.bad("render jugler", 2);
-    assert_eq!(message.trim(), "error: no file and no built-in scene is called `jugler`; did you mean `juggler`?");
+    assert_eq!(
+        message.trim(),
+        "error: unknown scene `jugler`: neither a file nor a built-in scene; did you mean `juggler`?"
+    );
     assert!(folder.bad("render bal.json", 3).contains("did you mean `ball.json`?"));
     assert!(folder.bad("render none/bal.json", 3).contains("`none/bal.json`"));
     assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));
@@ -216,8 +219,9 @@ fn errors_say_what_helps() {
     let run = folder.run("render ball.json --frame 40 -o a.png");
     assert_eq!(run.stderr, "warning: frame 40 is beyond the end of the animation, which has 4 frames, 0 to 3\n");
     folder.good("render ball.json --frames 0..2 -q -o f_%04d.png");
+    folder.good("render ball.json --frame 2 -q -o f_%04d.png");
     folder.good("render ball.json --aov Z,cryptomatte,beauty -q -o b.exr");
-    assert_eq!(folder.files(), ["a.png", "b.exr", "f_0000.png", "f_0001.png"]);
+    assert_eq!(folder.files(), ["a.png", "b.exr", "f_0000.png", "f_0001.png", "f_0002.png"]);
     folder.good("render ball.json -q -o c.png --checkpoint c.jfilm");
     let message = folder.bad("render juggler --size 16x9 -o c.png --checkpoint c.jfilm", 2);
     assert!(
@@ -237,7 +241,7 @@ fn long_names_are_shortened_and_terminals_obey_nothing() {
     let folder = Folder::new();
     let long = "y".repeat(20_000);
     let message = folder.bad(&format!("render {long}"), 2);
-    assert!(message.contains("no built-in scene is called `yyy") && message.contains('…'), "{message}");
+    assert!(message.contains("unknown scene `yyy") && message.contains('…'), "{message}");
     let message = folder.bad(&format!("render ball.json --size {long}"), 2);
     assert!(message.contains("--size") && message.contains('…') && message.len() < 10_000, "{message}");
     let message = folder.bad("render \u{1b}[31m\u{202e}", 2);

@@ -82,7 +82,7 @@ fn scenes_name_what_is_no_file() {
 }
 
 #[test]
-fn a_broken_picture_is_told_as_such() {
+fn a_broken_picture_is_reported_as_such() {
     let folder = folder();
     let good = fs::read(folder.path("good.png")).unwrap();
     fs::write(folder.path("start.png"), [&b"x"[..], &good[1..]].concat()).unwrap();

@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod answers;
+mod aovs;
 mod errors;
-mod films;
 mod harness;
 mod inputs;
-mod layers;
 mod memory;
 mod merging;
 mod meshes;
+mod movies;
 mod parts;
 mod pictures;
 mod probing;

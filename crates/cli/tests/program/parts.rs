@@ -198,7 +198,7 @@ fn noise_gives_one_picture_on_any_threads_and_in_any_parts() {
     folder.good("merge part1.jfilm part2.jfilm part0.jfilm -o merged.png -q");
     assert_eq!(fs::read(folder.path("merged.png")).unwrap(), fs::read(folder.path("one.png")).unwrap());
     let coarse = folder.stats(&format!("{BALL} --noise 0.5 -o coarse.png"));
-    assert_eq!(coarse["rays"]["camera"], 64 * 48 * 36, "the least from which noise is told");
+    assert_eq!(coarse["rays"]["camera"], 64 * 48 * 36, "the minimum for an estimate of noise");
 }
 
 #[test]

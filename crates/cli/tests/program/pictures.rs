@@ -87,7 +87,7 @@ fn frames_are_half_open() {
 }
 
 #[test]
-fn a_crop_is_a_part_of_the_picture() {
+fn a_crop_is_a_rectangle_of_the_picture() {
     let folder = Folder::new();
     folder.good("render ball.json -q -o whole.pfm");
     folder.good("render ball.json -q -o part.pfm --crop 5,2,4,3");

@@ -116,7 +116,7 @@ fn noisy() -> Folder {
 }
 
 #[test]
-fn noise_is_told_from_differences() {
+fn noise_is_distinguished_from_differences() {
     let folder = noisy();
     assert!(folder.good("compare a.exr a.jfilm").stdout.starts_with("identical, bit for bit"));
     for pair in ["a.exr b.exr", "a.jfilm b.jfilm", "a.exr b.jfilm"] {
@@ -139,7 +139,7 @@ fn noise_is_told_from_differences() {
 }
 
 #[test]
-fn where_noise_cannot_be_told_it_is_said() {
+fn a_comparison_without_variances_says_so() {
     let folder = noisy();
     for (pair, reason) in [
         ("a.jfilm more.jfilm", "share samples"),

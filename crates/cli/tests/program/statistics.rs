@@ -81,7 +81,7 @@ fn progress_is_a_stream_of_events() {
 }
 
 #[test]
-fn what_clamping_takes_is_always_told() {
+fn what_clamping_removes_is_always_reported() {
     let folder = Folder::new();
     let integrator = r#""integrator": {"path": {"max_depth": 5, "clamp_direct": 0.4, "clamp_indirect": 0.02}}"#;
     let scene = SCENE.replace(r#""samples": 2"#, &format!(r#""samples": 2, {integrator}"#));

@@ -1,6 +1,7 @@
 //! Description of a partial render: the JSON object in the header of a `.jfilm` file.
 
 use crate::shard::whole_tiles;
+use juggler_camera::aov::LightGroup;
 use juggler_camera::film::{BLOCK_SAMPLES, Rect, Tiling};
 use juggler_imaging::Viewpoint;
 use juggler_math::message::{MAX_QUOTE, excerpt};
@@ -15,8 +16,6 @@ const MAX_EDGE: u32 = 65_536;
 const MAX_PIXELS: u64 = 1 << 31;
 /// Maximum number of object entries in a partial render; a scene cannot have as many.
 const MAX_ENTRIES: u32 = 1 << 22;
-/// Maximum number of light groups of a scene.
-const MAX_LIGHT_GROUPS: usize = 65_535;
 /// Maximum number of RGB AOV planes per sample.
 pub const MAX_PLANES: u32 = 4096;
 
@@ -155,7 +154,7 @@ impl AovDescription {
         if self.entries > MAX_ENTRIES {
             return Some("it names more objects (`entries`) than a scene can have");
         }
-        if self.light_groups.len() > MAX_LIGHT_GROUPS {
+        if self.light_groups.len() > LightGroup::MAX_COUNT {
             return Some("it names more light groups (`light_groups`) than a scene can have");
         }
         (self.planes > MAX_PLANES).then_some("it has more AOVs (`planes`) than a picture can hold")

@@ -6,7 +6,7 @@
 //! are zero while few blocks are summed. The bits in between are noise. Bit planes (all lowest
 //! bits, then all second-lowest bits, and so on) separate the three, so that even a compressor
 //! without entropy coding removes the redundancy (bitshuffle: Masui et al., "A compression scheme
-//! for radio data in high performance computing", 2015). docs/notes/film-parts.md compares
+//! for radio data in high performance computing", 2015). docs/notes/partial-renders.md compares
 //! byte planes and slower compressors.
 
 use juggler_camera::film::Sum;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Crates whose arithmetic affects pixels.
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 17] = [
     "math",
     "bvh",
     "bsdf",
@@ -19,6 +19,7 @@ const CRATES: [&str; 16] = [
     "integrator",
     "render",
     "scene",
+    "import",
     "expression",
     "film",
     "imaging",

@@ -34,7 +34,7 @@ fn picture(frame: f64, settings: &Settings) -> Picture {
 }
 
 fn pixels(picture: &Picture) -> Vec<Rgb> {
-    picture.image(&Control::default()).unwrap().pixels().to_vec()
+    picture.render_image(&Control::default()).unwrap().pixels().to_vec()
 }
 
 fn difference(a: &[Rgb], b: &[Rgb]) -> (f32, f32) {

@@ -76,7 +76,7 @@ fn sharded(picture: &Picture, count: u32, folder: &Path) -> String {
             let mut description = picture.description(&RenderOrigin::default(), &header, shard);
             let units = Work::from_description(&description).shard(index, count);
             let film = Film::from_tiles(picture.tiling(), units.into_iter().map(|unit| (unit.tile, unit.samples)));
-            picture.expose(&film, &Control::default()).unwrap();
+            picture.render_film(&film, &Control::default()).unwrap();
             description.finished = picture.is_finished(&film);
             let file = folder.join(format!("{index}.jfilm"));
             write(&file, &description, film.tiles()).unwrap();

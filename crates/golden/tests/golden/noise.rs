@@ -63,7 +63,7 @@ fn render_film(name: &str, size: [u32; 2], samples: u32, seed: u64, limit: Limit
         Settings { size: Some(size), samples: Some(samples), seed: Some(seed), limit, ..Settings::default() };
     let picture = Picture::new(&Scene::built_in(name).unwrap(), &settings).unwrap();
     let film = picture.film();
-    picture.expose(&film, &Control::default()).unwrap();
+    picture.render_film(&film, &Control::default()).unwrap();
     film
 }
 
@@ -94,7 +94,7 @@ fn error_ratios(name: &str, level: f32, test_size: &TestSize) -> (f64, f64) {
     let worst = errors.iter().copied().fold(0.0, f64::max);
     let level = f64::from(level);
     println!(
-        "{name}: asked {level:.4}, true {rms:.4} ({:.2}), worst tile {worst:.4}, {} tiles of {}, {mean} samples",
+        "{name}: requested {level:.4}, true {rms:.4} ({:.2}), worst tile {worst:.4}, {} tiles of {}, {mean} samples",
         rms / level,
         ended.len(),
         film.len()

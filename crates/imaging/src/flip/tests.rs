@@ -102,10 +102,10 @@ fn hdr() -> Vec<Pair> {
     let grain = image(|place| smooth(place) * random.range(0.5, 1.5));
     let fireflies = image(|place| if random.below(400) == 0 { Rgb::new(70.0, 60.0, 90.0) } else { smooth(place) });
     let window = |dark: f32, bright: f32| image(|[x, y]| Rgb::splat(if x > 80 && y < 40 { bright } else { dark }));
-    let lamps = |shift, bright| image(|place| spots(place, shift, bright));
+    let highlights = |shift, bright| image(|place| spots(place, shift, bright));
     vec![
         of("grain", 0.150340, grain, image(smooth)),
-        of("spots", 0.117938, lamps(2, 90.0), lamps(0, 100.0)),
+        of("spots", 0.117938, highlights(2, 90.0), highlights(0, 100.0)),
         of("window", 0.106074, window(0.22, 55.0), window(0.2, 50.0)),
         of("fireflies", 0.027101, fireflies, image(smooth)),
     ]

@@ -120,7 +120,7 @@ pub struct Tone {
     pub curve: AnyCurve,
     /// Exposure in photographic stops, -64 to 64, applied before the curve: 1 doubles the radiance,
     /// -1 halves it.
-    #[schemars(range(min = -64, max = 64))]
+    #[schemars(range(min = -64, max = 64), extend("x-unit" = "stops"))]
     pub exposure_stops: f32,
     /// Light that appears white. By default colors are unchanged, so that D65 (6,504 K) appears
     /// white.

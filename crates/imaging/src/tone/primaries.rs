@@ -145,7 +145,7 @@ mod tests {
         // ITU-R BT.2087-0, section 2.
         let rec2020 = Primaries::Rec2020.matrix_from_srgb().unwrap();
         close(&rec2020, [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]], 6e-5);
-        // CSS Color Module Level 4, section 18: linear sRGB to linear Display P3, by way of XYZ.
+        // CSS Color Module Level 4, section 18: linear sRGB to linear Display P3, through XYZ.
         let p3 = Primaries::DisplayP3.matrix_from_srgb().unwrap();
         close(&p3, [[0.8225, 0.1775, 0.0], [0.0332, 0.9668, 0.0], [0.0171, 0.0724, 0.9105]], 6e-5);
         // The Academy's AP1 to XYZ (S-2014-004, table 2).

@@ -22,12 +22,12 @@ const DAYLIGHT: f64 = 5000.0;
 pub struct WhiteBalance {
     /// Correlated color temperature of the light in kelvin, 1667 to 25000; 2850 is an incandescent
     /// bulb, the default 6504 is D65. Lower values make the image bluer.
-    #[schemars(range(min = 1667, max = 25000))]
+    #[schemars(range(min = 1667, max = 25000), extend("x-unit" = "K"))]
     pub kelvin: f64,
     /// Distance of the light from the Planckian or daylight locus in thousandths of Duv (ANSI
     /// C78.377), -50 to 50. Positive values stand for greenish light and make the image more
     /// magenta.
-    #[schemars(range(min = -50, max = 50))]
+    #[schemars(range(min = -50, max = 50), extend("x-unit" = "0.001 Duv"))]
     pub tint: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Structure of MP4 files, box by box; `tests/films/test.sh` decodes them with ffmpeg and a
+//! Structure of MP4 files, box by box; `tests/movies/test.sh` decodes them with ffmpeg and a
 //! browser.
 #![cfg(feature = "av1")]
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]

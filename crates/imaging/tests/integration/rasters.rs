@@ -39,7 +39,7 @@ fn every_format_brings_the_samples_that_the_image_is_made_of() {
                 levels.iter().map(|level| raster.transfer_function.decode(f64::from(*level) / 255.0) as f32).collect()
             }
             RasterSamples::Floats(numbers) => numbers.clone(),
-            RasterSamples::Words(_) => panic!("nobody asked for words"),
+            RasterSamples::Words(_) => panic!("the writer requests no words"),
         };
         assert_eq!(linear, image.pixels().iter().flat_map(|p| p.to_array()).collect::<Vec<_>>(), "{format}");
         assert_eq!(raster.transfer_function == TransferFunction::Linear, !format.is_tone_mapped());

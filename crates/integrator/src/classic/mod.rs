@@ -11,7 +11,7 @@
 mod physical;
 
 use super::{Integrator, PathState, SurfaceHit, VertexOutput};
-use juggler_bsdf::{Highlight, PhongParameters, RayCone, Scatter, cone, fresnel};
+use juggler_bsdf::{ConeSampling, Highlight, PhongParameters, Scatter, cone, fresnel};
 use juggler_camera::aov::LightGroup;
 use juggler_camera::sampler::Sampler;
 use juggler_math::{Ray, Rgb, Vec2, Vec3, portable, warp};
@@ -37,7 +37,7 @@ pub struct Classic {
     pub min_weight: f32,
     /// Maximum distance of ambient occlusion, in scene units, above 0: objects beyond it occlude
     /// nothing. Without it no material's ambient light is occluded.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub occlusion_distance: Option<f32>,
 }
 
@@ -175,7 +175,7 @@ impl Bundle<'_> {
     fn trace(
         &self,
         axis: Vec3,
-        cone: RayCone,
+        cone: ConeSampling,
         filter: Rgb,
         sampler: &Sampler,
         first_child: u32,
@@ -206,8 +206,7 @@ fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &
     }
     let SceneLight { samples, is_delta, is_surface, .. } = light;
     // Lights with a surface are in physical units.
-    let unit = if *is_surface { 1.0 / point.phong.light_scale() } else { 1.0 };
-    let weight = unit / *samples as f32;
+    let scale = if *is_surface { 1.0 / point.phong.light_scale() } else { 1.0 };
     for i in 0..*samples {
         let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
         let Some(sample) = state.light.sample(point.surface.point, u) else { continue };
@@ -216,8 +215,15 @@ fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &
             continue;
         }
         let ray = point.surface.spawn_ray_to(sample.wi, sample.distance, point.time);
+        let weight = sample_weight(scale, *samples, sample.pdf);
         output.add_light_shadow_ray(number, ray, reflected * sample.radiance * weight, light.group);
     }
+}
+
+/// Weight of one of several samples of a light, with the density of its direction per steradian;
+/// `scale` converts the light's unit.
+fn sample_weight(scale: f32, samples: u32, pdf: f32) -> f32 {
+    scale / samples as f32 / pdf
 }
 
 /// Diffuse and specular reflection of light from `wi`.
@@ -246,5 +252,20 @@ impl Classic {
     /// Example values for the contract tests.
     pub fn examples() -> Vec<Self> {
         vec![Self::default()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All lights have a density of 1, which must not change a bit.
+    #[test]
+    fn light_samples_are_divided_by_their_density() {
+        for (scale, samples) in [(1.0, 1), (0.37, 3), (1.0 / std::f32::consts::PI, 16)] {
+            let share = scale / samples as f32;
+            assert_eq!(sample_weight(scale, samples, 1.0).to_bits(), share.to_bits());
+            assert_eq!(sample_weight(scale, samples, 4.0), share / 4.0);
+        }
     }
 }

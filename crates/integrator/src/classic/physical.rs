@@ -2,7 +2,7 @@
 //! traced, and one ray samples all glossy lobes. Their diffuse interreflection is limited to the
 //! ambient light.
 
-use super::Classic;
+use super::{Classic, sample_weight};
 use crate::{PathState, VertexOutput};
 use juggler_bsdf::{BsdfSample, Scatter};
 use juggler_camera::sampler::Sampler;
@@ -95,19 +95,14 @@ impl ShadingPoint<'_> {
     fn add_light(&self, light: &SceneLight, number: usize, sampler: &Sampler, output: &mut VertexOutput) {
         let SceneLight { samples, is_delta, is_surface, .. } = light;
         let scale = if *is_surface { 1.0 } else { self.shading.light_scale };
-        let weight = scale / *samples as f32;
         for i in 0..*samples {
             let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
             let Some(sample) = light.at(self.time).light.sample(self.vertex.surface.point, u) else { continue };
             let (scattered, _) = self.shading.bsdf.eval_pdf(self.wo, self.shading.frame.to_local(sample.wi));
             if !scattered.is_black() {
                 let ray = self.vertex.surface.spawn_ray_to(sample.wi, sample.distance, self.time);
-                output.add_light_shadow_ray(
-                    number,
-                    ray,
-                    sample.radiance * scattered * (weight / sample.pdf),
-                    light.group,
-                );
+                let weight = sample_weight(scale, *samples, sample.pdf);
+                output.add_light_shadow_ray(number, ray, sample.radiance * scattered * weight, light.group);
             }
         }
     }

@@ -76,11 +76,11 @@ impl Path {
     pub fn sample_caustics(&self, point: &ShadingPoint, world: &World, path: &PathState, output: &mut VertexOutput) {
         // Select a sphere and a kind of specular path.
         let Some(visible_casters) = point.visible_casters else { return };
-        let picked = visible_casters.pick(path.sampler.skipped(Dimension::Caster as u32).next_1d());
+        let picked = visible_casters.pick(path.sampler.skipped(Dimension::CausticCaster as u32).next_1d());
         let Some((id, probability)) = picked else { return };
         let Some((caster, kind)) = world.caster(id).filter(|(_, kind)| self.allows(*kind, path)) else { return };
         // Sample a light from the center of the sphere.
-        let u = path.sampler.skipped(Dimension::CasterLight as u32).next_2d();
+        let u = path.sampler.skipped(Dimension::CausticLight as u32).next_2d();
         let Some(light) = world.sample_light(&center_context(caster, point.time), u) else { return };
         let light_point = caster.sphere.center + light.wi * light.distance;
         let to = if light.distance < f32::INFINITY {

@@ -40,9 +40,9 @@ enum Dimension {
     /// Whether a microfacet of rough glass reflects or refracts.
     Facet = 5,
     /// Choice of a specular sphere for light sampling.
-    Caster = 6,
+    CausticCaster = 6,
     /// Choice of a light, and of a point on it, as seen from the specular sphere.
-    CasterLight = 7,
+    CausticLight = 7,
 }
 
 /// Default number of light samples at the first vertex, if the world has several emitters.
@@ -87,7 +87,7 @@ pub struct Path {
     /// arises; 1 to 64. By default 2 if the scene has several emitters, else 1. More of them reduce
     /// the noise of direct lighting.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 64))]
+    #[schemars(range(min = 1, max = 64), extend("x-unit" = "samples"))]
     pub light_samples: Option<u32>,
     /// Strategy for emitters that a ray can hit. `mis` combines light samples and BSDF samples and
     /// has the least noise; `light` and `bsdf` use one of them alone, for comparisons.
@@ -97,13 +97,13 @@ pub struct Path {
     /// sample: the limit of the brightest color channel, in units of radiance. Hue is preserved.
     /// Unlimited by default. Clamping darkens the picture; the render reports by how much.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-6, max = 1e30))]
+    #[schemars(range(min = 1e-6, max = 1e30), extend("x-unit" = "W/(scene unit² sr)"))]
     pub clamp_direct: Option<f32>,
     /// Maximum contribution of indirect lighting, paths of three or more segments, as for
     /// `clamp_direct`. Use it against fireflies that more samples do not remove. Unlimited by
     /// default.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-6, max = 1e30))]
+    #[schemars(range(min = 1e-6, max = 1e30), extend("x-unit" = "W/(scene unit² sr)"))]
     pub clamp_indirect: Option<f32>,
 }
 

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn each_name_means_one_thing() {
+    fn each_name_means_one_aov() {
         let mut names: Vec<&str> = FOREIGN.iter().flat_map(|(names, _)| names.iter().copied()).collect();
         names.extend(Aov::ALL.iter().map(|aov| aov.name()));
         let count = names.len();

@@ -22,7 +22,7 @@ struct Pixel<'t> {
 impl AovSet {
     /// Returns the channels of a band from its tiles: red, green and blue of the rendered image if
     /// given, then those of [`AovSet::headers`]. Pixels without a tile are 0.
-    pub fn band(&self, band: &Rect, tiles: &[Tile], picture: Option<&[Rgb]>) -> Vec<Vec<f32>> {
+    pub fn band_values(&self, band: &Rect, tiles: &[Tile], picture: Option<&[Rgb]>) -> Vec<Vec<f32>> {
         let mut channels = vec![vec![0.0; band.area() as usize]; self.channels];
         for tile in tiles {
             channels
@@ -35,12 +35,12 @@ impl AovSet {
 
     /// Returns a tile's pixels with each light group scaled by its gain, by index. Unit gains
     /// return the pixels of the film bit for bit.
-    pub fn relit(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
+    pub fn relight(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
         let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
         let mut pixels = tile.means();
         for (number, pixel) in pixels.iter_mut().enumerate() {
             let data = Pixel { set: self, tile, aov_sums: &aov_sums, number, count };
-            for (group, gain) in (0..).zip(gains).filter(|(_, gain)| **gain != Rgb::WHITE) {
+            for (group, gain) in (0..=u16::MAX).zip(gains).filter(|(_, gain)| **gain != Rgb::WHITE) {
                 *pixel += data.mean(FilmAov::Group(LightGroup(group))) * (*gain - Rgb::WHITE);
             }
             // Rounding may leave small negative values.
@@ -117,7 +117,7 @@ impl Pixel<'_> {
             Aov::Direct => row.extend(self.mean(FilmAov::Direct).to_array()),
             Aov::Indirect => row.extend(self.mean(FilmAov::Indirect).to_array()),
             Aov::LightGroups => {
-                for (number, _) in (0..).zip(&self.set.names.light_groups) {
+                for (number, _) in (0..=u16::MAX).zip(&self.set.names.light_groups) {
                     row.extend(self.mean(FilmAov::Group(LightGroup(number))).to_array());
                 }
             }

@@ -76,10 +76,10 @@ pub struct PathGroup {
 
 impl Prober<'_> {
     /// Renders the image and finds its fireflies; `count` of them are listed.
-    pub fn fireflies(&self, count: usize, control: &Control) -> Result<Fireflies, Error> {
+    pub fn find_fireflies(&self, count: usize, control: &Control) -> Result<Fireflies, Error> {
         let picture = self.picture();
         let film = picture.film();
-        picture.expose(&film, control)?;
+        picture.render_film(&film, control)?;
         let [width, height] = picture.size();
         let region = picture.region();
         let area = region.area() as usize;
@@ -118,7 +118,7 @@ impl Prober<'_> {
         for Outlier { place, median, excess, score } in found.outliers.iter().take(count.max(MIN_PROBED)).copied() {
             let (x, y) = ((place % image.width.max(1)) as u32, (place / image.width.max(1)) as u32);
             let pixel = [region.x + x, region.y + y];
-            let probe = self.pixel(pixel, &detail, control)?;
+            let probe = self.probe_pixel(pixel, &detail, control)?;
             let brightest = probe.light.and_then(|light| light.brightest.into_iter().next());
             let value = pixels.get(place).copied().unwrap_or(Rgb::BLACK).to_array();
             let firefly = Firefly {

@@ -7,9 +7,9 @@
 //!
 //! let scene = Scene::new().size(8, 8).add(Object::new(Sphere::default()));
 //! let picture = Picture::new(&scene, &Settings { samples: Some(4), ..Settings::default() })?;
-//! let image = picture.image(&Control::default())?;
+//! let image = picture.render_image(&Control::default())?;
 //! let prober = Prober::new(&scene, picture);
-//! let probe = prober.pixel([4, 4], &Detail::default(), &Control::default())?;
+//! let probe = prober.probe_pixel([4, 4], &Detail::default(), &Control::default())?;
 //! assert_eq!(probe.mean, image.pixels()[4 * 8 + 4].to_array());
 //! # Ok::<(), juggler::Error>(())
 //! ```
@@ -157,7 +157,7 @@ impl<'s> Prober<'s> {
 
     /// Traces all samples of a pixel, given by column and row from the top left, and explains their
     /// light. Fails if the pixel is outside the rendered region, or `control` is cancelled.
-    pub fn pixel(&self, pixel: [u32; 2], detail: &Detail, control: &Control) -> Result<Probe, Error> {
+    pub fn probe_pixel(&self, pixel: [u32; 2], detail: &Detail, control: &Control) -> Result<Probe, Error> {
         self.check(pixel)?;
         let (job, mut namer) = (self.picture.job(), self.namer());
         let mut tree = PathTree::new(detail.depth);

@@ -55,7 +55,7 @@ pub struct SampleProbe {
     pub share: Option<f64>,
     /// Radiance removed by clamping, the mean of the channels.
     pub clamped: f32,
-    /// Brightest path in one line: `floor diffuse > glass specular transmission > lamp`.
+    /// Brightest path in one line: `floor diffuse > glass specular transmission > light`.
     pub path: String,
     /// Brightest path without names, by which similar paths are grouped.
     pub kind: String,

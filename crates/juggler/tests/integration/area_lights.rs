@@ -71,6 +71,6 @@ fn a_picture_says_which_integrator_made_it() {
     assert!(name == "classic" && why.contains("`classic` supports all lights"), "{why}");
     // Another view keeps the integrator.
     let picture = Picture::new(&scene, &Settings::default()).unwrap();
-    let seen = picture.seen(picture.view()).unwrap();
+    let seen = picture.with_view(picture.view()).unwrap();
     assert_eq!((seen.integrator(), seen.fingerprint()), (picture.integrator(), picture.fingerprint()));
 }

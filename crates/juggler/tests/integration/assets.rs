@@ -53,8 +53,8 @@ fn assets_decide_pictures_and_fingerprints_of_their_own_scene_alone() {
     assert_eq!(before, rendered(&first), "a copy has changed its model");
     assert_ne!(first.fingerprint(), second.fingerprint());
     let picture = Picture::new(&first, &Settings::default()).unwrap();
-    let updated = picture.after(&first, &second, &Settings::default()).unwrap();
-    assert_eq!(updated.image(&Control::default()).unwrap(), after, "an update is no fresh build");
+    let updated = picture.rebuild(&first, &second, &Settings::default()).unwrap();
+    assert_eq!(updated.render_image(&Control::default()).unwrap(), after, "an update is no fresh build");
 }
 
 #[test]

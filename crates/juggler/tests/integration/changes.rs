@@ -9,7 +9,7 @@ use std::sync::Arc;
 const SCENE: &str = r#"{"version": 1, "render": {"size": [40, 30], "samples": 2, "integrator": "path", "shutter": [0, 0.5]},
     "animation": {"frames": 4}, "camera": {"perspective": {"eye": [0, 3, 9], "look_at": [0, 1, 0]}},
     "background": [0.2, 0.3, 0.5], "textures": {"spots": {"checker": {"size": 0.7, "space": "local"}}},
-    "materials": {"lamp": {"emissive": {"radiance": [3, 2, 1]}}, "red": {"diffuse": {"reflectance": [0.8, 0.1, 0.1]}},
+    "materials": {"emitter": {"emissive": {"radiance": [3, 2, 1]}}, "red": {"diffuse": {"reflectance": [0.8, 0.1, 0.1]}},
         "glass": {"dielectric": {"ior": 1.5}}, "both": {"mix": {"a": "red", "b": {"plastic": {}}, "amount": 0.5}}},
     "groups": {"pair": [{"shape": "sphere", "material": "both"}, {"shape": "cuboid", "transform": {"translate": [2, 0, 0]}}]},
     "lights": [{"point": {"position": [3, 6, 4], "intensity": 30}}, {"directional": {"direction": [1, -2, -1]}},
@@ -17,7 +17,7 @@ const SCENE: &str = r#"{"version": 1, "render": {"size": [40, 30], "samples": 2,
     "objects": [{"shape": "plane", "material": {"diffuse": {"reflectance": "spots"}}},
         {"shape": "sphere", "transform": [{"translate": ["=frame", 1, 0]}], "material": "glass"},
         {"group": "pair", "transform": {"translate": [-3, 1, 0]}, "material": "red"},
-        {"shape": {"sphere": {"radius": 0.4}}, "transform": {"translate": [2, 2, 2]}, "material": "lamp"},
+        {"shape": {"sphere": {"radius": 0.4}}, "transform": {"translate": [2, 2, 2]}, "material": "emitter"},
         {"objects": [{"shape": "disk", "transform": {"translate": [0, 0.1, 3]}}], "material": {"velvet": {}}}]}"#;
 
 fn hash(picture: &Picture) -> String {
@@ -38,7 +38,7 @@ fn changed_worlds_are_those_that_are_built_anew() {
         ("/materials/glass/dielectric/ior", json!(1.8), true),
         ("/materials/glass/dielectric", json!({"roughness": 0.3}), true),
         ("/materials/glass", json!({"mask": {"opacity": 0.5, "material": "red"}}), true),
-        ("/materials/lamp/emissive/radiance", json!([9, 1, 1]), true),
+        ("/materials/emitter/emissive/radiance", json!([9, 1, 1]), true),
         ("/materials/both/mix/amount", json!(0.1), true),
         ("/textures/spots/checker/even", json!([0.9, 0.1, 0.9]), true),
         ("/lights/0/point/intensity", json!(90), true),
@@ -56,7 +56,7 @@ fn changed_worlds_are_those_that_are_built_anew() {
     for (pointer, value, shares) in changes {
         let changed = scene.with_value(pointer, value.clone()).unwrap();
         let anew = Picture::new(&changed, &settings).unwrap();
-        let after = first.after(&scene, &changed, &settings).unwrap();
+        let after = first.rebuild(&scene, &changed, &settings).unwrap();
         let what = format!("{pointer} = {value}");
         assert_eq!(hash(&after), hash(&anew), "{what}");
         assert_ne!(hash(&after), own, "{what}");

@@ -21,12 +21,12 @@ const BLURRED: &str = r#"{"camera": {"thin_lens": {"eye": [0, 1, 6], "look_at": 
 
 /// Glass in front of an opacity mask, a half-opaque card, and a wall.
 const OPEN: &str = r#"{"camera": {"orthographic": {"eye": [0, 0, 4], "look_at": [0, 0, 0], "height": 2}},
-    "textures": {"holes": {"checker": {"size": 0.37, "space": "world", "even": 1, "odd": 0}}},
+    "textures": {"cutouts": {"checker": {"size": 0.37, "space": "world", "even": 1, "odd": 0}}},
     "objects": [{"shape": {"rectangle": {"size": [2.2, 2]}}, "name": "wall", "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0, 0, -1]}], "material": "a"},
         {"shape": {"rectangle": {"size": [1.2, 1.5]}}, "name": "card", "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [-0.5, 0.1, 0]}],
             "material": {"mask": {"opacity": 0.4, "material": {"diffuse": {}}}}},
         {"shape": {"rectangle": {"size": [0.9, 1.1]}}, "name": "veil", "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0.5, -0.2, 0.5]}],
-            "material": {"mask": {"opacity": "holes", "material": {"diffuse": {}}}}},
+            "material": {"mask": {"opacity": "cutouts", "material": {"diffuse": {}}}}},
         {"shape": {"sphere": {"radius": 0.4}}, "name": "glass", "transform": [{"translate": [0.2, 0.3, 1]}], "material": "g"}]}"#;
 
 /// Moving objects with motion blur.
@@ -71,9 +71,9 @@ fn scene(parts: &Value, materials: &Value) -> Scene {
 fn render(scene: &Scene, aovs: &[Aov]) -> (Picture, Vec<Vec<f32>>, Vec<f32>) {
     let picture = Picture::new(scene, &Settings { aovs: aovs.to_vec(), ..Settings::default() }).unwrap();
     let film = picture.film();
-    picture.expose(&film, &Control::default()).unwrap();
+    picture.render_film(&film, &Control::default()).unwrap();
     let tiles: Vec<_> = film.tiles().map(|(_, tile)| tile).collect();
-    let channels = picture.layers().band(&picture.region(), &tiles, None);
+    let channels = picture.aovs().band_values(&picture.region(), &tiles, None);
     let mut red = Vec::new();
     picture
         .develop(&film, |rows| {
@@ -123,7 +123,7 @@ fn murmur3(text: &str) -> u32 {
 fn mattes(picture: &Picture, channels: &[Vec<f32>], name: &str) -> BTreeMap<String, Vec<f32>> {
     let key = format!("cryptomatte/{:.7}", format!("{:08x}", murmur3(name)));
     let (mut manifest, mut ranks, mut first) = (None, Vec::new(), 0);
-    for layer in picture.layers().headers() {
+    for layer in picture.aovs().headers() {
         let text = |what: &str| {
             layer.metadata.iter().find(|(name, _)| *name == format!("{key}/{what}")).map(|(_, text)| text.as_str())
         };

@@ -25,7 +25,7 @@ fn each_scene_shows_something() {
         let problems = scene.check();
         assert!(problems.list().is_empty(), "{}", problems.render(false));
         let settings = Settings { size: Some([64, 36]), samples: Some(2), ..Settings::default() };
-        let image = Picture::new(&scene, &settings).unwrap().image(&Control::default()).unwrap();
+        let image = Picture::new(&scene, &settings).unwrap().render_image(&Control::default()).unwrap();
         let light = |pixel: &juggler::math::Rgb| f64::from(pixel.luminance());
         let mean = image.pixels().iter().map(light).sum::<f64>() / image.pixels().len() as f64;
         assert!(mean > 1e-3 && mean.is_finite(), "{name}: {mean}");
@@ -33,7 +33,7 @@ fn each_scene_shows_something() {
 }
 
 #[test]
-fn each_scene_is_told_of_with_its_picture() {
+fn each_scene_is_described_with_its_picture() {
     for (folder, least) in [("gallery", 7), ("lighting", 5)] {
         let page = format!("{folder}.md");
         let text = std::fs::read_to_string(Path::new(DOCS).join(&page)).unwrap();

@@ -9,13 +9,13 @@
     reason = "a test fails by panicking and prints its figures"
 )]
 
+mod aovs;
 mod area_lights;
 mod assets;
 mod building;
 mod changes;
 mod cryptomatte;
 mod gallery;
-mod layers;
 mod motion;
 mod noise;
 mod probe;

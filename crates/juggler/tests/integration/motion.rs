@@ -28,16 +28,16 @@ fn render(scene: &Scene, frame: f64, aovs: &[Aov]) -> (Channels, Picture) {
     let settings = Settings { aovs: aovs.to_vec(), ..Settings::default() };
     let picture = Picture::new(&scene.at_frame(frame).unwrap(), &settings).unwrap();
     let film = picture.film();
-    picture.expose(&film, &Control::default()).unwrap();
+    picture.render_film(&film, &Control::default()).unwrap();
     let tiles: Vec<_> = film.tiles().map(|(_, tile)| tile).collect();
-    let names = picture.layers().headers().into_iter().flat_map(|layer| layer.channels);
-    (names.zip(picture.layers().band(&picture.region(), &tiles, None)).collect(), picture)
+    let names = picture.aovs().headers().into_iter().flat_map(|layer| layer.channels);
+    (names.zip(picture.aovs().band_values(&picture.region(), &tiles, None)).collect(), picture)
 }
 
 /// Checks the vectors of all pixels that show an object (`true`) or the background (`false`) at the
 /// coordinates of [`FLAT`]. Returns their number.
-fn check(channels: &Channels, layer: &str, of_things: bool, expected: impl Fn(f32, f32) -> [f32; 2]) -> usize {
-    let pixels = (0..SIZE * SIZE).filter(|pixel| (channels["alpha.A"][*pixel] > 0.0) == of_things);
+fn check(channels: &Channels, layer: &str, of_objects: bool, expected: impl Fn(f32, f32) -> [f32; 2]) -> usize {
+    let pixels = (0..SIZE * SIZE).filter(|pixel| (channels["alpha.A"][*pixel] > 0.0) == of_objects);
     let each = |pixel: usize| {
         let place = |cell: usize| (cell as f32 + 0.5) / 16.0 - 1.0;
         let (x, y) = (place(pixel % SIZE), -place(pixel / SIZE));
@@ -57,10 +57,10 @@ fn a_ball_goes_as_many_pixels_as_it_is_moved() {
     // With an open shutter the mean over the samples is the same for linear motion.
     for more in ["", r#", "shutter": [0, 0.5]"#] {
         let (found, _) = render(&scene(FLAT, more, ball), 1.0, &ALL);
-        let things = check(&found, "motion", true, |_, _| [4.0, if more.is_empty() { -3.0 } else { -3.5 }]);
+        let moved = check(&found, "motion", true, |_, _| [4.0, if more.is_empty() { -3.0 } else { -3.5 }]);
         let back = if more.is_empty() { 1.0 } else { 1.5 };
-        assert_eq!(check(&found, "motion_back", true, |_, _| [-4.0, back]), things);
-        assert!(things > 100, "{things}");
+        assert_eq!(check(&found, "motion_back", true, |_, _| [-4.0, back]), moved);
+        assert!(moved > 100, "{moved}");
         // The background does not move under parallel rays.
         assert!(check(&found, "motion", false, |_, _| [0.0, 0.0]) > 100);
     }
@@ -80,7 +80,7 @@ fn a_disc_turns_about_its_middle() {
 }
 
 #[test]
-fn things_take_their_surfaces_along() {
+fn objects_take_their_surfaces_along() {
     // A sphere that grows by half, a mesh stretched to the right, and a group instanced twice
     // within another.
     let wall = r#"{"mesh": {"positions": [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]],
@@ -127,9 +127,9 @@ fn a_moving_camera_moves_everything() {
     };
     let mut counts = [0, 0];
     for (pixel, alpha) in found["alpha.A"].iter().enumerate() {
-        let is_thing = *alpha > 0.0;
+        let is_object = *alpha > 0.0;
         // The background is at infinity.
-        let point = if is_thing {
+        let point = if is_object {
             let [x, y, z] = ["X", "Y", "Z"].map(|axis| found[&format!("position.{axis}")][pixel]);
             [x, y, z, 1.0]
         } else {
@@ -142,7 +142,7 @@ fn a_moving_camera_moves_everything() {
         }
         // The camera turns to the right, so everything moves to the left.
         assert!(found["motion.X"][pixel] < -1.0);
-        counts[usize::from(is_thing)] += 1;
+        counts[usize::from(is_object)] += 1;
     }
     assert!(counts[0] > 200 && counts[1] > 200, "{counts:?}");
 }

@@ -7,7 +7,7 @@ use juggler_scene::Scene;
 
 /// A room with a small emitter, glass, a rough mirror and a sky through the window, for many kinds
 /// of noise.
-fn room(lamp: f32, ball: &str) -> Scene {
+fn room(power: f32, material: &str) -> Scene {
     let text = format!(
         r#"{{"version": 1,
         "render": {{"size": [40, 30], "samples": 32, "integrator": "path"}},
@@ -16,14 +16,14 @@ fn room(lamp: f32, ball: &str) -> Scene {
         "lights": [{{"point": {{"position": [2, 4, 3], "intensity": {}}}}}],
         "objects": [
             {{"shape": "plane", "material": {{"diffuse": {{"reflectance": [0.6, 0.5, 0.4]}}}}}},
-            {{"shape": {{"sphere": {{"radius": 0.7}}}}, "transform": [{{"translate": [-1, 0.7, 0]}}], "material": {ball}}},
+            {{"shape": {{"sphere": {{"radius": 0.7}}}}, "transform": [{{"translate": [-1, 0.7, 0]}}], "material": {material}}},
             {{"shape": {{"sphere": {{"radius": 0.6}}}}, "transform": [{{"translate": [1, 0.6, 0.4]}}],
               "material": {{"conductor": {{"roughness": 0.3}}}}}},
             {{"shape": {{"sphere": {{"radius": 0.1}}}}, "transform": [{{"translate": [0, 2.4, -1]}}],
               "material": {{"emissive": {{"radiance": [1, 0.8, 0.5], "scale": {}}}}}}}
         ]}}"#,
-        30.0 * lamp,
-        60.0 * lamp
+        30.0 * power,
+        60.0 * power
     );
     Scene::from_json(text, "room.json").unwrap()
 }
@@ -36,7 +36,7 @@ fn estimated(scene: &Scene, seed: u64, samples: u32, size: [u32; 2]) -> NoisyIma
     let settings = Settings { seed: Some(seed), samples: Some(samples), size: Some(size), ..Settings::default() };
     let picture = Picture::new(scene, &settings).unwrap();
     let film = picture.film();
-    picture.expose(&film, &Control::default()).unwrap();
+    picture.render_film(&film, &Control::default()).unwrap();
     estimate::from_film(&film)
 }
 

@@ -27,7 +27,7 @@ fn scene(filter: &str) -> Scene {
 
 fn probed(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Probe {
     let prober = Prober::new(scene, Picture::new(scene, settings).unwrap());
-    prober.pixel(pixel, &Detail { depth: 64, branches: 1000, brightest: 3 }, &Control::default()).unwrap()
+    prober.probe_pixel(pixel, &Detail { depth: 64, branches: 1000, brightest: 3 }, &Control::default()).unwrap()
 }
 
 fn total(shares: &[Share]) -> [f64; 3] {
@@ -47,7 +47,7 @@ fn the_mean_is_the_pixel_to_the_bit_and_every_account_of_its_light_adds_up_to_it
         let scene = scene(filter);
         for integrator in [None, Some("direct"), Some("classic"), Some("normals"), Some("ambient_occlusion")] {
             let settings = Settings { integrator: integrator.map(str::to_owned), ..Settings::default() };
-            let image = Picture::new(&scene, &settings).unwrap().image(&Control::default()).unwrap();
+            let image = Picture::new(&scene, &settings).unwrap().render_image(&Control::default()).unwrap();
             for pixel in [[0, 0], [6, 9], [17, 11], [12, 16], [12, 3]] {
                 let probe = probed(&scene, &settings, pixel);
                 let expected = image.pixels()[(pixel[1] * 24 + pixel[0]) as usize].to_array();
@@ -117,9 +117,9 @@ fn pixels_outside_and_the_smallest_picture() {
     let probe = probed(&scene, &small, [0, 0]);
     assert!(probe.standard_error.is_none() && probe.samples == 1);
     let prober = Prober::new(&scene, Picture::new(&scene, &small).unwrap());
-    let error = prober.pixel([0, 1], &Detail::default(), &Control::default()).unwrap_err().to_string();
+    let error = prober.probe_pixel([0, 1], &Detail::default(), &Control::default()).unwrap_err().to_string();
     assert!(error.contains("0,1") && error.contains("0 to 0"), "{error}");
-    assert_eq!(prober.fireflies(3, &Control::default()).unwrap().pixels, []);
+    assert_eq!(prober.find_fireflies(3, &Control::default()).unwrap().pixels, []);
     let empty = Scene::from_json(r#"{"version": 1, "objects": []}"#, "empty.json").unwrap();
     let settings = Settings { size: Some([4, 4]), integrator: Some("path".into()), ..Settings::default() };
     assert!(probed(&empty, &settings, [1, 2]).first_hit.is_none());
@@ -131,7 +131,7 @@ fn the_tree_can_be_cut_and_loses_nothing() {
     let prober = Prober::new(&scene, Picture::new(&scene, &Settings::default()).unwrap());
     for (depth, branches) in [(0, 5), (1, 1), (2, 2), (5, 0)] {
         let detail = Detail { depth, branches, brightest: 0 };
-        let light = prober.pixel([6, 10], &detail, &Control::default()).unwrap().light.unwrap();
+        let light = prober.probe_pixel([6, 10], &detail, &Control::default()).unwrap().light.unwrap();
         let root = &light.paths;
         assert!(light.brightest.is_empty() && root.branches.len() <= branches);
         let listed: f64 = root.branches.iter().map(|branch| branch.share).sum();
@@ -157,7 +157,7 @@ fn fireflies_are_found_with_the_paths_that_made_them() {
         ]}"#;
     let scene = Scene::from_json(text, "covered.json").unwrap();
     let prober = Prober::new(&scene, Picture::new(&scene, &Settings::default()).unwrap());
-    let found = prober.fireflies(5, &Control::default()).unwrap();
+    let found = prober.find_fireflies(5, &Control::default()).unwrap();
     assert!(found.pixels.len() == 5 && found.count >= 5 && found.excess > 0.0, "{found:?}");
     for firefly in &found.pixels {
         let path = firefly.path.as_ref().unwrap();
@@ -168,7 +168,7 @@ fn fireflies_are_found_with_the_paths_that_made_them() {
     assert!(found.kinds.iter().any(chance), "{:?}", found.kinds);
     let share: f64 = found.kinds.iter().map(|kind| kind.share).sum();
     assert!(share > 0.5 && share < 1.0 + 1e-9, "{share}");
-    let picture = Picture::new(&scene, &Settings::default()).unwrap().image(&Control::default()).unwrap();
+    let picture = Picture::new(&scene, &Settings::default()).unwrap().render_image(&Control::default()).unwrap();
     let [x, y] = found.pixels[0].pixel;
     assert_eq!(picture.pixels()[(y * 40 + x) as usize].to_array(), found.pixels[0].value);
 }

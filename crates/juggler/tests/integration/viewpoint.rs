@@ -36,9 +36,9 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
         let aovs = vec![Aov::Position, Aov::Alpha];
         let picture = picture(camera, &Settings { aovs, crop, ..Settings::default() });
         let film = picture.film();
-        picture.expose(&film, &Control::default()).unwrap();
+        picture.render_film(&film, &Control::default()).unwrap();
         let tiles: Vec<_> = film.tiles().map(|(_, tile)| tile).collect();
-        let [alpha, x, y, z] = picture.layers().band(&picture.region(), &tiles, None).try_into().unwrap();
+        let [alpha, x, y, z] = picture.aovs().band_values(&picture.region(), &tiles, None).try_into().unwrap();
         let viewpoint = picture.header(Options::default()).viewpoint.unwrap();
         let [width, height] = picture.size();
         let mut covered = 0;

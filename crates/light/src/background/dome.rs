@@ -21,11 +21,13 @@ use serde::{Deserialize, Serialize};
 pub struct Dome {
     /// Radius of the sphere in scene units, above 0. For a distant sky it is much larger than the
     /// scene.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
     /// Color at height 0 and below.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub bottom: Rgb,
     /// Color at the top.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub top: Rgb,
 }
 

@@ -34,7 +34,7 @@ pub struct Environment {
     /// Rotation about the vertical axis in degrees, from -10,000 to 10,000, counterclockwise as
     /// seen from above.
     #[serde(default)]
-    #[schemars(range(min = -10000, max = 10000))]
+    #[schemars(range(min = -10000, max = 10000), extend("x-unit" = "degrees"))]
     pub rotation_degrees: f32,
     /// Direction of the image's top in world space, of any length.
     #[serde(default = "up")]

@@ -18,11 +18,14 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Gradient {
     /// Color at the horizon.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub horizon: Rgb,
     /// Color at the zenith.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub zenith: Rgb,
     /// Color at the nadir. Without it the lower hemisphere mirrors the upper one.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub nadir: Option<Rgb>,
     /// Direction of the zenith in world space, of any length.
     #[schemars(with = "[f32; 3]")]

@@ -40,11 +40,11 @@ const CELLS: usize = 96;
 #[serde(default)]
 pub struct Sky {
     /// Elevation of the sun above the horizon in degrees; negative values give twilight.
-    #[schemars(range(min = -90, max = 90))]
+    #[schemars(range(min = -90, max = 90), extend("x-unit" = "degrees"))]
     pub sun_elevation_degrees: f32,
     /// Azimuth of the sun in degrees, from -10,000 to 10,000, clockwise as on a compass: 0 at -Z,
     /// 90 at +X.
-    #[schemars(range(min = -10000, max = 10000))]
+    #[schemars(range(min = -10000, max = 10000), extend("x-unit" = "degrees"))]
     pub sun_azimuth_degrees: f32,
     /// Direction towards the sun, of any length, in the sky's local space with +Y up; replaces both
     /// angles.
@@ -367,8 +367,8 @@ mod tests {
         let horizon = day.radiance(&Ray::new(Vec3::ZERO, towards(0.01)));
         assert!(horizon.luminance() > 1.5 * blue.luminance() && horizon.b / horizon.r < blue.b / blue.r);
         // Red towards the setting sun, dark long after sunset.
-        let glow = sky(0.0, 2.5).radiance(&Ray::new(Vec3::ZERO, Vec3::new(0.7, 0.03, 0.7).normalize()));
-        assert!(glow.r > 1.5 * glow.b, "{glow:?}");
+        let dusk = sky(0.0, 2.5).radiance(&Ray::new(Vec3::ZERO, Vec3::new(0.7, 0.03, 0.7).normalize()));
+        assert!(dusk.r > 1.5 * dusk.b, "{dusk:?}");
         assert!(overhead(&sky(-18.0, 2.5)).luminance() < 1e-4 * blue.luminance());
         assert!(sky(-90.0, 2.5).sample(Vec2::splat(0.5)).is_none());
     }

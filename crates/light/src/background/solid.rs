@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Solid {
     /// Radiance in every direction, linear RGB.
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub color: Rgb,
 }
 

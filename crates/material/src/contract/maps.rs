@@ -172,7 +172,7 @@ fn brushed_metal_follows_the_coordinates() {
         // Highlights are elongated along u, where alpha is larger.
         let t = tangents(u, v);
         let view = ShadingView { tangents: Some(&t), ..ShadingView::along_normal(&surface) };
-        let at = |way: Vec3| light(&along, along_id, &view, Vec3::Y * half.0 + way * half.1).g;
+        let at = |tangent: Vec3| light(&along, along_id, &view, Vec3::Y * half.0 + tangent * half.1).g;
         assert!(at(u) > 1.5 * at(v) && close(at(u), at(-u), 1e-3), "{} {}", at(u), at(v));
         let wi = random.unit_vector();
         let view = ShadingView { wo: (Vec3::Y + random.point(0.9)).normalize(), ..view };

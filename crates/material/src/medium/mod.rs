@@ -28,9 +28,11 @@ pub use phase::HenyeyGreenstein;
 pub struct Medium {
     /// Absorption coefficient per channel, per scene unit, 0 to 1e12: 1 leaves 1/e of the light
     /// after one unit.
+    #[schemars(extend("x-unit" = "1/scene unit"))]
     pub absorption: Rgb,
     /// Scattering coefficient per channel, per scene unit, 0 to 1e12. Black leaves the medium
     /// clear.
+    #[schemars(extend("x-unit" = "1/scene unit"))]
     pub scattering: Rgb,
     /// Mean cosine g of the scattering angle in the phase function of Henyey and Greenstein (1941).
     /// 0 scatters isotropically, positive values forward: fog has some 0.8.
@@ -40,7 +42,7 @@ pub struct Medium {
     /// absorption, which is added to `absorption`.
     pub color: Rgb,
     /// Distance over which white light takes the color `color`, in scene units.
-    #[schemars(range(min = 1e-12))]
+    #[schemars(range(min = 1e-12), extend("x-unit" = "scene units"))]
     pub distance: f32,
 }
 

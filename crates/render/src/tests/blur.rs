@@ -73,14 +73,14 @@ fn a_camera_that_moves_over_a_checkerboard_sees_its_mean() {
         "even": {"phong": {"diffuse": 1}}, "odd": {"phong": {"diffuse": 0}}}}"#;
     let floor = [(r#"{"cuboid": {"min": [-50, -50, -1], "max": [50, 50, 0]}}"#, Vec3::ZERO, board)];
     let world = world(&floor, &[], Rgb::BLACK);
-    for (start, way) in [(0.2, 0.5), (0.2, 1.0), (0.7, 1.7), (0.1, 2.0), (0.4, 0.0)] {
+    for (start, distance) in [(0.2, 0.5), (0.2, 1.0), (0.7, 1.7), (0.1, 2.0), (0.4, 0.0)] {
         let at = |x: f32| above(Vec3::new(x, 0.5, 5.0), 1e-3, UVec2::ONE);
-        let shot = ShutterCamera::from_keys(at(start), vec![at(start + way * 0.5), at(start + way)]);
-        // White cells extend from even to odd x: integrate the pattern under the object's way.
+        let camera = ShutterCamera::from_keys(at(start), vec![at(start + distance * 0.5), at(start + distance)]);
+        // White cells extend from even to odd x: integrate the pattern that passes under the pixel.
         let white = |x: f32| (x * 0.5).floor() + (x - (x * 0.5).floor() * 2.0).min(1.0);
-        let expected = if way == 0.0 { 1.0 } else { (white(start + way) - white(start)) / way };
-        let covered = covered(&world, &shot, UVec2::ONE)[0];
-        assert!((covered - expected).abs() < 0.004, "{start} + {way}: {covered} for {expected}");
+        let expected = if distance == 0.0 { 1.0 } else { (white(start + distance) - white(start)) / distance };
+        let covered = covered(&world, &camera, UVec2::ONE)[0];
+        assert!((covered - expected).abs() < 0.004, "{start} + {distance}: {covered} for {expected}");
     }
 }
 
@@ -98,9 +98,9 @@ impl Integrator for Clock {
 fn times(size: UVec2, samples: u32, moves: bool) -> Vec<f32> {
     let world = world(&[], &[], Rgb::BLACK);
     let at = |x: f32| above(Vec3::new(x, 0.0, 5.0), 1.0, size);
-    let shot = if moves { ShutterCamera::from_keys(at(0.0), vec![at(1.0)]) } else { at(0.0).into() };
+    let camera = if moves { ShutterCamera::from_keys(at(0.0), vec![at(1.0)]) } else { at(0.0).into() };
     let (clock, albedo) = (Clock::default(), read(r#"{"albedo": {}}"#));
-    let job = Job { integrator: &clock, ..job(&world, &shot, &albedo, samples) };
+    let job = Job { integrator: &clock, ..job(&world, &camera, &albedo, samples) };
     let pixels = Rect { x: 0, y: 0, width: size.x, height: size.y };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap();
     clock.0.into_inner().unwrap()
@@ -152,5 +152,5 @@ fn mirrors_keep_the_time_of_the_camera_ray() {
     let (worst, square) = (errors().fold(0.0, f32::max), errors().map(|error| error * error).sum::<f32>());
     assert!(worst < 0.08 && square < 0.01_f32.powi(2) * mean.len() as f32, "{worst} {square}");
     let seen = mean.iter().filter(|pixel| pixel.g > 0.1).count();
-    assert!(seen > 30, "{seen} pixels see the ball or its image");
+    assert!(seen > 30, "{seen} pixels see the sphere or its image");
 }

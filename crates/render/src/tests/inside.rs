@@ -17,19 +17,19 @@ fn seen(world: &World, eye: Vec3, samples: u32) -> Vec<Rgb> {
 
 /// From the center of a sphere, all directions are attenuated over one radius (Beer–Lambert law).
 #[test]
-fn from_within_a_ball_that_absorbs_everything_is_dimmed_alike() {
-    let ball = r#"{"sphere": {"radius": 2}}"#;
+fn from_within_a_sphere_that_absorbs_everything_is_dimmed_alike() {
+    let sphere = r#"{"sphere": {"radius": 2}}"#;
     let dark = r#"{"boundary": {"medium": {"absorption": [0.1, 0.3, 0.7]}}}"#;
     let left = Rgb::new(0.1, 0.3, 0.7).map(|absorption| portable::exp(-2.0 * absorption)) * BACKGROUND;
     for place in [Vec3::ZERO, Vec3::new(3.0, -7.0, 2.0)] {
-        let world = world(&[(ball, place, dark)], &[], BACKGROUND);
+        let world = world(&[(sphere, place, dark)], &[], BACKGROUND);
         assert!(seen(&world, place, 4).iter().all(|pixel| near(*pixel, left, 1e-5)), "{left:?}");
         // A camera outside, beside the sphere, sees no attenuation.
         assert!(seen(&world, place + Vec3::Y * 9.0, 1).iter().all(|pixel| *pixel == BACKGROUND));
     }
     // If the camera crosses the surface while the shutter is open, its position at mid-shutter
     // counts.
-    let world = world(&[(ball, Vec3::ZERO, dark)], &[], BACKGROUND);
+    let world = world(&[(sphere, Vec3::ZERO, dark)], &[], BACKGROUND);
     let size = UVec2::ONE;
     let at = |z: f32| look(Vec3::Z * z, Vec3::NEG_Z * 9.0, "5", size).projection_at(0.0);
     let moving = ShutterCamera::from_keys(at(0.0), vec![at(0.0), at(9.0)]);

@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 /// A room with a point light, a directional light, an emissive sphere, glass, rough metal and a
 /// medium.
 fn room() -> World {
-    let matt = r#"{"diffuse": {"reflectance": [0.7, 0.6, 0.5]}}"#;
+    let diffuse = r#"{"diffuse": {"reflectance": [0.7, 0.6, 0.5]}}"#;
     let objects = [
-        (r#"{"plane": {}}"#, Vec3::new(0.0, -1.0, 0.0), matt),
+        (r#"{"plane": {}}"#, Vec3::new(0.0, -1.0, 0.0), diffuse),
         (r#"{"sphere": {"radius": 0.9}}"#, Vec3::new(-1.2, 0.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#),
         (r#"{"sphere": {"radius": 0.8}}"#, Vec3::new(1.2, 0.0, -0.5), r#"{"conductor": {"roughness": 0.3}}"#),
         (r#"{"sphere": {"radius": 0.3}}"#, Vec3::new(0.0, 2.0, 0.5), r#"{"emissive": {"radiance": 1, "scale": 6}}"#),
@@ -109,7 +109,7 @@ impl Summary {
 }
 
 #[test]
-fn places_follow_each_other_and_are_told_as_what_they_are() {
+fn vertices_follow_each_other_and_are_reported_by_kind() {
     let size = UVec2::new(15, 11);
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let (world, apart) = room().with_separate_lights();

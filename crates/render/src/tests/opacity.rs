@@ -6,10 +6,10 @@ use juggler_world::MAX_PASS_THROUGHS;
 
 /// A stack of `count` invisible disks above `floor`.
 fn panes(count: u16, floor: &str, lights: &[&str]) -> World {
-    let hole = r#"{"mask": {"material": {"diffuse": {}}, "opacity": 0}}"#;
+    let invisible = r#"{"mask": {"material": {"diffuse": {}}, "opacity": 0}}"#;
     let height = |pane: u16| Vec3::new(0.0, 1.0 + f32::from(pane) * 0.01, 0.0);
     let mut objects: Vec<(&str, Vec3, &str)> =
-        (0..count).map(|pane| (r#"{"disk": {"radius": 9}}"#, height(pane), hole)).collect();
+        (0..count).map(|pane| (r#"{"disk": {"radius": 9}}"#, height(pane), invisible)).collect();
     objects.push((r#"{"disk": {"radius": 9}}"#, Vec3::ZERO, floor));
     world(&objects, lights, Rgb::BLACK)
 }
@@ -19,12 +19,12 @@ fn seen(world: &World, eye: Vec3, integrator: &AnyIntegrator) -> Rgb {
 }
 
 #[test]
-fn shadow_rays_pass_as_many_holes_as_paths() {
-    let lamp = r#"{"point": {"position": [0, 20, 0], "intensity": 400}}"#;
+fn shadow_rays_pass_as_many_invisible_surfaces_as_paths() {
+    let light = r#"{"point": {"position": [0, 20, 0], "intensity": 400}}"#;
     let (below, above) = (Vec3::new(0.5, 0.9, 0.0), Vec3::new(0.5, 20.0, 0.0));
-    let lit = |count| seen(&panes(count, r#"{"diffuse": {}}"#, &[lamp]), below, &Direct::default().into());
+    let lit = |count| seen(&panes(count, r#"{"diffuse": {}}"#, &[light]), below, &Direct::default().into());
     let followed = |count| seen(&panes(count, r#"{"emissive": {}}"#, &[]), above, &Path::default().into());
-    for (name, look) in [("asked", &lit as &dyn Fn(u16) -> Rgb), ("followed", &followed)] {
+    for (name, look) in [("light-sampled", &lit as &dyn Fn(u16) -> Rgb), ("BSDF-sampled", &followed)] {
         let open = look(0);
         assert!(open.g > 0.01, "{name}: {open:?}");
         for count in [1, 63, 64, 65, MAX_PASS_THROUGHS] {

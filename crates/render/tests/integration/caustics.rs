@@ -139,7 +139,7 @@ fn lights_without_a_size_are_sampled_too() {
                 .lit(r#"{"point": {"position": [0.4, 2, 0.3], "color": 1, "intensity": 3}}"#),
         );
         let [point, small]: [Estimate; 2] = [seen(point), seen(small)];
-        assert!(point.mean > 1.03 * without.mean, "{material}: the ball throws nothing: {point:?} {without:?}");
+        assert!(point.mean > 1.03 * without.mean, "{material}: the sphere casts no caustic: {point:?} {without:?}");
         let off = (point.mean - small.mean) / small.mean;
         assert!(off.abs() < 0.01 + 3.0 * small.sigma / small.mean, "{material}: {point:?} {small:?}");
     }
@@ -172,14 +172,15 @@ fn heap(count: usize, random: &mut Random, is_hidden: bool) -> Scene {
 #[test]
 fn light_through_many_spheres_is_neither_lost_nor_counted_twice() {
     let options = path(r#""max_depth": 8"#);
-    let shot = camera(r#"{"orthographic": {"eye": [0, 0.01, 0], "look_at": [0, 0, 0], "up": [0, 0, 1], "height": 3}}"#);
+    let camera =
+        camera(r#"{"orthographic": {"eye": [0, 0.01, 0], "look_at": [0, 0, 0], "up": [0, 0, 1], "height": 3}}"#);
     let all: Vec<usize> = (1..=40).collect();
     let counts = if is_deep() { &all[..] } else { &[1, 2, 5, 16, 17, 18, 25, 40] };
     let deviations = family_wise_deviations(counts.len());
     for (seed, &count) in (0..).zip(counts) {
         let seen = |is_hidden| {
             let scene = heap(count, &mut Random::new(3450 + seed), is_hidden);
-            picture(&scene.world(), &shot, &*options, 512, 1)
+            picture(&scene.world(), &camera, &*options, 512, 1)
         };
         let [light_sampled, bsdf_sampled] = [false, true].map(seen);
         // The floor is lit unevenly, so compare pixel by pixel.
@@ -188,8 +189,8 @@ fn light_through_many_spheres_is_neither_lost_nor_counted_twice() {
         let level = bsdf_sampled.iter().map(|pixel| f64::from(pixel.r)).sum::<f64>() / bsdf_sampled.len() as f64;
         let Estimate { mean, sigma } = Estimate::of(&differences);
         println!("{count}: {level} {mean} ± {sigma}");
-        assert!(sigma < 0.01 * level, "{count} balls: too noisy: {mean} ± {sigma} of {level}");
-        assert!(mean.abs() < deviations * sigma + 1e-4 * level, "{count} balls: {mean} ± {sigma} of {level}");
+        assert!(sigma < 0.01 * level, "{count} spheres: too noisy: {mean} ± {sigma} of {level}");
+        assert!(mean.abs() < deviations * sigma + 1e-4 * level, "{count} spheres: {mean} ± {sigma} of {level}");
     }
 }
 

@@ -41,15 +41,19 @@ pub fn fresnel(cos: f64, ior: f64) -> f64 {
 /// and without interference. `layers` holds the reflectance and transmittance of each layer, equal
 /// from both sides.
 pub fn stack(layers: &[[f64; 2]]) -> [f64; 2] {
-    let [mirrored, through, _] = layers.iter().fold([0.0, 1.0, 0.0], add);
-    [mirrored, through]
+    let [reflected, through, _] = layers.iter().fold([0.0, 1.0, 0.0], add);
+    [reflected, through]
 }
 
 /// Adds a layer below a stack, given by its reflectance from above, transmittance, and reflectance
 /// from below.
-fn add([above, through, below]: [f64; 3], [mirrored, passed]: &[f64; 2]) -> [f64; 3] {
-    let again = 1.0 / (1.0 - below * mirrored);
-    [above + through * through * mirrored * again, through * passed * again, mirrored + passed * passed * below * again]
+fn add([above, through, below]: [f64; 3], [reflected, passed]: &[f64; 2]) -> [f64; 3] {
+    let again = 1.0 / (1.0 - below * reflected);
+    [
+        above + through * through * reflected * again,
+        through * passed * again,
+        reflected + passed * passed * below * again,
+    ]
 }
 
 #[test]
@@ -62,7 +66,7 @@ fn formulas_agree_with_each_other() {
     let ours = rectangle(Vec3::new(1.0, 1.5, 0.35), [Vec3::X * 2.0, Vec3::Z * 0.7]) / PI;
     assert!((ours - published).abs() < 1e-6, "{ours} {published}");
     let pane = fresnel(0.6, 1.5);
-    let [mirrored, through] = stack(&[[pane, 1.0 - pane], [pane, 1.0 - pane]]);
-    assert!((mirrored + through - 1.0).abs() < 1e-12 && (through - (1.0 - pane) / (1.0 + pane)).abs() < 1e-12);
+    let [reflected, through] = stack(&[[pane, 1.0 - pane], [pane, 1.0 - pane]]);
+    assert!((reflected + through - 1.0).abs() < 1e-12 && (through - (1.0 - pane) / (1.0 + pane)).abs() < 1e-12);
     assert!((integral(|x| x * x) - 1.0 / 3.0).abs() < 1e-9);
 }

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 const SHOWN: f64 = 0.5 / PI;
-const LAMP: &str = r#"{"emissive": {"radiance": 3}}"#;
+const EMITTER: &str = r#"{"emissive": {"radiance": 3}}"#;
 const SQUARE: &str = r#"{"rectangle": {"size": [2, 2]}}"#;
 
 fn down(at: Vec3) -> Transform {
@@ -22,10 +22,10 @@ fn corners(transform: &Transform) -> [Vec3; 4] {
 }
 
 #[test]
-fn a_lamp_is_seen_as_bright_as_it_is_from_its_front() {
+fn an_emitter_is_seen_as_bright_as_it_is_from_its_front() {
     let from = |eye: f32, sides: &str| {
-        let lamp = format!(r#"{{"emissive": {{"radiance": 3, "scale": 2, "sides": "{sides}"}}}}"#);
-        let scene = Scene::new().with(SQUARE, Vec3::ZERO, &lamp);
+        let emitter = format!(r#"{{"emissive": {{"radiance": 3, "scale": 2, "sides": "{sides}"}}}}"#);
+        let scene = Scene::new().with(SQUARE, Vec3::ZERO, &emitter);
         measure(&scene.world(), &looking(Vec3::new(0.0, eye, 1.0), Vec3::ZERO), &*path(r#""max_depth": 1"#), 4).mean
     };
     assert_eq!([from(2.0, "front"), from(-2.0, "front"), from(2.0, "both"), from(-2.0, "both")], [6.0, 0.0, 6.0, 6.0]);
@@ -35,12 +35,12 @@ const TEXTURES: &str = r#"{"tiles": {"checker": {"size": 0.25, "even": 4, "odd":
 
 /// 64 tiles, every other one brighter.
 #[test]
-fn a_textured_lamp() {
-    let lamp = r#"{"emissive": {"radiance": "tiles"}}"#;
+fn a_textured_emitter() {
+    let emitter = r#"{"emissive": {"radiance": "tiles"}}"#;
     let place = down(Vec3::new(0.2, 1.0, -0.1));
     let scene = Scene::textured(TEXTURES)
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.5}}"#)
-        .placed(SQUARE, place, lamp);
+        .placed(SQUARE, place, emitter);
     let tile = |i: i16| {
         let (x, z) = (i % 8 - 4, i / 8 - 4);
         let corner = |dx: i16, dz: i16| place.point(Vec3::new(f32::from(x + dx), 0.0, f32::from(z + dz)) * 0.25);
@@ -53,18 +53,18 @@ fn a_textured_lamp() {
 /// Instances in instances: rotated, scaled and, in every other case, mirrored, with its own
 /// material and with an inherited one.
 #[test]
-fn a_lamp_in_a_group_in_a_group() {
+fn an_emitter_in_a_group_in_a_group() {
     for (mirror, inherits) in [(1.0, false), (-1.0, false), (1.0, true), (-1.0, true)] {
         let mut scene = Scene::floor();
-        let lamp = scene.material(LAMP);
+        let emitter = scene.material(EMITTER);
         let inner = Transform::rotation(Vec3::X, std::f32::consts::PI - 0.3).unwrap();
         let scale = Transform::scale(Vec3::new(mirror * 0.7, 1.2, 0.5)).unwrap();
         let outer = scale.then(&Transform::translation(Vec3::new(0.4, 1.5, 0.3)));
-        let mut square = Object::new(prepared(SQUARE), inner, lamp);
+        let mut square = Object::new(prepared(SQUARE), inner, emitter);
         let mut group =
             Object { content: Content::Geometry(geometry(Vec::new())), motion: outer.into(), material: None };
         if inherits {
-            (square.material, group.material) = (None, Some(lamp));
+            (square.material, group.material) = (None, Some(emitter));
         }
         group.content = Content::Geometry(geometry(vec![square]));
         scene.objects.push(group);
@@ -89,7 +89,7 @@ fn a_mesh() {
     {
         let mesh = format!(r#"{{"mesh": {{"positions": [{positions}], "triangles": [{triangles}]}}}}"#);
         let place = Transform::scale(Vec3::new(mirror, 1.0, 1.0)).unwrap();
-        let scene = Scene::floor().placed(&mesh, place, LAMP);
+        let scene = Scene::floor().placed(&mesh, place, EMITTER);
         // Its silhouette is that of its base.
         traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * polygon(&base, Vec3::Y));
     }
@@ -97,23 +97,23 @@ fn a_mesh() {
 
 /// Shapes that are sampled as a whole, from a point where their silhouette has a closed form.
 #[test]
-fn a_cuboid_and_a_stretched_ball() {
+fn a_cuboid_and_an_ellipsoid() {
     let cuboid = r#"{"cuboid": {"min": [-1, 1, -1], "max": [1, 2, 1]}}"#;
-    let scene = Scene::floor().with(cuboid, Vec3::ZERO, LAMP);
+    let scene = Scene::floor().with(cuboid, Vec3::ZERO, EMITTER);
     traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * polygon(&corners(&down(Vec3::Y)), Vec3::Y));
     // Irradiance from an ellipsoid straight above with semi-axes a, c, a and center at height h: π
     // a² / (h² - c² + a²).
     let stretched = Transform::scale(Vec3::new(1.0, 0.5, 1.0)).unwrap();
     let place = stretched.then(&Transform::translation(Vec3::Y * 2.0));
-    let scene = Scene::floor().placed(r#"{"sphere": {"radius": 1}}"#, place, LAMP);
+    let scene = Scene::floor().placed(r#"{"sphere": {"radius": 1}}"#, place, EMITTER);
     traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * PI / (4.0 - 0.25 + 1.0));
 }
 
 #[test]
-fn a_lamp_on_its_way() {
+fn a_moving_emitter() {
     let keys = [Vec3::new(-2.0, 2.0, 0.0), Vec3::new(2.0, 2.0, 1.0)].map(Transform::translation);
     let motion = Motion::from_keys(keys.to_vec()).unwrap();
-    let scene = Scene::floor().placed(r#"{"sphere": {"radius": 0.5}}"#, motion, LAMP);
+    let scene = Scene::floor().placed(r#"{"sphere": {"radius": 0.5}}"#, motion, EMITTER);
     let of = |time: f64| {
         let squared = (4.0 * time - 2.0).powi(2) + 4.0 + time * time;
         PI * 0.25 / squared * 2.0 / squared.sqrt()
@@ -123,10 +123,10 @@ fn a_lamp_on_its_way() {
 
 /// A black sheet with an opacity of 0.3 transmits 0.7 of the light.
 #[test]
-fn a_sheet_with_holes() {
+fn a_partly_opaque_sheet() {
     let sheet = r#"{"mask": {"opacity": 0.3, "material": {"diffuse": {"reflectance": 0}}}}"#;
-    let lamp = Scene::floor().placed(SQUARE, down(Vec3::Y * 2.0), LAMP);
-    let scene = lamp.with(r#"{"rectangle": {"size": [50, 50]}}"#, Vec3::Y, sheet);
+    let emitter = Scene::floor().placed(SQUARE, down(Vec3::Y * 2.0), EMITTER);
+    let scene = emitter.with(r#"{"rectangle": {"size": [50, 50]}}"#, Vec3::Y, sheet);
     let below = looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO);
     traced(scene, &below, 256).is(SHOWN * 3.0 * 0.7 * polygon(&corners(&down(Vec3::Y * 2.0)), Vec3::Y));
     let light = r#"{"point": {"position": [0, 2, 0], "intensity": 5}}"#;
@@ -136,12 +136,12 @@ fn a_sheet_with_holes() {
 
 /// Emission is scaled by opacity and by the mixing weight, for light and BSDF sampling alike.
 #[test]
-fn a_lamp_with_holes_and_one_of_two_materials() {
+fn an_emitter_of_some_opacity_and_one_of_two_materials() {
     let expected = SHOWN * 3.0 * polygon(&corners(&down(Vec3::Y)), Vec3::Y);
-    let masked = format!(r#"{{"mask": {{"opacity": 0.4, "material": {LAMP}}}}}"#);
+    let masked = format!(r#"{{"mask": {{"opacity": 0.4, "material": {EMITTER}}}}}"#);
     traced(Scene::floor().placed(SQUARE, down(Vec3::Y), &masked), &at_origin(), 512).is(0.4 * expected);
     let black = r#"{"diffuse": {"reflectance": 0}}"#;
-    for (amount, a, b, share) in [(0.3, LAMP, black, 0.7), (0.3, black, LAMP, 0.3), (0.8, LAMP, black, 0.2)] {
+    for (amount, a, b, share) in [(0.3, EMITTER, black, 0.7), (0.3, black, EMITTER, 0.3), (0.8, EMITTER, black, 0.2)] {
         let mixed = format!(r#"{{"mix": {{"amount": {amount}, "a": {a}, "b": {b}}}}}"#);
         traced(Scene::floor().placed(SQUARE, down(Vec3::Y), &mixed), &at_origin(), 1024).is(share * expected);
     }
@@ -150,7 +150,7 @@ fn a_lamp_with_holes_and_one_of_two_materials() {
 /// A sheet that mixes an opaque and a partly transparent material: shadows have the mean
 /// transmittance.
 #[test]
-fn shadows_of_mixed_holes() {
+fn shadows_of_mixed_opacity() {
     let black = r#"{"diffuse": {"reflectance": 0}}"#;
     let light = r#"{"point": {"position": [0, 2, 0], "intensity": 5}}"#;
     let below = looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO);
@@ -165,8 +165,8 @@ fn shadows_of_mixed_holes() {
 /// The `phong` material: its emission acts as an area light.
 #[test]
 fn classic_materials() {
-    let lamp = r#"{"phong": {"diffuse": 0, "specular": 0, "emission": 3}}"#;
-    let scene = Scene::floor().with(r#"{"sphere": {"radius": 0.5}}"#, Vec3::Y * 2.0, lamp);
+    let emitter = r#"{"phong": {"diffuse": 0, "specular": 0, "emission": 3}}"#;
+    let scene = Scene::floor().with(r#"{"sphere": {"radius": 0.5}}"#, Vec3::Y * 2.0, emitter);
     traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * PI * 0.25 / 4.0);
     // Its diffuse term has no factor 1/π: intensity 1 at distance 1 makes a white surface white.
     let floor = r#"{"phong": {"diffuse": 0.5, "specular": 0}}"#;

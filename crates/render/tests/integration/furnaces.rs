@@ -5,7 +5,7 @@ use crate::probe::{Estimate, Scene, looking, measure, path};
 use juggler_math::{Transform, Vec3};
 
 /// Radiance of a point of a sphere of this material, viewed at 45 degrees.
-fn ball(material: &str, samples: u32) -> Estimate {
+fn sphere(material: &str, samples: u32) -> Estimate {
     let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0);
     let point = Vec3::new(1.0, 0.0, 1.0).normalize();
     // Without absorption, Russian roulette would only add noise.
@@ -13,7 +13,7 @@ fn ball(material: &str, samples: u32) -> Estimate {
 }
 
 #[test]
-fn white_things_vanish() {
+fn white_objects_vanish() {
     let materials = [
         r#"{"diffuse": {"reflectance": 1}}"#,
         r#"{"diffuse": {"reflectance": 1, "roughness": 0.7}}"#,
@@ -34,14 +34,14 @@ fn white_things_vanish() {
     ];
     for material in materials {
         println!("{material}");
-        ball(material, 64).is(1.0);
+        sphere(material, 64).is(1.0);
     }
 }
 
 /// The tables of multiple scattering are accurate to half a percent per surface, and paths hit two
 /// or more surfaces.
 #[test]
-fn rough_things_vanish_nearly() {
+fn rough_objects_vanish_nearly() {
     for roughness in [0.05, 0.3, 1.0] {
         let of = |kind: &str| format!(r#"{{"{kind}, "roughness": {roughness}}}}}"#);
         let kinds = [
@@ -53,7 +53,7 @@ fn rough_things_vanish_nearly() {
         for kind in kinds {
             // Light trapped in rough glass makes the estimate noisier.
             let samples = if kind.contains("ior") { 256 } else { 64 };
-            let Estimate { mean, sigma } = ball(&of(kind), samples);
+            let Estimate { mean, sigma } = sphere(&of(kind), samples);
             assert!((mean - 1.0).abs() < 3.0 * sigma + 0.007 && sigma < 0.004, "{kind}, {roughness}: {mean} ± {sigma}");
         }
     }
@@ -63,7 +63,7 @@ fn rough_things_vanish_nearly() {
 #[test]
 fn what_is_not_compensated_is_darker() {
     let of = |roughness: f64| {
-        ball(
+        sphere(
             &format!(
                 r#"{{"conductor": {{"reflectance": 1, "roughness": {roughness}, "energy_compensation": false}}}}"#
             ),
@@ -91,8 +91,8 @@ fn a_white_scene_is_white() {
         let place = Transform::translation(Vec3::new(f32::from(i) * 1.1 - 2.0, 0.2, f32::from(i % 2) - 0.5));
         scene = scene.placed(shape, turn.then(&place), material);
     }
-    let shot = crate::probe::camera(
+    let camera = crate::probe::camera(
         r#"{"perspective": {"eye": [0, 1.5, 6], "look_at": [0, 0, 0], "vertical_fov_degrees": 40}}"#,
     );
-    measure(&scene.world(), &shot, &*path(r#""max_depth": 1000"#), 32).is(1.0);
+    measure(&scene.world(), &camera, &*path(r#""max_depth": 1000"#), 32).is(1.0);
 }

@@ -13,8 +13,8 @@ fn through(mut scene: Scene, cos: f32) -> Estimate {
         wall.then(&Transform::translation(Vec3::Z * -5.0)),
         r#"{"emissive": {"radiance": 1}}"#,
     );
-    let way = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    measure(&scene.world(), &looking(way * 5.0, Vec3::ZERO), &*path(""), 1024)
+    let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    measure(&scene.world(), &looking(wo * 5.0, Vec3::ZERO), &*path(""), 1024)
 }
 
 /// A wide pane from z = `from` to z = `to`.
@@ -24,7 +24,7 @@ fn pane(scene: Scene, from: f32, to: f32, material: &str) -> Scene {
 }
 
 /// Reflectance and transmittance of an interface.
-fn border(cos: f64, ior: f64) -> [f64; 2] {
+fn interface(cos: f64, ior: f64) -> [f64; 2] {
     let share = fresnel(cos, ior);
     [share, 1.0 - share]
 }
@@ -53,8 +53,8 @@ fn colored_glass() {
     let glass = r#"{"dielectric": {"ior": 1.5, "medium": {"color": 0.5, "distance": 0.2}}}"#;
     for cos in [1.0f64, 0.6] {
         let share = fresnel(cos, 1.5);
-        let way = 0.3 / (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
-        let left = 0.5f64.powf(way / 0.2);
+        let distance = 0.3 / (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
+        let left = 0.5f64.powf(distance / 0.2);
         let expected = (1.0 - share).powi(2) * left / (1.0 - (share * left).powi(2));
         through(pane(Scene::new(), 0.0, 0.3, glass), cos as f32).is(expected);
     }
@@ -67,7 +67,8 @@ fn water_in_a_glass() {
     let cos = 0.8f64;
     // Cosine of the refraction angle in a medium of this index.
     let inside = |ior: f64| (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
-    let [_, expected] = stack(&[border(cos, 1.5), border(inside(1.5), 1.33 / 1.5), border(inside(1.33), 1.0 / 1.33)]);
+    let [_, expected] =
+        stack(&[interface(cos, 1.5), interface(inside(1.5), 1.33 / 1.5), interface(inside(1.33), 1.0 / 1.33)]);
     for (glass_priority, water_priority, from) in [(1, 0, 0.25), (0, -3, 0.2001), (0, 1, 0.3), (5, 4, 0.4)] {
         let glass = format!(r#"{{"dielectric": {{"ior": 1.5, "priority": {glass_priority}}}}}"#);
         let water = format!(r#"{{"dielectric": {{"ior": 1.33, "priority": {water_priority}}}}}"#);
@@ -81,7 +82,7 @@ fn water_in_a_glass() {
 /// An emitting wall inside glass: its radiance decreases on the way into the air by the square of
 /// the index.
 #[test]
-fn a_lamp_in_glass() {
+fn an_emitter_in_glass() {
     let upright = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
     for (roughness, cos) in [(0.0, 1.0f32), (0.0, 0.6), (0.02, 0.9)] {
         let glass = format!(r#"{{"dielectric": {{"ior": 1.5, "roughness": {roughness}}}}}"#);
@@ -90,8 +91,8 @@ fn a_lamp_in_glass() {
             upright.then(&Transform::translation(Vec3::Z * -0.5)),
             r#"{"emissive": {"radiance": 3}}"#,
         );
-        let way = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-        let seen = measure(&scene.world(), &looking(way * 5.0, Vec3::ZERO), &*path(""), 256);
+        let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        let seen = measure(&scene.world(), &looking(wo * 5.0, Vec3::ZERO), &*path(""), 256);
         seen.is(3.0 * (1.0 - fresnel(f64::from(cos), 1.5)) / 2.25);
     }
 }
@@ -101,7 +102,7 @@ fn a_lamp_in_glass() {
 fn one_within_another() {
     let scene = pane(Scene::new(), 0.0, 1.0, r#"{"dielectric": {"ior": 1.5}}"#);
     let scene = pane(scene, 0.4, 0.6, r#"{"dielectric": {"ior": 1.33, "priority": 1}}"#);
-    let (outer, inner) = (border(1.0, 1.5), border(1.0, 1.33 / 1.5));
+    let (outer, inner) = (interface(1.0, 1.5), interface(1.0, 1.33 / 1.5));
     let [_, expected] = stack(&[outer, inner, inner, outer]);
     through(scene, 1.0).is(expected);
 }
@@ -110,11 +111,11 @@ fn one_within_another() {
 /// pane returns the fraction R of the light that the floor reflects.
 #[test]
 fn light_through_a_pane() {
-    let mirrored = |cos: f64| {
+    let reflectance = |cos: f64| {
         let share = fresnel(cos.max(1e-9), 1.5);
         2.0 * share / (1.0 + share)
     };
-    let all = integral(|cos| 2.0 * cos * mirrored(cos));
+    let all = integral(|cos| 2.0 * cos * reflectance(cos));
     let expected = 0.5 * (1.0 - all) / (1.0 - 0.5 * all);
     let block = r#"{"cuboid": {"min": [-1000, 0.5, -1000], "max": [1000, 0.7, 1000]}}"#;
     let below = looking(Vec3::new(0.3, 0.2, 0.1), Vec3::ZERO);
@@ -129,10 +130,10 @@ fn light_through_a_pane() {
 /// (1 - 1/n).
 #[test]
 fn a_caustic_of_a_pane() {
-    let lamp = r#"{"sphere": {"radius": 0.2}}"#;
+    let emitter = r#"{"sphere": {"radius": 0.2}}"#;
     let scene = Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.01}}"#)
-        .with(lamp, Vec3::Y * 3.0, r#"{"emissive": {"radiance": 10}}"#)
+        .with(emitter, Vec3::Y * 3.0, r#"{"emissive": {"radiance": 10}}"#)
         .with(
             r#"{"cuboid": {"min": [-1000, 1, -1000], "max": [1000, 1.6, 1000]}}"#,
             Vec3::ZERO,
@@ -150,7 +151,7 @@ fn a_caustic_of_a_pane() {
 
 /// A glass sphere on a white floor under a white sky is invisible, whatever light it focuses.
 #[test]
-fn a_ball_on_a_white_floor() {
+fn a_sphere_on_a_white_floor() {
     let scene = Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 1}}"#)
         .with(r#"{"sphere": {"radius": 1}}"#, Vec3::new(0.2, 1.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#)

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Radiance of the floor per irradiance: albedo 0.5 over π.
 const SHOWN: f64 = 0.5 / PI;
 
-const LAMP: &str = r#"{"emissive": {"radiance": 3}}"#;
+const EMITTER: &str = r#"{"emissive": {"radiance": 3}}"#;
 
 /// Turned upside down, then moved.
 fn down(at: Vec3) -> Transform {
@@ -19,7 +19,7 @@ fn down(at: Vec3) -> Transform {
 #[test]
 fn a_sphere() {
     for (center, radius) in [(Vec3::new(0.0, 3.0, 0.0), 1.0), (Vec3::new(-2.0, 2.5, -1.0), 0.8)] {
-        let scene = Scene::floor().with(&format!(r#"{{"sphere": {{"radius": {radius}}}}}"#), center, LAMP);
+        let scene = Scene::floor().with(&format!(r#"{{"sphere": {{"radius": {radius}}}}}"#), center, EMITTER);
         let distance = f64::from(center.length());
         let sine = radius / distance;
         traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * sine * sine * f64::from(center.y) / distance);
@@ -28,7 +28,7 @@ fn a_sphere() {
 
 #[test]
 fn a_disk() {
-    let scene = Scene::floor().placed(r#"{"disk": {"radius": 1.5}}"#, down(Vec3::Y * 2.0), LAMP);
+    let scene = Scene::floor().placed(r#"{"disk": {"radius": 1.5}}"#, down(Vec3::Y * 2.0), EMITTER);
     traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * 2.25 / (2.25 + 4.0));
 }
 
@@ -36,12 +36,12 @@ fn a_disk() {
 fn a_rectangle_above_and_one_beside() {
     let size = r#"{"rectangle": {"size": [2, 3]}}"#;
     let center = Vec3::new(0.3, 1.2, -0.5);
-    let above = Scene::floor().placed(size, down(center), LAMP);
+    let above = Scene::floor().placed(size, down(center), EMITTER);
     traced(above, &at_origin(), 64).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 3.0]));
     // Stand the rectangle on the floor, its front towards +x.
     let center = Vec3::new(-1.0, 1.0, 0.4);
     let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
-    let beside = Scene::floor().placed(size, upright.then(&Transform::translation(center)), LAMP);
+    let beside = Scene::floor().placed(size, upright.then(&Transform::translation(center)), EMITTER);
     traced(beside, &at_origin(), 256).is(SHOWN * 3.0 * rectangle(center, [Vec3::Y * 2.0, Vec3::Z * 3.0]));
 }
 
@@ -51,7 +51,7 @@ fn a_triangle() {
     for corners in [corners, [corners[0], corners[2], corners[1]]] {
         let vertices = corners.map(json).join(", ");
         let shape = format!(r#"{{"triangle": {{"vertices": [{vertices}]}}}}"#);
-        let scene = Scene::floor().with(&shape, Vec3::ZERO, LAMP);
+        let scene = Scene::floor().with(&shape, Vec3::ZERO, EMITTER);
         let faces_down = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(-corners[0]) > 0.0;
         if faces_down {
             traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * polygon(&corners, Vec3::Y));
@@ -67,19 +67,19 @@ fn a_triangle() {
 fn squares_of_a_box() {
     let square = r#"{"rectangle": {"size": [1, 1]}}"#;
     let show = r#"{"diffuse": {"reflectance": 1}}"#;
-    let lamp = r#"{"emissive": {"radiance": 1}}"#;
+    let emitter = r#"{"emissive": {"radiance": 1}}"#;
     // A camera at half height, whose picture is the floor.
     let floor = camera(
         r#"{"perspective": {"eye": [0, 0.5, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "vertical_fov_degrees": 90}}"#,
     );
-    let opposed = Scene::new().with(square, Vec3::ZERO, show).placed(square, down(Vec3::Y), lamp);
+    let opposed = Scene::new().with(square, Vec3::ZERO, show).placed(square, down(Vec3::Y), emitter);
     // Pixels show different points, so their spread does not measure the error, which is far
     // smaller.
     let mean = measure(&opposed.world(), &floor, &*path(""), 256).mean;
     assert!((mean - 0.199_825).abs() < 2e-4, "{mean}");
     let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
     let upright = upright.then(&Transform::translation(Vec3::new(-0.5, 0.5, 0.0)));
-    let right = Scene::new().with(square, Vec3::ZERO, show).placed(square, upright, lamp);
+    let right = Scene::new().with(square, Vec3::ZERO, show).placed(square, upright, emitter);
     let mean = measure(&right.world(), &floor, &*path(""), 1024).mean;
     assert!((mean - 0.200_044).abs() < 4e-4, "{mean}");
 }
@@ -126,13 +126,13 @@ fn lights_add_up() {
     let each = [
         Scene::floor().lit(point),
         Scene::floor().lit(sun),
-        Scene::floor().with(sphere, at, LAMP),
+        Scene::floor().with(sphere, at, EMITTER),
         Scene::floor().in_light(0.2),
     ];
     let sum: f64 = each.map(|scene| traced(scene, &at_origin(), 1024).mean).iter().sum();
     // The sphere hides a small part of the sky.
     let hidden = SHOWN * 0.2 * PI * 0.25 / 6.0 * 2.0 / 6f64.sqrt();
-    let all = Scene::floor().lit(point).lit(sun).with(sphere, at, LAMP).in_light(0.2);
+    let all = Scene::floor().lit(point).lit(sun).with(sphere, at, EMITTER).in_light(0.2);
     traced(all, &at_origin(), 1024).is(sum - hidden);
 }
 
@@ -145,7 +145,7 @@ fn a_thousand_tiles() {
     let mut tiles = Scene::floor();
     let place = |i: u16| (f32::from(i) + 0.5) * side - 1.0;
     for i in 0..32 * 32 {
-        tiles = tiles.placed(&tile, down(center + Vec3::new(place(i % 32), 0.0, place(i / 32))), LAMP);
+        tiles = tiles.placed(&tile, down(center + Vec3::new(place(i % 32), 0.0, place(i / 32))), EMITTER);
     }
     traced(tiles, &at_origin(), 256).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 2.0]));
 }
@@ -158,12 +158,12 @@ fn a_closed_sphere() {
     let wall = r#"{"diffuse": {"reflectance": 0.5}}"#;
     let light = r#"{"point": {"position": [0, 0, 0], "intensity": 12.566370614}}"#;
     let centered = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
-    let shot = looking(Vec3::new(0.2, 0.3, 0.1), Vec3::new(0.0, 0.0, -2.0));
+    let camera = looking(Vec3::new(0.2, 0.3, 0.1), Vec3::new(0.0, 0.0, -2.0));
     // E = I / r² = π, of which 0.5 / π is visible; interreflection doubles it.
-    traced(centered, &shot, 64).is(1.0);
+    traced(centered, &camera, 64).is(1.0);
     let light = r#"{"point": {"position": [0, 0, 1], "intensity": 12.566370614}}"#;
     let aside = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
-    traced(aside, &shot, 256).is(SHOWN * 4.0 * PI / 9.0 + 0.5);
+    traced(aside, &camera, 256).is(SHOWN * 4.0 * PI / 9.0 + 0.5);
     let emissive = r#"{"emissive": {"radiance": 0.5, "sides": "both", "material": {"diffuse": {"reflectance": 0.5}}}}"#;
-    traced(Scene::new().with(shell, Vec3::ZERO, emissive), &shot, 64).is(1.0);
+    traced(Scene::new().with(shell, Vec3::ZERO, emissive), &camera, 64).is(1.0);
 }

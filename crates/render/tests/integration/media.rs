@@ -19,7 +19,7 @@ fn down(cos: f32) -> juggler_camera::ShutterCamera {
 }
 
 #[test]
-fn clear_things_absorb() {
+fn clear_media_absorb() {
     for cos in [1.0f64, 0.5] {
         let scene = layer(0.6, r#"{"absorption": [0.5, 1, 0], "color": [1, 1, 0.25], "distance": 0.3}"#).with(
             r#"{"rectangle": {"size": [4000, 4000]}}"#,
@@ -27,10 +27,10 @@ fn clear_things_absorb() {
             WALL,
         );
         let colors = crate::probe::colors(&scene.world(), &down(cos as f32), &*path(""), 4);
-        let way = 0.6 / cos;
-        colors[0].is((-0.5 * way).exp());
-        colors[1].is(2.0 * (-way).exp());
-        colors[2].is(3.0 * 0.25f64.powf(way / 0.3));
+        let distance = 0.6 / cos;
+        colors[0].is((-0.5 * distance).exp());
+        colors[1].is(2.0 * (-distance).exp());
+        colors[2].is(3.0 * 0.25f64.powf(distance / 0.3));
     }
 }
 
@@ -68,7 +68,7 @@ fn fog_scatters_once() {
 /// Single scattering of light from an emissive shape, which scattered rays can hit too, along a ray
 /// through a sphere of fog.
 #[test]
-fn fog_scatters_the_light_of_lamps_once() {
+fn fog_scatters_the_light_of_emitters_once() {
     let fog = r#"{"boundary": {"medium": {"scattering": 0.5}}}"#;
     let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, fog).with(
         r#"{"sphere": {"radius": 0.5}}"#,
@@ -96,8 +96,8 @@ fn once(coefficient: f64, steps: u32) -> f64 {
             for j in 0..turns {
                 let cos = 1.0 - (1.0 - cos_max) * (f64::from(i) + 0.5) / f64::from(rings);
                 let (sin_turn, cos_turn) = (f64::from(j) * 2.0 * PI / f64::from(turns)).sin_cos();
-                let way = axis * cos + (tangent * cos_turn + bitangent * sin_turn) * (1.0 - cos * cos).sqrt();
-                let along = z * way.z;
+                let wi = axis * cos + (tangent * cos_turn + bitangent * sin_turn) * (1.0 - cos * cos).sqrt();
+                let along = z * wi.z;
                 let out = -along + (along * along + 1.0 - z * z).sqrt();
                 sum += (-coefficient * out).exp() / f64::from(rings * turns);
             }
@@ -115,8 +115,9 @@ fn once(coefficient: f64, steps: u32) -> f64 {
 fn thick_fog_gives_light_back() {
     let albedo = 0.8f64;
     let scene = layer(40.0, r#"{"scattering": 0.8, "absorption": 0.2}"#).in_light(1.0);
-    let shot = looking(Vec3::new(0.6, 40.8, 0.0), Vec3::new(0.0, 40.0, 0.0));
-    let measured: Estimate = measure(&scene.world(), &shot, &*path(r#""max_depth": 1000, "roulette_depth": 20"#), 256);
+    let camera = looking(Vec3::new(0.6, 40.8, 0.0), Vec3::new(0.0, 40.0, 0.0));
+    let measured: Estimate =
+        measure(&scene.world(), &camera, &*path(r#""max_depth": 1000, "roulette_depth": 20"#), 256);
     measured.is(1.0 - chandrasekhar(0.8, albedo) * (1.0 - albedo).sqrt());
 }
 
@@ -145,8 +146,8 @@ fn a_floor_under_fog() {
         Vec3::Y * 0.1,
         r#"{"diffuse": {"reflectance": 0.5}}"#,
     );
-    let shot = looking(Vec3::new(3.0, 4.1, 0.0), Vec3::Y * 0.1);
-    traced(scene, &shot, 4).is(0.5 / PI * 4.0 * (-0.25f64 - 0.25 / 0.8).exp());
+    let camera = looking(Vec3::new(3.0, 4.1, 0.0), Vec3::Y * 0.1);
+    traced(scene, &camera, 4).is(0.5 / PI * 4.0 * (-0.25f64 - 0.25 / 0.8).exp());
     // In uniform light, each direction is attenuated over its own length.
     let scene = layer(0.6, r#"{"absorption": 0.5}"#).in_light(1.0).with(
         r#"{"plane": {}}"#,
@@ -154,7 +155,7 @@ fn a_floor_under_fog() {
         r#"{"diffuse": {"reflectance": 0.5}}"#,
     );
     let arrives = integral(|cos| if cos == 0.0 { 0.0 } else { 2.0 * cos * (-0.25 / cos).exp() });
-    traced(scene, &shot, 256).is(0.5 * arrives * (-0.25f64 / 0.8).exp());
+    traced(scene, &camera, 256).is(0.5 * arrives * (-0.25f64 / 0.8).exp());
 }
 
 /// Fog of higher priority hides a block of glass: light in the fog passes it unchanged.
@@ -170,9 +171,9 @@ fn glass_that_is_hidden_in_fog() {
     };
     let glass = r#"{"dielectric": {"ior": 1.5, "roughness": 0.3}}"#;
     let block = r#"{"cuboid": {"min": [-0.4, 0.1, -0.4], "max": [0.4, 0.3, 0.4]}}"#;
-    let shot = looking(Vec3::Z * 5.0, Vec3::ZERO);
-    let hidden = traced(scene().with(block, Vec3::ZERO, glass), &shot, 256);
-    traced(scene(), &shot, 256).equals(hidden, "hidden glass");
+    let camera = looking(Vec3::Z * 5.0, Vec3::ZERO);
+    let hidden = traced(scene().with(block, Vec3::ZERO, glass), &camera, 256);
+    traced(scene(), &camera, 256).equals(hidden, "hidden glass");
 }
 
 /// Overlapping media: the one of higher priority applies.

@@ -77,7 +77,7 @@ fn lathe(rings: &[(f32, f32)]) -> String {
     mesh(&corners, &sides.collect::<Vec<_>>())
 }
 
-fn ball_mesh() -> String {
+fn sphere_mesh() -> String {
     let rings: Vec<(f32, f32)> = (0..=6u8).map(|i| f32::from(i) / 6.0 * PI - FRAC_PI_2).map(f32::sin_cos).collect();
     lathe(&rings)
 }
@@ -119,7 +119,7 @@ fn rooms() -> Vec<Room> {
         one("triangle", r#"{"triangle": {"vertices": [[-1, 0, 1], [1, 0, 1], [0, 0, -1]]}}"#, Form::Open, true),
         one("polygon", polygon, Form::Open, false),
         one("box mesh", &box_mesh(), Form::Closed, true),
-        one("ball mesh", &ball_mesh(), Form::Closed, true),
+        one("sphere mesh", &sphere_mesh(), Form::Closed, true),
         one("tube mesh", &lathe(&[(-1.0, 1.0), (1.0, 1.0)]), Form::Open, true),
         Room { name: "six walls", walls: walls(), form: Form::FacingIn, by_solid_angle: true },
     ]
@@ -158,7 +158,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn measure(&self, sides: &str, around: f32, shot: &ShutterCamera) -> Estimate {
+    fn measure(&self, sides: &str, around: f32, camera: &ShutterCamera) -> Estimate {
         let material = wall(self.albedo, sides);
         let scene = self.room.walls.iter().fold(Scene::new().in_light(around), |scene, (shape, place)| {
             scene.placed(shape, place.then(&self.place.1), &material)
@@ -169,16 +169,16 @@ impl Case<'_> {
             r#""sampling": "{}", "light_samples": {}, "max_depth": {depth}, "roulette_depth": null"#,
             self.sampling, self.light_samples
         );
-        self.measure_until_sure(&scene.world(), shot, &*path(&options))
+        self.measure_until_sure(&scene.world(), camera, &*path(&options))
     }
 
     /// Estimates a mean. Over the whole grid, if the variance is bounded, the number of samples is
     /// quadrupled until the standard error is small enough; light sampling alone is noisy at a high
     /// albedo.
-    fn measure_until_sure(&self, world: &World, shot: &ShutterCamera, integrator: &dyn Integrator) -> Estimate {
+    fn measure_until_sure(&self, world: &World, camera: &ShutterCamera, integrator: &dyn Integrator) -> Estimate {
         let mut samples = self.samples;
         loop {
-            let mean = measure(world, shot, integrator, samples);
+            let mean = measure(world, camera, integrator, samples);
             if !is_deep() || !self.has_bound() || mean.sigma <= DEEP_NOISE || samples >= MOST_REPEATS * self.samples {
                 return mean;
             }
@@ -305,10 +305,10 @@ fn alone(shape: &str, material: &str, side: f32) {
         let place = pose(&mut random, number);
         let world = Scene::new().placed(shape, place, material).world();
         let at = Vec3::new(random.range(-0.3, 0.3), 0.0, random.range(-0.3, 0.3));
-        let shot = looking(place.point(at + Vec3::new(0.4, 3.0 * side, 0.2)), place.point(at));
+        let camera = looking(place.point(at + Vec3::new(0.4, 3.0 * side, 0.2)), place.point(at));
         let expected = if side > 0.0 { Rgb::WHITE } else { Rgb::BLACK };
         for level in simd_levels() {
-            let shown = picture(&world.clone().with_simd_level(level), &shot, &*path(""), 2, 1);
+            let shown = picture(&world.clone().with_simd_level(level), &camera, &*path(""), 2, 1);
             let wrong = shown.iter().find(|pixel| **pixel != expected);
             assert_eq!(wrong, None, "{shape}, {material}, pose {number}, {level:?}");
         }

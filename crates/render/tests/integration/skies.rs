@@ -21,8 +21,8 @@ fn shown(background: &AnyBackground, rows: u32) -> f64 {
         for j in 0..columns {
             let (sin, cos) = ((f64::from(j) + 0.5) * TAU / f64::from(columns)).sin_cos();
             let radius = (1.0 - height * height).sqrt();
-            let way = Vec3::new((radius * cos) as f32, height as f32, (radius * sin) as f32);
-            sum += f64::from(background.radiance(&Ray::new(Vec3::ZERO, way)).r);
+            let direction = Vec3::new((radius * cos) as f32, height as f32, (radius * sin) as f32);
+            sum += f64::from(background.radiance(&Ray::new(Vec3::ZERO, direction)).r);
         }
     }
     0.5 * sum / f64::from(rows * columns)

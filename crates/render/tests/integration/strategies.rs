@@ -59,8 +59,8 @@ impl Integrator for Plain {
             shading.bsdf.sample(local, path.sampler.skipped(2).next_2d(), path.sampler.skipped(3).next_1d())
         {
             let pdf = if sample.scatter == Scatter::Specular { f32::INFINITY } else { sample.pdf };
-            let way = surface.spawn_ray(shading.frame.to_world(sample.wi), ray.time);
-            output.continue_path(way, sample.weight, PathHistory { pdf, ..path.history }, 1);
+            let continued = surface.spawn_ray(shading.frame.to_world(sample.wi), ray.time);
+            output.continue_path(continued, sample.weight, PathHistory { pdf, ..path.history }, 1);
         }
     }
 
@@ -75,7 +75,7 @@ impl Integrator for Plain {
     }
 }
 
-fn lamp(scene: Scene, radius: f32, at: Vec3, radiance: f32) -> Scene {
+fn emitter(scene: Scene, radius: f32, at: Vec3, radiance: f32) -> Scene {
     let shape = format!(r#"{{"sphere": {{"radius": {radius}}}}}"#);
     scene.with(&shape, at, &format!(r#"{{"emissive": {{"radiance": {radiance}}}}}"#))
 }
@@ -95,7 +95,7 @@ fn view() -> ShutterCamera {
 
 fn classic() -> Scene {
     let material = r#"{"phong": {"diffuse": [0.5, 0.3, 0.2], "specular": 0.3, "shininess": 20, "reflection": 0.2, "highlight_color": 1}}"#;
-    lamp(plate(material), 0.6, Vec3::new(-1.0, 2.0, -0.5), 4.0).in_light(0.2)
+    emitter(plate(material), 0.6, Vec3::new(-1.0, 2.0, -0.5), 4.0).in_light(0.2)
 }
 
 /// A box with a light in its ceiling, a sphere of rough glass and an emissive ellipsoid.
@@ -140,12 +140,12 @@ fn inside() -> ShutterCamera {
 pub fn scenes() -> Vec<(&'static str, Scene, ShutterCamera)> {
     let above = Vec3::new(-1.0, 2.0, -0.5);
     vec![
-        ("small lamp, glossy plate", lamp(rough(0.35), 0.3, above, 50.0), view()),
-        ("large lamp, glossy plate", lamp(rough(0.35), 1.5, above, 2.0), view()),
-        ("large lamp, rough plate", lamp(rough(0.9), 1.5, above, 2.0), view()),
+        ("small emitter, glossy plate", emitter(rough(0.35), 0.3, above, 50.0), view()),
+        ("large emitter, glossy plate", emitter(rough(0.35), 1.5, above, 2.0), view()),
+        ("large emitter, rough plate", emitter(rough(0.9), 1.5, above, 2.0), view()),
         (
-            "lamp near a plate",
-            lamp(plate(r#"{"diffuse": {}}"#), 0.5, Vec3::new(0.1, 0.52, 0.0), 1.0),
+            "emitter near a plate",
+            emitter(plate(r#"{"diffuse": {}}"#), 0.5, Vec3::new(0.1, 0.52, 0.0), 1.0),
             looking(Vec3::new(1.0, 0.1, 1.0), Vec3::ZERO),
         ),
         ("lid over a plate", lid(r#"{"diffuse": {}}"#), looking(Vec3::new(-2.0, 0.2, -2.0), Vec3::ZERO)),
@@ -156,15 +156,15 @@ pub fn scenes() -> Vec<(&'static str, Scene, ShutterCamera)> {
 }
 
 #[test]
-fn all_ways_find_the_same_light() {
-    for (name, scene, shot) in scenes() {
+fn all_techniques_find_the_same_light() {
+    for (name, scene, camera) in scenes() {
         let world = scene.world();
-        let both = measure(&world, &shot, &*path(r#""max_depth": 12, "roulette_depth": null"#), 256);
-        let bsdf_sampled = measure(&world, &shot, &Plain(Strategy::Bsdf), 1024);
-        let light_sampled = measure(&world, &shot, &Plain(Strategy::Light), 1024);
+        let both = measure(&world, &camera, &*path(r#""max_depth": 12, "roulette_depth": null"#), 256);
+        let bsdf_sampled = measure(&world, &camera, &Plain(Strategy::Bsdf), 1024);
+        let light_sampled = measure(&world, &camera, &Plain(Strategy::Light), 1024);
         println!("{name}: {both:?} {bsdf_sampled:?} {light_sampled:?}");
-        both.equals(bsdf_sampled, &format!("{name}, met"));
-        both.equals(light_sampled, &format!("{name}, asked"));
+        both.equals(bsdf_sampled, &format!("{name}, BSDF sampling"));
+        both.equals(light_sampled, &format!("{name}, light sampling"));
     }
 }
 
@@ -177,11 +177,11 @@ fn all_settings_of_sampling_have_one_mean() {
     let all: Vec<_> = scenes().into_iter().chain(caustics).collect();
     assert!(all.len() >= 12);
     let deviations = family_wise_deviations(2 * all.len());
-    for (name, scene, shot) in all {
+    for (name, scene, camera) in all {
         let world = scene.world();
         let seen = |sampling: &str, samples| {
             let options = format!(r#""max_depth": 10, "roulette_depth": null, "sampling": "{sampling}""#);
-            measure(&world, &shot, &*path(&options), samples)
+            measure(&world, &camera, &*path(&options), samples)
         };
         let [mis, light, bsdf] = [seen("mis", 256), seen("light", 1024), seen("bsdf", 1024)];
         println!("{name}: {mis:?} {light:?} {bsdf:?}");

@@ -17,13 +17,13 @@ fn a_circle_of_confusion() {
         r#"{"emissive": {"radiance": 100}}"#,
     );
     let half_height = 0.15f64;
-    let shot = camera(&format!(
+    let camera = camera(&format!(
         r#"{{"thin_lens": {{"eye": [0, 0, 0], "look_at": [0, 0, -1], "lens_radius": {lens}, "focus_distance": {focus},
         "view_plane": {{"distance": {distance}, "width": {}, "height": {}}}}}}}"#,
         2.0 * half_height,
         2.0 * half_height
     ));
-    let pixels = picture(&scene.world(), &shot, &*path(""), 4096, 1);
+    let pixels = picture(&scene.world(), &camera, &*path(""), 4096, 1);
     let edge = 2.0 * half_height / f64::from(EDGE);
     let (mut total, mut moment) = (0.0, 0.0);
     for (i, pixel) in (0u32..).zip(&pixels) {
@@ -42,15 +42,16 @@ fn a_circle_of_confusion() {
 
 /// An emitter in a mirror has its radiance times the reflectance, in a curved mirror too.
 #[test]
-fn a_lamp_in_a_mirror() {
-    let lamp = r#"{"emissive": {"radiance": 3}}"#;
+fn an_emitter_in_a_mirror() {
+    let emitter = r#"{"emissive": {"radiance": 3}}"#;
     let sheet = Transform::rotation(Vec3::Z, std::f32::consts::FRAC_PI_2).unwrap();
     let sheet = sheet.then(&Transform::translation(Vec3::X * 5.0));
     let view = looking(Vec3::new(-3.0, 4.0, 0.0), Vec3::ZERO);
     let seen = |material: &str, bent: bool| {
         let (shape, at) =
             if bent { (r#"{"sphere": {"radius": 2}}"#, Vec3::Y * -2.0) } else { (r#"{"plane": {}}"#, Vec3::ZERO) };
-        let scene = Scene::new().with(shape, at, material).placed(r#"{"rectangle": {"size": [50, 50]}}"#, sheet, lamp);
+        let scene =
+            Scene::new().with(shape, at, material).placed(r#"{"rectangle": {"size": [50, 50]}}"#, sheet, emitter);
         measure(&scene.world(), &view, &*path(""), 64)
     };
     for bent in [false, true] {

@@ -5,7 +5,7 @@
 //! and `principled`. `JUGGLER_FURNACES=all` runs whole grids: `check.sh deep furnaces`.
 
 use crate::probe::{Estimate, Scene, is_deep};
-use crate::white_worlds::{WITHIN, ball_by};
+use crate::white_worlds::{WITHIN, sphere_by};
 use juggler_math::testing::family_wise_deviations;
 
 /// Maximum mean radiance of any material.
@@ -119,7 +119,7 @@ fn combined() -> Vec<Case> {
 fn furnace(material: &str, is_within: bool, edge: u32, samples: u32) -> Estimate {
     let outside = r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 2}}"#;
     let camera = if is_within { WITHIN } else { outside };
-    let Estimate { mean, sigma } = Estimate::of(&ball_by(camera, Scene::textured(TEXTURES), material, edge, samples));
+    let Estimate { mean, sigma } = Estimate::of(&sphere_by(camera, Scene::textured(TEXTURES), material, edge, samples));
     // The background around the disk is exactly 1.
     let scale = if is_within { 1.0 } else { 4.0 / std::f64::consts::PI };
     Estimate { mean: 1.0 + (mean - 1.0) * scale, sigma: sigma * scale }

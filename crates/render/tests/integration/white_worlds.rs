@@ -10,13 +10,13 @@ use juggler_math::testing::family_wise_deviations;
 /// Tolerance of a mean.
 const NEAR: f64 = 0.002;
 /// Pixels of a picture of a sphere of radius 1 at the origin, which fills it.
-fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
+fn sphere(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
     let camera = if is_within {
         WITHIN
     } else {
         r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#
     };
-    ball_by(camera, Scene::new(), material, edge, samples)
+    sphere_by(camera, Scene::new(), material, edge, samples)
 }
 
 /// A camera inside the sphere.
@@ -24,7 +24,7 @@ pub const WITHIN: &str =
     r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#;
 
 /// Pixels of a picture of that sphere by `camera`; the material may name textures of the scene.
-pub fn ball_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
+pub fn sphere_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
     let world = scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
     // Light may be trapped for long; Russian roulette would only add noise.
     let integrator = path(r#""max_depth": 1000"#);
@@ -46,7 +46,7 @@ impl Glass {
         let material =
             format!(r#"{{"dielectric": {{"ior": {ior}, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
         let scale = if is_within { ior * ior } else { 1.0 };
-        ball(&material, is_within, edge, samples).into_iter().map(|value| value / scale).collect()
+        sphere(&material, is_within, edge, samples).into_iter().map(|value| value / scale).collect()
     }
 }
 
@@ -110,7 +110,7 @@ fn rough_metal_vanishes() {
     for (roughness, anisotropy) in &all {
         let material =
             format!(r#"{{"conductor": {{"reflectance": 1, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
-        check(&material, &ball(&material, false, 32, 256), all.len()).unwrap();
+        check(&material, &sphere(&material, false, 32, 256), all.len()).unwrap();
     }
 }
 
@@ -132,7 +132,7 @@ fn glass_under_a_map_of_normals_vanishes() {
         // `NEAR`.
         let samples = if is_deep() { 512 } else { 256 };
         let pixels: Vec<f64> =
-            ball(&material, *is_within, 32, samples).into_iter().map(|value| value / scale).collect();
+            sphere(&material, *is_within, 32, samples).into_iter().map(|value| value / scale).collect();
         wrong.extend(check(&format!("{material}, from within: {is_within}"), &pixels, all.len()).err());
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
@@ -163,7 +163,7 @@ fn principled_glass_and_what_lies_over_it_vanishes() {
         let scale = ior.map_or(1.0, |ior| ior * ior);
         let samples = if ior.is_some() { 256 } else { 144 };
         let pixels: Vec<f64> =
-            ball(&material, ior.is_some(), 32, samples).into_iter().map(|value| value / scale).collect();
+            sphere(&material, ior.is_some(), 32, samples).into_iter().map(|value| value / scale).collect();
         let Estimate { mean, sigma } = Estimate::of(&pixels);
         println!("{material}, from within: {}: {mean:.5} ± {sigma:.5}", ior.is_some());
         let allowed = family_wise_deviations(all.len()) * sigma;

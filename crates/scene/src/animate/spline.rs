@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ends_and_their_slopes_are_met() {
+    fn the_ends_and_their_slopes_are_interpolated() {
         let (ends, slopes, length) = ([3.0, -1.0], [0.5, -2.0], 4.0);
         let at = |u: f64| hermite(ends, slopes, length, u);
         assert_eq!((at(0.0), at(1.0)), (3.0, -1.0));

@@ -97,7 +97,7 @@ impl<'s> EmitterCounter<'s> {
     }
 
     fn is_emitting(&mut self, material: &'s AnyMaterial) -> bool {
-        material.is_area_light() || material.nested_materials().into_iter().any(|part| self.emits(part))
+        material.is_area_light() || material.nested_materials().into_iter().any(|(_, part)| self.emits(part))
     }
 }
 
@@ -109,12 +109,12 @@ mod tests {
     fn scene(objects: &str) -> Scene {
         let text = format!(
             r#"{{"version": 1,
-            "materials": {{"lamp": {{"emissive": {{}}}}, "panes": {{"checkerboard": {{"even": "lamp", "odd": {{"phong": {{}}}}}}}},
+            "materials": {{"emitter": {{"emissive": {{}}}}, "panes": {{"checkerboard": {{"even": "emitter", "odd": {{"phong": {{}}}}}}}},
                 "dull": {{"phong": {{"emission": 1}}}}}},
             "groups": {{
                 "row": [{{"chain": {{"from": {{"center": [0, 0, 0], "radius": 1}}, "to": {{"center": [9, 0, 0], "radius": 1}},
                     "count": 1000}}}}, {{"shape": "sphere", "material": "dull"}}],
-                "rows": [{{"group": "row"}}, {{"group": "row", "material": "lamp"}}, {{"group": "row", "visible": false}}],
+                "rows": [{{"group": "row"}}, {{"group": "row", "material": "emitter"}}, {{"group": "row", "visible": false}}],
                 "many": [{}]
             }},
             "objects": [{{"shape": "plane"}}, {objects}]}}"#,
@@ -130,10 +130,10 @@ mod tests {
             (r#"{"group": "row", "material": "panes"}"#, 1000),
             (r#"{"group": "rows"}"#, 1000),
             (
-                r#"{"objects": [{"group": "rows"}, {"shape": "disk"}], "material": {"mask": {"opacity": 0.5, "material": "lamp"}}}"#,
+                r#"{"objects": [{"group": "rows"}, {"shape": "disk"}], "material": {"mask": {"opacity": 0.5, "material": "emitter"}}}"#,
                 2001,
             ),
-            (r#"{"group": "many", "material": "lamp"}, {"group": "many"}"#, 1_500_000),
+            (r#"{"group": "many", "material": "emitter"}, {"group": "many"}"#, 1_500_000),
             (
                 r#"{"shape": {"mesh": {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2], [2, 1, 0]]}},
                 "material": {"principled": {"emissive": 1}}}"#,
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn too_many_emitters_are_refused_where_they_stand() {
-        let many = r#"{"group": "many", "material": "lamp"}"#;
+        let many = r#"{"group": "many", "material": "emitter"}"#;
         assert_eq!(scene(&[many; 4].join(", ")).check().errors(), 0);
         let problems = scene(&[many; 5].join(", ")).check();
         let problem = &problems.list()[0];

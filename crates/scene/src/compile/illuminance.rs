@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_light_is_told_by_closed_forms() {
+    fn the_brightest_light_has_its_closed_form() {
         let far = r#"{"point": {"position": [0, 1, 9], "intensity": 9}}"#;
         for (lights, light, expected) in [
             (r#"{"point": {"position": [3, 5, 0], "intensity": 50}}"#, Some("lights[0]"), 2.0),
@@ -116,7 +116,7 @@ mod tests {
             r#", "tone": {"exposure_stops": 2}"#,
             r#", "animation": {"frames": 9}"#,
             r#", "background": {"sky": {}}"#,
-            r#", "materials": {"lamp": {"emissive": {}}}"#,
+            r#", "materials": {"emitter": {"emissive": {}}}"#,
         ] {
             assert_eq!(warnings(&light(1.0), more), 0, "{more}");
         }

@@ -7,7 +7,8 @@ use crate::item::Item;
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use juggler_material::{
-    AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialResolver, MaterialTable,
+    AnyMaterial, IneffectiveSetting, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialResolver,
+    MaterialTable,
 };
 use juggler_texture::TextureTable;
 use std::sync::Arc;
@@ -32,6 +33,9 @@ impl Materials {
             let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
+        for (name, material) in scene.materials.iter() {
+            warn_of_ineffective_settings(material, &PathRef::Root.key("materials").key(name), findings);
+        }
         let named = scene.materials.iter().map(|(name, material)| (name.clone(), (**material).clone()));
         let compiler = MaterialCompiler::new(textures, named);
         Self {
@@ -47,6 +51,7 @@ impl Materials {
         let compiled = match material {
             MaterialRef::Inline(material) => {
                 self.has_emission |= has_emission(material);
+                warn_of_ineffective_settings(material, path, findings);
                 self.compiler.compile(material)
             }
             MaterialRef::Name(_) => self.compiler.material("", material),
@@ -115,8 +120,23 @@ fn finding(error: &MaterialError, path: &Path) -> Option<Finding> {
     (!error.is_unknown_name()).then(|| Finding::error(error.to_string()).at(path.join(&error.path())))
 }
 
+/// Warns of settings without effect in the material at `path` and in inline materials inside it.
+fn warn_of_ineffective_settings(material: &AnyMaterial, path: &PathRef<'_>, findings: &mut Vec<Finding>) {
+    let path = path.key(material.name());
+    for IneffectiveSetting { field, replaced_by } in material.ineffective_settings() {
+        let message = format!("`{field}` has no effect, because `{replaced_by}` replaces it");
+        findings
+            .push(Finding::warning(message).at(&path.key(field)).help(format!("remove `{field}` or `{replaced_by}`")));
+    }
+    for (field, nested) in material.nested_materials() {
+        if let MaterialRef::Inline(material) = nested {
+            warn_of_ineffective_settings(material, &path.key(field), findings);
+        }
+    }
+}
+
 fn has_emission(material: &AnyMaterial) -> bool {
-    let inline = |material: &MaterialRef| match material {
+    let inline = |(_, material): (_, &MaterialRef)| match material {
         MaterialRef::Inline(material) => has_emission(material),
         MaterialRef::Name(_) => false,
     };

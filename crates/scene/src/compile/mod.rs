@@ -186,7 +186,9 @@ impl SceneInputs {
         settings::check_fit(scene, &integrator, findings);
         let background = lighting::background(scene, files, findings);
         let materials = materials::Materials::new(scene, files, findings);
-        Self { integrator, sources, background, materials, names: Names::from_scene(scene) }
+        let names = Names::from_scene(scene);
+        names.check_groups(scene, findings);
+        Self { integrator, sources, background, materials, names }
     }
 }
 

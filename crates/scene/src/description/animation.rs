@@ -16,10 +16,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Animation {
     /// Number of frames. The default of 1 describes a still image.
-    #[schemars(range(min = 1, max = 1_000_000))]
+    #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "frames"))]
     pub frames: u32,
     /// Frame rate: playback speed, and the ratio of `frame` to `seconds` in expressions.
-    #[schemars(range(max = 1000), extend("exclusiveMinimum" = 0))]
+    #[schemars(range(max = 1000), extend("exclusiveMinimum" = 0, "x-unit" = "frames/second"))]
     pub frames_per_second: f64,
 }
 

@@ -176,7 +176,7 @@ impl PlacementError {
 #[schemars(rename = "Backdrop")]
 pub enum BackgroundInput {
     /// Uniform color: linear radiance in all directions.
-    Color(Rgb),
+    Color(#[schemars(extend("x-unit" = "W/(scene unit² sr)"))] Rgb),
     /// Background of any kind.
     Kind(AnyBackground),
 }

@@ -15,10 +15,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Render {
     /// Width and height of the image in pixels; at most 2³¹ pixels in total.
-    #[schemars(inner(range(min = 1, max = 65_536)))]
+    #[schemars(inner(range(min = 1, max = 65_536)), extend("x-unit" = "pixels"))]
     pub size: [u32; 2],
     /// Samples per pixel. Four times as many samples halve the noise and take four times as long.
-    #[schemars(range(min = 1, max = 16_777_216))]
+    #[schemars(range(min = 1, max = 16_777_216), extend("x-unit" = "samples"))]
     pub samples: u32,
     /// Seed of the sampler. The same seed reproduces an image bit for bit; another seed gives other
     /// noise.
@@ -30,7 +30,7 @@ pub struct Render {
     /// this order. Motion in between is blurred. `[0, 0.5]` is the 180° shutter of a movie camera;
     /// the default `[0, 0]` disables motion blur.
     #[serde(skip_serializing_if = "is_instant")]
-    #[schemars(inner(range(min = -1000, max = 1000)))]
+    #[schemars(inner(range(min = -1000, max = 1000)), extend("x-unit" = "frames"))]
     pub shutter: [f64; 2],
     /// Light transport algorithm. Defaults to `path` if the scene contains anything that `classic`
     /// does not support: an `emissive` material, an `area` light, an `environment` or a `sky`, a

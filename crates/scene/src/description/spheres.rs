@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlSphere {
     /// Center, in object space.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub center: Vec3,
     /// Radius, in units of object space.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub radius: f32,
 }
 
@@ -52,13 +52,13 @@ fn yes() -> bool {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Limb {
     /// One end, in object space: a hand or a foot.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub from: Vec3,
     /// Other end, in object space: a shoulder or a hip.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub to: Vec3,
     /// Lengths of the bones at `from` and at `to`.
-    #[schemars(transform = positive_items)]
+    #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
     pub lengths: [f32; 2],
     /// Normal of the plane in which the limb bends. Any length except zero; must not be parallel to
     /// `to − from`.
@@ -74,7 +74,7 @@ pub struct Limb {
     #[serde(default = "yes")]
     pub keep_lengths: bool,
     /// Radii at `from`, at the joint and at `to`, interpolated linearly in between.
-    #[schemars(transform = positive_items)]
+    #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
     pub radii: [f32; 3],
 }
 

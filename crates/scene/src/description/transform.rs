@@ -21,7 +21,7 @@ use std::fmt;
 #[serde(rename_all = "snake_case")]
 pub enum TransformStep {
     /// Translates by a vector.
-    Translate(#[schemars(with = "[f32; 3]")] Vec3),
+    Translate(#[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))] Vec3),
     /// Rotates about an axis through the origin.
     Rotate(Rotate),
     /// Scales about the origin.
@@ -85,6 +85,7 @@ pub struct Rotate {
     #[schemars(with = "[f32; 3]")]
     pub axis: Vec3,
     /// Rotation angle, counterclockwise as seen from the tip of the axis.
+    #[schemars(extend("x-unit" = "degrees"))]
     pub degrees: f32,
 }
 
@@ -97,10 +98,10 @@ pub struct Rotate {
 pub struct LookAt {
     /// Position of the object's origin.
     #[serde(default)]
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub from: Vec3,
     /// Point that the object faces. Must differ from `from`.
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))]
     pub to: Vec3,
     /// Up direction, of any length except zero. If it is parallel to the direction that the object
     /// faces, the z axis takes its place.

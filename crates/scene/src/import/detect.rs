@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scenes_meshes_and_foreign_files_are_told_apart() {
+    fn scenes_meshes_and_foreign_files_are_distinguished() {
         let of = |name: &str, text: &str| Content::from_head(Path::new(name), text.as_bytes(), text.len() as u64);
         let (mesh, z_up) = (Content::Mesh { z_up: false }, Content::Mesh { z_up: true });
         for (name, text, expected) in [

@@ -204,7 +204,7 @@ fn locate(
 /// Describes an I/O error in plain words.
 pub(crate) fn plain_io(error: &io::Error) -> String {
     match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".into(),
+        io::ErrorKind::NotFound => "file not found".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),
         io::ErrorKind::IsADirectory => "this is a folder, not a file".into(),
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidFilename => "this is not a valid file name".into(),

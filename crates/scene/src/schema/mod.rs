@@ -12,10 +12,12 @@ use std::sync::LazyLock;
 mod numbers;
 mod publish;
 mod reference;
+mod units;
 
 pub use numbers::{drop_nulls, shorten_numbers};
 pub use publish::{published, schema_json};
 pub use reference::reference;
+pub use units::{KEYWORD as UNIT_KEYWORD, UNITS, Unit};
 
 /// Schema of the format, without additional properties.
 #[derive(Debug)]

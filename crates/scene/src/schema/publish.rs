@@ -1,6 +1,6 @@
 //! The published schema, for editors and other programs.
 
-use super::{Schema, each_schema};
+use super::{Schema, UNIT_KEYWORD, each_schema};
 use serde_json::{Map, Value, json};
 
 /// Definitions whose numbers are read before expressions, or that declare their own expressions.
@@ -180,7 +180,7 @@ fn alternative(members: &mut Map<String, Value>, definition: &str) {
         }
         return;
     }
-    let outside = ["description", "default"];
+    let outside = ["description", "default", UNIT_KEYWORD];
     let (kept, own): (Map<String, Value>, Map<String, Value>) =
         std::mem::take(members).into_iter().partition(|(key, _)| outside.contains(&key.as_str()));
     *members = kept;

@@ -40,7 +40,7 @@ fn near(found: f64, expected: f64) {
 }
 
 #[test]
-fn keys_are_met_and_lines_are_straight() {
+fn keys_are_interpolated_and_lines_are_straight() {
     let form = json!({"animate": {"keys": [[0, 1], [2, 5], [3, -1]]}});
     for (seconds, expected) in [(-9.0, 1.0), (0.0, 1.0), (0.5, 2.0), (2.0, 5.0), (2.5, 2.0), (3.0, -1.0), (99.0, -1.0)]
     {
@@ -179,7 +179,7 @@ fn rotations_turn_evenly_and_the_shorter_way() {
 }
 
 #[test]
-fn things_go_along_paths_at_an_even_speed() {
+fn objects_go_along_paths_at_an_even_speed() {
     let circle: Vec<Value> =
         (0..64).map(|i| f64::from(i) / 64.0 * TAU).map(|a| json!([3.0 * a.cos(), 0.0, 3.0 * a.sin()])).collect();
     let paths =

@@ -2,7 +2,7 @@
 
 use juggler_math::Vec3;
 use juggler_scene::compile::ShapePlace;
-use juggler_scene::{IntegratorReason, Scene};
+use juggler_scene::{IntegratorReason, Scene, SceneError};
 
 /// A scene with these members.
 fn scene(members: &str) -> Scene {
@@ -48,8 +48,9 @@ fn what_classic_cannot_do_asks_for_paths() {
     for (members, says) in [
         (sphere(r#"{"emissive": {}}"#), "`emissive` at `objects[0].material`"),
         (
-            r#""materials": {"lamp": {"emissive": {}}}, "objects": [{"shape": "sphere", "material": "lamp"}]"#.into(),
-            "`emissive` at `materials.lamp`",
+            r#""materials": {"emitter": {"emissive": {}}}, "objects": [{"shape": "sphere", "material": "emitter"}]"#
+                .into(),
+            "`emissive` at `materials.emitter`",
         ),
         (sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"dielectric": {}}}}"#), "`dielectric` at `objects[0].material`"),
         (sphere(r#"{"principled": {}}"#), "`principled` at `objects[0].material`"),
@@ -154,6 +155,46 @@ fn an_area_light_is_a_shape_behind_all_objects() {
     let again = scene.compile_after(&scene, &compiled).unwrap();
     assert!(compiled.bounds.max.y <= 1.0 && again.cameras == compiled.cameras);
     assert_eq!(scene.needs().objects, 2);
+}
+
+/// Each light and each object of this scene has a light group of its own; the group `rest` comes on
+/// top.
+fn grouped(lights: usize, objects: usize) -> Scene {
+    let light = |i| format!(r#"{{"point": {{"light_group": "light {i}"}}}}"#);
+    let object = |i| format!(r#"{{"shape": "sphere", "light_group": "object {i}"}}"#);
+    let [lights, objects] =
+        [(0..lights).map(light).collect::<Vec<_>>(), (0..objects).map(object).collect()].map(|list| list.join(","));
+    scene(&format!(r#""lights": [{lights}], "objects": [{objects}]"#))
+}
+
+#[test]
+fn more_light_groups_than_can_be_kept_apart_are_refused_by_name() {
+    let most = grouped(9, (1 << 16) - 10);
+    assert_eq!(most.check().errors(), 0, "{}", most.check());
+    let more = grouped(9, (1 << 16) - 9);
+    let problems = more.check();
+    assert_eq!(problems.errors(), 1, "{problems}");
+    let SceneError::Problems(at_render) = more.compile().map(drop).unwrap_err() else { panic!("no problems") };
+    assert_eq!(at_render.list(), problems.list());
+    let (problem, limit) = (&problems.list()[0], "65537 light groups, at most 65536 are allowed");
+    assert_eq!(problem.path, "objects[65526].light_group");
+    assert_eq!(problem.message, format!("light group `object 65526` exceeds the limit: {limit}"));
+}
+
+/// Settings that another setting replaces are named, also inside other materials.
+#[test]
+fn settings_of_a_metal_without_effect_are_warned_of() {
+    let conductor = r#"{"conductor": {"metal": "gold", "eta": [0.2, 0.2, 0.2], "roughness": 0.1}}"#;
+    let warned = |path: &str| (path.to_owned(), "`eta` has no effect, because `metal` replaces it".to_owned());
+    assert_eq!(warnings(&scene(&sphere(conductor))), [warned("objects[0].material.conductor.eta")]);
+    let mask = format!(r#"{{"mask": {{"material": {conductor}, "opacity": 0.5}}}}"#);
+    assert_eq!(warnings(&scene(&sphere(&mask))), [warned("objects[0].material.mask.material.conductor.eta")]);
+    let named = scene(&format!(r#""materials": {{"gold": {conductor}}}, {}"#, sphere(r#""gold""#)));
+    assert_eq!(warnings(&named), [warned("materials.gold.conductor.eta")]);
+    assert!(named.check().to_string().contains("remove `eta` or `metal`"));
+    let wrong = conductor.replace("[0.2,", "[5000,");
+    assert_eq!(scene(&sphere(&wrong)).check().errors(), 1);
+    assert_eq!(warnings(&scene(&sphere(r#"{"conductor": {"metal": "gold", "roughness": 0.1}}"#))), []);
 }
 
 #[test]

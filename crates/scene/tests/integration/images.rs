@@ -147,7 +147,7 @@ fn wrong_files_say_what_is_wrong_and_where() {
         .unwrap();
     fs::write(path("none.pfm"), "Pf\n0 5\n-1\n").unwrap();
     for (file, message) in [
-        ("nowhere.png", "cannot read `nowhere.png`: there is no such file"),
+        ("nowhere.png", "cannot read `nowhere.png`: file not found"),
         (".", "cannot read `.`: this is a folder, not a file"),
         ("pipe.png", "cannot read `pipe.png`: this is a named pipe (FIFO), not a regular file"),
         ("/dev/zero", "cannot read `/dev/zero`: this is a device, not a regular file"),

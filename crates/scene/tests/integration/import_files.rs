@@ -114,8 +114,8 @@ fn open_edges(mesh: &MeshData) -> usize {
     let key = |corner: u32| mesh.positions[corner as usize].to_array().map(f32::to_bits);
     for [a, b, c] in &mesh.triangles {
         for (from, to) in [(key(*a), key(*b)), (key(*b), key(*c)), (key(*c), key(*a))] {
-            let (edge, way) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
-            *edges.entry(edge).or_default() += way;
+            let (edge, sign) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
+            *edges.entry(edge).or_default() += sign;
         }
     }
     edges.values().filter(|sum| **sum != 0).count()

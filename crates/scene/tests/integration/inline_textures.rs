@@ -56,7 +56,7 @@ fn errors_are_reported_at_their_place() {
         (r#"{"noise": {"scale": 0}}"#, "materials.wall.phong.diffuse.noise.scale", "must not be 0"),
         (r#"{"noise": {"scael": 1}}"#, "materials.wall.phong.diffuse.noise.scael", "scael"),
         (r#"{"nose": {}}"#, "materials.wall.phong.diffuse", "unknown kind of texture `nose`"),
-        (r#"{"image": {"file": "none.png"}}"#, "materials.wall.phong.diffuse.image.file", "there is no such file"),
+        (r#"{"image": {"file": "none.png"}}"#, "materials.wall.phong.diffuse.image.file", "file not found"),
         (
             r#"{"checker": {"even": "nobody"}}"#,
             "materials.wall.phong.diffuse.checker.even",

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-const LAMP: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n100 50\n";
+const PROFILE: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n100 50\n";
 
 /// A folder with a panorama whose left half is twice as bright as its right, and a photometric
 /// file.
@@ -20,7 +20,7 @@ fn folder() -> TempDir {
     for name in ["a.exr", "a.hdr", "a.png"] {
         save(&folder.path().join(name), 1.0);
     }
-    fs::write(folder.path().join("lamp.ies"), LAMP).unwrap();
+    fs::write(folder.path().join("luminaire.ies"), PROFILE).unwrap();
     folder
 }
 
@@ -100,10 +100,12 @@ fn a_panorama_is_seen_and_read_once() {
 fn files_in_memory_serve_too() {
     let folder = folder();
     let file = |name: &str| (name.to_owned(), fs::read(folder.path().join(name)).unwrap());
-    let text = panorama("panoramas/a.exr", "")
-        .replace(r#""lights": []"#, r#""lights": [{"spot": {"position": [0, 5, 0], "ies": {"file": "lamp.ies"}}}]"#);
+    let text = panorama("panoramas/a.exr", "").replace(
+        r#""lights": []"#,
+        r#""lights": [{"spot": {"position": [0, 5, 0], "ies": {"file": "luminaire.ies"}}}]"#,
+    );
     let bundle: Bundle =
-        [("s.json".to_owned(), text.into_bytes()), file("a.exr"), file("lamp.ies")].into_iter().collect();
+        [("s.json".to_owned(), text.into_bytes()), file("a.exr"), file("luminaire.ies")].into_iter().collect();
     let scene = Scene::from_bundle(bundle, "s.json").unwrap();
     assert!(scene.compile().is_ok());
 }
@@ -121,9 +123,9 @@ fn skies_are_prepared() {
 }
 
 #[test]
-fn lamps_keep_their_files_when_they_move() {
+fn lights_keep_their_files_when_they_move() {
     let folder = folder();
-    let text = light("lamp.ies", "").replace("[0, 5, 0]", r#"["=4 * frame", 5, 0]"#);
+    let text = light("luminaire.ies", "").replace("[0, 5, 0]", r#"["=4 * frame", 5, 0]"#);
     let scene = load(&folder, &text);
     let compiled = scene.compile().unwrap();
     assert!(compiled.warnings.to_string().is_empty(), "{}", compiled.warnings);
@@ -135,10 +137,10 @@ fn lamps_keep_their_files_when_they_move() {
         let under = point.position - Vec3::Y;
         assert!(light.at(time).light.sample(under, Default::default()).is_some(), "{time}");
     }
-    assert!(scene.fingerprint().parts().contains_key("file lamp.ies"));
-    assert!(scene.paths().contains(&folder.path().join("lamp.ies")));
+    assert!(scene.fingerprint().parts().contains_key("file luminaire.ies"));
+    assert!(scene.paths().contains(&folder.path().join("luminaire.ies")));
     let before = scene.fingerprint();
-    fs::write(folder.path().join("lamp.ies"), LAMP.replace("100 50", "100 60")).unwrap();
+    fs::write(folder.path().join("luminaire.ies"), PROFILE.replace("100 50", "100 60")).unwrap();
     assert_eq!(scene.at_frame(0.0).unwrap().fingerprint(), before);
     assert_ne!(load(&folder, &text).fingerprint(), before);
 }
@@ -153,7 +155,7 @@ fn wrong_files_say_what_is_wrong_and_where() {
     assert!(Command::new("mkfifo").arg(folder.path().join("pipe.exr")).status().unwrap().success());
     for (file, message) in [
         ("pipe.exr", "cannot read `pipe.exr`: this is a named pipe (FIFO), not a regular file"),
-        ("nowhere.exr", "cannot read `nowhere.exr`: there is no such file"),
+        ("nowhere.exr", "cannot read `nowhere.exr`: file not found"),
         (".", "cannot read `.`: this is a folder, not a file"),
         ("text.hdr", "`text.hdr`: its first bytes match no supported format"),
         ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
@@ -170,11 +172,11 @@ fn wrong_files_say_what_is_wrong_and_where() {
     let text = complaint(&folder, &panorama("bright.pfm", r#", "scale": 1e28"#));
     assert!(text.contains("at: background.environment.scale"), "{text}");
 
-    fs::write(folder.path().join("short.ies"), &LAMP[..LAMP.len() - 4]).unwrap();
-    fs::write(folder.path().join("word.ies"), LAMP.replace("100 50", "100 five")).unwrap();
+    fs::write(folder.path().join("short.ies"), &PROFILE[..PROFILE.len() - 4]).unwrap();
+    fs::write(folder.path().join("word.ies"), PROFILE.replace("100 50", "100 five")).unwrap();
     fs::write(folder.path().join("long.ies"), " ".repeat((16 << 20) + 1)).unwrap();
     for (file, message) in [
-        ("nowhere.ies", "cannot read `nowhere.ies`: there is no such file"),
+        ("nowhere.ies", "cannot read `nowhere.ies`: file not found"),
         ("short.ies", "cannot read `short.ies`: line 7: "),
         ("word.ies", "cannot read `word.ies`: line 7: "),
         ("long.ies", "bytes"),

@@ -191,8 +191,8 @@ fn a_scene_that_passes_the_check_has_a_camera() {
         match scene.compile() {
             Ok(compiled) => {
                 assert_eq!(problems.errors(), 0, "1e{exponent}");
-                let shot = compiled.shutter_camera(juggler_math::UVec2::new(64, 36));
-                assert!(shot.is_ok(), "1e{exponent}: {:?}", shot.err());
+                let camera = compiled.shutter_camera(juggler_math::UVec2::new(64, 36));
+                assert!(camera.is_ok(), "1e{exponent}: {:?}", camera.err());
                 passed += 1;
             }
             Err(_) => {

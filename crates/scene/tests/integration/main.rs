@@ -22,6 +22,7 @@ mod juggler;
 mod lighting;
 mod limits;
 mod mutations;
+mod units;
 mod values;
 mod wrong_animations;
 mod wrong_scenes;

@@ -141,7 +141,7 @@ wrong! {
     hex_number: with(r#""background": 0xff8800"#);
     spot_wider_than_its_edge: with(r#""lights": [{"spot": {"beam_degrees": 50, "cutoff_degrees": 20}}]"#);
     dome_without_a_radius: with(r#""background": {"dome": {"radius": 0}}"#);
-    point_that_shines_nowhere: with(r#""lights": [{"point": {"attenuation": {"constant": 0, "quadratic": 0}}}]"#);
+    point_without_light: with(r#""lights": [{"point": {"attenuation": {"constant": 0, "quadratic": 0}}}]"#);
     direction_without_length: with(r#""lights": [{"directional": {"direction": [0, 0, 0]}}]"#);
     neither_shape_nor_group: object(r#"{"name": "nothing"}"#);
     eye_at_what_it_looks_at: with(r#""camera": {"perspective": {"eye": [1, 2, 3], "look_at": [1, 2, 3]}}"#);
@@ -231,6 +231,8 @@ fn broken_and_odd_meshes() {
     );
     let odd: (&str, &[u8]) = ("odd.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
     insta::assert_snapshot!("odd_mesh", report(&object(r#"{"shape": {"mesh": {"file": "odd.obj"}}}"#), &[odd]));
+    let both = r#"{"shape": {"mesh": {"file": "odd.obj", "normals": [[0, 0, 1], [0, 0, 1], [0, 0, 1]]}}}"#;
+    insta::assert_snapshot!("mesh_of_a_file_with_normals", report(&object(both), &[odd]));
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn only_what_decides_samples_begins_anew() {
 }
 
 #[test]
-fn what_clamping_takes_away_is_told() {
+fn what_clamping_removes_is_reported() {
     let session = opened("juggler");
     assert_eq!(session.status().clamped, None);
     let by = |limit: f32| {
@@ -258,7 +258,7 @@ fn scenes_are_switched_and_unknown_ones_leave_the_last() {
     let status = after(&session, Edit::Scene("jugler".into()));
     assert_eq!(
         status.error.as_deref(),
-        Some("error: no file and no built-in scene is called `jugler`; did you mean `juggler`?")
+        Some("error: unknown scene `jugler`: neither a file nor a built-in scene; did you mean `juggler`?")
     );
     assert_eq!(status.scene, "one-sphere");
     assert!(status.hash.is_some() && session.frame().unwrap().number >= frame);
@@ -272,7 +272,7 @@ fn scenes_are_switched_and_unknown_ones_leave_the_last() {
 
 #[test]
 fn a_session_without_a_scene_waits_for_one() {
-    let session = Session::open("no such thing", options());
+    let session = Session::open("no such scene", options());
     let status = settled(&session, 0);
     assert!(status.error.is_some() && session.frame().is_none());
     assert!(session.probe([0, 0]).is_none() && session.encode("png").is_err());
@@ -337,7 +337,7 @@ fn wild_edits_do_no_harm() {
 }
 
 #[test]
-fn news_are_told_and_the_threads_end_with_the_last_handle() {
+fn changes_are_reported_and_the_threads_end_with_the_last_handle() {
     let session = opened("juggler");
     let calls = Arc::new(AtomicUsize::new(0));
     let count = Arc::clone(&calls);

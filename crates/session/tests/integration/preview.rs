@@ -113,9 +113,9 @@ fn orbits_turn_about_what_is_under_the_pointer_where_nothing_is_looked_at() {
 /// A dimly lit scene with a noisy image.
 const DIM: &str = r#"{"version": 1, "render": {"samples": 16, "integrator": "path"},
     "camera": {"perspective": {"eye": [0, 1, 6], "look_at": [0, 1, 0]}}, "background": [0.05, 0.06, 0.08],
-    "materials": {"lamp": {"emissive": {"radiance": 8}}},
+    "materials": {"emitter": {"emissive": {"radiance": 8}}},
     "objects": [{"shape": "plane"}, {"shape": "sphere", "transform": [{"translate": [0, 1, 0]}]},
-        {"shape": {"sphere": {"radius": 0.3}}, "material": "lamp", "transform": [{"translate": [1.5, 2.5, 1]}]}]}"#;
+        {"shape": {"sphere": {"radius": 0.3}}, "material": "emitter", "transform": [{"translate": [1.5, 2.5, 1]}]}]}"#;
 
 /// Returns the denoised image and the film's hash of an offline render.
 fn offline(denoiser: Option<Denoiser>) -> (Vec<Rgb>, String) {
@@ -124,7 +124,7 @@ fn offline(denoiser: Option<Denoiser>) -> (Vec<Rgb>, String) {
     let film = Film::new(Tiling::new(picture.region()), 0..picture.samples());
     render::render_progressive(&picture.job(), &film, StopCriterion::Samples, &Control::default()).unwrap();
     let mut input = DenoiserInput::new(picture.region());
-    film.tiles().for_each(|(_, tile)| input.add(picture.layers(), &tile));
+    film.tiles().for_each(|(_, tile)| input.add(picture.aovs(), &tile));
     let pixels = input.denoise(Denoiser::Own, None, &Control::default()).unwrap().unwrap().pixels;
     (pixels, picture.develop(&film, |_| Ok::<(), std::convert::Infallible>(())).unwrap().hash)
 }

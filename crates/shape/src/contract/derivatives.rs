@@ -38,7 +38,7 @@ fn small_steps_agree_with_the_derivatives() {
             }
             measured += 1;
             let expected = along.u * uv.x + along.v * uv.y;
-            assert!((expected - step).length() < 0.05 * length + 4.0 * noise, "{shape:?}: {step} told {expected}");
+            assert!((expected - step).length() < 0.05 * length + 4.0 * noise, "{shape:?}: {step}, expected {expected}");
         }
         assert!(measured + unclear > 20, "{measured} steps on {shape:?}");
         kinds += usize::from(measured > 20);

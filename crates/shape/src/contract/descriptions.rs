@@ -96,7 +96,12 @@ fn meshes_say_which_index_is_at_fault() {
     refused(Mesh::from(broken), "positions[2][1]");
     let mut both = Mesh::from(whole.clone());
     both.file = Some("cow.ply".to_owned());
-    assert_eq!(both.load(whole).unwrap_err().field, "file");
+    assert_eq!(both.load(whole.clone()).unwrap_err().field, "file");
+    let file = Mesh::from_file("cow.ply");
+    for mut both in [file.clone().with_normals([Vec3::X; 4]), file.with_uvs([juggler_math::Vec2::ZERO; 4])] {
+        let error = both.load(whole.clone()).unwrap_err();
+        assert!(error.field == "file" && error.message.contains("`normals` or `uvs`"), "{error}");
+    }
 }
 
 /// Shapes do not panic when they are used before `prepare`, or with numbers that it would refuse.

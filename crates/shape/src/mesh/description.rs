@@ -21,7 +21,7 @@ pub struct MeshDescription {
     file: Option<String>,
     /// Corner positions in scene units.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<[f32; 3]>")]
+    #[schemars(with = "Vec<[f32; 3]>", extend("x-unit" = "scene units"))]
     positions: Vec<Vec3>,
     /// Three indices into `positions` for each triangle, counted from 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -41,7 +41,7 @@ pub struct MeshDescription {
     /// Without it, a mesh without `normals` is shaded flat. It has no effect on a mesh with
     /// `normals`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 180))]
+    #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     crease_angle_degrees: Option<f32>,
     /// Morph targets (blend shapes), each added in proportion to its weight: position = base + Σ
     /// weight · (target - base).

@@ -152,6 +152,11 @@ impl Mesh {
         if !self.arrays.positions.is_empty() || !self.arrays.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
         }
+        if !self.arrays.normals.is_empty() || !self.arrays.uvs.is_empty() {
+            let message = "a mesh with `file` has the normals and surface coordinates of the file, so it cannot have \
+                           `normals` or `uvs`";
+            return Err(check::invalid("file", message));
+        }
         let (file, morphs) = (self.file.take(), std::mem::take(&mut self.morphs));
         *self = Self { file, morphs, crease_angle_degrees: self.crease_angle_degrees, ..data.into() };
         Ok(())

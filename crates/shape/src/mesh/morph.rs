@@ -20,7 +20,7 @@ pub struct MorphTarget {
     pub file: Option<String>,
     /// Target positions in scene units, one for each of the mesh's.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<[f32; 3]>")]
+    #[schemars(with = "Vec<[f32; 3]>", extend("x-unit" = "scene units"))]
     pub positions: Vec<Vec3>,
     /// Weight of the displacement from the mesh to the target, -100 to 100: 0 has no effect, 1
     /// reaches the target, and values outside 0 to 1 extrapolate.

@@ -32,7 +32,7 @@ mod geometry;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Polygon {
     /// At least three corners in order, in scene units: coplanar, convex, no corner twice.
-    #[schemars(with = "Vec<[f32; 3]>", length(min = 3))]
+    #[schemars(with = "Vec<[f32; 3]>", length(min = 3), extend("x-unit" = "scene units"))]
     pub vertices: Vec<Vec3>,
     /// Data that [`Shape::prepare`] derives.
     #[serde(skip)]

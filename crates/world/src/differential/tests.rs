@@ -84,7 +84,7 @@ fn steps_in_the_world_go_as_the_derivatives_say() {
             }
             checked += 1;
             let predicted = found.derivatives.u * uv.x + found.derivatives.v * uv.y;
-            assert!((predicted - step).length() < 0.1 * step.length() + 2e-5, "{step} told {predicted}");
+            assert!((predicted - step).length() < 0.1 * step.length() + 2e-5, "{step}, predicted {predicted}");
         }
         assert!(checked > 50, "{checked}");
     }

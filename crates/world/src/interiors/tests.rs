@@ -9,7 +9,7 @@ use juggler_math::Transform;
 use juggler_math::testing::Random;
 use juggler_texture::TextureTable;
 
-const BALL: &str = r#"{"sphere": {"radius": 2}}"#;
+const SPHERE: &str = r#"{"sphere": {"radius": 2}}"#;
 const ROOM: &str = r#"{"cuboid": {"min": [-5, -5, -5], "max": [5, 5, 5]}}"#;
 const FOG: &str = r#"{"boundary": {"medium": {"scattering": 0.1}}}"#;
 const GLASS: &str = r#"{"dielectric": {"ior": 1.5}}"#;
@@ -40,8 +40,8 @@ fn places_are_in_what_is_around_them() {
     let metal = r#"{"phong": {}}"#;
     let objects = [
         (ROOM, at(Vec3::ZERO), FOG),
-        (BALL, at(Vec3::ZERO), GLASS),
-        (BALL, at(Vec3::Z * 30.0), metal),
+        (SPHERE, at(Vec3::ZERO), GLASS),
+        (SPHERE, at(Vec3::Z * 30.0), metal),
         (r#"{"plane": {}}"#, at(Vec3::Y * -20.0), GLASS),
     ];
     let world = world(&objects);
@@ -73,9 +73,9 @@ fn places_are_in_what_is_around_them() {
 }
 
 #[test]
-fn holes_and_open_ends_do_not_deceive() {
+fn open_surfaces_do_not_deceive() {
     let open = r#"{"cylinder": {"radius": 3, "y_min": -2, "y_max": 2, "capped": false}}"#;
-    let world = world(&[(open, at(Vec3::ZERO), FOG), (BALL, at(Vec3::X * 40.0), GLASS)]);
+    let world = world(&[(open, at(Vec3::ZERO), FOG), (SPHERE, at(Vec3::X * 40.0), GLASS)]);
     let fog = Interiors::NONE.entered(InteriorId::new(0).unwrap());
     for (place, expected) in [(Vec3::ZERO, fog), (Vec3::Y, fog), (Vec3::Y * 9.0, Interiors::NONE)] {
         assert_eq!(ids(&world, place), expected, "{place}");

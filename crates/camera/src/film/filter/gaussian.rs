@@ -15,10 +15,10 @@ use std::sync::Arc;
 #[serde(default)]
 pub struct Gaussian {
     /// Radius of the filter in pixels, 0.1 to 16.
-    #[schemars(range(min = 0.1, max = 16))]
+    #[schemars(range(min = 0.1, max = 16), extend("x-unit" = "pixels"))]
     pub radius: f32,
     /// Standard deviation in pixels, 0.05 to 16. Larger values blur more.
-    #[schemars(range(min = 0.05, max = 16))]
+    #[schemars(range(min = 0.05, max = 16), extend("x-unit" = "pixels"))]
     pub sigma: f32,
 }
 

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Tent {
     /// Radius in pixels, 0.1 to 16. Larger values blur more.
-    #[schemars(range(min = 0.1, max = 16))]
+    #[schemars(range(min = 0.1, max = 16), extend("x-unit" = "pixels"))]
     pub radius: f32,
 }
 

@@ -99,12 +99,12 @@ impl Probe {
     fn pixel(&self, prober: &Prober, pixel: [u32; 2]) -> Result<(), Failure> {
         let detail =
             Detail { depth: self.tree_depth, branches: self.branches as usize, brightest: self.brightest as usize };
-        let probe = prober.pixel(pixel, &detail, &Control::default())?;
+        let probe = prober.probe_pixel(pixel, &detail, &Control::default())?;
         self.tell(&probe, || words::to_words(&probe))
     }
 
     fn fireflies(&self, prober: &Prober, count: usize) -> Result<(), Failure> {
-        let fireflies = prober.fireflies(count, &Control::default())?;
+        let fireflies = prober.find_fireflies(count, &Control::default())?;
         self.tell(&fireflies, || fireflies::to_words(&fireflies))
     }
 

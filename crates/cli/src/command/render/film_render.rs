@@ -73,7 +73,7 @@ fn requested_work(command: &RenderCommand, frame: &FrameRender) -> Result<(Film,
         check_crop(crop, &picture.region())?;
     }
     let Shard { index, count } = frame.frame_output.shard;
-    let work = Work { tiling, crop: *crop, samples: samples.clone(), stop: picture.end() };
+    let work = Work { tiling, crop: *crop, samples: samples.clone(), stop: picture.stop() };
     let units = work.shard(index, count).into_iter().map(|unit| (unit.tile, unit.samples));
     Ok((Film::from_tiles(tiling, units), ShardDescription { index, count, samples, crop: *crop }))
 }
@@ -147,7 +147,7 @@ impl FilmRender<'_> {
         let mut checkpoint = self.frame.frame_output.checkpoint.as_deref().map(|file| self.open(file)).transpose()?;
         let is_automatic = self.command.plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_automatic);
         let (control, start) = (Control::default(), Instant::now());
-        let result = self.expose(&control, interrupts, checkpoint.as_mut());
+        let result = self.render_film(&control, interrupts, checkpoint.as_mut());
         let render = start.elapsed();
         self.description.finished = result.is_ok() && self.frame.picture.is_finished(&self.film);
         // A finished frame of a movie is kept as a picture, so its checkpoint is not saved.
@@ -219,7 +219,7 @@ impl FilmRender<'_> {
         }
     }
 
-    fn expose(
+    fn render_film(
         &self,
         control: &Control,
         interrupts: &Interrupts,
@@ -236,7 +236,7 @@ impl FilmRender<'_> {
         let samples = matches!(goal, Goal::Samples(_)).then_some(self.frame.picture.samples());
         reporter.start(&self.frame.frame_output.output, self.frame.picture.size(), samples, frame_progress);
         let watch = Watch { reporter, interrupts, control, goal, frame_progress };
-        let work = || self.frame.picture.expose(&self.film, control);
+        let work = || self.frame.picture.render_film(&self.film, control);
         let result = with_progress(&watch, || match (checkpoint, &plan.checkpoint) {
             (Some(checkpoint), Some(CheckpointPlan { every, .. })) => self.saving(checkpoint, *every, work),
             _ => work(),
@@ -280,7 +280,7 @@ impl FilmRender<'_> {
     /// Writes the AOVs. Returns whether their file contains the picture too.
     fn write_aovs(&self, pixels: Option<&[Rgb]>) -> Result<bool, Failure> {
         let FrameRender { picture, frame_output, .. } = self.frame;
-        if picture.layers().aovs().is_empty() {
+        if picture.aovs().aovs().is_empty() {
             return Ok(false);
         }
         let place = aovs::output_for(&frame_output.output, frame_output.aov_output.as_deref());
@@ -288,7 +288,7 @@ impl FilmRender<'_> {
             AovOutput::InPicture => (frame_output.output.as_str(), true),
             AovOutput::File(file) => (file.as_str(), false),
         };
-        let header = picture.layers().file_header(&self.header, with_picture);
+        let header = picture.aovs().file_header(&self.header, with_picture);
         let writer = LayeredWriter::create(Path::new(file), &header)?;
         let mut plain = Vec::new();
         if with_picture && pixels.is_none() {

@@ -3,6 +3,7 @@
 
 use super::film_render::forget;
 use crate::failure::Failure;
+use juggler::imaging::atomic::is_still_at;
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -69,7 +70,7 @@ impl FrameFolder {
             // atomically.
             Err(TryLockError::Error(_)) => Ok(Some(Self { path: path.into(), _lock: None })),
             // The lock file was removed while this process waited for it.
-            Ok(()) if !is_same(&file, Path::new(&name)) => Ok(None),
+            Ok(()) if !is_still_at(&file, Path::new(&name)) => Ok(None),
             Ok(()) => {
                 // Store the process number for error messages; ignore write errors.
                 let who = if access == Access::Exclusive { format!("{}\n", std::process::id()) } else { String::new() };
@@ -107,20 +108,6 @@ fn locked_error(path: &str) -> Failure {
     ))
 }
 
-/// Whether `path` is the open file `file`.
-#[cfg(unix)]
-fn is_same(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let (here, there) = (file.metadata(), fs::metadata(path));
-    here.is_ok_and(|here| there.is_ok_and(|there| (here.dev(), here.ino()) == (there.dev(), there.ino())))
-}
-
-/// Other systems do not allow the removal of an open file.
-#[cfg(not(unix))]
-fn is_same(_file: &File, _path: &Path) -> bool {
-    true
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_at_work_is_told() {
+    fn the_error_names_the_process_at_work() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("film.gif.frames").to_string_lossy().into_owned();
         let _first = FrameFolder::open(&path, Access::Exclusive).unwrap();

@@ -39,7 +39,7 @@ impl FrameCache {
         let scene = plan.settings.apply(scene)?;
         let last = self.last.take().filter(|(last, _)| scene.has_world_of(last));
         let picture = self.install(|| match &last {
-            Some((last, picture)) => picture.after(last, &scene, &plan.settings),
+            Some((last, picture)) => picture.rebuild(last, &scene, &plan.settings),
             None => Picture::new(&scene, &plan.settings),
         });
         picture.map_err(|error: Error| error.into())

@@ -195,7 +195,7 @@ impl RenderCommand {
         let expected = memory.bytes(&effort);
         // With the world built, larger bands may fit.
         let Effort { band_pixels, .. } = memory::effort(&self.plan, &memory.with_world(&picture), effort.threads)?;
-        let picture = picture.with_bands(band_pixels);
+        let picture = picture.with_band_pixels(band_pixels);
         self.warn(&picture);
         let build = built.elapsed();
         let frame =

@@ -24,11 +24,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Joint {
     /// One end: a hand or a foot.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub from: [f64; 3],
     /// Other end: a shoulder or a hip.
+    #[schemars(extend("x-unit" = "scene units"))]
     pub to: [f64; 3],
     /// Lengths of the bones at `from` and at `to`.
-    #[schemars(transform = positive_items)]
+    #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
     pub lengths: [f64; 2],
     /// Normal of the plane in which the bones bend. Any length except zero; must not be parallel to
     /// `to − from`.

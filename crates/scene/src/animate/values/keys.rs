@@ -24,13 +24,14 @@ impl JsonSchema for Key {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let (number, ease) = (generator.subschema_for::<f64>(), generator.subschema_for::<Ease>());
+        let (mut time, ease) = (generator.subschema_for::<f64>(), generator.subschema_for::<Ease>());
+        time.insert("x-unit".into(), "seconds".into());
         json_schema!({
             "description": "Time and value, optionally followed by the easing of the segment that begins at this key.",
             "type": "array",
             "minItems": 2,
             "maxItems": 3,
-            "prefixItems": [number, true, ease],
+            "prefixItems": [time, true, ease],
             "items": true,
         })
     }

@@ -31,6 +31,7 @@ pub struct Animate {
     /// Time at which the keys are evaluated. Defaults to the scene's time in seconds.
     /// `"=seconds - 2"` delays the animation by two seconds, `"=2 * seconds"` doubles its speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "seconds"))]
     pub at: Option<f64>,
     /// Interpolation between the keys.
     #[serde(default)]

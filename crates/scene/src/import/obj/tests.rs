@@ -88,7 +88,7 @@ fn numbers_comments_continuations_and_line_ends() {
 
 #[test]
 fn what_has_no_place_is_counted() {
-    let text = "mtllib a.mtl\no thing\ng a b\nusemtl red\ns 1\nv 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0\nusemtl blue\nf 1 2 3\nl 1 2\np 1\nf 1 2\n";
+    let text = "mtllib a.mtl\no name\ng a b\nusemtl red\ns 1\nv 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0\nusemtl blue\nf 1 2 3\nl 1 2\np 1\nf 1 2\n";
     let Imported { mesh, warnings } = read(text);
     assert_eq!(mesh.triangles.len(), 1);
     assert_eq!(

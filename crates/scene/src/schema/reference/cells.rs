@@ -1,6 +1,7 @@
 //! Cells of the reference's tables: the allowed values and the default of a field.
 
-use crate::schema::{Schema, variants};
+use super::{description, one_line};
+use crate::schema::{Schema, Unit, variants};
 use crate::validate::{family_noun, plural};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -17,12 +18,13 @@ pub struct Cells<'s> {
 }
 
 impl Cells<'_> {
-    /// Describes the allowed values of a field with their range and unit.
-    pub fn value(&self, field: &str, schema: &Value) -> String {
+    /// Describes the allowed values of a field with their range, and with their unit if the
+    /// field's description does not state it.
+    pub fn value(&self, schema: &Value) -> String {
         let value = self.words(schema, false);
-        match unit(field) {
-            Some(unit) => format!("{value}, {unit}"),
-            None => value,
+        match Unit::of(schema) {
+            Some(unit) if !unit.is_stated_in(&one_line(description(schema))) => format!("{value}, {}", unit.name),
+            _ => value,
         }
     }
 
@@ -126,17 +128,6 @@ impl Cells<'_> {
         let own = |key: &str| fields.and_then(|fields| fields.get(key)?.get("default"));
         let said = members.iter().filter(|(key, value)| !value.is_null() && own(key) != Some(*value));
         Value::Object(said.map(|(key, value)| (key.clone(), value.clone())).collect())
-    }
-}
-
-/// Unit of a field, from the suffix of its name.
-fn unit(field: &str) -> Option<&'static str> {
-    if field == "degrees" || field.ends_with("_degrees") {
-        Some("degrees")
-    } else if field.ends_with("_stops") {
-        Some("stops")
-    } else {
-        None
     }
 }
 

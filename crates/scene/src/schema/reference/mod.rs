@@ -1,7 +1,7 @@
 //! Generator of the format's reference: an introduction written by hand, then every part of the
 //! schema as Markdown.
 
-use super::{Schema, variants};
+use super::{Schema, UNITS, variants};
 use crate::compile::{MAX_EDGE, MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
 use crate::validate::{family_noun, plural};
 use crate::{animate, compile, document};
@@ -28,6 +28,7 @@ pub fn reference() -> String {
     let mut text = INTRODUCTION
         .replace("ANIMATION\n", ANIMATION)
         .replace("FUNCTIONS", &functions())
+        .replace("UNITS", units().trim_end())
         .replace("LIMITS", limits().trim_end());
     text.push_str("\n## Contents\n\n");
     for entry in plan.entries.iter().filter(|entry| entry.level == 2) {
@@ -46,6 +47,12 @@ fn functions() -> String {
     lines.join(",\n")
 }
 
+/// Table of the units.
+fn units() -> String {
+    let rows: String = UNITS.iter().map(|unit| format!("| {} | {} |\n", unit.name, unit.meaning)).collect();
+    format!("| unit | measures |\n|---|---|\n{rows}")
+}
+
 /// Table of the size limits.
 fn limits() -> String {
     let limits = [
@@ -56,6 +63,7 @@ fn limits() -> String {
         ("objects, counted once for each placement of their group", MAX_OBJECTS.to_string()),
         ("objects in memory (repeated large groups count once)", MAX_STORED.to_string()),
         ("emissive shapes, counted once for each placement of their group", MAX_EMITTERS.to_string()),
+        ("light groups, `rest` included", juggler_camera::aov::LightGroup::MAX_COUNT.to_string()),
         ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_material::MAX_NESTING.to_string()),
         ("nesting of textures", juggler_texture::MAX_NESTING.to_string()),
@@ -220,13 +228,13 @@ fn write_entry(text: &mut String, entry: &Entry<'_>, cells: &Cells<'_>) {
         text.push_str("| field | value | default | meaning |\n|---|---|---|---|\n");
         for (name, field) in fields {
             let default = if required.contains(&name.as_str()) { "required".into() } else { cells.default(field) };
-            let (value, meaning) = (cells.value(name, field), one_line(description(field)));
+            let (value, meaning) = (cells.value(field), one_line(description(field)));
             let _ = writeln!(text, "| `{name}` | {value} | {default} | {} |", meaning.replace('|', "\\|"));
         }
     } else if entry.schema.get("type").is_some_and(|t| t == "object") {
         text.push_str("This kind has no settings.\n");
     } else {
-        let _ = writeln!(text, "Value: {}.", cells.value("", entry.schema));
+        let _ = writeln!(text, "Value: {}.", cells.value(entry.schema));
     }
 }
 

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Films as others see them: MP4, WebP, APNG and GIF of one animation shown in a real browser and, where they are installed,
-# looked at by ffprobe and ffmpeg: lengths, sizes, jumps to a moment, colors beside those of the frames as PNG.
-#   tests/films/test.sh PATH/TO/juggler [FOLDER FOR THE FILMS]
-# Needs node, npm (playwright-core, by the lock file of tests/browser) and Chromium: apt-get install -y chromium nodejs npm
+# Decodes movies with other programs: shows MP4, WebP, APNG and GIF files of one animation in a real
+# browser and, if they are installed, reads them with ffprobe and ffmpeg. Checks lengths, sizes,
+# seeking, and colors against those of the frames as PNG.
+#   tests/movies/test.sh PATH/TO/juggler [FOLDER FOR THE MOVIES]
+# Needs node, npm (playwright-core, pinned by the lock file of tests/browser) and Chromium:
+#   apt-get install -y chromium nodejs npm
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-juggler=$(realpath "${1:?usage: tests/films/test.sh PATH/TO/juggler [FOLDER]}")
+juggler=$(realpath "${1:?usage: tests/movies/test.sh PATH/TO/juggler [FOLDER]}")
 folder=$(realpath -m "${2:-$(mktemp -d)}")
 mkdir -p "$folder"
 

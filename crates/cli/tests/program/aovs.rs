@@ -46,7 +46,7 @@ fn the_picture_is_the_same_with_layers_and_without() {
 }
 
 #[test]
-fn info_names_the_layers_of_a_picture() {
+fn info_names_the_layers_of_an_exr() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --aov albedo,depth -o two.exr -q"));
     let words = folder.good("info two.exr").stdout;
@@ -63,19 +63,19 @@ fn info_names_the_layers_of_a_picture() {
 }
 
 #[test]
-fn layers_are_in_the_primaries_that_are_asked_for() {
+fn aovs_have_the_requested_primaries() {
     let folder = Folder::new();
     let wide = SCENE.replacen('{', r#"{"tone": {"primaries": "acescg"},"#, 1);
     fs::write(folder.path("wide.json"), wide).unwrap();
     let line = BALL.trim_start_matches("ball.json");
     folder.good(&format!("render {BALL} --aov albedo,depth,direct -o plain.exr -q"));
-    folder.good(&format!("render {BALL} --aov albedo,depth,direct -o asked.exr -q --primaries acescg"));
+    folder.good(&format!("render {BALL} --aov albedo,depth,direct -o requested.exr -q --primaries acescg"));
     folder.good(&format!("render wide.json {line} --aov albedo,depth,direct -o scene.exr -q"));
     folder.good(&format!("render wide.json {line} --aov albedo,depth,direct -o kept.jfilm -q"));
     folder.good("merge kept.jfilm -o merged.exr -q");
     let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
     assert!(bytes("scene.exr") == bytes("merged.exr"));
-    for wide in ["asked.exr", "scene.exr"] {
+    for wide in ["requested.exr", "scene.exr"] {
         folder.good(&format!("compare {wide} plain.exr --tolerance 1e-6"));
         let all = bytes(wide);
         let named = all.windows(15).filter(|window| *window == b"chromaticities\0").count();
@@ -85,7 +85,7 @@ fn layers_are_in_the_primaries_that_are_asked_for() {
 }
 
 #[test]
-fn parts_of_other_motion_are_told_apart() {
+fn partial_renders_of_other_motion_do_not_merge() {
     let folder = Folder::new();
     let part = |name: &str, shard: u32, aov: &str| {
         folder.good(&format!("render {BALL} --aov {aov} --shard {shard}/2 -o {name} -q"));

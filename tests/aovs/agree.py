@@ -1,13 +1,15 @@
-"""Do other programs read from an EXR of all layers what Juggler means by them?
+"""Checks that other programs read the AOVs of an EXR file as Juggler defines them.
 
-    python3 -m venv layers && layers/bin/pip install -r tests/layers/requirements.txt
-    layers/bin/python tests/layers/agree.py target/release/juggler
+    python3 -m venv aovs && aovs/bin/pip install -r tests/aovs/requirements.txt
+    aovs/bin/python tests/aovs/agree.py target/release/juggler
 
-Renders tests/layers/scene.json with every layer, twice: in the primaries of sRGB and in ACEScg. OpenEXR's own reader and OpenImageIO
-must find the same parts, channels and numbers. From these alone it is then worked out anew what layers tell of each other:
-positions projected by worldToNDC lie in their pixels, and where worldToNDC of the next frame has them, motion ends; names hashed
-by mmh3 are those of the Cryptomatte manifests, whose mattes agree with ids and with alpha; light adds up to the picture.
-Each check prints what it found; the exit status is 1 when any fails.
+The script renders tests/aovs/scene.json with all AOVs, twice: in the primaries of sRGB and in
+ACEScg. OpenEXR's own reader and OpenImageIO must find the same parts, channels and numbers. From
+these alone, the script checks that AOVs agree with each other: positions projected by worldToNDC
+lie in their pixels, and worldToNDC of the next frame projects them to where the motion vectors end;
+names hashed by mmh3 are those of the Cryptomatte manifests, whose mattes agree with ids and alpha;
+the AOVs of light add up to the picture. Each check prints its result; the exit status is 1 if any
+fails.
 """
 
 import json
@@ -25,7 +27,7 @@ HERE = Path(__file__).resolve().parent
 PARTS = {
     "beauty": "BGR", "alpha": "A", "albedo": "BGR", "normal": "XYZ", "geometric_normal": "XYZ", "depth": "Z", "position": "XYZ",
     "uv": "UV", "motion": "XY", "motion_back": "XY", "emission": "BGR", "direct": "BGR", "indirect": "BGR",
-    "light_group_rest": "BGR", "light_group_key": "BGR", "light_group_lamp": "BGR", "light_group_sky": "BGR",
+    "light_group_rest": "BGR", "light_group_key": "BGR", "light_group_light": "BGR", "light_group_sky": "BGR",
     "object_id": "Y", "material_id": "Y", "instance_id": "Y",
     **{f"Crypto{kind}{i:02}": "ABGR" for kind in ("Object", "Material") for i in range(3)},
     "samples": "Y", "variance": "BGR", "not_finite": "Y", "clamped": "Y",
@@ -33,10 +35,10 @@ PARTS = {
 failures = 0
 
 
-def check(what, holds, told=""):
+def check(what, holds, found=""):
     global failures
     failures += not holds
-    print(f"{'ok  ' if holds else 'FAIL'} {what}{': ' if told else ''}{told}")
+    print(f"{'ok  ' if holds else 'FAIL'} {what}{': ' if found else ''}{found}")
 
 
 def render(program, folder, name, *flags):
@@ -46,7 +48,7 @@ def render(program, folder, name, *flags):
 
 
 def by_openexr(path):
-    """Headers and channels by part."""
+    """Returns headers and channels by part."""
     file = OpenEXR.File(path, separate_channels=True)
     return {
         part.header.get("name", ""): (part.header, {name: channel.pixels for name, channel in part.channels.items()})
@@ -73,7 +75,7 @@ def layer(parts, name, channels):
 
 
 def projected(points, matrix):
-    """Rows before a matrix, in pixels."""
+    """Returns points (rows) times a matrix, in pixels."""
     rows = np.concatenate([points, np.ones_like(points[..., :1])], axis=-1) @ np.asarray(matrix, dtype=np.float64)
     height, width = points.shape[:2]
     return rows[..., :2] / rows[..., 3:] * (width, height), rows[..., 3]
@@ -96,8 +98,8 @@ def camera(ours, others, next_frame):
     matrix = np.array(header["worldToNDC"], dtype=np.float64)
     to_camera = np.array(header["worldToCamera"], dtype=np.float64)
     check("every part has both matrices", all("worldToNDC" in h and "worldToCamera" in h for h, _ in ours.values()))
-    told = others["beauty"][0].getattribute("worldtocamera")
-    check("OpenImageIO knows worldToCamera", told is not None and np.allclose(np.array(told).reshape(4, 4), to_camera))
+    read = others["beauty"][0].getattribute("worldtocamera")
+    check("OpenImageIO knows worldToCamera", read is not None and np.allclose(np.array(read).reshape(4, 4), to_camera))
     eye = np.array([0.2, 2, 7, 1]) @ to_camera
     check("the eye is at the origin of camera space", np.abs(eye[:3]).max() < 1e-5)
     position, alpha = layer(ours, "position", "XYZ"), layer(ours, "alpha", "A")[..., 0]
@@ -110,7 +112,7 @@ def camera(ours, others, next_frame):
     z = np.concatenate([position, np.ones_like(position[..., :1])], axis=-1) @ to_camera
     plain = (alpha == 1) & (np.abs(z[..., 2] - ahead) < 1e-3 * ahead)
     check("distance along the view is both matrices' last word", plain.sum() == (alpha == 1).sum())
-    # Where one thing fills the pixel.
+    # Compare only pixels that one object fills.
     solid = layer(ours, "CryptoObject00", "G")[..., 0] > 0.9999
     far = np.linalg.norm(z[..., :3], axis=-1)
     apart = np.abs(depth - far)[solid] / far[solid]
@@ -149,7 +151,7 @@ def cryptomatte(ours, kind, names, ids):
 
 def light(parts, tolerance=1e-4):
     beauty = layer(parts, "beauty", "RGB")
-    for names in (["emission", "direct", "indirect"], [f"light_group_{g}" for g in ("rest", "key", "lamp", "sky")]):
+    for names in (["emission", "direct", "indirect"], [f"light_group_{g}" for g in ("rest", "key", "light", "sky")]):
         apart = np.abs(sum(layer(parts, name, "RGB") for name in names) - beauty) / np.maximum(1, beauty)
         check(f"{' + '.join(names)} is the picture", apart.max() < tolerance, f"within {apart.max():.1e}")
 
@@ -163,11 +165,11 @@ def main():
         ours, others = readers(path)
         (next_header, _), = after.values()
         camera(ours, others, next_header["worldToNDC"])
-        objects = ["floor", "ball", "glass ball", "lamp", "veil", "objects[5]"]
+        objects = ["floor", "ball", "glass ball", "light", "veil", "objects[5]"]
         cryptomatte(ours, "CryptoObject", objects, "object_id")
         header = ours["CryptoMaterial00"][0]
         materials = json.loads(next(v for k, v in header.items() if k.endswith("/manifest")))
-        check("CryptoMaterial: the scene's materials are named", {"clay", "glass", "lace", "glow"} <= set(materials), ", ".join(materials))
+        check("CryptoMaterial: the scene's materials are named", {"clay", "glass", "lace", "emissive"} <= set(materials), ", ".join(materials))
         light(ours)
         counts = layer(ours, "samples", "Y"), layer(ours, "not_finite", "Y"), layer(ours, "clamped", "Y")
         check("counts of samples", (counts[0] == 32).all() and (counts[1] == 0).all() and 0 < counts[2].max() <= 32,

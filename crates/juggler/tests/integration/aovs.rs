@@ -26,7 +26,7 @@ const SCENE: &str = r#"{
         {"name": "card", "shape": {"rectangle": {"size": [0.53, 1.5]}},
             "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [-0.485, 0, 1]}], "material": "red"},
         {"name": "hidden", "visible": false, "shape": "sphere"},
-        {"name": "lamp", "shape": {"sphere": {"radius": 0.2}}, "transform": [{"translate": [0.5, 0.4, 0.5]}],
+        {"name": "emitter", "shape": {"sphere": {"radius": 0.2}}, "transform": [{"translate": [0.5, 0.4, 0.5]}],
             "material": {"emissive": {"radiance": [3, 2, 1]}}, "light_group": "key"},
         {"shape": {"sphere": {"radius": 0.2}}, "transform": [{"translate": [0.5, -0.4, 0.5]}], "material": {"conductor": {"roughness": 0}}}
     ]
@@ -37,7 +37,7 @@ fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
     let scene = Scene::from_json(scene, "test").unwrap();
     let picture = Picture::new(&scene, &Settings { aovs: aovs.to_vec(), ..Settings::default() }).unwrap();
     let film = picture.film();
-    picture.expose(&film, &Control::default()).unwrap();
+    picture.render_film(&film, &Control::default()).unwrap();
     let mut rows = Vec::new();
     picture
         .develop(&film, |band| {
@@ -45,10 +45,10 @@ fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
             Ok::<(), ()>(())
         })
         .unwrap();
-    let set = picture.layers();
+    let set = picture.aovs();
     let tiles: Vec<_> = (0..film.tiling().tile_count()).filter_map(|number| film.copy_of_tile(number)).collect();
     let names = set.headers().into_iter().flat_map(|layer| layer.channels);
-    (names.zip(set.band(&picture.region(), &tiles, None)).collect(), rows)
+    (names.zip(set.band_values(&picture.region(), &tiles, None)).collect(), rows)
 }
 
 /// Returns the pixel at these coordinates of the scene's plane.
@@ -139,8 +139,8 @@ fn samples_that_a_limit_cuts_are_counted() {
 #[test]
 fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
     let card = r#""translate": [-0.485, 0, 1]}], "material": "red"}"#;
-    let holes = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
-    let scene = SCENE.replace(card, holes);
+    let invisible = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
+    let scene = SCENE.replace(card, invisible);
     assert!(scene != SCENE);
     let (found, _) = layers(&scene, &[Aov::Depth, Aov::ObjectId]);
     let pixel = at(-0.4, 0.1);
@@ -186,9 +186,9 @@ fn every_integrator_fills_all_layers() {
         }
         assert!((found["albedo.R"][at(-0.4, 0.1)] - 0.9).abs() < 1e-5, "{integrator}");
         for (pixel, expected) in picture.iter().enumerate() {
-            let ways = ["emission.G", "direct.G", "indirect.G"];
+            let paths = ["emission.G", "direct.G", "indirect.G"];
             let groups = ["light_group_rest.G", "light_group_key.G", "light_group_sky.G"];
-            for parts in [ways, groups] {
+            for parts in [paths, groups] {
                 let sum: f32 = parts.iter().map(|channel| found[*channel][pixel]).sum();
                 let near = (sum - expected.g).abs() <= 1e-5 * expected.g.abs();
                 assert!(near, "{integrator}, pixel {pixel}, {parts:?}: {sum}, {expected:?}");

@@ -8,9 +8,9 @@ import { basename, join } from "node:path";
 import { startBrowser } from "../browser/harness.mjs";
 
 const [program, chromium, folder] = process.argv.slice(2);
-const FRAMES = Number(process.env.FILM_FRAMES ?? 12);
-const SIZE = (process.env.FILM_SIZE ?? "160x90").split("x").map(Number);
-const FLAGS = ["--size", SIZE.join("x"), "--samples", process.env.FILM_SAMPLES ?? "4", "--frames", `0..${FRAMES}`, "--quiet"];
+const FRAMES = Number(process.env.MOVIE_FRAMES ?? 12);
+const SIZE = (process.env.MOVIE_SIZE ?? "160x90").split("x").map(Number);
+const FLAGS = ["--size", SIZE.join("x"), "--samples", process.env.MOVIE_SAMPLES ?? "4", "--frames", `0..${FRAMES}`, "--quiet"];
 const PACE = 30;
 const TYPES = { mp4: "video/mp4", webp: "image/webp", apng: "image/apng", gif: "image/gif" };
 
@@ -25,30 +25,30 @@ function run(command, ...words) {
   return stdout + stderr;
 }
 
-/** Reports what is not looked at, as check.sh does; CI skips nothing that a package gives. */
+/** Reports a skipped check as check.sh does; in CI that is an error. */
 function skip(reason) {
   assert.notEqual(process.env.CI, "true", reason);
   say(`SKIPPED: ${reason}`);
   if (process.env.JUGGLER_SKIPPED) appendFileSync(process.env.JUGGLER_SKIPPED, `${reason}\n`);
 }
 
-/** All films, and their frames. */
+/** Renders all movies and their frames. */
 function render() {
-  // Frames of films are not dithered.
+  // Movies are not dithered.
   run(program, "render", "juggler", ...FLAGS, "--dither", "off", "-o", file("frame_####.png"));
-  for (const ending of Object.keys(TYPES)) run(program, "render", "juggler", ...FLAGS, "-o", file(`film.${ending}`));
-  const sizes = Object.keys(TYPES).map((ending) => `${ending} ${statSync(file(`film.${ending}`)).size}`);
+  for (const ending of Object.keys(TYPES)) run(program, "render", "juggler", ...FLAGS, "-o", file(`movie.${ending}`));
+  const sizes = Object.keys(TYPES).map((ending) => `${ending} ${statSync(file(`movie.${ending}`)).size}`);
   say(`${FRAMES} frames of ${SIZE.join("x")}: bytes of ${sizes.join(", ")}`);
 }
 
-/** What ffprobe says, and how far the pictures are from the frames. */
-function askFfmpeg() {
+/** Reads the movies with ffprobe, and measures their difference from the frames with ffmpeg. */
+function checkWithFfmpeg() {
   if (spawnSync("ffprobe", ["-version"]).status !== 0) {
-    skip("tests/films: ffprobe is not installed (apt-get install ffmpeg)");
+    skip("tests/movies: ffprobe is not installed (apt-get install ffmpeg)");
     return;
   }
   for (const ending of ["mp4", "apng", "gif"]) {
-    const words = ["-v", "error", "-count_frames", "-show_streams", "-show_format", "-of", "json", file(`film.${ending}`)];
+    const words = ["-v", "error", "-count_frames", "-show_streams", "-show_format", "-of", "json", file(`movie.${ending}`)];
     const { streams, format } = JSON.parse(run("ffprobe", ...words));
     const [stream] = streams;
     assert.deepEqual([stream.width, stream.height, Number(stream.nb_read_frames)], [...SIZE, FRAMES], ending);
@@ -58,10 +58,11 @@ function askFfmpeg() {
       assert.deepEqual(found, ["av1", "Main", "yuv420p", "tv", "bt709", "bt709", "iec61966-2-1", `${PACE}/1`]);
       assert.equal(Number(format.duration).toFixed(6), (FRAMES / PACE).toFixed(6));
     }
-    // Frames by number, whatever their times; in the MP4's own form, of which half the colors are no part.
+    // Compare frames by number, whatever their times, in the pixel format of the MP4, which halves
+    // the resolution of the chroma.
     const plain = "setpts=N/30/TB,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
     const graph = `[0:v]${plain}[a];[1:v]${plain}[b];[a][b]psnr`;
-    const report = run("ffmpeg", "-hide_banner", "-i", file(`film.${ending}`), "-i", file("frame_%04d.png"), "-lavfi", graph, "-f", "null", "-");
+    const report = run("ffmpeg", "-hide_banner", "-i", file(`movie.${ending}`), "-i", file("frame_%04d.png"), "-lavfi", graph, "-f", "null", "-");
     const error = report.match(/y:(\S+) u:(\S+) v:(\S+) average/).slice(1).map(Number);
     // A GIF has 256 colors.
     assert(error.every((decibels) => Number.isNaN(decibels) || decibels > (ending === "gif" ? 25 : 33)), `${ending}: ${error}`);
@@ -69,11 +70,11 @@ function askFfmpeg() {
   }
 }
 
-/** A page that can reach the files. */
+/** Opens a page that can read the files. */
 async function open(browser) {
   const server = createServer(({ url }, answer) => {
     const name = basename(url);
-    if (!/^(film|frame_\d+)\.\w+$/.test(name)) return answer.writeHead(200, { "content-type": "text/html" }).end("<p>films");
+    if (!/^(movie|frame_\d+)\.\w+$/.test(name)) return answer.writeHead(200, { "content-type": "text/html" }).end("<p>movies");
     const type = TYPES[name.split(".")[1]] ?? "image/png";
     return answer.writeHead(200, { "content-type": type }).end(readFileSync(file(name)));
   });
@@ -82,7 +83,7 @@ async function open(browser) {
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
   await page.evaluate(() => {
     const canvas = new OffscreenCanvas(1, 1);
-    /** The levels of anything that can be drawn. */
+    /** Returns the levels of an image source. */
     window.levels = (what, width, height) => {
       Object.assign(canvas, { width, height });
       const pen = canvas.getContext("2d", { willReadFrequently: true });
@@ -93,7 +94,8 @@ async function open(browser) {
       const bitmap = await createImageBitmap(await (await fetch(name)).blob());
       return window.levels(bitmap, width, height);
     };
-    /** How far two pictures are apart: at worst, on average, and on average of blocks, in which sharp colors vanish. */
+    /** Returns the difference of two pictures: the maximum, the mean, and the mean over blocks, in
+     * which the error of sharp colors averages out. */
     window.apart = (a, b, width, height) => {
       const [block, sums] = [8, new Map()];
       let [most, sum] = [0, 0];
@@ -112,7 +114,7 @@ async function open(browser) {
   return { page, close: () => server.close() };
 }
 
-/** The MP4 as a page plays it. */
+/** Plays and seeks the MP4. */
 async function plays(page) {
   const moments = [0, Math.floor(FRAMES / 2), FRAMES - 1, 1].map((number) => [number, picture(number)]);
   const seen = await page.evaluate(async ({ moments, pace, size: [width, height] }) => {
@@ -123,7 +125,7 @@ async function plays(page) {
     });
     video.muted = true;
     const loaded = event("loadeddata");
-    video.src = URL.createObjectURL(await (await fetch("film.mp4")).blob());
+    video.src = URL.createObjectURL(await (await fetch("movie.mp4")).blob());
     await loaded;
     const errors = [];
     for (const [number, name] of moments) {
@@ -144,17 +146,17 @@ async function plays(page) {
   assert.deepEqual(seen.size, SIZE);
   assert(Math.abs(seen.duration - FRAMES / PACE) < 1e-3, `${seen.duration} s`);
   seen.errors.forEach(({ time }, i) => assert(Math.abs(time - moments[i][0] / PACE) < 1e-3, `frame ${moments[i][0]}: ${time} s`));
-  // Half the colors are none of the file's: saturated ones beside each other lose some of theirs, in any encoder.
+  // The chroma has half the resolution, so neighboring saturated colors differ with any encoder.
   const worst = Math.max(...seen.errors.map(({ blocks }) => blocks));
   assert(worst < 4.5, `colors are off: ${JSON.stringify(seen.errors)}`);
   say(`Chromium plays the mp4: ${seen.duration} s, blocks of ${seen.errors.length} frames off by at most ${worst.toFixed(2)} levels`);
 }
 
-/** The moving pictures as a page decodes them. */
+/** Decodes an animated picture in the page. */
 async function shows(page, ending) {
   const names = Array.from({ length: FRAMES }, (_, number) => picture(number));
   const seen = await page.evaluate(async ({ ending, type, names, size: [width, height] }) => {
-    const decoder = new ImageDecoder({ data: (await fetch(`film.${ending}`)).body, type });
+    const decoder = new ImageDecoder({ data: (await fetch(`movie.${ending}`)).body, type });
     await decoder.completed;
     const { frameCount, repetitionCount } = decoder.tracks.selectedTrack;
     let [microseconds, errors] = [0, []];
@@ -177,7 +179,7 @@ async function shows(page, ending) {
 }
 
 render();
-askFfmpeg();
+checkWithFfmpeg();
 const browser = await startBrowser(chromium);
 const { page, close } = await open(browser);
 await plays(page);
