@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_kept_is_gone_on_with() {
+    fn a_render_resumes_from_its_checkpoint() {
         let (_folder, path) = place("a.jfilm");
         let (mut kept, nothing) = found(&path);
         assert!(nothing.part.is_none() && nothing.damage.is_none());
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn another_picture_is_refused_with_what_differs() {
+    fn another_picture_is_rejected_with_its_differences() {
         let (_folder, path) = place("a.jfilm");
         found(&path).0.save(&description(REGION, 64), &film_with(16, 64)).unwrap();
         let part = found(&path).1.part.unwrap();
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn rules_to_stop_can_be_made_stricter_only() {
+    fn stop_rules_can_only_become_stricter() {
         let noise = |level| Stop::Noise { level };
         let time = Stop::Time { seconds: 1.0 };
         for (before, now) in [
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_file_gives_way_to_the_one_before() {
+    fn the_previous_file_replaces_a_damaged_one() {
         let (_folder, path) = place("a.jfilm");
         let (mut kept, _) = found(&path);
         kept.save(&description(REGION, 64), &film_with(16, 64)).unwrap();
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_leaves_one_file() {
+    fn closing_leaves_one_file() {
         let (folder, path) = place("a.jfilm");
         let (mut kept, _) = found(&path);
         kept.save(&description(REGION, 64), &film_with(16, 64)).unwrap();
@@ -296,14 +296,14 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_never_written_over() {
+    fn other_files_are_never_overwritten() {
         let (_folder, path) = place("scene.json");
         fs::write(&path, "{}").unwrap();
         assert!(matches!(Checkpoint::open(&path), Err(PartialRenderError::NotAPartialRender { .. })));
     }
 
     #[test]
-    fn a_part_of_a_tile_that_is_wanted_in_pieces_fits() {
+    fn samples_fit_a_tile_of_several_ranges() {
         let (_folder, path) = place("a.jfilm");
         let expected = || Film::from_tiles(Tiling::new(REGION), [(0, 0..16), (0, 16..32), (0, 48..64)]);
         let some = expected();

@@ -11,7 +11,7 @@ use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Albedo of the first surface, without lighting; black where there is none.
+/// Albedo of the first surface, without lighting; black where rays hit no surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Albedo {}

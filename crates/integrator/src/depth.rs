@@ -11,8 +11,8 @@ use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Distance from the camera to the first surface, along the ray, as a gray value; 0 where there is
-/// none.
+/// Distance from the camera to the first surface, along the ray, as a gray value; 0 where rays hit no
+/// surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Depth {

@@ -11,7 +11,7 @@ use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shading normals in world space as colors, (n + 1) / 2; black where there is no surface.
+/// Shading normals in world space as colors, (n + 1) / 2; black where rays hit no surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Normals {}

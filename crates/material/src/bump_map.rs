@@ -24,8 +24,8 @@ pub struct BumpMap {
     /// Height above the surface, in units of `distance`; of a texture, the luminance. Set an
     /// image's `color_space` to `linear`. A constant has no effect.
     pub height: Input<f32>,
-    /// Displacement that a height of 1 stands for, in scene units, -1e6 to 1e6. Negative values
-    /// turn bumps into dents.
+    /// Displacement at a height of 1, in scene units, -1e6 to 1e6. Negative values turn bumps into
+    /// dents.
     #[schemars(range(min = -1e6, max = 1e6), extend("x-unit" = "scene units"))]
     pub distance: f32,
     /// Material that the bumped normals shade.

@@ -59,8 +59,8 @@ pub struct Conductor {
     pub energy_compensation: bool,
 }
 
-/// A metal by name. Its index of refraction per channel is derived from a measured table. Below
-/// stand the table's source and the reflectance at normal incidence: the table's spectral
+/// A metal by name. Its index of refraction per channel is derived from a measured table. Each
+/// name has the table's source and the reflectance at normal incidence: the table's spectral
 /// reflectance in air, integrated to linear sRGB (CIE 1931, D65) and clamped to 0..1. Towards
 /// grazing angles the reflectance follows the integrated spectral curve within 0.01 up to 80
 /// degrees. Gold's red lies outside of sRGB, so it is clamped, and rendered as 0.996.

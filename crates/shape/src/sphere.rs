@@ -235,8 +235,8 @@ mod tests {
                 let from = random.unit_vector() * radius;
                 let far = (0..20).filter_map(|_| sphere.sample(from, random.vec2()));
                 let far = far.filter(|sample| sample.point.distance(from) > 0.2 * radius && sample.pdf > 0.0).count();
-                // Sampled uniformly by area, 99 of 100 points are so far away; in a cone of half
-                // the sky none is.
+                // Uniform sampling by area puts 99 of 100 points this far away; sampling a cone of
+                // half the sky would put no point there.
                 assert!(far > 10, "{from}: {far}");
             }
         }

@@ -50,8 +50,8 @@ impl TriangleGeometry {
         let at = if beside_edge { self.move_inwards(at, f64::from(EDGE_MARGIN * size)) } else { at };
         let (point, normal) = self.point(at);
         // The triangle test translates the corners to the ray in f32, with an error of up to 4 half
-        // ulps of that translation each (measured from close by, for triangles with sides up to
-        // 100,000 : 1: a quarter of one).
+        // ulps of that translation each. (The measured error is a quarter of one half ulp, for
+        // nearby triangles whose sides differ by up to a factor of 100,000.)
         let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size;
         let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);

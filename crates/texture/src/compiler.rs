@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn every_wrong_texture_is_reported_once_where_it_stands() {
+    fn every_wrong_texture_is_reported_once_at_its_place() {
         let (table, errors) = compile_json(
             r#"{"a": {"checker": {"even": "b"}}, "b": {"checker": {"size": -1}}, "c": {"mix": {"a": "b", "b": "nobody"}},
                 "d": {"ramp": {"input": "d"}}, "e": {"mix": {"a": "f"}}, "f": {"mix": {"b": "e"}}}"#,
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn endless_chains_are_refused_in_either_order() {
+    fn cycles_are_rejected_in_either_order() {
         let name = |i: u32| format!("{i:06}");
         let down = chain((0..20_000).map(|i| (name(i), name(i + 1))));
         let up = chain((1..20_000).map(|i| (name(i), name(i - 1))));

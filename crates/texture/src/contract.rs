@@ -78,7 +78,7 @@ fn colors_are_finite_everywhere() {
 }
 
 #[test]
-fn json_goes_round_and_every_kind_has_defaults() {
+fn json_round_trips_and_every_kind_has_defaults() {
     for texture in AnyTexture::examples() {
         let text = serde_json::to_string(&texture).unwrap();
         assert_eq!(serde_json::from_str::<AnyTexture>(&text).unwrap(), texture, "{text}");

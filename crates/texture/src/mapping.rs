@@ -27,7 +27,7 @@ pub struct Mapping {
     pub offset: Vec3,
 }
 
-/// One factor, or one for each axis; none may be 0. Negative factors mirror the pattern.
+/// One factor, or one for each axis, all different from 0. Negative factors mirror the pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Scale {

@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gains_are_strengths_times_colors() {
+    fn gains_are_intensities_times_colors() {
         assert_eq!(intensity_and_color([1.0, 1.0, 1.0]), (1.0, [1.0, 1.0, 1.0]));
         assert_eq!(intensity_and_color([2.0, 1.0, 0.5]), (2.0, [1.0, 0.5, 0.25]));
         assert_eq!(intensity_and_color([0.0; 3]), (0.0, [1.0; 3]));

@@ -43,6 +43,9 @@ const fn retired(pattern: &'static str, instead: &'static str) -> Retired {
 /// The page that lists the retired words.
 const LIST: &[&str] = &["CONTRIBUTING.md"];
 
+/// That page, and the one that names values of JSON that changed.
+const HISTORY: &[&str] = &["CONTRIBUTING.md", "CHANGELOG.md"];
+
 /// Crates and pages about light transport.
 const TRANSPORT: &[&str] = &[
     "crates/bsdf/",
@@ -137,7 +140,7 @@ const PHRASES: &[Retired] = &[
         "command/info.rs",
         "program/answers.rs",
     ]),
-    retired("glow|glows|glowing|shine|shines|shining|shone", "emit, emitting").except(LIST),
+    retired("glow|glows|glowing|shine|shines|shining|shone", "emit, emitting").except(HISTORY),
     // Furniture, the light source of a measured luminaire, and objects of a scene.
     retired("lamp|lamps", "light, emitter").except(&[
         "CONTRIBUTING.md",
@@ -145,12 +148,13 @@ const PHRASES: &[Retired] = &[
         "photometry.rs",
         "docs/probe.md",
     ]),
-    retired("asked", "light-sampled, requested").except(LIST),
+    retired("asked", "light-sampled, requested").except(HISTORY),
     retired("path|paths ask|asks", "sample"),
     retired("ask|asks for light|lights", "sample"),
     // Criteria and targets are met.
     retired("met", "BSDF-sampled, hit").except(&[
         "CONTRIBUTING.md",
+        "CHANGELOG.md",
         "render/src/progressive.rs",
         "docs/benchmarks.md",
         "docs/notes/",
@@ -187,7 +191,7 @@ const PHRASES: &[Retired] = &[
     retired("mirrored light|radiance|ray|rays|direction|path|paths|color|share|shares", "reflected"),
     retired("give|gives|gave off", "emit").except(LIST),
     retired("throw|throws|thrown|threw light|caustic|caustics|shadow|shadows|its|soft|nothing|at|onto", "cast"),
-    retired("what shines", "emitting"),
+    retired("what shines", "emitting").except(HISTORY),
     retired("kept apart with", "light group"),
     retired("what lies between", "the subject's noun"),
     retired("is told that", "receives"),

@@ -35,7 +35,7 @@ const DISPLAY: f32 = 2.2;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Agx {
-    /// Color grade after the curve; `base` applies none.
+    /// Color grade after the curve; `base` applies no grade.
     pub look: AgxLook,
 }
 

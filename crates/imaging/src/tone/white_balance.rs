@@ -25,8 +25,8 @@ pub struct WhiteBalance {
     #[schemars(range(min = 1667, max = 25000), extend("x-unit" = "K"))]
     pub kelvin: f64,
     /// Distance of the light from the Planckian or daylight locus in thousandths of Duv (ANSI
-    /// C78.377), -50 to 50. Positive values stand for greenish light and make the image more
-    /// magenta.
+    /// C78.377), -50 to 50. Positive values state that the light is greenish and make the image
+    /// more magenta.
     #[schemars(range(min = -50, max = 50), extend("x-unit" = "0.001 Duv"))]
     pub tint: f64,
 }

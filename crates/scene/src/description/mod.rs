@@ -70,7 +70,8 @@ pub struct Description {
     #[serde(default, skip_serializing_if = "SourceSection::is_empty")]
     #[schemars(with = "IndexMap<String, Variable>")]
     pub(crate) variables: SourceSection,
-    /// Named curves for the value form `along`. A scene that is saved at a single frame has none.
+    /// Named curves for the value form `along`. A scene that is saved at a single frame has no
+    /// paths.
     #[serde(default, skip_serializing_if = "SourceSection::is_empty")]
     #[schemars(with = "IndexMap<String, ScenePath>")]
     pub(crate) paths: SourceSection,

@@ -15,13 +15,13 @@ fn a_huge_sphere_shows_no_bands_from_close_by() {
     let steps = 20_000;
     let mut before = 0.0;
     for i in 1..steps {
-        // Uniform in distance over ground, up to just before the horizon.
+        // Sample distances over ground uniformly, up to just before the horizon.
         let ground = 0.999 * horizon * f64::from(i) / f64::from(steps);
         let (x, drop) = (ground, f64::from(height) + ground * ground / (2.0 * f64::from(radius)));
         let ray = Ray::new(origin, DVec3::new(x, -drop, 0.0).normalize().as_vec3());
-        let hit = sphere.intersect(&ray).unwrap_or_else(|| panic!("hole at {ground}"));
+        let hit = sphere.intersect(&ray).unwrap_or_else(|| panic!("no hit at {ground}"));
         let expected = x.hypot(drop);
-        // Rounding of the direction moves the point, the more the flatter the view.
+        // Rounding of the direction moves the point, more so at grazing angles.
         let sensitivity = 1.0 / (1.0 - ground / horizon);
         assert!(
             (f64::from(hit.t) - expected).abs() < 4e-7 * expected * expected * sensitivity / f64::from(height),

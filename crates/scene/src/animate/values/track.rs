@@ -36,7 +36,7 @@ pub struct Animate {
     /// Interpolation between the keys.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// Easing after each key that has none of its own.
+    /// Easing after each key that does not state its own easing.
     #[serde(default)]
     pub ease: Ease,
     /// Extrapolation before the first and after the last key.
