@@ -101,7 +101,7 @@ run_test_programs() {
   done
   if [[ " $* " != *" golden "* ]]; then
     heading "changed: the rules of the tree"
-    (cd crates/golden && "$(test_programs golden "$built" | grep '/golden-')" --quiet tree:: < /dev/null)
+    (cd crates/golden && "$(test_programs golden "$built" | grep '/golden-')" --quiet tree:: words:: < /dev/null)
   fi
   rm -f "$built"
   heading "changed: examples of the documentation"

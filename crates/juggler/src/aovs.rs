@@ -231,7 +231,7 @@ impl AovSet {
     }
 
     /// Returns the selected AOVs, in the order of [`Aov::ALL`].
-    pub fn aovs(&self) -> &[Aov] {
+    pub fn selected(&self) -> &[Aov] {
         &self.aovs
     }
 

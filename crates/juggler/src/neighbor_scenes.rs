@@ -35,7 +35,7 @@ impl NeighborScenes {
         shutter_camera: &ShutterCamera,
         aovs: &AovSet,
     ) -> Result<Self, Error> {
-        let [back, on] = [Aov::MotionBack, Aov::Motion].map(|aov| aovs.aovs().contains(&aov));
+        let [back, on] = [Aov::MotionBack, Aov::Motion].map(|aov| aovs.selected().contains(&aov));
         if !back && !on {
             return Ok(Self::default());
         }

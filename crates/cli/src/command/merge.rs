@@ -203,7 +203,7 @@ impl Merge {
 
     /// Writer of the AOVs of the parts, and whether its file contains the picture too.
     fn aov_writer(&self, set: &AovSet, header: &Header) -> Result<Option<(LayeredWriter, bool)>, Failure> {
-        if set.aovs().is_empty() {
+        if set.selected().is_empty() {
             return match &self.aov_output {
                 Some(_) => {
                     Err(Failure::Invalid("--aov-output: the parts contain no AOVs; render them with --aov".into()))

@@ -34,7 +34,7 @@ pub fn check(
     needed = needed.saturating_add(merge.tiles().saturating_mul(TILE_BYTES));
     if let Some((format, header, seekable)) = picture {
         let names = u64::from(merge.description().aovs.entries).saturating_mul(NAME);
-        let has_names = set.aovs().iter().any(|aov| matches!(aov, Aov::CryptoObject | Aov::CryptoMaterial));
+        let has_names = set.selected().iter().any(|aov| matches!(aov, Aov::CryptoObject | Aov::CryptoMaterial));
         let denoise = if set.denoiser().is_some() { region.area().saturating_mul(DenoiserInput::BYTES) } else { 0 };
         needed = needed.saturating_add(format.memory_needed(header, seekable)).saturating_add(denoise);
         needed = needed.saturating_add(if has_names { names } else { 0 });

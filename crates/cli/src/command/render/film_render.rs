@@ -280,7 +280,7 @@ impl FilmRender<'_> {
     /// Writes the AOVs. Returns whether their file contains the picture too.
     fn write_aovs(&self, pixels: Option<&[Rgb]>) -> Result<bool, Failure> {
         let FrameRender { picture, frame_output, .. } = self.frame;
-        if picture.aovs().aovs().is_empty() {
+        if picture.aovs().selected().is_empty() {
             return Ok(false);
         }
         let place = aovs::output_for(&frame_output.output, frame_output.aov_output.as_deref());
