@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_of_the_parallel_part_is_mirrored_at_brewsters_angle() {
+    fn parallel_polarization_is_not_reflected_at_brewsters_angle() {
         // There the reflectance of unpolarized light is half of ((n² - 1) / (n² + 1))².
         for ior in [1.333f32, 1.5, 2.417] {
             let cos = 1.0 / (1.0 + ior * ior).sqrt();

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_wished_for_stays() {
+    fn settings_that_are_not_given_stay() {
         assert_eq!(Settings::default().apply(&scene()).unwrap().description, scene().description);
         let own = Settings { integrator: Some("classic".into()), max_depth: Some(3), ..Settings::default() };
         let expected = Classic { min_weight: 0.5, max_depth: 3, ..Classic::default() };
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn of_the_tone_only_what_is_wished_for_changes() {
+    fn only_the_given_tone_settings_change() {
         let mut scene = scene();
         scene.description.tone.exposure_stops = 1.5;
         scene.description.tone.white_balance = Some(WhiteBalance::default());

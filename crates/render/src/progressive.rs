@@ -149,7 +149,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_film_is_what_one_piece_of_work_gives() {
+    fn rounds_give_the_film_of_one_run() {
         with_job(3, |job| {
             let film = finished_film(job, whole(0..37), StopCriterion::Samples);
             for place in 0..film.len() {
@@ -160,7 +160,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn parts_and_extensions_are_one_straight_run() {
+    fn shards_and_extensions_give_the_film_of_one_run() {
         with_job(2, |job| {
             let straight = finished_film(job, whole(0..70), StopCriterion::Samples);
             // Render a prefix of all tiles and ranges of some tiles, then the rest.

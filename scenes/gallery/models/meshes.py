@@ -1,4 +1,4 @@
-"""Meshes by formula: what make.py makes the models of the gallery from."""
+"""Meshes from formulas, from which make.py makes the models of the gallery."""
 import os
 
 import numpy as np
@@ -7,10 +7,13 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 TURN = 2 * np.pi
 
 
-# -- meshes: (points, triangles) --------------------------------------------------------------------------------------
+# --- meshes: (points, triangles) ---
 
 def write(name, mesh, smooth=True, uvs=None):
-    """A binary PLY file; with normals where it is smooth, sharp where faces meet at more than 40 degrees."""
+    """Write a binary PLY file.
+
+    With smooth normals, edges are still sharp where faces meet at more than 40 degrees.
+    """
     points, faces = np.asarray(mesh[0], float), np.asarray(mesh[1], int)
     names = ["x", "y", "z"]
     table = points
@@ -28,7 +31,10 @@ def write(name, mesh, smooth=True, uvs=None):
 
 
 def creased(points, faces, limit, uvs=None):
-    """Corners with normals that are means over the faces around a place, as far as these meet at less than `limit`."""
+    """Return vertices whose normals are means over the adjacent faces of similar orientation.
+
+    A face contributes where its normal differs by less than `limit` from that of the vertex's face.
+    """
     a, b, c = (points[faces[:, i]] for i in range(3))
     areas = np.cross(b - a, c - a)
     units = areas / np.maximum(np.linalg.norm(areas, axis=1, keepdims=True), 1e-20)
@@ -68,14 +74,14 @@ def moved(mesh, by=(0, 0, 0), scale=1.0, turn=None):
 
 
 def about(axis, angle):
-    """The matrix that turns about an axis."""
+    """Return the rotation matrix about an axis."""
     x, y, z = np.asarray(axis, float) / np.linalg.norm(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def grid(points, wrap_u=False, wrap_v=False):
-    """The faces of an array of points (rows, columns, 3); their front is where u × v points."""
+    """Return the mesh of an array of points (rows, columns, 3); u × v points to its front."""
     rows, columns = points.shape[:2]
     faces = []
     for i in range(rows if wrap_v else rows - 1):
@@ -91,7 +97,10 @@ def grid(points, wrap_u=False, wrap_v=False):
 
 
 def lathe(profile, around=96, ridges=None):
-    """A profile (radius, height), from below, turned about the y axis; `ridges(radius, height, angle)` shapes the radius."""
+    """Return the surface of revolution of a profile of (radius, height), bottom first, about y.
+
+    `ridges(radius, height, angle)` may modify the radius.
+    """
     profile, angles = np.asarray(profile, float), np.arange(around) / around * TURN
     radius, height = (np.repeat(profile[:, i:i + 1], around, axis=1) for i in range(2))
     if ridges:
@@ -101,7 +110,7 @@ def lathe(profile, around=96, ridges=None):
 
 
 def curve(*points, steps=8):
-    """A Catmull-Rom spline through points; a point that stands twice is a corner."""
+    """Return points of the Catmull-Rom spline through `points`; a repeated point is a corner."""
     p = np.array(points, float)
     out = []
     for i in range(len(p) - 1):
@@ -118,10 +127,10 @@ def curve(*points, steps=8):
 
 
 def cushion(size, power=(4.0, 4.0, 4.0), steps=40):
-    """The superellipsoid |x/a|^p + |y/b|^q + |z/c|^r = 1, found along rays from its middle."""
+    """Return the superellipsoid |x/a|^p + |y/b|^q + |z/c|^r = 1, along rays from its center."""
     v, u = np.meshgrid(np.linspace(-1, 1, steps) * np.pi / 2, np.arange(2 * steps) / (2 * steps) * TURN, indexing="ij")
     way = np.stack([np.cos(v) * np.cos(u), np.sin(v), -np.cos(v) * np.sin(u)], axis=2)
-    # Rays are bent to the corners, where the shape turns fastest.
+    # Concentrate the rays at the corners, where curvature is highest.
     way = np.sign(way) * np.abs(way) ** 0.6 * np.asarray(size, float)
     low, high = np.zeros(way.shape[:2]), np.full(way.shape[:2], 4.0)
     for _ in range(50):
@@ -139,7 +148,7 @@ def box(low, high):
 
 
 def cut(planes):
-    """The convex solid within planes (normal, distance), flat faces."""
+    """Return the convex solid bounded by planes (normal, distance), with flat faces."""
     planes = [(np.asarray(n, float) / np.linalg.norm(n), d) for n, d in planes]
     points, faces = [], []
     for normal, distance in planes:
@@ -170,7 +179,7 @@ def cut(planes):
 
 
 def tube_along(points, radius, around=12):
-    """A round tube through points, closed by nothing; `radius` a number or one a point."""
+    """Return an open round tube through points; `radius` is a number or one for each point."""
     points = np.asarray(points, float)
     radius = np.broadcast_to(np.asarray(radius, float), len(points))
     ways = np.gradient(points, axis=0)

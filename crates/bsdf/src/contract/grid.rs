@@ -91,7 +91,7 @@ fn values_of_clear_interfaces_keep_all_light_and_add_none() {
 
 /// Energy of the values of rough glass under layers, which its samples need not follow exactly.
 #[test]
-fn values_of_glass_under_layers_keep_light_on_average() {
+fn weighted_glass_under_layered_lobes_conserves_energy_on_average() {
     let white = Principled { transmission: 1.0, sheen_roughness: 0.5, ..Principled::default() };
     for (clearcoat, sheen) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
         for roughness in [0.55, 0.9] {

@@ -61,7 +61,7 @@ fn a_mean_is_that_of_blocks_joined_along_the_tree() {
 }
 
 #[test]
-fn parts_come_in_any_order_and_any_cut() {
+fn partial_films_may_be_added_in_any_order_and_any_split() {
     let whole = tile(0..40 * BLOCK_SAMPLES, None);
     for seed in 0..40u32 {
         let mut cuts: Vec<u32> = (0..6).map(|i| hash::combine(seed, i) % 41).chain([0, 40]).collect();
@@ -97,7 +97,7 @@ fn a_begun_block_is_gone_on_with() {
 }
 
 #[test]
-fn gaps_are_seen() {
+fn missing_samples_are_found() {
     let mut some = tile(0..16, None);
     some.merge(tile(48..64, None)).unwrap();
     assert!(!some.is_gapless() && some.gapless_samples() == 16);

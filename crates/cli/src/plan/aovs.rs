@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_go_into_the_picture_where_it_can_hold_them() {
+    fn aovs_are_written_into_the_picture_where_its_format_holds_layers() {
         assert_eq!(output_for("a/b.EXR", None), AovOutput::InPicture);
         assert_eq!(output_for("a/b.png", None), AovOutput::File("a/b.layers.exr".into()));
         assert_eq!(output_for("a/b.exr", Some("c.exr")), AovOutput::File("c.exr".into()));

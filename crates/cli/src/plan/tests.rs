@@ -48,7 +48,7 @@ fn bits_and_quality_fit_the_format() {
 }
 
 #[test]
-fn films_are_known_by_their_ending_and_are_of_all_frames() {
+fn movies_are_known_by_their_ending_and_have_all_frames() {
     let film = plan("a -o b.gif --plays 2").unwrap();
     let movie = film.movie.clone().unwrap();
     assert_eq!((movie.file.as_str(), movie.plays, movie.frames_per_second), ("b.gif", 2, None));
@@ -84,7 +84,7 @@ fn frames_are_shared_in_turns() {
 }
 
 #[test]
-fn parts_are_known_by_their_ending_and_kept_on_film() {
+fn partial_renders_are_known_by_their_ending_and_keep_a_film() {
     assert_eq!(plan("a -o b.jfilm").unwrap().output_kind, OutputKind::Part);
     assert_eq!(plan("a -o b --format jfilm").unwrap().output_kind, OutputKind::Part);
     for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"] {

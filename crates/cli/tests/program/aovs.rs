@@ -6,7 +6,7 @@ use std::fs;
 const BALL: &str = "ball.json --size 48x36 --samples 20 --integrator path";
 
 #[test]
-fn shards_with_all_layers_are_the_bytes_of_the_whole() {
+fn shards_with_all_aovs_merge_into_the_bytes_of_the_whole() {
     // Use motion and clamping, so that every AOV has content.
     let folder = Folder::new();
     let limits = r#""samples": 2, "integrator": {"path": {"clamp_direct": 0.2}}"#;
@@ -32,7 +32,7 @@ fn shards_with_all_layers_are_the_bytes_of_the_whole() {
 }
 
 #[test]
-fn the_picture_is_the_same_with_layers_and_without() {
+fn the_picture_is_the_same_with_aovs_and_without() {
     let folder = Folder::new();
     let plain = folder.hash(&format!("{BALL} -o a.png"));
     assert_eq!(folder.hash(&format!("{BALL} --aov depth,crypto_material -o b.png")), plain);

@@ -119,7 +119,7 @@ fn a_mesh_fits_where_its_tree_does() {
 }
 
 #[test]
-fn a_kept_film_fits_or_is_refused_with_advice() {
+fn a_film_in_memory_fits_or_is_refused_with_advice() {
     let folder = Folder::new();
     let line = "ball.json --size 1000x600 --samples 17 -o a.png --checkpoint a.jfilm --checkpoint-every 1";
     fits(&folder, line, budget(84), 2);
@@ -144,7 +144,7 @@ fn fewer_threads_and_smaller_bands_are_taken_before_anything_is_refused() {
 }
 
 #[test]
-fn what_is_foretold_is_enough() {
+fn estimated_memory_is_enough() {
     let folder = with_mesh(200);
     let scenes = ["ball.json", "mesh.json", "juggler", "chess", "marbles", "blossom", "scalablitz-pool"];
     for scene in scenes {
@@ -157,7 +157,7 @@ fn what_is_foretold_is_enough() {
 }
 
 #[test]
-fn meshes_of_all_formats_are_foretold() {
+fn memory_of_meshes_of_all_formats_is_estimated() {
     let folder = Folder::new();
     // The file is so long that the estimate samples only parts of it.
     let edge = 250_u32;
@@ -214,7 +214,7 @@ fn a_control_group_holds_it() {
 }
 
 #[test]
-fn instanced_emitters_are_foretold() {
+fn memory_of_instanced_emitters_is_estimated() {
     let folder = Folder::new();
     let ten = |group: &str| vec![format!(r#"{{"group": "{group}"}}"#); 10].join(", ");
     let scene = |emitters: &str| {
@@ -245,7 +245,7 @@ fn instanced_emitters_are_foretold() {
 /// The estimate of the bytes per object is within a factor of two; objects are most of the memory
 /// here.
 #[test]
-fn stored_objects_are_foretold() {
+fn memory_of_stored_objects_is_estimated() {
     let folder = Folder::new();
     let row = |z: u32| {
         let end = |x: u32| format!(r#"{{"center": [{x}, 0, {z}], "radius": 0.4}}"#);

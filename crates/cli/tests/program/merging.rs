@@ -71,7 +71,7 @@ fn shards(folder: &Folder, count: u32) -> String {
 }
 
 #[test]
-fn parts_become_the_picture_of_the_whole() {
+fn partial_renders_merge_into_the_whole_picture() {
     let folder = Folder::new();
     shard(&folder, 0, 1, |description| description.stop = Stop::Noise { level: 0.1 });
     folder.good("merge 0.jfilm -o whole.png");
@@ -92,7 +92,7 @@ fn parts_become_the_picture_of_the_whole() {
 }
 
 #[test]
-fn wrong_choices_of_parts_are_named() {
+fn wrong_sets_of_partial_renders_are_named() {
     let folder = Folder::new();
     shards(&folder, 5);
     let message = folder.bad("merge 0.jfilm 2.jfilm 0.jfilm -o a.png", 2);
@@ -128,7 +128,7 @@ fn files_that_fail_are_named() {
 }
 
 #[test]
-fn parts_explain_themselves() {
+fn info_describes_partial_renders() {
     let folder = Folder::new();
     shards(&folder, 3);
     let words = folder.good("info 1.jfilm").stdout;

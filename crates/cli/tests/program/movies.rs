@@ -9,7 +9,7 @@ use std::process::{Child, ChildStderr, Stdio};
 const LINE: &str = "render ball.json --size 64x36 --samples 1";
 
 #[test]
-fn a_film_has_all_frames_and_leaves_nothing_else() {
+fn a_movie_has_all_frames_and_leaves_no_other_file() {
     let folder = Folder::new();
     for ending in ["gif", "apng", "webp --frames 0..4", "mp4"] {
         let run = folder.good(&format!("{LINE} -o film.{ending}"));
@@ -43,7 +43,7 @@ fn frames_and_pace_can_be_chosen() {
 }
 
 #[test]
-fn a_film_that_was_killed_goes_on_to_the_same_bytes() {
+fn a_killed_movie_is_resumed_to_the_same_bytes() {
     let folder = Folder::new();
     let line = "render ball.json --size 120x80 --samples 64 --threads 1 -o film.apng";
     folder.good(line);
@@ -65,7 +65,7 @@ fn a_film_that_was_killed_goes_on_to_the_same_bytes() {
 }
 
 #[test]
-fn an_interrupted_film_says_where_its_frames_are_and_leaves_no_half_of_itself() {
+fn an_interrupted_movie_names_the_folder_of_its_frames_and_leaves_no_half_file() {
     let folder = Folder::new();
     let log = interrupted(&folder, "render ball.json --size 120x80 --samples 100000 -o film.gif");
     assert!(log.contains("progress is saved in `film.gif.frames`"), "{log}");
@@ -118,7 +118,7 @@ fn a_frame_under_way_goes_on_too() {
 }
 
 #[test]
-fn progress_is_that_of_the_whole_film() {
+fn progress_counts_the_whole_movie() {
     let folder = Folder::new();
     let log = interrupted(&folder, "render ball.json --size 160x120 --samples 20000 -o film.apng");
     let line = log.lines().find(|line| line.contains("\"progress\"")).unwrap();
@@ -130,7 +130,7 @@ fn progress_is_that_of_the_whole_film() {
 }
 
 #[test]
-fn shards_of_a_film_fill_its_folder_together() {
+fn shards_of_a_movie_fill_its_folder_together() {
     let folder = Folder::new();
     folder.good(&format!("{LINE} -o straight.apng"));
     let shards = [0, 1].map(|shard| {
@@ -155,7 +155,7 @@ fn shards_of_a_film_fill_its_folder_together() {
 }
 
 #[test]
-fn a_film_is_made_by_one_process_at_a_time() {
+fn a_movie_is_made_by_one_process_at_a_time() {
     let folder = Folder::new();
     let line = "render ball.json --size 160x120 --samples 100000 -o film.apng";
     // The process holds the lock once it reports progress.
@@ -231,7 +231,7 @@ fn removed_midway(folder: &Folder, samples: u32) -> bool {
 }
 
 #[test]
-fn what_a_film_cannot_be_is_said() {
+fn movie_formats_that_cannot_hold_the_frames_are_refused() {
     let folder = Folder::new();
     for (flags, word) in [
         ("-o f.gif --bits 16", "--bits is for pictures"),

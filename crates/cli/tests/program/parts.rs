@@ -148,7 +148,7 @@ fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
 }
 
 #[test]
-fn a_part_may_be_its_own_checkpoint() {
+fn a_partial_render_may_be_its_own_checkpoint() {
     let folder = Folder::new();
     let shard = format!("render {BALL} --samples 40 -q --shard 1/3");
     folder.good(&format!("{shard} -o apart.jfilm"));
@@ -168,7 +168,7 @@ fn clusters_number_their_shards() {
 }
 
 #[test]
-fn parts_cut_by_hand_join() {
+fn partial_renders_of_ranges_given_by_hand_merge() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --samples 48 -o straight.png -q"));
     for (number, flags) in
@@ -187,7 +187,7 @@ fn parts_cut_by_hand_join() {
 }
 
 #[test]
-fn noise_gives_one_picture_on_any_threads_and_in_any_parts() {
+fn noise_targets_give_one_picture_on_any_threads_and_shards() {
     let folder = Folder::new();
     let flags = "--noise 0.004 --samples 512";
     let one = folder.hash(&format!("{BALL} {flags} --threads 1 -o one.png"));

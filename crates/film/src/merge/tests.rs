@@ -125,7 +125,7 @@ fn shards_in_any_order_are_the_whole() {
 }
 
 #[test]
-fn what_clamping_took_is_summed_over_all_parts() {
+fn clamped_energy_is_summed_over_all_partial_renders() {
     let lost: juggler_camera::film::ClampedRadiance =
         clamped_tiles(REGION, 0..SAMPLES).iter().map(|(_, tile)| tile.clamped()).sum();
     let expected = lost.total() / REGION.area() as f64;
@@ -192,7 +192,7 @@ fn any_cut_and_any_way_of_joining_is_the_whole() {
 }
 
 #[test]
-fn the_order_of_files_does_not_show_in_the_part() {
+fn the_order_of_files_does_not_change_the_merged_partial_render() {
     let folder = Folder::new();
     let mut files: Vec<PathBuf> = (0..3).map(|index| folder.shard(index, 3)).collect();
     let (a, b) = (folder.path("a.jfilm"), folder.path("b.jfilm"));
@@ -245,7 +245,7 @@ fn all_problems_are_reported_at_once() {
 }
 
 #[test]
-fn missing_samples_of_parts_that_are_no_shards_are_named() {
+fn missing_samples_of_partial_renders_without_shards_are_named() {
     let folder = Folder::new();
     let description = description(REGION, SAMPLES);
     let units: Vec<_> = (0..14).map(|tile| (tile, 0..48)).collect();
@@ -285,7 +285,7 @@ fn damaged_chunks_are_found_before_anything_is_merged() {
 }
 
 #[test]
-fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
+fn partial_renders_with_a_noise_target_have_as_many_samples_as_they_needed() {
     let folder = Folder::new();
     let noise = RenderDescription { stop: Stop::Noise { level: 0.1 }, ..description(REGION, SAMPLES) };
     let half = |index| RenderDescription {
@@ -310,7 +310,7 @@ fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
 }
 
 #[test]
-fn crops_are_parts_too() {
+fn crops_are_partial_renders_too() {
     let folder = Folder::new();
     let tiling = Tiling::new(REGION);
     let half = |name: &str, crop: Rect| {
@@ -325,7 +325,7 @@ fn crops_are_parts_too() {
 }
 
 #[test]
-fn a_single_part_that_is_no_picture_is_named() {
+fn a_single_partial_render_that_is_no_whole_picture_is_named() {
     let folder = Folder::new();
     let message = folder.problems(&[folder.shard(1, 2)]);
     assert_eq!(message, "the partial render `1.jfilm` cannot be merged:\n  still to do: shard 0 of 2 (--shard 0/2)");

@@ -119,7 +119,7 @@ fn odd_sizes_and_paces_are_as_they_are() {
 }
 
 #[test]
-fn one_frame_is_a_film_too() {
+fn one_frame_is_a_movie_too() {
     let file = film(&header(16, 16, 1, 25.0));
     assert_eq!(words(within(&file, &format!("{TABLE}/stss"))), [1, 1]);
 }

@@ -162,7 +162,7 @@ fn a_picture_whose_halves_are_apart_says_so() {
 /// Every integrator fills every AOV: AOVs of the first hit equal those of the path tracer, and AOVs
 /// of light paths and light groups sum to the rendered image.
 #[test]
-fn every_integrator_fills_all_layers() {
+fn every_integrator_fills_all_aovs() {
     let moving = SCENE
         .replace(r#""version": 1,"#, r#""version": 1, "animation": {"frames": 9, "frames_per_second": 24},"#)
         .replace(r#""translate": [0.5, 0.4, 0.5]"#, r#""translate": ["=0.5 + frame / 64", 0.4, 0.5]"#);

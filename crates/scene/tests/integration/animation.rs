@@ -288,7 +288,7 @@ fn maps_of_names_are_no_value_forms() {
 }
 
 #[test]
-fn parts_without_motion_are_shared() {
+fn subtrees_without_motion_are_shared() {
     let tree = Node::from(
         json!({"version": 1, "objects": [1, 2], "paths": {"a": {"points": [[0, 0, 0]]}}, "moving": ["=frame"]}),
     );

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_tells_its_length_and_what_moves() {
+    fn info_names_the_length_of_a_movie_and_what_moves() {
         let animation = Animation { frames: 36, frames_per_second: 24.0 };
         let rows = rows(&animation, &survey(1));
         assert_eq!(rows[0], ("animation", "36 frames, 1.5 s, 24 frames a second".into()));

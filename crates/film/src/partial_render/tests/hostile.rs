@@ -43,7 +43,7 @@ fn the_format_does_not_change_unseen() {
 }
 
 #[test]
-fn no_part_that_is_cut_short_is_taken() {
+fn no_truncated_partial_render_is_accepted() {
     let (_folder, path) = place("short.jfilm");
     let bytes = tiny();
     for length in 0..bytes.len() {

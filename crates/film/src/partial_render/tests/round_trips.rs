@@ -17,7 +17,7 @@ fn bits(sums: &[Sum]) -> Vec<([u64; 3], [u32; 3], u32)> {
 }
 
 #[test]
-fn a_part_comes_back() {
+fn a_partial_render_is_read_back() {
     let (_folder, path) = place("a.jfilm");
     let description = description(REGION, 100);
     let tiles = tiles(REGION, 0..100);
@@ -140,7 +140,7 @@ proptest! {
     }
 
     #[test]
-    fn any_part_comes_back(
+    fn any_partial_render_is_read_back(
         (x, y, width, height) in (0..40u32, 0..40u32, 1..50u32, 1..50u32),
         kept in any::<u64>(),
         (start, blocks, open) in (0..9u32, 0..9u32, 0..16u32),

@@ -72,7 +72,7 @@ fn every_line_leads_to_something_that_is_written_as_it_says() {
 }
 
 #[test]
-fn each_word_stands_once_at_a_place() {
+fn each_word_occurs_once_per_place() {
     for (i, entry) in ENTRIES.iter().enumerate() {
         for other in &ENTRIES[..i] {
             let shared = entry.is_kind == other.is_kind && entry.owners.iter().any(|own| other.owners.contains(own));
