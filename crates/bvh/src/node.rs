@@ -4,7 +4,7 @@
 //! then eight child words. All eight boxes are tested together.
 
 use crate::lanes::{Lanes, bits};
-use crate::slabs::{Bundle, Slabs};
+use crate::slabs::{Bundle, MARGIN, Slabs};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -118,7 +118,7 @@ pub(crate) fn intersect_bundle<S: Lanes>(simd: S, bounds: &Bounds, bundle: &Bund
     for (axis, sides) in bounds.iter().enumerate() {
         let (near, far) = planes(simd, sides, bundle.side[axis]);
         let near = (near - bundle.near[axis]) * bundle.near_inverse[3 + axis];
-        let far = (far - bundle.far[axis]) * bundle.far_inverse[3 + axis];
+        let far = (far - bundle.far[axis]).mul_add(simd.splat(bundle.far_inverse[3 + axis]), simd.splat(MARGIN));
         // Operand order matters: a NaN leaves the interval unchanged.
         enter = simd.most(near, enter);
         leave = simd.least(far, leave);

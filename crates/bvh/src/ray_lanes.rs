@@ -2,7 +2,7 @@
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{Bundle, RayExtremes, SLACK, WIDEN, cull_distance};
+use crate::slabs::{Bundle, MARGIN, RayExtremes, SLACK, WIDEN, cull_distance};
 use crate::triangle::FARTHEST;
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -63,7 +63,7 @@ impl RayLanes {
         }
         self.t_min = t_min.into();
         self.ray_t_max = simd.least(t_max, simd.splat(FARTHEST)).into();
-        self.t_max = simd.least(t_max * SLACK, simd.splat(f32::MAX)).into();
+        self.t_max = simd.least(t_max * SLACK + MARGIN, simd.splat(f32::MAX)).into();
         self.farthest = cull_distance(high[7]);
         for lane in rays.len()..WIDTH {
             (self.t_min[lane], self.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -86,7 +86,7 @@ impl RayLanes {
     /// nothing.
     #[inline(always)]
     pub fn shorten_to<S: Lanes>(&mut self, simd: S, t_max: &[f32; WIDTH]) {
-        let t_max = simd.least(simd.load(t_max) * SLACK, simd.splat(f32::MAX));
+        let t_max = simd.least(simd.load(t_max) * SLACK + MARGIN, simd.splat(f32::MAX));
         let t_max = simd.least(t_max, simd.load(&self.t_max));
         self.t_max = t_max.into();
         self.farthest = t_max.reduce_max();
@@ -106,7 +106,8 @@ impl RayLanes {
             enter = simd.most((simd.splat(near) - origin) * inverse, enter);
             leave = simd.least((simd.splat(far) - origin) * inverse, leave);
         }
-        bits(enter.simd_le(simd.least(leave * WIDEN, simd.load(&self.t_max))))
+        let leave = leave.mul_add(simd.splat(WIDEN), simd.splat(MARGIN));
+        bits(enter.simd_le(simd.least(leave, simd.load(&self.t_max))))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A ray, or the interval of several rays, prepared for box tests.
 //!
 //! Slab test (Kay and Kajiya 1986): a ray enters a box at the last of its three near planes and
-//! leaves it at the first of its three far planes. Three rules make the test conservative:
+//! leaves it at the first of its three far planes. These rules make the test conservative:
 //!
 //! - Far distances are enlarged by 8 ulps. The rounding of the test itself costs up to 3.5 (Ize
 //!   2013); the rest covers the rounding of the items in the box. A single ray's planes are also
@@ -12,6 +12,9 @@
 //!   component so small that it overflows would give wrong distances and is replaced by NaN, so
 //!   that its axis never narrows the interval. A single ray uses a large finite reciprocal and
 //!   planes moved outward instead (`Slabs::parallel`), since its offsets must be finite.
+//! - All these margins are relative and vanish among subnormal distances, which are rounded to
+//!   multiples of 2^-149. So far planes and `t_max` are moved outward by the smallest normal number
+//!   as well.
 //! - Boxes are entered up to slightly beyond `t_max`, so that a hit is found in any order of
 //!   traversal even if its distance and that of its box round differently.
 //!
@@ -28,6 +31,10 @@ use juggler_math::{Ray, Vec3};
 
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
 pub(crate) const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
+
+/// Absolute margin of distances, for those that are subnormal. It is normal itself, since subnormal
+/// operands are slow on some processors.
+pub(crate) const MARGIN: f32 = f32::MIN_POSITIVE;
 
 /// Relative error bound of a plane's offset: 2 ulps for the rounding of reciprocal and offset,
 /// doubled.
@@ -72,7 +79,7 @@ pub(crate) struct Bundle {
 #[inline(always)]
 pub(crate) fn cull_distance(t_max: f32) -> f32 {
     // Never infinite: planes parallel to the ray that it misses lie at infinity.
-    (t_max * SLACK).min(f32::MAX)
+    (t_max * SLACK + MARGIN).min(f32::MAX)
 }
 
 /// Reciprocals of a direction's components; NaN where that of a nonzero component overflows.
@@ -114,7 +121,7 @@ impl Slabs {
             *self = Self::parallel(*ray);
             return;
         }
-        let pad = offset.abs() * OFFSET;
+        let pad = offset.abs() * OFFSET + MARGIN;
         *self = Self {
             signs: direction.simd_lt(0.0).to_bitmask() as u32,
             exact_inverse: inverse.into(),
@@ -160,7 +167,7 @@ impl Slabs {
             slabs.signs |= u32::from(direction.is_sign_negative()) << axis;
             slabs.exact_inverse[axis] = exact;
             let (inverse, far_inverse, offset, pad) = if offset.is_finite() {
-                (exact, exact * WIDEN, offset, offset.abs() * OFFSET)
+                (exact, exact * WIDEN, offset, offset.abs() * OFFSET + MARGIN)
             } else {
                 let exponent = origin.abs().clamp(1.0, FAR).to_bits() >> 23;
                 let inverse = (FAR / f32::from_bits((exponent + 1) << 23)).copysign(direction);

@@ -219,6 +219,27 @@ fn huge_and_tiny_as_a_whole() {
     check("flat", &flat, 126);
 }
 
+/// Subnormal distances are rounded to multiples of 2^-149, where relative margins of box tests
+/// vanish. The first ray was missed once.
+#[test]
+fn subnormal_distances() {
+    let mesh = soup(21, 60, |random| near(random, 0.4)).moved(Vec3::splat(1e-37), Vec3::ZERO);
+    let origin = vec3(1.559_843_8e-37, -4.480_511e-38, 2.593_070_7e-37);
+    let known = Ray { t_min: 3.32e-43, t_max: 3.32e-43, ..Ray::new(origin, vec3(-859_804.3, 55_712.582, -552_114.9)) };
+    let random = &mut Random::new(121);
+    let toward = |random: &mut Random| {
+        let (origin, target) = (random.point() * 3e-37, random.point() * 1e-37);
+        let ray = Ray::new(origin, (target - origin) * 1e37 * (4e6 * random.unit()));
+        cut(random, &ray, mesh.closest(&ray).map(|hit| hit.t))
+    };
+    let rays: Vec<Ray> = std::iter::once(known).chain((0..rays_to_try(SMALL)).map(|_| toward(random))).collect();
+    let kernels = Kernels::all("subnormal distances", &mesh);
+    for rays in rays.chunks(32) {
+        let expected: Vec<_> = rays.iter().map(|ray| mesh.closest(ray)).collect();
+        kernels.iter().for_each(|kernels| kernels.check(rays, &expected));
+    }
+}
+
 /// Far from the origin a triangle is a few ulps wide.
 #[test]
 fn far_away() {
