@@ -18,9 +18,11 @@
 //! the square of the difference and `σ²` its variance by the halves, both averaged over neighboring
 //! nodes. The influence of a single pixel on its neighborhood is limited; the energy of brighter
 //! outliers goes to the larger neighborhoods of the next levels, the rest to the whole picture.
+//! Between the fine and the coarse levels, pixels are limited by their halves (`upper_bound`) and by
+//! their surroundings (`highlights`).
 
 use crate::prepare::is_known;
-use crate::{Noisy, blur, upper_bound};
+use crate::{Noisy, blur, highlights, upper_bound};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -66,6 +68,7 @@ pub(crate) fn conserve(noisy: &Noisy, pixels: &mut [Rgb]) {
     let (fine, coarse): (Vec<Level>, Vec<Level>) = LEVELS.into_iter().partition(|level| level.is_wiener);
     scale_by(&fine, noisy, &input, &noise, pixels);
     upper_bound::dim(noisy, pixels);
+    highlights::limit(noisy, pixels);
     scale_by(&coarse, noisy, &input, &noise, pixels);
     let (expected, filtered) = (total(&input), total(pixels));
     let factor = each(|k| {

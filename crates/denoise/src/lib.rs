@@ -27,6 +27,7 @@ mod blur;
 mod energy;
 mod features;
 mod grid;
+mod highlights;
 mod outliers;
 mod prepare;
 mod regression;

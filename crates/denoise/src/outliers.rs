@@ -6,6 +6,7 @@
 //! windows. It is clamped to the brightest of its surroundings before filtering; afterwards its
 //! energy goes to its neighborhood (`energy`).
 
+use crate::prepare::brightness;
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -14,9 +15,9 @@ const FACTOR: f32 = 2.0;
 
 /// Clamps the outliers of both halves.
 pub(crate) fn clamp(width: usize, halves: &[Vec<Rgb>; 2]) -> [Vec<Rgb>; 2] {
-    let brightness = [0, 1].map(|half: usize| halves[half].par_iter().map(|c| c.r + c.g + c.b).collect::<Vec<_>>());
+    let bright = [0, 1].map(|half: usize| halves[half].par_iter().map(|color| brightness(*color)).collect::<Vec<_>>());
     [0, 1].map(|half: usize| {
-        let (own, other) = (&brightness[half], &brightness[1 - half]);
+        let (own, other) = (&bright[half], &bright[1 - half]);
         let pixel = |(i, color): (usize, &Rgb)| {
             // Skip the search in the common case: the pixel is no brighter than the other half
             // allows.

@@ -97,6 +97,11 @@ pub(crate) fn is_known(color: &Rgb) -> bool {
     color.is_finite() && color.map(f32::abs).max_channel() < MAX_KNOWN
 }
 
+/// Brightness of a color: the sum of its channels.
+pub(crate) fn brightness(color: Rgb) -> f32 {
+    color.r + color.g + color.b
+}
+
 /// Padded planes of the color channels.
 fn channels(grid: &Grid, colors: &[Rgb]) -> [Vec<f32>; 3] {
     [grid.pad(|i| colors[i].r), grid.pad(|i| colors[i].g), grid.pad(|i| colors[i].b)]

@@ -6,7 +6,7 @@
 
 use crate::Noisy;
 use crate::features::{FEATURES, Feature, pixel_features};
-use crate::prepare::is_known;
+use crate::prepare::{brightness, is_known};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -23,7 +23,7 @@ const FEATURE_DIFFERENCE: f32 = 0.05;
 
 /// Clamps single bright pixels.
 pub(crate) fn clamp(noisy: &Noisy, pixels: &[Rgb]) -> Vec<Rgb> {
-    let brightness: Vec<f32> = pixels.par_iter().map(|c| c.r + c.g + c.b).collect();
+    let brightness: Vec<f32> = pixels.par_iter().map(|color| brightness(*color)).collect();
     let pixel = |i: usize| {
         let own = brightness[i];
         let limit = FACTOR * second_brightest(noisy.width, &brightness, i);
@@ -62,13 +62,10 @@ fn features(noisy: &Noisy, i: usize) -> Feature {
     std::array::from_fn(|k| (a[k] + b[k]) * 0.5)
 }
 
-/// Brightness that both halves of the input confirm.
-fn confirmed_brightness(noisy: &Noisy, i: usize) -> f32 {
-    match noisy.halves.map(|half| half.get(i).copied().filter(is_known)) {
-        [Some(a), Some(b)] => {
-            let [a, b] = [a, b].map(|c| c.r + c.g + c.b);
-            (a + b) * 0.5 - (a - b).abs() * CONFIDENCE
-        }
+/// Brightness that both halves of the input confirm, 0 if one is unknown.
+pub(crate) fn confirmed_brightness(noisy: &Noisy, i: usize) -> f32 {
+    match noisy.halves.map(|half| half.get(i).copied().filter(is_known).map(brightness)) {
+        [Some(a), Some(b)] => (a + b) * 0.5 - (a - b).abs() * CONFIDENCE,
         _ => 0.0,
     }
 }

@@ -5,7 +5,7 @@
 //! therefore at most as bright as its brighter half, with a margin for the noise around it. The
 //! coarse grids of [`energy`](crate::energy) restore the energy.
 
-use crate::prepare::is_known;
+use crate::prepare::{brightness, is_known};
 use crate::{Noisy, blur};
 use juggler_math::Rgb;
 use rayon::prelude::*;
@@ -37,10 +37,6 @@ pub(crate) fn dim(noisy: &Noisy, pixels: &mut [Rgb]) {
 fn halves(noisy: &Noisy, i: usize) -> Option<[f32; 2]> {
     let [a, b] = noisy.halves.map(|half| half.get(i).copied().filter(is_known).map(brightness));
     Some([a?, b?])
-}
-
-fn brightness(color: Rgb) -> f32 {
-    color.r + color.g + color.b
 }
 
 #[cfg(test)]
