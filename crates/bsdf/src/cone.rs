@@ -25,7 +25,7 @@ mod tests {
     use std::f32::consts::{FRAC_PI_2, TAU};
 
     #[test]
-    fn stays_in_the_cone_and_on_its_side() {
+    fn cone_samples_stay_in_the_cone_and_on_its_side_of_the_surface() {
         let mut random = Random::new(61);
         for _ in 0..20_000 {
             let (axis, normal, angle) = (random.unit_vector(), random.unit_vector(), random.range(0.0, FRAC_PI_2));
@@ -40,7 +40,7 @@ mod tests {
     }
 
     #[test]
-    fn is_even_over_the_cap() {
+    fn cone_samples_are_uniform_over_the_cap() {
         let axis = Vec3::new(2.0, -1.0, 2.0) / 3.0;
         // With the axis along z, the cone's rim falls on a cell boundary of the test.
         let frame = Frame::around(axis);
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cone_half_in_the_ground_is_folded_over() {
+    fn cone_samples_below_the_surface_are_reflected_above_it() {
         // The axis lies in the surface: half of the cap, at twice the density.
         let sample = |u| Some(direction(Vec3::X, Vec3::Z, FRAC_PI_2, u));
         let pdf = |w: Vec3| if w.z >= 0.0 && w.x >= 0.0 { 2.0 / TAU } else { 0.0 };

@@ -143,7 +143,7 @@ mod tests {
     use juggler_math::testing::close;
 
     #[test]
-    fn tinted_curves_pass_through_their_colors_and_averages_are_means() {
+    fn tinted_fresnel_interpolates_its_colors_and_averages_match_integrals() {
         let (f0, edge) = (Rgb::new(0.9, 0.5, 0.2), Rgb::new(0.8, 1.0, 0.6));
         let fresnel = Fresnel::tinted(f0, edge);
         assert_eq!(fresnel.reflectance(1.0), f0);

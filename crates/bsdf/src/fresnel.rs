@@ -110,7 +110,7 @@ mod tests {
     use juggler_math::testing::{Random, close, close3};
 
     #[test]
-    fn mirrors_keep_the_angle_and_the_plane() {
+    fn reflection_preserves_angle_and_plane_of_incidence() {
         let mut random = Random::new(51);
         for _ in 0..1000 {
             let (wo, normal) = (random.unit_vector(), random.unit_vector());
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn both_directions_through_the_interface_reflect_the_same() {
+    fn fresnel_reflectance_is_equal_from_both_sides() {
         let mut random = Random::new(53);
         for _ in 0..1000 {
             let (cos, ior) = (random.range(0.05, 1.0), random.range(1.01, 3.0));
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_at_an_interface_is_that_of_its_curve() {
+    fn mean_fresnel_reflectance_equals_the_integral() {
         for ior in [0.4f32, 0.66, 0.75, 0.99, 1.0, 1.005, 1.02, 1.1, 1.33, 1.5, 2.4, 4.0] {
             let steps = 20_000;
             let at = |i| {

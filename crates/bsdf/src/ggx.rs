@@ -171,7 +171,7 @@ mod tests {
     const ALPHAS: [(f32, f32); 5] = [(0.1, 0.1), (0.5, 0.5), (1.0, 1.0), (0.1, 0.6), (0.9, 0.2)];
 
     #[test]
-    fn normals_cover_the_surface_once() {
+    fn microfacet_normals_integrate_to_the_projected_area() {
         // ∫ D cos = 1, and visible normals cover the projected area from any view: ∫ D G1 max(0,
         // o·m) = zo.
         let mut random = Random::new(71);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_smooth_or_wrong_is_taken_into_range() {
+    fn alpha_is_clamped_to_its_range() {
         assert!(
             Ggx::isotropic(0.0).is_smooth() && Ggx::isotropic(9e-4).is_smooth() && !Ggx::isotropic(1e-3).is_smooth()
         );

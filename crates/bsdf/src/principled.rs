@@ -211,7 +211,7 @@ mod tests {
     use juggler_math::{Vec3, portable};
 
     #[test]
-    fn plain_plastic_is_the_sum_that_gltf_says() {
+    fn principled_plastic_matches_the_gltf_formula() {
         // KHR_materials_ior 1.5: f0 = 0.04. At normal incidence, the diffuse part is base (1 - F) /
         // π up to the coupling of the layers, and the highlight F D / 4.
         let red = Principled {
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn metal_is_its_color_and_extensions_reach_their_lobes() {
+    fn metallic_reflects_base_color_and_extensions_set_their_lobes() {
         let gold =
             Principled { base_color: Rgb::new(1.0, 0.7, 0.3), metallic: 1.0, roughness: 0.0, ..Principled::default() };
         let deltas = Bsdf::with_lobes(|bsdf| gold.add_lobes(1.5, bsdf)).deltas(Vec3::Z);

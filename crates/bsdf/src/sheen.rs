@@ -89,7 +89,7 @@ mod tests {
 
     /// Rounded unit vectors are up to a few units in the last place longer than 1.
     #[test]
-    fn directions_straight_up_are_as_dark_as_those_beside_them() {
+    fn sheen_is_continuous_at_the_normal() {
         for roughness in [0.2f32, 0.5, 0.9, 1.0] {
             let sheen = Sheen::new(Rgb::WHITE, roughness * roughness);
             let value = |z: f32| sheen.eval_pdf(Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.0, 0.0, z)).0.g;

@@ -98,7 +98,7 @@ mod tests {
     use juggler_math::testing::close;
 
     #[test]
-    fn no_film_is_schlicks_curve() {
+    fn zero_thickness_thin_film_matches_schlick() {
         let thin_film = ThinFilm { f0: Rgb::new(0.04, 0.3, 0.9), ior: 1.4, thickness_nm: 0.0 };
         for cos in [1.0, 0.9, 0.8] {
             let shown = thin_film.reflectance(cos).to_array();
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_between_two_indices_hides_what_is_below_and_a_thick_one_shows_no_colors() {
+    fn quarter_wave_film_cancels_reflection_and_thick_film_is_colorless() {
         // A quarter-wave film of index √2.25 on glass of 2.25: reflections at top and base cancel
         // in green.
         let glass = Rgb::splat(f0_from_ior(2.25));

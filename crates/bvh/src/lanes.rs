@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pair_of_kinds_in_every_lane_at_every_level() {
+    fn lanes_equal_scalars_at_every_simd_level() {
         for level in crate::simd_levels() {
             for shift in 0..8 {
                 let other: [f32; 8] = std::array::from_fn(|i| KINDS[(i + shift) % 8]);

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_child_word_gives_back_what_it_holds() {
+    fn child_encoding_round_trips() {
         for (first, count) in [(0, 1), (5, 8), (FIRST_MASK as usize, 3)] {
             let child = Child::leaf(first, count);
             assert!(child.is_leaf());

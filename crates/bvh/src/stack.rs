@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_come_back_nearest_first_and_views_keep_what_is_below() {
+    fn stack_pops_nearest_first_and_views_keep_lower_entries() {
         let mut stack = Stack::new();
         stack.view().push(entry(1.0, 10));
         let mut view = stack.view();
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stack_remembers_what_a_view_left() {
+    fn stack_keeps_the_remaining_entries_of_a_view() {
         let mut stack = Stack::new();
         for i in 0..SIZE as u32 {
             stack.view().push(entry(0.0, i));

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn size_does_not_matter() {
+    fn hits_do_not_depend_on_scale() {
         for exponent in [-36, -30, -10, 10, 25, 30, 36] {
             let scale = 10f32.powi(exponent);
             let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0) * scale, -Vec3::Z);

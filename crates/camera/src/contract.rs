@@ -53,7 +53,7 @@ fn pictures_are_not_mirrored() {
 /// Ray origins are uniform on the lens, for any point of the film: 8 rings of equal area by 16
 /// sectors.
 #[test]
-fn lenses_are_filled_evenly() {
+fn lens_is_sampled_uniformly() {
     let (mut random, count) = (Random::new(42), 1_000_000);
     let mut lenses = 0;
     for camera in AnyCamera::examples() {
@@ -80,7 +80,7 @@ fn lenses_are_filled_evenly() {
 }
 
 #[test]
-fn json_goes_round() {
+fn json_round_trips() {
     for camera in AnyCamera::examples() {
         let text = serde_json::to_string(&camera).unwrap();
         assert_eq!(parse(&text), camera, "{text}");
@@ -122,7 +122,7 @@ fn vertical_angle_is_the_zoom_angle_of_scalablitz() {
 }
 
 #[test]
-fn looks_where_its_description_says() {
+fn cameras_look_along_their_description() {
     for camera in ["perspective", "thin_lens", "orthographic"] {
         let json = |fields: &str| format!(r#"{{"{camera}": {{"eye": [1, 2, 3], {fields}}}}}"#);
         let to = Vec3::new(4.0, -2.0, 3.0) - Vec3::new(1.0, 2.0, 3.0);
@@ -135,7 +135,7 @@ fn looks_where_its_description_says() {
 }
 
 #[test]
-fn straight_up_and_down_have_a_right_side() {
+fn view_parallel_to_up_has_a_valid_frame() {
     for (direction, up, right, top) in [
         ("[0, -1, 0]", "[0, 1, 0]", Vec3::X, -Vec3::Z),
         ("[0, 1, 0]", "[0, 1, 0]", Vec3::X, Vec3::Z),
@@ -149,7 +149,7 @@ fn straight_up_and_down_have_a_right_side() {
 }
 
 #[test]
-fn turns_have_a_pilots_signs() {
+fn yaw_pitch_and_roll_have_the_documented_signs() {
     let facing = |turn: &str| format!(r#"{{"perspective": {{"direction": [0, 0, -1], {turn}}}}}"#);
     let half = std::f32::consts::FRAC_1_SQRT_2;
     assert!(close3(axis(&facing(r#""yaw_degrees": 45"#)).direction, Vec3::new(half, 0.0, -half), 1e-6));
@@ -177,7 +177,7 @@ fn scalablitz_rotations_are_yaw_and_pitch() {
 }
 
 #[test]
-fn moves_along_its_own_axes() {
+fn cameras_move_along_their_own_axes() {
     let json = r#"{"orthographic": {"eye": [1, 2, 3], "direction": [-1, 0, 0], "roll_degrees": 90,
         "move": {"right": 10, "up": 100, "forward": 1000}}}"#;
     // A camera that faces -x has -z on its right; after a roll of 90 degrees, -z at its top and -y
@@ -186,7 +186,7 @@ fn moves_along_its_own_axes() {
 }
 
 #[test]
-fn the_far_and_the_near_are_no_trouble() {
+fn extreme_positions_give_unit_directions() {
     for eye in ["[1e30, 1e30, 1e30]", "[1e-38, 0, 0]", "[0, 3e38, 1]"] {
         let ray = axis(&format!(r#"{{"perspective": {{"eye": {eye}}}}}"#));
         assert!(close(ray.direction.length(), 1.0, 3e-7), "{ray:?}");
@@ -195,7 +195,7 @@ fn the_far_and_the_near_are_no_trouble() {
 }
 
 #[test]
-fn says_what_is_wrong() {
+fn invalid_fields_are_named() {
     for (fields, field) in [
         (r#""eye": [1, 2, 3], "look_at": [1, 2, 3]"#, "look_at"),
         (r#""direction": [0, 0, 0]"#, "direction"),

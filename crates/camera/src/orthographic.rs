@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [(r#"{"height": 0}"#, "height"), (r#"{"width": -2}"#, "width")] {
             let camera: Orthographic = serde_json::from_str(json).unwrap();
             assert_eq!(camera.projection(UVec2::new(4, 3)).unwrap_err().field, field);

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn is_where_its_keys_say_and_between_them_otherwise() {
+    fn shutter_camera_interpolates_its_keys() {
         let keys = [0.0, 2.0, 3.0]
             .map(|x| projection(&format!(r#"{{"perspective": {{"eye": [{x}, 0, 5], "direction": [0, 0, -1]}}}}"#)));
         let camera = ShutterCamera::from_keys(keys[0], keys[1..].to_vec());
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_rays_are_those_one_by_one() {
+    fn eight_rays_equal_single_rays() {
         let from = projection(r#"{"thin_lens": {"eye": [0, 0, 5], "lens_radius": 0.1}}"#);
         let to = projection(r#"{"thin_lens": {"eye": [1, 0, 4], "lens_radius": 0.3}}"#);
         let films = [[0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0], [3.5; LANES]];

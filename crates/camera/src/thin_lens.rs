@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [
             (r#"{"lens_radius": -1}"#, "lens_radius"),
             (r#"{"focus_distance": 0}"#, "focus_distance"),

@@ -110,7 +110,7 @@ mod tests {
     const SIZE: UVec2 = UVec2::new(80, 60);
 
     #[test]
-    fn what_a_ray_meets_is_found_where_the_ray_came_from() {
+    fn world_to_film_inverts_camera_rays() {
         let mut random = Random::new(61);
         for camera in AnyCamera::examples() {
             let projection = camera.projection(SIZE).unwrap();

@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn optional_values_leave_the_scene_alone() {
+    fn flags_with_optional_values_do_not_consume_the_scene() {
         assert_eq!(filled("render --denoise scene.json -q"), "render --denoise=own scene.json -q");
         assert_eq!(filled("render scene.json --denoise"), "render scene.json --denoise=own");
         assert_eq!(filled("render --denoise oidn scene.json"), "render --denoise oidn scene.json");

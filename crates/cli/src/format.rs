@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_tell_how_they_are_spread() {
+    fn sample_counts_are_formatted_with_their_range() {
         assert_eq!(
             (samples(&SampleCountStats::uniform(1)), samples(&SampleCountStats::uniform(64))),
             ("1 sample".into(), "64 samples".into())

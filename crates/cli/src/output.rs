@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn one_output_on_standard_output() {
+    fn only_one_output_may_be_standard_output() {
         assert!(at_most_one_stream("-", Some("-")).is_err());
         assert!(at_most_one_stream("-", Some("a.json")).is_ok() && at_most_one_stream("a.png", Some("-")).is_ok());
     }

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_decides_the_picture_is_said_and_nothing_else() {
+    fn reproducing_command_lists_only_flags_that_affect_the_picture() {
         assert_eq!(commands(&["a", "-o", "b.png", "--threads", "3", "--quiet", "--frame", "0"]), ["juggler render a"]);
         let all = "a.json --size 4x3 --samples 2 --integrator path --max-depth 5 --camera top --crop 1,2,3,4 --seed 7 \
                    --tone gamma --exposure -0.5 --white-balance 3200,-5 --primaries srgb --dither off --look ham --bits 16";

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stems() {
+    fn output_names_use_the_stem_of_the_scene() {
         assert_eq!(stem("-"), "picture");
         assert_eq!((stem("juggler"), stem("a/b.scene.json"), stem("..")), ("juggler", "b.scene", "picture"));
     }

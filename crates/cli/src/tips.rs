@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_keep_their_suggestion_and_strangers_get_none() {
+    fn misspelled_flags_keep_their_suggestion_and_unknown_flags_get_none() {
         assert!(refused("juggler render a --sampels 4").contains("'--samples'"));
         assert!(!refused("juggler render a --zebra").contains("tip:"));
     }

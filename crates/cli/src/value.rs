@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes() {
+    fn sizes_are_parsed() {
         assert_eq!(size("640x360"), Ok([640, 360]));
         assert_eq!(size("1X65536"), Ok([1, 65_536]));
         for wrong in ["", "640", "640x", "x360", "640x360x2", "-1x5", "6.5x2", "640 x 360"] {
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn lights_primaries_and_switches() {
+    fn white_balance_primaries_and_switches_are_parsed() {
         assert_eq!(white_balance("3200"), Ok(WhiteBalance { kelvin: 3200.0, tint: 0.0 }));
         assert_eq!(white_balance("5500,-7.5"), Ok(WhiteBalance { kelvin: 5500.0, tint: -7.5 }));
         for wrong in ["", "warm", "1000", "3200,99", "3200,", "NaN", "3200,5,5"] {
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn crops() {
+    fn crops_are_parsed() {
         assert_eq!(crop("1,2,3,4"), Ok(Rect { x: 1, y: 2, width: 3, height: 4 }));
         for wrong in ["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,0,4", "1,2,3,0", "a,b,c,d"] {
             assert!(crop(wrong).is_err(), "{wrong}");
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn shutters() {
+    fn shutters_are_parsed() {
         assert_eq!(shutter("0..0.5"), Ok([0.0, 0.5]));
         assert_eq!(shutter("-.25...25"), Ok([-0.25, 0.25]));
         assert_eq!(shutter("0..0"), Ok([0.0, 0.0]));
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn amounts_of_memory() {
+    fn memory_sizes_are_parsed() {
         let known =
             [("1", 1), ("512M", 512 << 20), ("4g", 4 << 30), ("1.5GiB", 3 << 29), ("2KB", 2048), ("1T", 1 << 40)];
         for (text, bytes) in known {
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn times_and_tolerances() {
+    fn times_and_tolerances_are_parsed() {
         assert_eq!(seconds("1.5"), Ok(1.5));
         assert_eq!(
             (duration("1.5"), duration("1e9")),

@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_are_those_of_a_plain_loop() {
+    fn box_blur_equals_direct_summation() {
         let (width, height) = (7, 5);
         let numbers: Vec<f32> = (0..width * height).map(|i| (i * 37 % 11) as f32).collect();
         for radius in 0..4 {

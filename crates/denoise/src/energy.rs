@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_gets_its_energy_back_and_its_surroundings_stay() {
+    fn lost_energy_is_restored_locally() {
         let block = |i: usize| (i % WIDTH).abs_diff(80) < 40 && (i / WIDTH).abs_diff(60) < 40;
         let input = vec![Rgb::new(0.5, 1.0, 2.0); WIDTH * HEIGHT];
         let filtered: Vec<Rgb> = (0..input.len()).map(|i| input[i] * if block(i) { 0.7 } else { 1.0 }).collect();

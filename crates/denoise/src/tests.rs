@@ -244,7 +244,7 @@ fn the_same_bits_on_any_threads_and_vector_units() {
 }
 
 #[test]
-fn strips_do_not_show() {
+fn denoising_in_strips_equals_denoising_the_whole() {
     let walls = Walls::new(50, 130, 0.8);
     let (noisy, settings) = (walls.noisy(walls.features()), Settings::default());
     let run = |rows: usize| strips::denoise(SimdLevel::new(), &noisy, &settings, &|| false, rows).unwrap();

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_within_their_halves_and_unknown_ones_stay() {
+    fn pixels_within_their_halves_and_nan_pixels_are_unchanged() {
         assert_eq!(dimmed([5.0, 5.0], 5.0), 5.0);
         assert_eq!(dimmed([9.0, 0.1], 4.0), 4.0);
         assert_eq!(dimmed([f32::NAN, 0.1], 4.0), 4.0);

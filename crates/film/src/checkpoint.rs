@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn closing_leaves_one_file() {
+    fn closing_a_checkpoint_removes_the_previous_file() {
         let (folder, path) = place("a.jfilm");
         let (mut kept, _) = found(&path);
         kept.save(&description(REGION, 64), &film_with(16, 64)).unwrap();

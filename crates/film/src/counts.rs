@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn spreads_weigh_tiles_by_their_pixels() {
+    fn mean_sample_count_weights_tiles_by_pixel_count() {
         // One tile of 16 × 16 pixels, one of 4 × 16.
         let tiling = Tiling::new(Rect { x: 0, y: 0, width: 20, height: 16 });
         let stats = SampleCountStats::from_counts(&tiling, &[10, 60]);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn other_texts_are_refused() {
+    fn malformed_sample_counts_are_rejected() {
         for text in ["64x2", "64x4", "64x2 48", "x3", "64x-1", "64x99999999999999999999", "64x18446744073709551615"] {
             assert_eq!(from_text(text, 3), None, "{text}");
         }

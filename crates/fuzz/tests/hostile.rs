@@ -15,7 +15,7 @@ fn count(name: &str, default: u64) -> u64 {
 }
 
 #[test]
-fn every_reader_takes_its_seeds() {
+fn every_reader_accepts_its_seeds() {
     for target in TARGETS {
         let seeds = seeds::for_target(target.name);
         assert!(!seeds.is_empty(), "{} has no seeds", target.name);

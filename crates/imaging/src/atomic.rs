@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_committed_leaves_no_trace() {
+    fn uncommitted_file_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         let file = AtomicFile::create(&path).unwrap();
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_process_left_is_cleared_away() {
+    fn stale_temporary_file_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         // The lock is free, so the writer is gone.
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_writes_is_left_alone() {
+    fn temporary_file_of_another_writer_is_kept() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         let (first, second) = (AtomicFile::create(&path).unwrap(), AtomicFile::create(&path).unwrap());
@@ -206,7 +206,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_of_that_name_is_not_followed() {
+    fn symbolic_link_at_the_temporary_name_is_not_followed() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("theirs"), "theirs").unwrap();
         std::os::unix::fs::symlink("theirs", folder.path().join(".a.txt.part")).unwrap();

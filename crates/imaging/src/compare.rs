@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn known_differences() {
+    fn comparison_of_known_images_gives_known_errors() {
         let found = compare(&image(&[1.0, 2.0, 3.0]), &image(&[1.0, 0.0, 4.0])).unwrap();
         assert!((found.rmse - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);
         assert!((found.relative_mse - (400.0 + 1.0 / 16.01) / 3.0).abs() < 1e-9);
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_bits_are_no_difference_even_when_not_a_number() {
+    fn equal_bits_are_equal_even_if_nan() {
         let odd = image(&[f32::NAN, f32::INFINITY, -0.0]);
         assert_eq!(
             compare(&odd, &odd).unwrap(),

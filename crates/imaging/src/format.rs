@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings_pick_formats() {
+    fn file_extensions_select_formats() {
         for (name, format) in [
             ("a.png", ImageFormat::Png),
             ("b/c.d.JPG", ImageFormat::Jpeg),

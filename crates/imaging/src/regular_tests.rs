@@ -15,7 +15,7 @@ fn regular_files_are_opened_through_links() {
 }
 
 #[test]
-fn what_is_no_file_is_named_and_never_waited_for() {
+fn pipes_and_folders_are_rejected_without_blocking() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
     let refused = |path: &Path| open(path).unwrap_err().to_string();

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn hue_stays_and_nothing_is_lost_from_sight() {
+    fn clamping_keeps_hue_and_records_the_removed_radiance() {
         let bright = Rgb::new(1.0, 4.0, 6.0);
         for (slot, path_kind, weight, limit) in [
             (0, PathKind::Direct, 1.0, 6.0),

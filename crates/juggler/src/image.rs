@@ -62,7 +62,7 @@ mod tests {
     use juggler_math::Rgb;
 
     #[test]
-    fn levels_are_those_of_srgb() {
+    fn levels_follow_the_srgb_curve() {
         let pixels = [0.0, 0.215_861, 1.0, 4.0].map(Rgb::splat).to_vec();
         let image = Image::from_pixels(2, 2, pixels).unwrap();
         let levels = [0, 128, 255, 255].map(|level| [level; 3]);

@@ -35,7 +35,7 @@ mod tests {
     use juggler_integrator::AnyIntegrator;
 
     #[test]
-    fn every_name_is_a_kind() {
+    fn every_listed_name_gives_its_kind() {
         let integrators = names::<AnyIntegrator>();
         assert!(integrators.contains(&"classic".to_owned()) && integrators.contains(&"ambient_occlusion".to_owned()));
         for name in integrators {
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_are_answered() {
+    fn misspelled_kinds_get_suggestions() {
         let message = |name| by_name::<AnyIntegrator>("integrator", name).unwrap_err().to_string();
         assert_eq!(message("clasic"), "there is no integrator `clasic`; did you mean `classic`?");
         assert!(message("unheard of").contains("known: "), "{}", message("unheard of"));

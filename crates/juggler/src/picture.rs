@@ -374,7 +374,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn another_view_is_the_picture_of_a_scene_with_that_view() {
+    fn changed_camera_equals_a_scene_with_that_camera() {
         let object = juggler_scene::Object::new(juggler_shape::Sphere::default());
         let plain = Scene::new().size(16, 12).add(object);
         let camera = Perspective { vertical_fov_degrees: Some(30.0), ..Perspective::default() };

@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_are_those_of_the_integrator() {
+    fn max_depth_is_set_in_the_integrator() {
         let apply = |integrator: &str, depth| {
             let settings =
                 Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn cameras_are_known_by_name() {
+    fn unknown_camera_names_are_errors() {
         let settings = Settings { camera: Some("top".into()), ..Settings::default() };
         assert!(settings.apply(&scene()).is_err());
     }

@@ -252,7 +252,7 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn it_faces_its_direction_with_its_width_level() {
+    fn area_light_faces_its_direction_with_horizontal_width() {
         let facing = |area: &Area| area.shape_and_transform().unwrap().1.normal(Vec3::Y);
         assert_eq!(facing(&Area::default()), Vec3::NEG_Y);
         let along = Area { direction: Some(Vec3::new(0.0, 0.0, 5.0)), ..Area::default() };
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_arrives_behind() {
+    fn area_light_does_not_illuminate_points_behind_it() {
         let (ceiling, mut random) = (Area { position: Vec3::Y, ..Area::default() }, Random::new(71));
         for _ in 0..1000 {
             assert_eq!(ceiling.sample(Vec3::new(0.3, 1.5, 0.1), random.vec2()), None);

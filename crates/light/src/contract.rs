@@ -82,7 +82,7 @@ fn power_is_the_integral_over_directions() {
 }
 
 #[test]
-fn places_of_a_sphere_lie_on_its_facing_half_evenly() {
+fn sphere_extent_is_sampled_uniformly_on_its_facing_hemisphere() {
     let (center, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, 40.0));
     let light = point(center, Extent::Sphere { radius: 5.0 });
     let direction = |u| {
@@ -98,7 +98,7 @@ fn places_of_a_sphere_lie_on_its_facing_half_evenly() {
 }
 
 #[test]
-fn places_of_a_square_lie_on_it_evenly() {
+fn square_extent_is_sampled_uniformly() {
     let mut random = Random::new(93);
     let (center, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 7.0, 1.0));
     let light = point(center, Extent::Square { side: 2.0 });
@@ -115,7 +115,7 @@ fn places_of_a_square_lie_on_it_evenly() {
 }
 
 #[test]
-fn a_size_changes_directions_but_not_the_light_that_arrives() {
+fn light_extent_changes_directions_but_not_irradiance() {
     let mut random = Random::new(94);
     let hard = Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: Some(7.0), ..Point::default() };
     for extent in [Extent::Sphere { radius: 2.0 }, Extent::Square { side: 3.0 }] {
@@ -195,7 +195,7 @@ fn bounds_hold_all_light() {
 }
 
 #[test]
-fn json_goes_round() {
+fn json_round_trips() {
     for mut light in AnyLight::examples() {
         // The JSON does not contain the photometric data of the file.
         if let Some(ies) = light.ies() {
@@ -208,7 +208,7 @@ fn json_goes_round() {
 }
 
 #[test]
-fn says_what_is_wrong() {
+fn invalid_fields_are_named() {
     for (json, field) in [
         (r#"{"point": {"position": [0, 1e39, 0]}}"#, "position"),
         (r#"{"point": {"color": [-1, 0, 0]}}"#, "color"),

@@ -111,7 +111,7 @@ mod tests {
     use juggler_math::testing::{Random, chi_squared};
 
     #[test]
-    fn comes_from_where_it_travels_against() {
+    fn directional_light_arrives_against_its_direction() {
         let light = Directional { direction: Vec3::new(3.0, 0.0, -4.0), intensity: 2.0, ..Directional::default() };
         let sample = light.sample(Vec3::new(1e9, 0.0, 3.0), Vec2::ZERO).unwrap();
         assert!((sample.wi - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6);
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_is_filled_evenly() {
+    fn sun_disk_is_sampled_uniformly() {
         let light = Directional { direction: Vec3::new(1.0, -2.0, 0.5), angle_degrees: 40.0, ..Directional::default() };
         let axis = -light.direction.normalize();
         let size = warp::cone_size(20f32.to_radians());

@@ -167,7 +167,7 @@ mod tests {
 
     /// Truncated and corrupted files give a profile or an error, never a panic.
     #[test]
-    fn nothing_breaks_the_reader() {
+    fn corrupted_ies_files_never_panic() {
         let text = format!("{HEAD}1 -1 1 3 2 1 1 0 0 0\n1 1 10\n0 45 90\n0 90\n1 2 3\n4 5 6\n");
         parse(&text).unwrap();
         for cut in 0..text.len() {

@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn falls_off_as_stated() {
+    fn attenuation_follows_its_coefficients() {
         for (attenuation, expected) in [
             (r#"{"quadratic": 1}"#, [1.0, 0.25, 1e-4]),
             (r#"{"constant": 1}"#, [1.0, 1.0, 1.0]),
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_size_needs_many_samples() {
+    fn only_lights_with_an_extent_need_several_shadow_samples() {
         let many = Point { samples: 16, ..Point::default() };
         assert_eq!(many.shadow_samples(), 1);
         assert_eq!(Point { extent: Some(Extent::Sphere { radius: 1.0 }), ..many }.shadow_samples(), 16);

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn full_in_the_beam_then_linear_then_nothing() {
+    fn intensity_is_full_in_the_beam_linear_to_the_cutoff_then_zero() {
         let spot = Spot { beam_degrees: 30.0, cutoff_degrees: 90.0, ..Spot::default() };
         for (degrees, expected) in [(0.0, 1.0), (29.99, 1.0), (45.0, 0.75), (60.0, 0.5), (75.0, 0.25), (89.4, 0.01)] {
             assert!((at(&spot, degrees) - expected).abs() < 1e-5, "{degrees}: {}", at(&spot, degrees));

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_compiled_once_and_found_at_their_points() {
+    fn named_materials_are_compiled_once_and_selected_by_point() {
         let mut compiler = compiler(
             r#"{"board": {"checkerboard": {"size": 2, "even": "red", "odd": {"phong": {"diffuse": [0, 1, 0]}}}},
                 "red": {"phong": {"diffuse": [1, 0, 0]}}}"#,
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn circles_are_refused() {
+    fn cyclic_materials_are_rejected() {
         let found = errors(
             r#"{"a": {"checkerboard": {"even": "b"}}, "b": {"checkerboard": {"odd": "c"}},
                 "c": {"checkerboard": {"even": "a"}}, "self": {"checkerboard": {"even": "self"}}}"#,

@@ -97,7 +97,7 @@ fn transparency_is_found_through_checkerboards() {
 }
 
 #[test]
-fn numbers_that_are_no_material_are_black() {
+fn unknown_material_ids_are_black() {
     let (table, id) = compile(r#"{"phong": {}}"#).unwrap();
     let missing = MaterialId(id.0 + 1);
     assert_eq!(*table.phong(missing, &at(0.0)).unwrap(), PhongParameters::BLACK);
@@ -124,7 +124,7 @@ fn numbers_out_of_range_are_refused_by_name() {
 }
 
 #[test]
-fn json_goes_round() {
+fn json_round_trips() {
     for material in AnyMaterial::examples() {
         let text = serde_json::to_string(&material).unwrap();
         assert_eq!(serde_json::from_str::<AnyMaterial>(&text).unwrap(), material, "{text}");

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn clip_never_loses_a_hit_and_seldom_invents_one() {
+    fn clip_never_misses_a_hit_and_rarely_reports_false_hits() {
         let mut random = Random::new(81);
         let mut hits = 0;
         for _ in 0..100_000 {
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn clip_keeps_to_the_ray_and_copes_with_planes_through_the_origin() {
+    fn clip_respects_the_ray_interval_and_handles_origins_in_box_planes() {
         let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
         let ray = Ray::new(Vec3::new(-1.0, 0.0, 0.5), Vec3::X);
         let (near, far) = unit.clip(&ray).expect("a ray in a face touches the box");
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_hold_what_they_are_made_of() {
+    fn bounding_box_contains_its_points() {
         let mut random = Random::new(82);
         for _ in 0..200 {
             let points: Vec<Vec3> = (0..5).map(|_| random.point(10.0)).collect();

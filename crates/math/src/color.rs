@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn srgb_rises_without_a_step_backwards() {
+    fn srgb_encoding_is_strictly_monotonic() {
         let mut last = -1.0;
         for i in 0..=100_000 {
             let v = srgb_encode(i as f32 * 1e-5);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn hexadecimal_colors() {
+    fn hexadecimal_colors_are_parsed() {
         assert_eq!(Rgb::from_hex("#ff0000"), Some(Rgb::new(1.0, 0.0, 0.0)));
         assert_eq!(Rgb::from_hex("#00800A").map(|c| c.g), Some(srgb_decode(128.0 / 255.0)));
         assert_eq!(Rgb::from_hex("#f0A"), Rgb::from_hex("#ff00aa"));
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn arithmetic_goes_by_channel_and_division_is_exact() {
+    fn color_arithmetic_is_per_channel_and_division_is_exact() {
         let (a, b) = (Rgb::new(0.5, 1.0, 2.0), Rgb::new(4.0, 0.25, 1.0));
         assert_eq!((a + b, a - b, a * b), ([4.5, 1.25, 3.0].into(), [-3.5, 0.75, 1.0].into(), [2.0, 0.25, 2.0].into()));
         assert_eq!(a.lerp(b, 0.5).to_array(), [2.25, 0.625, 1.5]);

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn cut_points_find_what_a_search_of_all_finds() {
+    fn cutpoint_search_equals_linear_search() {
         let mut random = Random::new(35);
         for cells in [1, 2, 3, 7, 64, 1000, 4099] {
             let weights: Vec<f32> =
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn no_weight_at_all_is_uniform_and_wrong_sizes_are_refused() {
+    fn zero_weights_sample_uniformly_and_wrong_sizes_are_rejected() {
         let flat = Distribution2D::new(2, &[0.0; 8]).unwrap();
         assert_eq!(flat.sample(Vec2::new(0.3, 0.9)), (Vec2::new(0.3, 0.9), 1.0));
         assert_eq!(flat.mean(), 0.0);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_huge_weight_among_many_small_ones() {
+    fn huge_weight_among_many_small_weights_is_sampled_correctly() {
         let mut weights = vec![1e-6; 100_000];
         weights[77_777] = 1e6;
         let distribution = Distribution1D::new(&weights).unwrap();

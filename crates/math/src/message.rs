@@ -63,13 +63,13 @@ mod tests {
     }
 
     #[test]
-    fn terminals_have_nothing_to_obey() {
+    fn control_characters_are_replaced_in_messages() {
         assert_eq!(excerpt("a\u{1b}[31m\nb\u{202e}gnp.exe", 40), "a\u{fffd}[31m\u{fffd}b\u{fffd}gnp.exe");
         assert_eq!(printable_lines("a\u{7}\nb"), "a\u{fffd}\nb");
     }
 
     #[test]
-    fn messages_keep_their_words_and_shorten_names() {
+    fn messages_shorten_quoted_names_and_keep_other_words() {
         let long = "x".repeat(1_000_000);
         let quote = excerpt(&long, MAX_QUOTE);
         assert_eq!(quote.chars().count(), MAX_QUOTE);

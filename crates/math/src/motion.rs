@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn goes_through_its_keys_and_straight_between() {
+    fn motion_interpolates_its_keys_linearly() {
         let mut random = Random::new(31);
         let keys: Vec<Transform> = (0..5).map(|_| Transform::translation(random.point(3.0))).collect();
         let motion = Motion::from_keys(keys.clone()).unwrap();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn one_after_the_other_at_each_time() {
+    fn then_composes_motions_at_each_time() {
         let mut random = Random::new(32);
         let still = Motion::Still(random.transform());
         let a = Motion::from_keys((0..3).map(|_| Transform::translation(random.point(2.0))).collect()).unwrap();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_smoothed_rotation_is_round_and_even() {
+    fn smoothed_rotation_has_constant_radius_and_speed() {
         let mut random = Random::new(33);
         let wide = Transform::scale(Vec3::new(3.0, -0.5, 1.0)).unwrap();
         for turns in [0.1, 1.0, -3.7] {

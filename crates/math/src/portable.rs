@@ -239,14 +239,14 @@ mod tests {
     }
 
     #[test]
-    fn sine_of_the_extremes() {
+    fn sine_of_zero_tiny_and_nonfinite_angles() {
         assert_eq!(sin_cos(0.0), (0.0, 1.0));
         assert_eq!(sin(1e-30), 1e-30);
         assert!(sin(f32::INFINITY).is_nan() && cos(f32::NAN).is_nan());
     }
 
     #[test]
-    fn turns_are_accurate_and_exact_at_quarters() {
+    fn sine_and_cosine_of_turns_are_accurate_and_exact_at_quarter_turns() {
         let tau = std::f64::consts::TAU;
         // Near the zeros the f64 reference (x · tau) is itself rounded: allow an absolute error
         // there.
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_of_sines_a_hair_above_one_are_real() {
+    fn inverse_sine_and_cosine_clamp_arguments_beyond_one() {
         assert_eq!(acos(1.000_001), 0.0);
         assert_eq!(asin(-1.000_001), -std::f32::consts::FRAC_PI_2);
         assert!(acos(f32::NAN).is_nan());
@@ -312,7 +312,7 @@ mod tests {
 
     /// Golden hashes: the results may not change on any platform or in any release.
     #[test]
-    fn results_are_the_same_bits_as_ever() {
+    fn results_match_golden_hashes() {
         let mut random = Random::new(13);
         let (mut single, mut double) = (0u32, 0u32);
         for _ in 0..20_000 {

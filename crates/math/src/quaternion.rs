@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_grows_evenly_along_the_shorter_arc() {
+    fn slerp_angle_grows_linearly_along_the_shorter_arc() {
         let axis = DVec3::new(1.0, 2.0, -3.0);
         for (degrees, shorter) in [(90.0, 90.0), (170.0, 170.0), (190.0, 170.0), (350.0, 10.0)] {
             let (from, to) = (from_axis_degrees(axis, 0.0).unwrap(), from_axis_degrees(axis, degrees).unwrap());

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn limits_are_inside_and_named() {
+    fn range_limits_are_inclusive_and_named_in_errors() {
         for (low, high) in [(0.0, MAX_LIGHT), (1e-6, 1e30), (0.01, 100.0), (-1e4, 1e4), (0.0, f32::MAX)] {
             assert_eq!(range_error("x", low, low, high), None);
             assert_eq!(range_error("x", high, low, high), None);

@@ -27,7 +27,7 @@ mod tests {
     use crate::testing::Random;
 
     #[test]
-    fn follow_up_rays_start_beyond_the_error_on_the_right_side() {
+    fn ray_origins_are_offset_beyond_the_error_on_the_side_of_the_ray() {
         let mut random = Random::new(71);
         for scale in [1e-3, 1.0, 1e4] {
             for _ in 0..5_000 {
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_points_move_off_as_little_as_rounding_allows() {
+    fn exact_points_are_offset_by_about_one_rounding_step() {
         let on_plane = offset_origin(Vec3::new(1e6, 0.0, -3e5), 1e-30, Vec3::Y, Vec3::ONE);
         assert!(on_plane == Vec3::new(1e6, 1e-30, -3e5), "a point on the ground: {on_plane}");
         let moved = offset_origin(Vec3::new(1.0, 2.0, 3.0), 0.0, Vec3::Y, -Vec3::ONE);

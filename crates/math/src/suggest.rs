@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_are_found_and_strangers_are_not() {
+    fn misspelled_names_get_suggestions_and_unrelated_names_get_none() {
         let known = ["radius", "center", "sphere"];
         assert_eq!(closest("raduis", known), Some("radius"));
         assert_eq!(closest("Radius", known), Some("radius"));

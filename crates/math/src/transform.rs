@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_again() {
+    fn local_and_world_transforms_are_inverse() {
         let mut random = Random::new(92);
         for t in samples() {
             for _ in 0..20 {
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn composition_is_one_after_the_other() {
+    fn then_composes_transforms_in_order() {
         let mut random = Random::new(95);
         for _ in 0..200 {
             let (a, b, p) = (random.transform(), random.transform(), random.point(3.0));
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_inverted_is_refused() {
+    fn singular_transforms_are_rejected() {
         let flat = Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::X + Vec3::Y);
         assert_eq!(Transform::new(flat, Vec3::ZERO), None);
         assert_eq!(Transform::scale(Vec3::new(1.0, 0.0, 1.0)), None);

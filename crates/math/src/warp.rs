@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn inverses_invert() {
+    fn inverse_warps_invert_their_warps() {
         inverts("concentric disk", concentric_disk, concentric_disk_inverse);
         inverts("polar disk", polar_disk, polar_disk_inverse);
         inverts("cosine hemisphere", cosine_hemisphere, cosine_hemisphere_inverse);

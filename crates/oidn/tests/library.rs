@@ -18,14 +18,14 @@ fn library() -> Option<Oidn> {
 }
 
 #[test]
-fn a_library_that_is_not_there_is_an_error_that_names_it() {
+fn missing_library_error_names_the_path() {
     let error = Oidn::open(Some(Path::new("no/such/library.so"))).unwrap_err();
     assert!(matches!(&error, Error::NotFound { tried } if tried.len() == 1));
     assert!(error.to_string().contains("no/such/library.so"), "{error}");
 }
 
 #[test]
-fn a_folder_without_it_and_a_file_that_is_none_are_errors() {
+fn folder_without_the_library_and_other_files_are_errors() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let error = Oidn::open(Some(folder)).unwrap_err();
     assert!(error.to_string().contains("OpenImageDenoise"), "{error}");
@@ -35,7 +35,7 @@ fn a_folder_without_it_and_a_file_that_is_none_are_errors() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn another_library_is_refused_by_what_it_lacks() {
+fn other_library_is_rejected_and_the_missing_symbol_named() {
     let error = Oidn::open(Some(Path::new("libc.so.6"))).unwrap_err();
     assert!(error.to_string().contains("oidnNewDevice"), "{error}");
 }
@@ -49,7 +49,7 @@ fn the_names_of_the_system_are_tried_in_turn() {
 }
 
 #[test]
-fn noise_goes_and_light_stays() {
+fn denoising_reduces_variance_and_keeps_the_mean() {
     let Some(library) = library() else { return };
     let (width, height) = (96, 64);
     let mut random = juggler_math::testing::Random::new(1);

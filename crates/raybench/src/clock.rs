@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn the_process_counts_what_its_threads_do_and_the_thread_does_not() {
+    fn process_clock_includes_other_threads_and_thread_clock_does_not() {
         let (thread, process) = (Stopwatch::start(CpuClock::Thread), Stopwatch::start(CpuClock::Process));
         let busy = std::thread::spawn(|| {
             let watch = Stopwatch::start(CpuClock::Thread);

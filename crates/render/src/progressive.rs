@@ -139,7 +139,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn runs_that_wait_to_be_joined_are_counted() {
+    fn max_runs_counts_the_unmerged_sample_runs() {
         let known = [(0, 0), (1, 1), (16, 1), (17, 2), (64, 1), (96, 2), (192, 3), (256, 3), (1024, 3), (1 << 16, 8)];
         for (samples, runs) in known {
             assert_eq!(max_runs(&(0..samples)), runs, "{samples}");
@@ -176,7 +176,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn steps_of_any_length_are_one_straight_run() {
+    fn steps_of_any_length_equal_one_pass() {
         with_job(1, |job| {
             for stop in [StopCriterion::Samples, StopCriterion::Evenly, StopCriterion::Noise(0.008)] {
                 let (film, control) = (whole(0..100), Control::default());
@@ -197,7 +197,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn noise_decides_the_same_on_any_number_of_threads_and_after_any_stop() {
+    fn noise_criterion_does_not_depend_on_threads_or_interruptions() {
         let stop = StopCriterion::Noise(0.008);
         let straight = with_job(1, |job| finished_film(job, whole(0..600), stop));
         let counts = straight.counts();
@@ -224,7 +224,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn noise_so_far_falls_to_its_level() {
+    fn noise_estimate_falls_to_the_requested_level() {
         with_job(2, |job| {
             assert_eq!(estimate_noise(&whole(0..600), 0.008), None);
             let prefix = finished_film(job, whole(0..32), StopCriterion::Samples);
@@ -238,7 +238,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn finishing_leaves_whole_rounds_of_the_first_tiles() {
+    fn early_finish_completes_whole_rounds_of_the_first_tiles() {
         let film = with_job(2, |job| {
             let (film, control) = (whole(0..1000), Control::default());
             std::thread::scope(|scope| {

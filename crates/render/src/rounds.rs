@@ -216,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounds_are_whole_blocks_and_grow_by_a_quarter() {
+    fn rounds_end_at_sample_blocks_and_grow_by_at_most_a_quarter() {
         let mut ends = vec![0];
         while *ends.last().unwrap() < 3000 {
             ends.push(short_round_after(*ends.last().unwrap()));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn no_round_is_given_out_twice_whichever_is_done_first() {
+    fn rounds_are_assigned_once_in_any_order_of_completion() {
         for (stop, requested) in [(StopCriterion::Samples, [0..16, 32..40]), (StopCriterion::Evenly, [0..40, 48..71])] {
             with_job(1, |job| {
                 let film =
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_round_that_ends_by_a_panic_keeps_nobody_waiting() {
+    fn panicking_round_does_not_block_other_threads() {
         let film = whole(0..16);
         let (rounds, control) = (Rounds::new(&film, StopCriterion::Samples), Control::default());
         let fault = std::thread::scope(|scope| {

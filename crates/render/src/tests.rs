@@ -119,7 +119,7 @@ pub fn busy() -> World {
 }
 
 #[test]
-fn tiles_cannot_be_seen() {
+fn pixels_do_not_depend_on_tiles() {
     let (world, size, samples) = (busy(), UVec2::new(12, 8), 3);
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let integrator = Classic { max_depth: 3, min_weight: 1e-4, occlusion_distance: Some(2.0) }.into();
@@ -146,7 +146,7 @@ fn ambient_furnace_is_white() {
 }
 
 #[test]
-fn mirror_furnace_keeps_its_filter() {
+fn mirror_furnace_has_the_color_of_its_reflectance() {
     // A mirror of reflectance f in a field of radiance 1 has radiance f; ten reflections would give
     // f^10.
     let material = r#"{"phong": {"diffuse": 0, "ambient": 0, "specular": 0, "reflection": [0.5, 0.25, 1]}}"#;
@@ -170,7 +170,7 @@ fn a_light_over_a_floor_obeys_the_inverse_square() {
 }
 
 #[test]
-fn occlusion_of_an_endless_wall_is_a_half() {
+fn ambient_occlusion_beside_an_infinite_wall_is_one_half() {
     // In the corner of floor and wall, the wall covers half of the hemisphere.
     let material = r#"{"phong": {"diffuse": 1, "ambient": 1, "occlusion": 1, "specular": 0}}"#;
     let objects = [
@@ -217,7 +217,7 @@ fn transparent_objects_cast_colored_shadows() {
 }
 
 #[test]
-fn the_penumbra_of_an_edge_is_the_visible_share() {
+fn penumbra_of_an_edge_is_linear() {
     // A square light of side 2 at height 10 and an edge at height 5 cast a penumbra of width 2 on
     // the floor, across which the irradiance is linear (the cosines differ by less than one
     // percent).
@@ -261,7 +261,7 @@ impl Integrator for Broken {
 }
 
 #[test]
-fn a_picture_of_single_samples_is_the_means_of_its_tiles() {
+fn single_sample_picture_equals_the_tile_means() {
     let (busy, size) = (busy(), UVec2::new(40, 33));
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let pixels = Rect { x: 2, y: 1, width: 38, height: 32 };

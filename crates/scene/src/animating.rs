@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn every_source_moves_a_value() {
+    fn every_kind_of_animation_source_moves_a_value() {
         let keys = Animate {
             repeat: Extrapolation::PingPong,
             ..Animate::from_keys([(0.0, vec3(0.0, 0.0, 0.0)), (1.0, vec3(0.0, 4.0, 0.0))])

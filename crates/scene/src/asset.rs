@@ -115,7 +115,7 @@ mod tests {
     use juggler_math::Rgb;
 
     #[test]
-    fn paths_lead_back_to_assets_of_the_same_content() {
+    fn asset_paths_resolve_only_to_the_same_content() {
         let mut assets = Assets::default();
         assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"png"));
         let path = assets.path_of("car.glb#images/3").unwrap();
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pixel_and_the_shape_of_an_image_count() {
+    fn image_identity_includes_size_and_every_pixel() {
         let image = |width, height, color| Asset::from_image(Image::filled(width, height, color));
         let plain = image(2, 3, Rgb::WHITE);
         assert_eq!(plain, image(2, 3, Rgb::WHITE));

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_without_cameras_gets_some_and_nonsense_none() {
+    fn cameras_are_added_to_valid_scenes_only() {
         kept("{\"version\": 1, \"objects\": []}");
         for text in ["", "[]", "{\"cameras\": 3}", "{"] {
             assert!(with_camera(text, "mine", &camera()).is_err(), "{text}");

@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_name_what_they_change() {
+    fn edits_report_the_kind_and_path_of_a_change() {
         let kinds = |pointer: &str, value, kind: Changed, at: &str| {
             assert_eq!(change(pointer, value), (vec![kind], vec![at.to_owned()]), "{pointer}");
         };
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_share_what_was_not_edited() {
+    fn unedited_items_are_shared_and_report_no_change() {
         let scene = scene();
         assert!(scene.clone().change_since(&scene).is_empty() && scene.clone() == scene);
         // An edit that changes nothing is none, though it makes items anew.

@@ -210,7 +210,7 @@ mod tests {
 
     /// Existing checkpoints and partial renders contain these hashes.
     #[test]
-    fn hashes_are_those_of_the_json_as_a_tree() {
+    fn fingerprint_hashes_equal_those_of_the_json_value() {
         let mut parts = 0;
         for scene in built_in_scenes() {
             let scene = Scene::built_in(scene.name).unwrap();

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_those_that_people_write() {
+    fn mesh_scenes_use_round_numbers() {
         assert_eq!([0.5, 1.0, 7.0, 10.0, 12345.0].map(power_of_ten), [0.1, 1.0, 1.0, 10.0, 10000.0]);
         let scene = describe_mesh_scene("models/cow.obj", &bounds([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]), false);
         let json = serde_json::to_value(&scene).unwrap();
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_bounds_leave_the_camera_to_the_scene() {
+    fn empty_huge_and_tiny_bounds_give_no_camera() {
         for bounds in [Aabb::EMPTY, bounds([0.0; 3], [1e30; 3]), bounds([0.0; 3], [1e-30; 3])] {
             let scene = describe_mesh_scene("a.obj", &bounds, false);
             assert!(scene.camera.is_none() && scene.objects.len() == 1);

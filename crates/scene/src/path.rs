@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pointers_lead_back() {
+    fn json_pointers_round_trip() {
         let path = Path::root().key("materials").key("7").key("phong").key("a/b~1").index(3).key("color");
         assert_eq!(path.pointer(), "/materials/7/phong/a~1b~01/3/color");
         assert_eq!(Path::from_pointer(&path.pointer()), path);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn is_written_as_people_write_it() {
+    fn paths_display_with_dots_and_brackets() {
         let path = Path::root().key("objects").index(3).key("shape").key("my sphere").join("vertices[7].x");
         assert_eq!(path.to_string(), "objects[3].shape[\"my sphere\"].vertices[7].x");
         assert_eq!(Path::root().to_string(), "");

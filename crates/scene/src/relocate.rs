@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_from_a_folder_to_a_file() {
+    fn relative_paths_from_a_folder_to_a_file() {
         let path = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
         assert_eq!(path("/none/a", "/none/a/b/c.obj"), Path::new("b/c.obj"));
         assert_eq!(path("/none/a/d/e", "/none/a/b/c.obj"), Path::new("../../b/c.obj"));

@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn files_in_memory_are_found_by_path_and_else_by_name() {
+    fn bundled_files_are_found_by_path_then_by_file_name() {
         let store = bundle(&["scene.json", "models/a.obj", "b.obj", "./c/../d.obj"]);
         let found = |path: &str| {
             store

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn only_names_that_nobody_else_can_give() {
+    fn only_loopback_host_names_with_the_own_port_are_accepted() {
         for host in ["localhost:8080", "LOCALHOST:8080", "127.0.0.1:8080", "127.9.9.9:8080", "[::1]:8080"] {
             assert!(own(host, "127.0.0.1"), "{host}");
         }
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn tokens_are_long_and_new() {
+    fn tokens_are_long_and_random() {
         let (one, other) = (Token::random().unwrap(), Token::random().unwrap());
         assert_eq!(one.text().len(), 32);
         assert!(

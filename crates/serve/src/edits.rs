@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn no_other_file_is_read() {
+    fn edits_cannot_read_other_files() {
         assert!(allowed(json!({"scene": "juggler"})) && allowed(json!({"scene": "mine/scene.json"})));
         for name in ["/etc/passwd", "../scenes/juggler.json", "mine/./scene.json", "juggler.json", "", "-"] {
             assert!(!allowed(json!({"scene": name})), "{name}");
@@ -150,14 +150,14 @@ mod tests {
     }
 
     #[test]
-    fn bookmarks_are_for_people_at_this_machine() {
+    fn bookmarks_are_accepted_only_from_local_pages() {
         let bookmark = |name: &str, local| check(&Edit::Bookmark(name.into()), None, local).is_ok();
         assert!(bookmark("a", true) && !bookmark("a", false) && !bookmark(" ", true));
         assert!(!bookmark(&"a".repeat(101), true));
     }
 
     #[test]
-    fn no_picture_is_too_large() {
+    fn edits_beyond_limits_of_size_and_range_are_rejected() {
         let size = |width: u32, height: u32| allowed(json!({"setting": {"size": [width, height]}}));
         assert!(size(4096, 4096) && size(8192, 2048) && size(1, 1));
         assert!(!size(0, 5) && !size(8192, 8192) && !size(u32::MAX, u32::MAX) && !size(8193, 1));

@@ -53,7 +53,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_flood_becomes_a_few_short_lines() {
+    fn rejection_log_limits_lines_and_their_length() {
         let lines = Arc::new(Mutex::new(Vec::new()));
         let kept = Arc::clone(&lines);
         let refusals = RefusalLog::new(move |line| kept.lock().unwrap().push(line.to_owned()));

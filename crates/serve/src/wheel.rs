@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_steers_and_it_can_change_hands() {
+    fn one_page_at_a_time_has_control_and_can_pass_it_on() {
         let mut wheel = Wheel::default();
         wheel.add(1);
         wheel.add(2);

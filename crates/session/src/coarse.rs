@@ -62,7 +62,7 @@ mod tests {
     const SIZE: [u32; 2] = [640, 480];
 
     #[test]
-    fn what_fits_is_not_coarse_and_what_does_not_is_just_coarse_enough() {
+    fn coarseness_is_the_least_that_fits_the_frame_time() {
         let mut rate = RenderRate::default();
         assert_eq!(rate.coarseness(SIZE, 0.03), 16, "nothing is known: 40 x 30");
         rate.measure(307_200.0, 0.02);
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn slowness_counts_at_once_and_speed_bit_by_bit() {
+    fn render_rate_falls_at_once_and_rises_gradually() {
         let mut rate = RenderRate::default();
         rate.measure(1000.0, 1.0);
         rate.measure(2000.0, 1.0);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_lead_from_any_coarseness_to_all_pixels() {
+    fn refinement_passes_end_at_full_resolution() {
         for size in [SIZE, [641, 3], [1, 1], [20, 15], [1, 900]] {
             for first in STEPS {
                 let (mut displayed, mut steps) = (coarse_size(size, first), Vec::new());

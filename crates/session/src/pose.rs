@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_is_where_one_was() {
+    fn flying_back_restores_the_pose() {
         let step = |camera: &AnyCamera, right, yaw_degrees| {
             fly(camera, Vec3::Y, &Fly { right, yaw_degrees, ..Fly::default() }).unwrap()
         };
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn zooming_divides_the_tangent_and_ends_somewhere() {
+    fn zooming_divides_the_tangent_and_is_limited() {
         let half = |camera: &AnyCamera| {
             let top = camera.projection(SIZE).unwrap().ray(Vec2::new(40.0, 0.0), Vec2::splat(0.5), 0.0).direction;
             top.y / -top.z
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lens_is_focused_on_what_is_ahead() {
+    fn focus_distance_is_measured_along_the_view() {
         let lens: AnyCamera = ThinLens::default().into();
         let distance = |camera: &AnyCamera| match camera {
             AnyCamera::ThinLens(lens) => lens.focus_distance,
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_framed_just_fits() {
+    fn framed_bounds_just_fit_the_picture() {
         let bounds = Aabb { min: vec3(1.0, 1.0, 1.0), max: vec3(2.0, 3.0, 2.0) };
         let (center, radius) = bounding_sphere(&bounds);
         for camera in [plain(), tilted(), Orthographic::default().into()] {
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn absurd_numbers_lead_nowhere() {
+    fn nonfinite_and_huge_edits_give_no_invalid_camera() {
         for wild in [f32::INFINITY, f32::NAN, 1e30] {
             assert_eq!(fly(&plain(), Vec3::Y, &Fly { forward: wild, ..Fly::default() }), None);
             let step = Orbit { yaw_degrees: wild, pitch_degrees: wild, closer: wild };

@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_end_is_reported_and_the_picture_stays() {
+    fn end_of_the_session_is_reported_and_the_frame_kept() {
         let shared = Shared::default();
         let status = Status { scene: "chess".into(), samples: 3.0, ..Status::default() };
         shared.publish(None, status, None);

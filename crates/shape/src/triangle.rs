@@ -133,7 +133,7 @@ mod tests {
     /// A ray that leaves a slender triangle does not hit it again, and starts no farther off than
     /// from other triangles.
     #[test]
-    fn slender_triangles_need_no_more_room_than_others() {
+    fn slender_triangles_need_no_larger_ray_offsets_than_others() {
         let mut random = Random::new(35);
         for (slender, far) in [1.0f32, 30.0, 1e3, 1e5].into_iter().flat_map(|s| [0.0, 1.0, 100.0].map(|far| (s, far))) {
             for _ in 0..5_000 {

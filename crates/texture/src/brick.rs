@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn colors_are_the_colors_that_were_given() {
+    fn brick_and_mortar_have_their_given_colors() {
         let read = reader(r#"{"brick": {"brick": [0.5, 0.25, 0.1], "mortar": [0.1, 0.2, 0.3], "variation": 0}}"#);
         assert_eq!(read(&TextureLookup::default()), Rgb::new(0.1, 0.2, 0.3));
         let uv = juggler_math::Vec2::new(0.125, 0.06);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in
             [(r#"{"mortar_width": 0.2}"#, "mortar_width"), (r#"{"width": 0}"#, "width"), (r#"{"shift": 1e9}"#, "shift")]
         {

@@ -139,7 +139,7 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn parity_is_that_of_whole_numbers() {
+    fn cell_parity_matches_integer_arithmetic() {
         let mut random = Random::new(71);
         for _ in 0..10_000 {
             let size = (random.below(1000) + 1) as f32;
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn borders_belong_to_the_upper_cell() {
+    fn cell_boundaries_belong_to_the_upper_cell() {
         let cells = [-2.0, -1.0, -1e-30, -0.0, 0.0, 1f32.next_down(), 1.0, 2.0].map(|x| is_odd_cell(x, 1.0));
         assert_eq!(cells, [false, true, true, false, false, false, true, false]);
         assert!(!is_odd_cell(107.0 * 6.0, 107.0) && is_odd_cell(107.0 * 7.0, 107.0));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn spaces_and_axes() {
+    fn checker_uses_its_space_axes_and_offset() {
         let (uv, local) = (Vec2::new(1.5, 0.5), Vec3::new(0.5, 1.5, 2.5));
         let at = TextureLookup { uv, local, world: Vec3::splat(1.5), ..TextureLookup::default() };
         let odd = |space, axes, offset| {
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         let json = [
             (r#"{"size": 0}"#, "size"),
             (r#"{"odd": [0, 1e39, 0]}"#, "odd"),

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lookup_cannot_become_a_million_lookups() {
+    fn number_of_nested_lookups_is_limited() {
         let mix = |i: u32| {
             let next = Input::Texture(format!("{}", i + 1));
             Mix { a: next.clone(), b: next, ..Mix::default() }

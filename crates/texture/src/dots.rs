@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn over_uv_they_are_circles_that_cover_their_share() {
+    fn dots_over_uv_are_circles_with_their_area() {
         let read = reader(r#"{"dots": {"scale": 4, "radius": 0.4, "jitter": 1, "dot": 1, "ground": 0}}"#);
         let at =
             |i: u32, j: u32| TextureLookup { uv: Vec2::new(i as f32, j as f32) / 200.0, ..TextureLookup::default() };
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [(r#"{"radius": 0.6}"#, "radius"), (r#"{"softness": -1}"#, "softness")] {
             assert_eq!(serde_json::from_str::<Dots>(json).unwrap().check().unwrap_err().field, field);
         }

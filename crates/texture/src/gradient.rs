@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [
             (r#"{"stops": []}"#, "stops"),
             (r#"{"stops": [{"position": 1, "color": 0}, {"position": 0, "color": 1}]}"#, "stops[1].position"),

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         assert_eq!(Image::new("").check().unwrap_err().field, "file");
         assert_eq!(Image { factor: f32::NAN, ..Image::new("a") }.check().unwrap_err().field, "factor");
         assert!(serde_json::from_str::<Image>("{}").unwrap_err().to_string().contains("file"));

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_zero_in_the_mean_and_its_parts_do_not_hang_together_from_afar() {
+    fn noise_has_zero_mean_and_no_long_range_correlation() {
         let mut random = Random::new(701);
         let points: Vec<Vec3> = (0..20_000).map(|_| random.point(1e4)).collect();
         let values: Vec<f64> = points.iter().map(|p| noise(*p, 3).into()).collect();
@@ -153,14 +153,14 @@ mod tests {
     }
 
     #[test]
-    fn far_away_and_nowhere_noise_is_finite() {
+    fn noise_is_finite_at_huge_coordinates() {
         for far in [1e9, -1e15, 1e30, f32::MAX, f32::MIN] {
             assert!(noise(Vec3::new(far, 0.5, -far), 1).is_finite());
         }
     }
 
     #[test]
-    fn pulses_are_the_mean_of_a_brute_force() {
+    fn filtered_pulse_train_equals_the_brute_force_mean() {
         let mut random = Random::new(703);
         for _ in 0..300 {
             let (x, duty, width) = (random.range(-50.0, 50.0), random.f32(), random.range(1e-3, 5.0));
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_fine_goes_smoothly() {
+    fn octave_filter_fades_smoothly() {
         assert_eq!(
             (
                 filter_amplitude(0.0),

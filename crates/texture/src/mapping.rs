@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn scale_turn_and_offset_place_the_pattern() {
+    fn mapping_applies_scale_rotation_and_offset() {
         let p = Vec3::new(1.0, 2.0, 3.0);
         assert_eq!(map("{}").point(p), p);
         assert_eq!(map(r#"{"scale": 2, "offset": [1, 0, 0]}"#).point(p), Vec3::new(0.0, 4.0, 6.0));
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn widths_grow_with_the_scale_and_nothing_is_infinite() {
+    fn filter_widths_grow_with_scale_and_stay_finite() {
         let at = TextureLookup {
             uv: Vec2::new(0.5, f32::NAN),
             local: Vec3::splat(1e38),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [
             (r#"{"scale": 0}"#, "scale"),
             (r#"{"scale": [1, 0, 1]}"#, "scale"),

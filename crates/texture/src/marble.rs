@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn distortion_stirs_and_keeps_the_mean() {
+    fn distortion_bends_veins_and_keeps_the_mean() {
         let json = r#"{"marble": {"space": "world", "distortion": 4, "stone": 0, "vein": 1}}"#;
         let read = numbers(json);
         let column: Vec<f32> = (0..50).map(|i| read(Vec3::new(0.25, i as f32 * 0.37, 0.1), 0.0)).collect();
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [(r#"{"sharpness": 0}"#, "sharpness"), (r#"{"distortion": -1}"#, "distortion")] {
             assert_eq!(serde_json::from_str::<Marble>(json).unwrap().check().unwrap_err().field, field);
         }

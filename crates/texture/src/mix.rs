@@ -136,7 +136,7 @@ mod tests {
     use crate::contract::reader;
 
     #[test]
-    fn modes_do_as_they_say() {
+    fn blend_modes_match_their_formulas() {
         for (mode, red, green) in [
             ("mix", 0.5, 0.25),
             ("add", 0.75, 2.25),
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [(r#"{"amount": 1.5}"#, "amount"), (r#"{"b": 1e38}"#, "b")] {
             assert_eq!(serde_json::from_str::<Mix>(json).unwrap().check().unwrap_err().field, field);
         }

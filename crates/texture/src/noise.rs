@@ -81,7 +81,7 @@ mod tests {
     use juggler_math::Vec3;
 
     #[test]
-    fn it_is_the_middle_at_lattice_points_and_moves_with_the_mapping() {
+    fn noise_is_one_half_at_lattice_points_and_follows_the_mapping() {
         let plain = numbers(r#"{"noise": {"space": "world"}}"#);
         let mapped = numbers(r#"{"noise": {"space": "world", "scale": 3, "offset": [1, 2, 3]}}"#);
         assert_eq!(plain(Vec3::new(3.0, -7.0, 12.0), 0.0), 0.5);

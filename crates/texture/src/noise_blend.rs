@@ -85,7 +85,7 @@ mod tests {
     use crate::AnyTexture;
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (fields, field) in [
             (r#""octaves": 17"#, "octaves"),
             (r#""octaves": 0"#, "octaves"),

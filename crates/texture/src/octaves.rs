@@ -83,7 +83,7 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn means_are_as_stated() {
+    fn fbm_and_turbulence_have_the_stated_means() {
         let mut random = Random::new(710);
         let (count, octaves) = (20_000, Octaves { octaves: 1, ..Octaves::default() });
         let places: Vec<PatternPoint> = (0..count).map(|_| PatternPoint::unfiltered(random.point(1e3))).collect();

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         let wrong: Ramp = serde_json::from_str(r#"{"stops": []}"#).unwrap();
         assert_eq!(wrong.check().unwrap_err().field, "stops");
     }

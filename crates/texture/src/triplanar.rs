@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_side_that_is_faced_is_all_there_is() {
+    fn triplanar_uses_one_projection_along_an_axis() {
         let world = Vec3::new(0.1, 0.2, 0.3);
         let json = r#"{"triplanar": {"texture": "uv", "space": "world"}}"#;
         for (normal, u, v) in [
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn object_space_has_a_normal_of_its_own() {
+    fn triplanar_in_object_space_uses_the_object_space_normal() {
         let local = Vec3::new(0.1, 0.2, 0.3);
         let at = TextureLookup { local, normal: Vec3::X, local_normal: Vec3::Z, ..TextureLookup::default() };
         let color = read(r#"{"triplanar": {"texture": "uv", "space": "local", "scale": 2}}"#, &at);

@@ -60,7 +60,7 @@ mod tests {
     use juggler_math::Vec3;
 
     #[test]
-    fn it_has_creases_at_zero_and_keeps_its_mean() {
+    fn turbulence_has_creases_at_zero_and_keeps_its_mean() {
         let read = numbers(r#"{"turbulence": {"space": "world", "octaves": 1}}"#);
         let values: Vec<f32> = (0..20_000).map(|i| read(Vec3::new(i as f32 * 0.002, 0.3, 0.6), 0.0)).collect();
         // Where noise changes sign, its absolute value has a kink: the second difference is twice

@@ -63,7 +63,7 @@ mod tests {
     use juggler_math::Vec2;
 
     #[test]
-    fn fractions_are_colors() {
+    fn fractional_uvs_are_colors() {
         let at = TextureLookup { uv: Vec2::new(0.25, -0.25), ..TextureLookup::default() };
         assert_eq!(reader(r#"{"uv": {}}"#)(&at), Rgb::new(0.25, 0.75, 0.0));
         assert_eq!(reader(r#"{"uv": {"scale": 6}}"#)(&at), Rgb::new(0.5, 0.5, 0.0));

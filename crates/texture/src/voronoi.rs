@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_two_are_those_of_a_brute_force() {
+    fn two_nearest_feature_points_equal_brute_force() {
         let mut random = Random::new(720);
         for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
             for flat in [false, true] {
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_continuous_and_a_grid_is_a_grid() {
+    fn voronoi_distances_are_continuous_and_without_jitter_a_grid() {
         let read = read_numbers(r#"{"voronoi": {"space": "world", "feature": "f1"}}"#);
         for i in 0..4000 {
             let p = Vec3::new(i as f32 * 0.01, i as f32 * 0.003, 0.2);
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         let wrong: Voronoi = serde_json::from_str(r#"{"jitter": 1.5}"#).unwrap();
         assert_eq!(wrong.check().unwrap_err().field, "jitter");
     }

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         let wrong: Wave = serde_json::from_str(r#"{"distortion": 1e9}"#).unwrap();
         assert_eq!(wrong.check().unwrap_err().field, "distortion");
     }

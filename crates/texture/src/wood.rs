@@ -141,7 +141,7 @@ mod tests {
     use crate::contract::{keeps_its_mean, numbers};
 
     #[test]
-    fn rings_are_round_about_y_and_one_a_unit() {
+    fn wood_rings_are_concentric_about_y_with_unit_spacing() {
         let json = r#"{"wood": {"space": "world", "distortion": 0, "grain": 0, "light": 0, "dark": 1}}"#;
         let read = numbers(json);
         for (radius, share) in [(0.0, 0.0), (0.4, 0.5), (0.8, 1.0), (0.9, 0.5), (1.0, 0.0), (7.8, 1.0)] {
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_fields_are_named() {
         for (json, field) in [(r#"{"grain": 1.1}"#, "grain"), (r#"{"distortion": -1}"#, "distortion")] {
             assert_eq!(serde_json::from_str::<Wood>(json).unwrap().check().unwrap_err().field, field);
         }

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_typed_finds_scenes() {
+    fn typed_text_finds_scenes_by_name_and_path() {
         let names = |text| matching(text).map(|scene| scene.name).collect::<Vec<_>>();
         assert_eq!(names("").len(), built_in_scenes().len());
         assert_eq!(names("Blitz pool"), ["scalablitz-pool"]);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn cards_show_the_middle() {
+    fn scene_cards_crop_thumbnails_to_the_center() {
         let square = cover(vec2(100.0, 100.0));
         assert!((square.width() - 1.0).abs() < 1e-6 && square.height() < 0.6);
         assert!((square.center() - pos2(0.5, 0.5)).length() < 1e-6);

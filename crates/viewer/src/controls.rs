@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_against_each_other_do_nothing() {
+    fn opposite_keys_cancel() {
         let controls = Controls::default();
         assert_eq!(controls.keys(&[Motion::Left, Motion::Right], false, 0.02, 10.0), []);
         assert_eq!(controls.keys(&[Motion::Closer, Motion::Wider], false, 0.02, 10.0), []);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_under_the_pointer_stays_there() {
+    fn dragging_keeps_the_point_under_the_pointer() {
         let fly = flown(Controls::default().drag([10.0, 4.0], 2.0, &EXTENT));
         assert!((fly.yaw_degrees + 2.0).abs() < 1e-4 && (fly.pitch_degrees - 0.8).abs() < 1e-4, "{fly:?}");
         let pan = flown(Controls::default().pan([10.0, 4.0], 2.0, &EXTENT));
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wheel_goes_back_and_forth() {
+    fn wheel_zoom_is_invertible_and_limited() {
         let controls = Controls::default();
         let (Some(Edit::Zoom(there)), Some(Edit::Zoom(back))) = (controls.wheel(40.0), controls.wheel(-40.0)) else {
             panic!("no zoom")

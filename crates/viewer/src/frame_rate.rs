@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts() {
+    fn frame_rate_is_counted_per_second() {
         let mut rate = FrameRate::default();
         for frame in 0..200 {
             rate.count(100.0 + f64::from(frame) / 50.0);

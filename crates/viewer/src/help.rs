@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_binding_is_there() {
+    fn help_lists_every_key_binding() {
         let all: Vec<(String, &str)> = GROUPS.iter().flat_map(rows).collect();
         for binding in GROUPS.iter().flat_map(|group| group.bindings) {
             let row = all.iter().find(|(keys, help)| *help == binding.help && keys.contains(&written(binding)));
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn the_documentation_has_them_all() {
+    fn documentation_lists_every_key_binding() {
         let page = include_str!("../../../docs/viewer.md");
         for (keys, help) in GROUPS.iter().flat_map(rows) {
             let row = format!("| {keys} | {help} |");

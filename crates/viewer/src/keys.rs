@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_what_the_table_says() {
+    fn held_and_pressed_keys_match_the_key_table() {
         let both = input(&[Key::W, Key::ArrowLeft, Key::Tab], Modifiers::NONE, Modifiers::NONE);
         assert_eq!(held(&both), [Motion::Forward, Motion::Left]);
         assert_eq!(pressed(&both), [Command::Panel]);
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn control_is_another_key() {
+    fn control_key_distinguishes_commands_from_motion() {
         for then in [Modifiers::COMMAND, Modifiers::NONE] {
             let save = input(&[Key::S], Modifiers::COMMAND, then);
             assert_eq!((held(&save), pressed(&save)), (vec![], vec![Command::Save]));

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_up() {
+    fn overlay_summarizes_the_status() {
         let mut status = Status { stage: Stage::Moving, frames_per_second: 51.7, coarseness: 2, ..Status::default() };
         assert_eq!(summary(&status), "52 frames/s, 1/2 size");
         (status.stage, status.samples, status.samples_wanted, status.coarseness) = (Stage::Refining, 12.5, 64, 1);

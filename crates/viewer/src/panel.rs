@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn bookmarks_have_names_of_their_own() {
+    fn new_bookmarks_get_unused_names() {
         assert_eq!(next_name(&[]), "view-1");
         assert_eq!(next_name(&["view-1".into(), "top".into(), "view-3".into()]), "view-2");
     }

@@ -178,7 +178,7 @@ mod tests {
     const AREA: Rect = Rect { min: Pos2 { x: 100.0, y: 50.0 }, max: Pos2 { x: 900.0, y: 650.0 } };
 
     #[test]
-    fn fits_and_keeps_its_shape() {
+    fn picture_fits_the_area_and_keeps_its_aspect_ratio() {
         let wide = ImageView::default().place(AREA, [1600, 900], 1.0);
         assert_eq!((wide.rect.width(), wide.rect.height(), wide.scale), (800.0, 450.0, 0.5));
         assert_eq!(wide.rect.center(), AREA.center());
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn points_and_pixels() {
+    fn window_positions_map_to_pixels() {
         let placement = ImageView::default().place(AREA, [1600, 900], 1.0);
         assert_eq!(placement.pixel(placement.rect.min), Some([0, 0]));
         assert_eq!(placement.pixel(placement.rect.center()), Some([800, 450]));
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_under_the_pointer_stays_when_magnified() {
+    fn magnification_keeps_the_point_under_the_pointer() {
         let mut view = ImageView::default();
         let before = view.place(AREA, [1600, 900], 1.0);
         let pointer = pos2(300.0, 400.0);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn too_large_a_frame_is_thinned_out() {
+    fn frames_beyond_the_texture_limit_are_downsampled() {
         let rgba: Vec<u8> = (0..6 * 2).flat_map(|pixel| [pixel, 0, 0, 255]).collect();
         let frame = Frame { number: 1, revision: 0, width: 6, height: 2, rgba, size: [6, 2], samples: 1.0 };
         assert_eq!(image(&frame, 6).size, [6, 2]);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_squares_only_when_they_are_finished() {
+    fn only_finished_pixels_use_nearest_filtering() {
         assert_eq!(filter(3.0, Pixels::Finished).magnification, TextureFilter::Nearest);
         assert_eq!(filter(3.0, Pixels::Coarse).magnification, TextureFilter::Linear);
         assert_eq!(filter(1.5, Pixels::Finished).magnification, TextureFilter::Linear);

@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_pinhole() {
+    fn pixel_extent_of_a_perspective_camera() {
         let pixel =
             PixelExtent::from_status(&status(json!({"perspective": {"eye": [0, 0, 5], "vertical_fov_degrees": 90}})));
         // At distance 1 half the film height is 1, so a pixel measures 1/50; at the origin 5 times
@@ -61,14 +61,14 @@ mod tests {
     }
 
     #[test]
-    fn of_parallel_rays() {
+    fn pixel_extent_of_an_orthographic_camera() {
         let pixel = PixelExtent::from_status(&status(json!({"orthographic": {"eye": [0, 0, 5], "height": 20}})));
         assert_eq!(pixel.degrees_per_pixel, 0.0);
         assert!((pixel.units_per_pixel - 0.2).abs() < 1e-4, "{pixel:?}");
     }
 
     #[test]
-    fn of_nothing_that_is_known() {
+    fn pixel_extent_of_an_unknown_camera_is_positive() {
         let pixel = PixelExtent::from_status(&status(json!({"periscope": {}})));
         assert!(pixel.degrees_per_pixel > 0.0 && pixel.units_per_pixel > 0.0);
     }

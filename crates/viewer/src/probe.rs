@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn one_key_follows_pins_and_ends() {
+    fn probe_key_cycles_through_follow_pin_and_off() {
         let follow = Probing::Off.next(None);
         assert_eq!((follow, follow.pixel(Some([3, 4]))), (Probing::Follow, Some([3, 4])));
         let pinned = follow.next(Some([3, 4]));
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_not_shown() {
+    fn probe_omits_unknown_values() {
         let names = |info: &PixelInfo| rows(info).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
         assert_eq!(names(&PixelInfo::default()), ["pixel", "color", "samples", "depth"]);
         let hit = PixelInfo { depth: Some(2.0), material: Some("red".into()), ..PixelInfo::default() };

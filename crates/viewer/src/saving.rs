@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_saved_file_is_named_for_a_while_and_a_failure_until_it_is_seen() {
+    fn save_notice_expires_and_error_stays_until_dismissed() {
         let mut saving = Saving::default();
         assert_eq!(saving.notice(0.0), None);
         saving.result = Some((Ok("/pictures/a.png".into()), 10.0));
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_that_is_written_is_named() {
+    fn saved_file_is_named() {
         let options = juggler_session::SessionOptions { size: Some([24, 18]), threads: 1, ..Default::default() };
         let session = Session::open("one-sphere", options);
         while session.status().stage != juggler_session::Stage::Finished {
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_is_found() {
+    fn default_file_name_follows_the_scene() {
         let mut saving = Saving::default();
         assert_eq!(saving.path("folder/marbles.json"), PathBuf::from("marbles.png"));
         assert_eq!(saving.path(""), PathBuf::from("picture.png"));

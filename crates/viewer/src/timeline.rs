@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_go_round() {
+    fn frame_steps_wrap_around() {
         let status = Status { frames: 30, frame: 29.0, ..Status::default() };
         assert_eq!(step(&status, 1.0), Some(Edit::At(0.0)));
         assert_eq!(step(&Status { frame: 0.25, ..status.clone() }, -1.0), Some(Edit::At(29.0)));

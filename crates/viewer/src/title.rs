@@ -40,7 +40,7 @@ mod tests {
     }
 
     #[test]
-    fn states_the_progress() {
+    fn title_states_the_progress() {
         let mut status = Status { scene: "marbles".into(), samples: 12.75, samples_wanted: 64, ..Status::default() };
         assert_eq!(title(&status, 0.0), "juggler - marbles - loading");
         status.stage = Stage::Refining;

@@ -246,7 +246,7 @@ pub mod tests {
     }
 
     #[test]
-    fn a_saved_picture_is_what_is_there() {
+    fn saved_png_contains_the_received_tiles() {
         let mut compositor = Compositor::new(&info(1)).unwrap();
         compositor.add_tiles(&rect(0, 0, 16, 16, 1, 0.5));
         let limits = juggler::imaging::Limits::default();
@@ -256,7 +256,7 @@ pub mod tests {
     }
 
     #[test]
-    fn another_tone_shows_the_same_light() {
+    fn changed_exposure_keeps_the_radiance() {
         let mut compositor = Compositor::new(&info(1)).unwrap();
         compositor.add_tiles(&rect(0, 0, 16, 16, 1, 0.25));
         let before = compositor.rgba()[0];

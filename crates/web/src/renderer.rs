@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn files_in_memory_are_a_scene() {
+    fn bundled_files_open_as_a_scene() {
         let mut renderer = opened(0, 1);
         let film: Vec<PixelRects> = rendered(&mut renderer);
         let last = film.iter().rev().find(|rects| !rects.bounds.is_empty()).unwrap();
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn workers_make_the_same_edits_and_begin_anew_only_when_they_must() {
+    fn workers_apply_the_same_edits_and_restart_only_if_needed() {
         let mut renderers = [opened(0, 2), opened(1, 2)];
         renderers.iter_mut().for_each(|renderer| drop(rendered(renderer)));
         let mut all = |edits: &str| renderers.each_mut().map(|renderer| renderer.edit(edits).unwrap());
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_worker_without_a_scene_and_wrong_edits_do_no_harm() {
+    fn missing_scenes_and_invalid_edits_are_errors() {
         let mut renderer = WorkerRenderer::new(WorkerShare { index: 0, count: 1 });
         assert!(renderer.edit("[]").unwrap_err().contains("no scene"));
         assert_eq!(renderer.coarse([4, 4]), PixelRects::default());

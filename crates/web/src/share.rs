@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_dealt_once_and_evenly() {
+    fn tiles_are_distributed_once_and_evenly() {
         let tiling = Tiling::new(Rect { x: 0, y: 0, width: 640, height: 477 });
         for count in 1..8 {
             let shares: Vec<WorkerShare> = (0..count).map(|index| WorkerShare { index, count }).collect();

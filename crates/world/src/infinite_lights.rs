@@ -100,7 +100,7 @@ mod tests {
     const TO: LightSampleContext = LightSampleContext { point: Vec3::ZERO, error: 0.0, normal: Vec3::ZERO, time: 0.0 };
 
     #[test]
-    fn the_stronger_is_picked_more_often() {
+    fn infinite_lights_are_sampled_in_proportion_to_power() {
         // A sky of radiance L has the power 4π L here.
         let (world, mut random) = (world(&[1.0, 30.0], 1.0), Random::new(31));
         let (mut counts, count) = ([0.0f32; 3], 200_000);
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn two_suns_bring_what_they_bring_with_less_noise_than_an_even_choice() {
+    fn power_sampling_of_two_suns_is_unbiased_with_lower_variance() {
         let (world, mut random) = (world(&[1.0, 9.0], 0.0), Random::new(32));
         let (mut sum, mut squares, count) = (0.0, 0.0, 100_000);
         for _ in 0..count {
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_picked_evenly() {
+    fn incomparable_lights_are_sampled_uniformly() {
         for powers in [[0.0, 0.0], [1.0, f32::INFINITY], [f32::NAN, f32::NAN]] {
             let lights =
                 InfiniteLights::new(vec![(InfiniteLight::Light(0), powers[0]), (InfiniteLight::Background, powers[1])]);

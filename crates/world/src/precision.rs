@@ -241,7 +241,7 @@ fn rays_leave_huge_spheres_where_coordinates_are_small() {
 /// A light on a surface is not occluded by that surface, and is occluded by anything just in front
 /// of it.
 #[test]
-fn shadow_rays_end_before_what_the_light_sits_on() {
+fn shadow_rays_end_before_the_surface_below_the_light() {
     let mut random = Random::new(33);
     let shapes: [AnyShape; 3] = [Plane {}.into(), Sphere::default().into(), Cuboid::default().into()];
     for (shape, map) in shapes.iter().flat_map(|shape| (0..MAPS).map(move |map| (shape, map))) {

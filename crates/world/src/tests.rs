@@ -191,7 +191,7 @@ fn every_vector_unit_equals_brute_force() {
 
 /// Three coincident copies of everything, in instances and without: all hits are ties.
 #[test]
-fn of_coincident_instances_the_lower_number_is_hit() {
+fn coincident_instances_hit_the_lowest_index() {
     let mut random = Random::new(25);
     let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
     objects.retain(Object::is_bounded);
@@ -228,7 +228,8 @@ fn large_mesh() -> AnyShape {
     mesh
 }
 
-/// Few large meshes are beside the hierarchy, many in it; two coincident ones tie everywhere.
+/// A few large meshes are beside the hierarchy, many are in it; two coincident meshes tie
+/// everywhere.
 #[test]
 fn large_meshes_equal_brute_force() {
     let mut random = Random::new(23);
@@ -247,7 +248,7 @@ fn large_meshes_equal_brute_force() {
 
 /// Indices and materials are equal, distances and surfaces up to the rounding of transforms.
 #[test]
-fn instances_are_what_expanding_them_gives() {
+fn instanced_world_equals_the_expanded_world() {
     let mut random = Random::new(20);
     let world = nested(&mut random);
     let flat = world_of(expanded_at(&world.top.objects, &Transform::IDENTITY, None, 0.0));
@@ -303,7 +304,7 @@ fn rays_leave_nested_surfaces() {
 
 /// A billion spheres in the memory of three thousand objects.
 #[test]
-fn what_is_shared_is_stored_once() {
+fn shared_geometry_is_stored_once() {
     let sphere = Arc::new({
         let mut sphere = AnyShape::from(Sphere { radius: 0.4 });
         sphere.prepare().unwrap();
@@ -335,7 +336,7 @@ fn what_is_shared_is_stored_once() {
 }
 
 #[test]
-fn an_empty_world_is_empty() {
+fn empty_world_has_only_its_background() {
     let world =
         World::new(Vec::new(), MaterialTable::default(), NO_LIGHTS, AnyBackground::Solid(Solid { color: Rgb::WHITE }));
     let mut ray = Ray::new(Vec3::ZERO, Vec3::Z);

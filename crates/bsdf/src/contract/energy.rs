@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn no_more_light_comes_out_than_went_in() {
+fn scattered_energy_never_exceeds_incident_energy() {
     for Example { name, bsdf, both_sides, white_within, .. } in examples() {
         // Layers conserve energy on average over directions only.
         let more = if name.contains("varnish") { 0.045 } else { MORE };
@@ -19,7 +19,7 @@ fn no_more_light_comes_out_than_went_in() {
 }
 
 #[test]
-fn albedos_are_what_comes_out() {
+fn albedo_estimates_match_furnace_integrals() {
     for Example { name, bsdf, both_sides, .. } in examples() {
         for wo in views(both_sides) {
             let (energy, albedo) = (furnace(&bsdf, wo, 24), bsdf.albedo(wo));

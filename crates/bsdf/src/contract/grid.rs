@@ -19,7 +19,7 @@ fn directions() -> impl Iterator<Item = Vec3> {
 }
 
 #[test]
-fn clear_interfaces_and_panes_keep_all_light_and_add_none() {
+fn compensated_interfaces_and_panes_conserve_energy() {
     for alpha in ALPHAS.map(Vec2::splat) {
         for ior in IORS {
             let interface = (Bsdf::from(Dielectric::new(ior, alpha)), Dielectric::compensated(ior, alpha).into());
@@ -36,7 +36,7 @@ fn clear_interfaces_and_panes_keep_all_light_and_add_none() {
 }
 
 #[test]
-fn metals_keep_all_light_and_add_none() {
+fn compensated_metals_conserve_energy() {
     for alpha in ALPHAS.map(Vec2::splat) {
         for cos in COSINES {
             let mirror = Conductor::compensated(Fresnel::WHITE, alpha).into();
@@ -77,7 +77,7 @@ fn integral(bsdf: &Bsdf, wo: Vec3, ior: f32) -> f64 {
 }
 
 #[test]
-fn values_of_clear_interfaces_keep_all_light_and_add_none() {
+fn integrals_of_compensated_interfaces_conserve_energy() {
     for alpha in [(0.5, 0.5), (0.8, 0.8), (1.0, 1.0), (0.9, 0.4), (0.5, 0.7)].map(Vec2::from) {
         for ior in [1.5, 1.9, 2.4] {
             for wo in directions().filter(|wo| wo.z.abs() > 0.1) {
@@ -106,7 +106,7 @@ fn weighted_glass_under_layered_lobes_conserves_energy_on_average() {
 
 /// Surfaces that are rougher along x than along y.
 #[test]
-fn brushed_surfaces_keep_light_and_add_none() {
+fn anisotropic_surfaces_conserve_energy() {
     for alpha in [(0.2, 0.02), (0.3, 0.1), (0.5, 0.05), (0.6, 0.3), (1.0, 0.1), (1.0, 0.5)].map(Vec2::from) {
         for turn in [0.0, 0.125, 0.25f32] {
             let (sin, cos) = portable::sin_cos_turns(turn);
@@ -130,7 +130,7 @@ fn brushed_surfaces_keep_light_and_add_none() {
 /// Reciprocity between sampled directions, where values are not all 0. Radiance over the square of
 /// the index is reciprocal.
 #[test]
-fn what_is_scattered_may_come_back() {
+fn sampled_directions_are_reciprocal() {
     let mut random = Random::new(98);
     for alpha in [(0.05, 0.05), (0.2, 0.2), (0.5, 0.5), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
         for ior in IORS {

@@ -52,7 +52,7 @@ fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
 }
 
 #[test]
-fn what_leans_gives_back_as_much_as_what_does_not() {
+fn tilted_shading_normals_keep_the_scattered_energy() {
     for (name, upright, bsdf, _, wo) in leaning() {
         let (expected, energy) = (furnace(&upright, wo, 32), furnace(&bsdf, wo, 32));
         // Samples of a single white lobe have a weight of 1 in any direction; samples of sums
@@ -64,7 +64,7 @@ fn what_leans_gives_back_as_much_as_what_does_not() {
 }
 
 #[test]
-fn values_of_what_leans_sum_up_to_as_much() {
+fn integrals_with_tilted_shading_normals_keep_the_energy() {
     let (rings, sectors) = (400, 256);
     for (angle, turn) in LEANS.into_iter().zip([0.0, 0.1, 0.35, 0.6, 0.8]) {
         let mut bsdf =
@@ -88,7 +88,7 @@ fn values_of_what_leans_sum_up_to_as_much() {
 /// Known answers for a white diffuse surface: a direction at the angle ψ above the geometric
 /// surface, in the plane of both normals, has the value (sin(ψ + β) + sin(β - ψ / s) / s) / π.
 #[test]
-fn light_of_a_lune_is_spread_over_directions_beside_it() {
+fn light_below_the_geometric_surface_is_moved_above_it_by_the_closed_form() {
     for (angle, stretch) in [(0.3f32, 4.0f32), (1.0, std::f32::consts::PI - 1.0)] {
         let mut bsdf = Bsdf::from(Lambert { albedo: Rgb::WHITE });
         bsdf.set_geometric_normal(normal(angle, 0.0));
@@ -104,7 +104,7 @@ fn light_of_a_lune_is_spread_over_directions_beside_it() {
 }
 
 #[test]
-fn samples_of_what_leans_carry_value_over_density_to_where_both_normals_agree() {
+fn samples_with_tilted_shading_normals_stay_in_the_common_hemisphere() {
     let mut random = Random::new(103);
     for (name, _, bsdf, normal, wo) in leaning() {
         for _ in 0..200 {
@@ -128,7 +128,7 @@ fn samples_of_what_leans_carry_value_over_density_to_where_both_normals_agree() 
 }
 
 #[test]
-fn directions_of_what_leans_follow_their_density() {
+fn directions_with_tilted_shading_normals_follow_their_density() {
     let all: Vec<_> = leaning().into_iter().filter(|(_, bsdf, ..)| !bsdf.is_specular()).collect();
     let few: Vec<_> = all.iter().step_by(7).filter(|(.., wo)| wo.z.abs() > 0.3).collect();
     assert!(few.len() > 10);
@@ -139,7 +139,7 @@ fn directions_of_what_leans_follow_their_density() {
 }
 
 #[test]
-fn what_hardly_leans_is_what_does_not() {
+fn slightly_tilted_shading_normals_change_nothing() {
     let mut random = Random::new(104);
     for (name, upright, _) in white() {
         let mut bsdf = upright.clone();

@@ -106,18 +106,18 @@ fn follow_their_density(part: usize, parts: usize) {
 }
 
 #[test]
-fn fine_lobes_follow_their_density() {
+fn half_of_the_narrow_lobes_follow_their_density() {
     follow_their_density(0, 2);
 }
 
 #[test]
-fn the_other_fine_lobes_follow_their_density_too() {
+fn other_half_of_the_narrow_lobes_follow_their_density() {
     follow_their_density(1, 2);
 }
 
 /// A change of alpha, or of the index's distance from 1, by 2 % is detected.
 #[test]
-fn wrong_densities_of_fine_lobes_are_refused() {
+fn wrong_densities_of_narrow_lobes_are_detected() {
     let wo = Vec3::new(0.5, -0.6, 0.4).normalize();
     let [bsdf, wider] = [0.001, 0.00102].map(|alpha| Bsdf::from(Conductor::new(Fresnel::WHITE, Vec2::splat(alpha))));
     follows(&bsdf, wo, |wi| bsdf.pdf(wo, wi), 1e-3).unwrap();

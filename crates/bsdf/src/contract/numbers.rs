@@ -52,7 +52,7 @@ fn opaque_lobes_are_black_from_below() {
 }
 
 #[test]
-fn matched_indices_let_light_straight_on() {
+fn matched_indices_transmit_without_refraction() {
     use crate::{Dielectric, ThinDielectric};
     let mut random = Random::new(97);
     for _ in 0..1000 {

@@ -98,7 +98,7 @@ fn white_ones() -> Vec<(&'static str, Principled, f32)> {
 }
 
 #[test]
-fn white_ones_are_white_at_any_roughness() {
+fn white_principled_materials_pass_the_furnace_at_any_roughness() {
     for (name, base, least) in white_ones() {
         for roughness in [0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 1.0] {
             let numbers = Principled { roughness, ..base };

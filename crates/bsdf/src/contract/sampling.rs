@@ -29,14 +29,14 @@ fn directions_follow_their_density() {
 }
 
 #[test]
-fn directions_of_the_others_follow_their_density_too() {
+fn directions_of_the_other_half_follow_their_density() {
     follow_their_density(1, 2);
 }
 
 /// Samples of rough glass never gain energy: the sampled microfacet selects reflection or
 /// refraction, and light that other microfacets block continues as multiple scattering.
 #[test]
-fn rough_glass_never_scatters_more_than_there_was() {
+fn samples_of_rough_glass_never_gain_energy() {
     // The energy of a sample is at most 1 exactly: it is a ratio of shadowing terms, or 1 with the
     // multiple scattering. The slack is for rounding; with this seed the largest excess is 2e-6.
     const MOST: f32 = 1.0 + 1e-5;
@@ -85,7 +85,7 @@ fn light_leaves_a_slab_of_rough_glass() {
 
 /// A perfect mirror keeps the energy of each path, whatever the error of its tabulated loss.
 #[test]
-fn samples_of_white_metal_weigh_one() {
+fn samples_of_white_metal_have_weight_one() {
     let mut random = Random::new(105);
     for alpha in [(0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
         let metal = Bsdf::from(Conductor::compensated(Fresnel::WHITE, alpha));
@@ -99,7 +99,7 @@ fn samples_of_white_metal_weigh_one() {
 /// A clear pane keeps the energy of each path from either side, whatever the error of its tabulated
 /// loss.
 #[test]
-fn samples_of_a_clear_pane_weigh_one() {
+fn samples_of_a_clear_pane_have_weight_one() {
     let mut random = Random::new(106);
     for alpha in [(0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
         for ior in [1.0, 1.5, 2.4] {
@@ -113,7 +113,7 @@ fn samples_of_a_clear_pane_weigh_one() {
 }
 
 #[test]
-fn samples_carry_value_over_density() {
+fn sample_weights_equal_value_over_density() {
     let mut random = Random::new(81);
     for Example { name, bsdf, both_sides, .. } in examples() {
         for wo in views(both_sides) {
@@ -143,7 +143,7 @@ fn samples_carry_value_over_density() {
 }
 
 #[test]
-fn value_and_density_are_those_of_both_in_one_go() {
+fn eval_and_pdf_equal_eval_pdf() {
     let mut random = Random::new(82);
     for Example { name, bsdf, .. } in examples() {
         for _ in 0..100 {
@@ -154,7 +154,7 @@ fn value_and_density_are_those_of_both_in_one_go() {
 }
 
 #[test]
-fn deltas_are_what_sampling_finds() {
+fn deltas_match_sampled_specular_directions() {
     let mut random = Random::new(83);
     for Example { name, bsdf, both_sides, .. } in examples() {
         for wo in views(both_sides) {

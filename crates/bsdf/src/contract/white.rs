@@ -116,7 +116,7 @@ fn failures(cases: &[(Principled, f32)], noise: f64, deviations: f64) -> Vec<Str
 }
 
 #[test]
-fn principled_keeps_light_over_a_grid_of_its_weights() {
+fn principled_conserves_energy_over_a_grid_of_its_weights() {
     let is_deep = std::env::var_os("JUGGLER_FURNACES").is_some();
     let (cases, noise) = (cases(), if is_deep { 0.001 } else { 0.004 });
     let deviations = family_wise_deviations(cases.len());

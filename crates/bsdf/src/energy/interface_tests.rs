@@ -1,6 +1,6 @@
 //! Compares the tables of [`InterfaceLoss`] with integrals of single scattering; `JUGGLER_BLESS=1`
 //! makes them anew:
-//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf interface_tables`.
+//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf interface_loss_tables`.
 //!
 //! An entry is an integral over visible normals for its direction. The entries of each zone are
 //! then scaled so that the interpolated loss has the same integral over the zone as the loss
@@ -193,7 +193,7 @@ fn write(name: &str, what: &str, size: TableSize) {
 }
 
 #[test]
-fn interface_tables_are_what_lobes_integrate_to() {
+fn interface_loss_tables_match_integration_of_lobes() {
     if std::env::var_os("JUGGLER_BLESS").is_some() {
         write("interface_isotropic", "Loss of rough interfaces.", TableSize::ISOTROPIC);
         write("interface_anisotropic", "Loss of anisotropic interfaces.", TableSize::ANISOTROPIC);
@@ -232,7 +232,7 @@ const BETWEEN: [(f32, f32, f32); 8] = [
 ];
 
 #[test]
-fn means_between_entries_are_those_of_the_loss() {
+fn interpolated_mean_losses_match_integration() {
     for (x, y, ior) in BETWEEN {
         let ggx = Ggx::new(Vec2::new(x, y));
         let (loss, surface) = (InterfaceLoss::new(ggx, ior), Surface { ggx, dense: ior });
@@ -246,7 +246,7 @@ fn means_between_entries_are_those_of_the_loss() {
 }
 
 #[test]
-fn anisotropic_mirrors_lose_what_their_table_says() {
+fn anisotropic_mirror_loss_table_matches_integration() {
     for (x, y) in [(0.5, 0.05), (0.3, 0.6), (0.9, 0.09), (0.2, 0.15)] {
         let ggx = Ggx::new(Vec2::new(x, y));
         let (loss, surface) = (InterfaceLoss::for_mirror(ggx), Surface { ggx, dense: f32::INFINITY });
@@ -263,7 +263,7 @@ fn anisotropic_mirrors_lose_what_their_table_says() {
 }
 
 #[test]
-fn tabulated_means_are_those_of_the_interpolated_loss() {
+fn tabulated_means_equal_means_of_the_interpolated_loss() {
     for (x, y, ior) in BETWEEN {
         let loss = InterfaceLoss::new(Ggx::new(Vec2::new(x, y)), ior);
         for side in [Side::Thin, Side::Dense] {

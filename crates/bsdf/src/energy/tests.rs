@@ -1,5 +1,5 @@
 //! Compares the tables with integrals; `JUGGLER_BLESS=1` makes them anew:
-//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf tables_are_what_lobes_integrate_to`.
+//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf energy_tables_match_integration_of_lobes`.
 
 use super::*;
 use crate::ScatteringLobe;
@@ -201,7 +201,7 @@ fn write_tables(count: u32) {
 }
 
 #[test]
-fn tables_are_what_lobes_integrate_to() {
+fn energy_tables_match_integration_of_lobes() {
     if std::env::var_os("JUGGLER_BLESS").is_some() {
         return write_tables(16_384);
     }
@@ -223,7 +223,7 @@ fn tables_are_what_lobes_integrate_to() {
 }
 
 #[test]
-fn between_entries_tables_are_close_too() {
+fn interpolated_energy_tables_match_integration() {
     for (cos, alpha) in [(0.9, 0.8), (0.5, 0.3), (0.3, 0.6), (0.07, 0.2), (0.02, 0.5)] {
         let (_, loss) = integrate(cos, alpha, None, 8192);
         assert!(close(isotropic_mirror_loss(cos, alpha), loss as f32, 6e-3), "{cos} {alpha}: {loss}");

@@ -125,7 +125,7 @@ fn trees_hold_every_item_once() {
 
 /// Degenerate boxes in large numbers: construction must stay fast and not recurse deeply.
 #[test]
-fn trees_over_bad_boxes_are_sound() {
+fn degenerate_boxes_give_valid_trees() {
     let many = if cfg!(debug_assertions) { 1 << 17 } else { 1 << 20 };
     let random = boxes(1 << 16);
     let cube = Aabb { min: -Vec3::ONE, max: Vec3::ONE };

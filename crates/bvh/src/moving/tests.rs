@@ -68,7 +68,7 @@ fn interpolated_boxes_contain_interpolated_items() {
 }
 
 #[test]
-fn times_are_shares_of_the_shutter() {
+fn ray_times_become_clamped_fractions_of_the_shutter() {
     let fraction = |shutter: f32, time: f32| {
         let tree = MovingBvh::build(&[], shutter, Quality::Fast);
         tree.shutter_fraction(&Ray { time, ..Ray::new(Vec3::ZERO, Vec3::X) })

@@ -68,7 +68,7 @@ fn leave_globe(name: &str, globe: &Mesh, scale: Vec3, offset: Vec3, seed: u32) {
 }
 
 #[test]
-fn globes_of_many_tessellations() {
+fn tessellated_spheres_are_watertight() {
     for (rows, columns, rough, seed) in [(3, 3, 0.0, 1), (6, 7, 0.3, 2), (24, 36, 0.1, 3), (90, 110, 0.02, 4)] {
         let globe = globe(&mut Random::new(seed), rows, columns, rough);
         // With three rows and columns the globe is slender around its axis.
@@ -78,7 +78,7 @@ fn globes_of_many_tessellations() {
 }
 
 #[test]
-fn globes_of_all_sizes() {
+fn tessellated_spheres_of_all_sizes_are_watertight() {
     let globe = globe(&mut Random::new(10), 24, 36, 0.1);
     for (scale, seed) in [(1e-25, 11), (1e-15, 12), (1e-4, 13), (1e6, 14), (1e15, 15)] {
         leave_globe(&format!("scale {scale:e}"), &globe, Vec3::splat(scale), Vec3::ZERO, seed);
@@ -88,7 +88,7 @@ fn globes_of_all_sizes() {
 
 /// Far from the origin, vertices lie on a coarse grid: triangles become slivers, some degenerate.
 #[test]
-fn globes_far_away() {
+fn tessellated_spheres_far_from_the_origin_are_watertight() {
     let globe = globe(&mut Random::new(20), 24, 36, 0.1);
     for (distance, seed) in [(1e3, 21), (1e4, 22), (1e5, 23)] {
         leave_globe(&format!("{distance} away"), &globe, Vec3::ONE, vec3(1.0, -0.5, 0.3) * distance, seed);
@@ -98,7 +98,7 @@ fn globes_far_away() {
 
 /// A box with two triangles per face: axis-aligned edges, flat faces, huge triangles close by.
 #[test]
-fn boxes() {
+fn boxes_are_watertight() {
     let positions = (0..8u8).map(|i| Vec3::from([0, 1, 2].map(|axis| f32::from(i >> axis & 1) * 2.0 - 1.0)));
     let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
@@ -111,7 +111,7 @@ fn boxes() {
 /// A globe of long thin oblique triangles, crossed by small and long ones: no ray passes through
 /// its edges where spatial splits divide triangles.
 #[test]
-fn divided() {
+fn spatially_split_triangles_are_watertight() {
     let random = &mut Random::new(50);
     let mut mesh = globe(random, 3, 300, 0.0);
     let (own, added) = (mesh.positions.len() as u32, crossed(random, 4000, 400));
@@ -135,7 +135,7 @@ fn divided() {
 
 /// Axis-parallel rays at the vertices and edges of a globe.
 #[test]
-fn along_the_axes() {
+fn axis_parallel_rays_hit_a_watertight_sphere() {
     let globe = globe(&mut Random::new(40), 12, 16, 0.0);
     let kernels = Kernels::all("along the axes", &globe);
     let mut rays = Vec::new();

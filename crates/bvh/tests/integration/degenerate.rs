@@ -6,7 +6,7 @@ use juggler_bvh::{Bvh, Quality, TriangleBvh, TriangleError, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3, vec3};
 
 #[test]
-fn no_boxes_at_all() {
+fn empty_tree_has_no_hits() {
     for quality in Quality::ALL {
         let bvh = Bvh::build(&[], quality);
         assert!(bvh.order().is_empty() && bvh.bounds().is_empty());
@@ -22,7 +22,7 @@ fn no_boxes_at_all() {
 }
 
 #[test]
-fn boxes_of_nothing_are_left_out() {
+fn empty_and_nan_boxes_are_skipped() {
     let good = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
     let boxes = [
         Aabb::EMPTY,
@@ -42,7 +42,7 @@ fn boxes_of_nothing_are_left_out() {
 }
 
 #[test]
-fn flat_coincident_huge_and_tiny_boxes() {
+fn degenerate_huge_and_tiny_boxes_match_brute_force() {
     let random = &mut Random::new(7);
     let rays: Vec<Ray> = (0..200).map(|_| Ray::new(random.point() * 3.0, random.direction())).collect();
     let point = |p: Vec3| Aabb { min: p, max: p };
@@ -80,7 +80,7 @@ fn infinite_boxes_are_hit() {
 
 /// Sizes that double: each best split separates one box, as deep as the exponent goes, repeatedly.
 #[test]
-fn trees_that_want_to_be_deep_stay_shallow() {
+fn tree_depth_is_limited() {
     let mut boxes = Vec::new();
     for i in 0..4000u16 {
         let size = (f32::from(i % 250) - 125.0).exp2();
@@ -97,7 +97,7 @@ fn trees_that_want_to_be_deep_stay_shallow() {
 }
 
 #[test]
-fn triangles_at_the_edge() {
+fn degenerate_triangles_and_missing_vertices_are_skipped() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, vec3(f32::NAN, 0.0, 0.0), Vec3::INFINITY, Vec3::X * 0.5];
     let down = Ray::new(vec3(0.2, 0.2, 1.0), -Vec3::Z);
     for quality in Quality::ALL {

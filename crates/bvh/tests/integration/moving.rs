@@ -137,7 +137,7 @@ fn moving_triangles_are_found_where_they_are() {
 /// Triangles that are degenerate at one end or in between, that are not finite, and missing
 /// vertices.
 #[test]
-fn triangles_at_the_edge() {
+fn degenerate_moving_triangles_are_handled() {
     let open = Mesh::from_triangles([
         [Vec3::ZERO; 3],
         [Vec3::ZERO, Vec3::X, Vec3::Y],
@@ -163,9 +163,9 @@ fn triangles_at_the_edge() {
     assert_eq!(error, TriangleError::NoSuchVertex { triangle: 2, vertex: 7, vertices: 7 });
 }
 
-/// A motion of zero gives the same bits as a still tree.
+/// A motion of zero gives the same bits as a static tree.
 #[test]
-fn still_triangles_are_hit_as_in_a_still_tree() {
+fn moving_tree_without_motion_equals_the_static_tree() {
     let random = &mut Random::new(65);
     let mesh = crossed(random, 2000, 100);
     let still = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Balanced).unwrap();

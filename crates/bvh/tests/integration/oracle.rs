@@ -81,14 +81,14 @@ fn all_rays<S: Shape>(name: &str, shapes: &[S], seed: u32) {
 }
 
 #[test]
-fn random_spheres() {
+fn random_spheres_match_brute_force() {
     for (count, seed) in [(1, 1), (7, 2), (9, 3), (70, 4), (700, 5)] {
         all_rays(&format!("{count} spheres"), &spheres(&mut Random::new(seed), count), seed);
     }
 }
 
 #[test]
-fn random_boxes() {
+fn random_boxes_match_brute_force() {
     for (count, seed) in [(2, 11), (40, 12), (500, 13)] {
         all_rays(&format!("{count} boxes"), &boxes(&mut Random::new(seed), count), seed);
     }
@@ -96,7 +96,7 @@ fn random_boxes() {
 
 /// Boxes that are a few ulps wide, far from the origin, and rays between them.
 #[test]
-fn boxes_far_away() {
+fn boxes_far_from_the_origin_match_brute_force() {
     let random = &mut Random::new(71);
     for distance in [1e3, 1e5, 1e7] {
         let far = Vec3::new(1.0, -0.7, 0.3) * distance;
@@ -139,7 +139,7 @@ impl Shape for Exact {
 /// Rays that hit points exactly, despite all rounding of the box tests. Each point occurs many
 /// times, so a hit must not hide the others at its distance.
 #[test]
-fn points_are_hit_and_none_hides_the_others() {
+fn coincident_points_are_all_hit() {
     let random = &mut Random::new(81);
     // Directions with few bits, so that small multiples are exact.
     let directions: Vec<Vec3> = (0..60).map(|_| (random.point() * 4096.0).round() + 0.5).collect();
@@ -162,7 +162,7 @@ fn points_are_hit_and_none_hides_the_others() {
 }
 
 #[test]
-fn bricks_whose_planes_hold_the_rays() {
+fn rays_in_the_planes_of_boxes_match_brute_force() {
     for (count, seed) in [(30, 21), (200, 22), (600, 23)] {
         all_rays(&format!("{count} bricks"), &bricks(&mut Random::new(seed), count), seed);
     }
@@ -170,7 +170,7 @@ fn bricks_whose_planes_hold_the_rays() {
 
 /// Axis-parallel rays share an octant only if their zeros have the same signs, as here.
 #[test]
-fn parallel_packets_along_the_axes() {
+fn axis_parallel_packets_match_brute_force() {
     let random = &mut Random::new(31);
     let shapes = bricks(random, 300);
     let mut rays = Vec::new();
@@ -193,7 +193,7 @@ fn parallel_packets_along_the_axes() {
 /// Calls of 1 to 70 rays: partial packets, partial groups, groups with a remainder; in one octant
 /// and in several.
 #[test]
-fn calls_of_any_number_of_rays() {
+fn batches_of_any_size_match_brute_force() {
     let random = &mut Random::new(61);
     let shapes = spheres(random, 300);
     for count in 1..=70 {
@@ -207,7 +207,7 @@ fn calls_of_any_number_of_rays() {
 }
 
 #[test]
-fn rays_of_a_packet_may_have_ended() {
+fn packets_accept_terminated_rays() {
     let random = &mut Random::new(41);
     let shapes = spheres(random, 200);
     let mut rays = coherent(random, 100, 0.01, 0.0);

@@ -63,7 +63,7 @@ fn check(seed: u32, scale: f32, slenderness: f32, distance: f32, spread: f32) {
 }
 
 #[test]
-fn corners_and_edges_of_long_triangles() {
+fn vertices_and_edges_of_long_triangles_are_hit() {
     for (seed, spread) in [0.0, 1e-6, 1e-3, 0.02, 0.1].into_iter().enumerate() {
         for slenderness in [0.5, 1e-2, 1e-6] {
             for distance in [0.3, 3.0, 1000.0] {
@@ -74,7 +74,7 @@ fn corners_and_edges_of_long_triangles() {
 }
 
 #[test]
-fn scenes_of_all_sizes() {
+fn vertices_and_edges_are_hit_at_all_scales() {
     for (seed, exponent) in [-36, -30, -20, -10, 10, 17, 18].into_iter().enumerate() {
         let scale = 10f32.powi(exponent);
         for spread in [1e-6, 0.05] {

@@ -37,7 +37,7 @@ fn moved_boxes_are_found_where_they_are() {
 }
 
 #[test]
-fn the_same_boxes_change_nothing() {
+fn refit_with_equal_boxes_changes_nothing() {
     let random = &mut Random::new(22);
     for quality in Quality::ALL {
         let mut boxes = boxes(random, 5000);
@@ -52,7 +52,7 @@ fn the_same_boxes_change_nothing() {
 }
 
 #[test]
-fn trees_refuse_what_they_do_not_hold() {
+fn refit_rejects_other_items() {
     let random = &mut Random::new(23);
     let mut boxes = boxes(random, 100);
     boxes[40] = Aabb::EMPTY;
@@ -109,7 +109,7 @@ fn moved_triangles_are_found_where_they_are() {
 }
 
 #[test]
-fn the_same_triangles_change_nothing() {
+fn refit_with_equal_triangles_changes_nothing() {
     let random = &mut Random::new(25);
     let positions: Vec<Vec3> = (0..900).map(|_| random.point()).collect();
     let triangles: Vec<[u32; 3]> = (0..300u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();

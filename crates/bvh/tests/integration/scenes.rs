@@ -81,7 +81,7 @@ fn terrain() {
 /// Triangles at known positions and heights; with a million rays to try, more than 2^24 of them,
 /// whose indices single precision cannot represent (6 GB of memory, minutes).
 #[test]
-fn more_than_sixteen_million_triangles() {
+fn more_than_sixteen_million_triangles_are_indexed_exactly() {
     let edge: u32 = if rays_to_try(0) >= 1_000_000 { 2900 } else { 90 };
     let height = |x: u32, z: u32| ((x * 7 + z * 13) % 5) as f32 * 0.25;
     let corner = |i: u32| vec3((i % (edge + 1)) as f32, 0.0, (i / (edge + 1)) as f32);

@@ -49,7 +49,7 @@ fn check(name: &str, mesh: &Mesh, seed: u32) {
 }
 
 #[test]
-fn few_and_many_triangles() {
+fn small_and_large_meshes_match_brute_force() {
     for (count, size) in [(1, 1.0), (2, 1.0), (7, 0.5), (8, 0.5), (9, 1.0), (65, 0.3), (500, 0.2)] {
         check(&format!("{count} triangles"), &soup(count as u32, count, |random| near(random, size)), 100);
     }
@@ -135,7 +135,7 @@ fn refuse(mesh: &Mesh, quality: Quality) {
 }
 
 #[test]
-fn none_at_all() {
+fn empty_mesh_has_no_hits() {
     let empty = Mesh { positions: Vec::new(), triangles: Vec::new() };
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     for kernels in Kernels::all("empty", &empty) {
@@ -146,13 +146,13 @@ fn none_at_all() {
 }
 
 #[test]
-fn large_and_crossing() {
+fn large_intersecting_triangles_match_brute_force() {
     check("large", &soup(11, 60, |random| near(random, 3.0)), 111);
 }
 
 /// Degenerate triangles (points, lines, duplicate vertices) among regular ones.
 #[test]
-fn without_area() {
+fn triangles_without_area_match_brute_force() {
     let mesh = soup(12, 200, |random| {
         let [a, b, c] = near(random, 0.5);
         match random.below(6) {
@@ -168,7 +168,7 @@ fn without_area() {
 
 /// Needles as long as the scene and as thin as rounding errors.
 #[test]
-fn slivers() {
+fn slivers_match_brute_force() {
     let mesh = soup(13, 100, |random| {
         let (a, b) = (random.point(), random.point());
         let thin = [1e-3, 1e-6, 1e-7, 3e-8][random.below(4)];
@@ -179,14 +179,14 @@ fn slivers() {
 
 /// Integer coordinates: coplanar, coincident and duplicate triangles, many ties.
 #[test]
-fn coincident() {
+fn coincident_triangles_match_brute_force() {
     check("coincident", &soup(14, 200, |random| [(); 3].map(|()| whole(random, 4))), 114);
     check("the same again and again", &soup(15, 100, |_| [Vec3::ZERO, Vec3::X, Vec3::Y]), 115);
 }
 
 /// Triangles in axis-aligned planes, whose boxes are flat.
 #[test]
-fn sheets() {
+fn axis_aligned_triangles_match_brute_force() {
     let mesh = soup(16, 150, |random| {
         let (axis, at) = (random.below(3), random.below(4) as f32);
         [(); 3].map(|()| {
@@ -198,9 +198,9 @@ fn sheets() {
     check("sheets", &mesh, 116);
 }
 
-/// Sizes from 1e-9 to 1e6 around one place.
+/// Triangles of sizes from 1e-9 to 1e6 around one point.
 #[test]
-fn huge_beside_tiny() {
+fn mixed_triangle_sizes_match_brute_force() {
     let mesh = soup(17, 150, |random| {
         let size = [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6][random.below(6)];
         let center = random.point() * size;
@@ -210,7 +210,7 @@ fn huge_beside_tiny() {
 }
 
 #[test]
-fn huge_and_tiny_as_a_whole() {
+fn meshes_of_all_scales_match_brute_force() {
     for (scale, seed) in [(1e-41, 0), (1e-37, 1), (1e-18, 2), (1e-4, 3), (1e6, 4), (1e18, 5)] {
         let mesh = soup(20 + seed, 60, |random| near(random, 0.4)).moved(Vec3::splat(scale), Vec3::ZERO);
         check(&format!("scale {scale:e}"), &mesh, 120 + seed);
@@ -242,7 +242,7 @@ fn subnormal_distances() {
 
 /// Far from the origin a triangle is a few ulps wide.
 #[test]
-fn far_away() {
+fn triangles_far_from_the_origin_match_brute_force() {
     for (distance, seed) in [(1e3, 0), (1e5, 1), (3e6, 2)] {
         let offset = vec3(1.0, -0.7, 0.3) * distance;
         let mesh = soup(30 + seed, 100, |random| near(random, 0.4)).moved(Vec3::ONE, offset);
@@ -253,7 +253,7 @@ fn far_away() {
 /// Rays that start on a flat triangle and leave it at an angle below rounding: their hit distance
 /// is all rounding error. Also from that distance on.
 #[test]
-fn a_hair_off_the_plane() {
+fn nearly_coplanar_rays_match_brute_force() {
     let mesh = soup(18, 60, |random| [(); 3].map(|()| whole(random, 4).with_x(0.0)));
     let (kernels, random) = (Kernels::all("a hair off the plane", &mesh), &mut Random::new(118));
     for _ in 0..rays_to_try(SMALL) / 8 {
@@ -269,7 +269,7 @@ fn a_hair_off_the_plane() {
 
 /// Long triangles among small ones; with the best quality several leaves refer to them.
 #[test]
-fn divided() {
+fn spatially_split_triangles_match_brute_force() {
     for (scale, offset, seed) in [(1.0, 0.0, 0), (1e-6, 0.0, 1), (1e6, 0.0, 2), (1.0, 3e3, 3), (1.0, -1e4, 4)] {
         let mesh = crossed(&mut Random::new(40 + seed), 1500, 150).moved(Vec3::splat(scale), Vec3::splat(offset));
         assert!(is_divided(&mesh), "scale {scale:e}, offset {offset}");
@@ -279,14 +279,14 @@ fn divided() {
 
 /// Triangles that share one vertex.
 #[test]
-fn a_fan() {
+fn triangle_fan_matches_brute_force() {
     let mesh = soup(33, 120, |random| [vec3(0.25, 0.5, -0.125), random.point(), random.point()]);
     check("fan", &mesh, 133);
 }
 
 /// A result slice shorter than the rays: the remaining rays are not traced.
 #[test]
-fn rays_without_a_place_are_not_traced() {
+fn rays_beyond_the_result_slice_are_not_traced() {
     let mesh = soup(34, 50, |random| near(random, 1.0));
     let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Default::default()).unwrap();
     let rays: Vec<Ray> = (0..60).map(|i| Ray::new(Vec3::Z * 5.0, mesh.positions[i] - Vec3::Z * 5.0)).collect();

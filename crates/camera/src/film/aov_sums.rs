@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_stand_behind_each_other_and_runs_are_joined_id_by_id() {
+    fn mask_pixels_are_concatenated_and_runs_merged_by_id() {
         let pixel = |ids: &[u32]| {
             let mut pixel = AovSums::default();
             ids.iter().for_each(|id| pixel.add(&[Rgb::WHITE, Rgb::BLACK], Some(&hit_ids(*id, 1.0))));
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_no_mask_are_refused() {
+    fn malformed_coverage_masks_are_rejected() {
         assert!(CoverageMask::new(vec![1, 3], vec![(4, 1.0), (2, 1.0), (3, 1.0)]).is_ok());
         for (ends, entries) in [
             (vec![1, 2], vec![(4, 1.0)]),

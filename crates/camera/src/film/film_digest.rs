@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_hash_sees_every_bit_and_no_cut() {
+    fn film_hash_covers_every_bit_and_ignores_chunking() {
         let pixels: Vec<Rgb> = (0..12).map(|i| Rgb::new(i as f32, 1.0, -0.0)).collect();
         let hash = |width: u32, height: u32, parts: &[&[Rgb]]| {
             let mut digest = FilmDigest::new(width, height);

@@ -47,7 +47,7 @@ fn tree(pixel: u32, blocks: Range<u32>) -> [f64; 3] {
 }
 
 #[test]
-fn a_mean_is_that_of_blocks_joined_along_the_tree() {
+fn tile_means_sum_blocks_along_the_tree() {
     // 11 blocks and 5 samples: runs of 8, 2 and 1 blocks, and an open one.
     let end = 11 * BLOCK_SAMPLES + 5;
     let tile = tile(0..end, None);
@@ -85,7 +85,7 @@ fn partial_films_may_be_added_in_any_order_and_any_split() {
 }
 
 #[test]
-fn a_begun_block_is_gone_on_with() {
+fn incomplete_block_is_resumed_with_the_same_bits() {
     for first in 1..70 {
         let mut begun = tile(0..first, None);
         let open = begun.take_open_block(first);
@@ -104,7 +104,7 @@ fn missing_samples_are_found() {
 }
 
 #[test]
-fn what_is_no_run_is_refused() {
+fn misaligned_sample_runs_are_rejected() {
     let run = |samples: Range<u32>| SampleRun::new(samples, vec![Sum::default(); 2]);
     let mut tile = Tile::new(PIXELS);
     for uneven in [3..5, 8..24, 16..64, 32..96, 0..48, 5..5, 16..16] {
@@ -117,7 +117,7 @@ fn what_is_no_run_is_refused() {
 }
 
 #[test]
-fn statistics_are_those_of_the_blocks() {
+fn variance_estimates_follow_from_the_blocks() {
     // Independent samples, uniform in [0, 1): the variance of the mean of n is 1 / 12 n.
     for blocks in [2, 3, 4, 7, 16, 23] {
         let (mut mean, mut variance) = (0.0, 0.0);
@@ -143,7 +143,7 @@ fn statistics_are_those_of_the_blocks() {
 }
 
 #[test]
-fn samples_that_are_no_numbers_count_as_black_and_are_counted() {
+fn nonfinite_samples_are_black_and_counted() {
     let (nan, infinite) = (Rgb::new(0.0, f32::NAN, 0.0), Rgb::new(f32::INFINITY, 0.0, 0.0));
     let mut accumulator = Accumulator::default();
     assert_eq!(accumulator.add(&[Rgb::WHITE, nan, Rgb::WHITE, infinite]), 2);

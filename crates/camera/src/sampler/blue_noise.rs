@@ -135,7 +135,7 @@ mod tests {
     use crate::sampler::Sampler;
 
     #[test]
-    fn permutations_are_all_there_are() {
+    fn permutation_table_contains_all_permutations() {
         let mut known: Vec<[u8; 4]> = PERMUTATIONS.iter().map(|p| [0, 2, 4, 6].map(|shift| p >> shift & 3)).collect();
         known.iter().for_each(|order| {
             let mut sorted = *order;
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_permuted_within_their_quarters() {
+    fn morton_indices_are_permuted_within_their_quadrants() {
         for seed in [0, 1, 0x1234_5678] {
             let mut is_used = vec![false; 1 << MORTON_BITS];
             for place in 0..1 << MORTON_BITS {
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn quarters_go_to_every_place_equally_often() {
+    fn quadrants_are_permuted_uniformly() {
         let mut counts = [0u32; 16];
         for seed in 0..8000 {
             let seed = hash::mix(seed);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn more_samples_than_planned_are_further_points() {
+    fn samples_beyond_the_planned_count_are_distinct_points() {
         let mut all: Vec<[u32; 2]> = Vec::new();
         for planned in [1, 3, 16, 1 << 16, u32::MAX] {
             let pixel = Sampler::new(BlueNoise {}.point_set(planned), 9).pixel(UVec2::new(77, 5000));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pixel_costs_no_room() {
+    fn sampler_stores_no_pixel() {
         assert_eq!(size_of::<Sampler>(), 20);
     }
 }

@@ -29,7 +29,7 @@ fn cells(points: &[Vec2], x: u32, y: u32) -> Vec<u32> {
 }
 
 #[test]
-fn one_dimensional_numbers_are_first_coordinates() {
+fn one_dimensional_samples_are_first_coordinates() {
     for pattern in patterns(16) {
         let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
         for (index, dimension) in (0..100).flat_map(|index| (0..4).map(move |dimension| (index, dimension))) {
@@ -66,7 +66,7 @@ fn stratified_fills_every_cell_once_a_set() {
 }
 
 #[test]
-fn points_in_a_row_are_the_points_one_by_one() {
+fn batch_of_points_equals_single_points() {
     for pattern in patterns(25) {
         let pixel = Sampler::new(pattern, 5).pixel(UVec2::new(8, 1));
         for first in [0, 3, 24, 70] {
@@ -79,7 +79,7 @@ fn points_in_a_row_are_the_points_one_by_one() {
 }
 
 #[test]
-fn streams_are_uniform_and_unlike_each_other() {
+fn sample_streams_are_uniform_and_uncorrelated() {
     for pattern in patterns(64) {
         let all: Vec<Vec2> = (0..64)
             .flat_map(|x| {
@@ -98,7 +98,7 @@ fn streams_are_uniform_and_unlike_each_other() {
 }
 
 #[test]
-fn a_sample_depends_on_its_address_alone() {
+fn sample_depends_only_on_seed_pixel_index_branch_and_dimension() {
     let pixel = Sampler::new(AnyPointSet::SobolPoints(SobolPoints), 11).pixel(UVec2::new(4, 2));
     let mut first = pixel.sample(5);
     first.next_2d();
@@ -116,7 +116,7 @@ fn a_sample_depends_on_its_address_alone() {
 
 /// The numbers of two dimensions of a sample are independent, over all pixels.
 #[test]
-fn dimensions_are_unlike_each_other() {
+fn dimensions_are_uncorrelated() {
     for pattern in patterns(16) {
         for (a, b) in [(0, 1), (1, 2), (2, 9), (3, 259)] {
             let picture = Sampler::new(pattern, 17);

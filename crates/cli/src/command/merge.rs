@@ -31,12 +31,12 @@ use std::time::Instant;
 /// Flags of `juggler merge`.
 #[derive(Debug, Args)]
 pub struct Merge {
-    /// Parts of one picture (.jfilm), in any order
+    /// Partial renders of one picture (.jfilm), in any order
     #[arg(required = true, value_name = "PART")]
-    parts: Vec<String>,
+    partial_renders: Vec<String>,
     /// Output file; its extension selects the format
     ///
-    /// A picture needs all its parts. A .jfilm joins any parts to a larger one.
+    /// A picture needs all its partial renders. A .jfilm joins any of them to a larger one.
     #[arg(short, long, value_name = "FILE")]
     output: String,
     /// File format of the picture, instead of the one that the extension selects
@@ -48,8 +48,8 @@ pub struct Merge {
     /// Quality of a JPEG [default: 95]
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
-    /// File for the AOVs of the parts: one .exr, or one .exr or .npy per AOV if the name contains
-    /// `{}`
+    /// File for the AOVs of the partial renders: one .exr, or one .exr or .npy per AOV if the name
+    /// contains `{}`
     ///
     /// By default, an EXR picture contains the AOVs as layers; other pictures get a file beside
     /// them (NAME.layers.exr).
@@ -76,7 +76,7 @@ enum MergeOutput {
     /// render.
     Picture(FilmSummary, Option<SampleCountStats>),
     /// A partial render of this length in bytes.
-    Part(u64),
+    PartialRender(u64),
 }
 
 /// Denoised pixels of the merged picture.
@@ -115,26 +115,26 @@ fn sample_counts(merge: &film::Merge) -> Result<Option<SampleCountStats>, Failur
 }
 
 impl Merge {
-    /// Checks all parts, then joins them.
+    /// Checks all partial renders, then joins them.
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
         output::at_most_one_stream(&self.output, self.stats.as_deref())?;
         output::check_stream(&self.output)?;
-        let is_part =
+        let is_partial_render =
             Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
-        let (merge, merged) = if is_part {
+        let (merge, merged) = if is_partial_render {
             effect::check(Target::Part, &self.flags())?;
-            let merge = film::Merge::open(&self.parts, MergeGoal::PartialRender)?;
+            let merge = film::Merge::open(&self.partial_renders, MergeGoal::PartialRender)?;
             if self.max_memory.is_some() {
                 memory::check(&merge, &AovSet::from_description(&merge.description().aovs)?, None, self.max_memory)?;
             }
             let interrupts = Interrupts::watch()?;
-            let merged = MergeOutput::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
+            let merged = MergeOutput::PartialRender(merge.write(Path::new(&self.output), || interrupts.check())?);
             (merge, merged)
         } else {
             let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
             effect::check(Target::Picture(encoding), &self.flags())?;
-            let merge = film::Merge::open(&self.parts, MergeGoal::Whole)?;
+            let merge = film::Merge::open(&self.partial_renders, MergeGoal::Whole)?;
             let sample_counts = sample_counts(&merge)?;
             let interrupts = Interrupts::watch()?;
             let merged =
@@ -167,8 +167,9 @@ impl Merge {
         if let Some(sample_counts) = sample_counts {
             metadata.push((SAMPLES.to_owned(), sample_counts.to_string()));
         }
-        let tone: Tone = serde_json::from_value(tone.clone())
-            .map_err(|error| Failure::System(format!("cannot read the tone settings of the parts: {error}")))?;
+        let tone: Tone = serde_json::from_value(tone.clone()).map_err(|error| {
+            Failure::System(format!("cannot read the tone settings of the partial renders: {error}"))
+        })?;
         if let Some(warning) = effect::ignored_tone_warning(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
             console::print_message(&warning);
         }
@@ -201,13 +202,13 @@ impl Merge {
         Ok(FilmSummary { hash, mean, ..summary })
     }
 
-    /// Writer of the AOVs of the parts, and whether its file contains the picture too.
+    /// Writer of the AOVs of the partial renders, and whether its file contains the picture too.
     fn aov_writer(&self, set: &AovSet, header: &Header) -> Result<Option<(LayeredWriter, bool)>, Failure> {
         if set.selected().is_empty() {
             return match &self.aov_output {
-                Some(_) => {
-                    Err(Failure::Invalid("--aov-output: the parts contain no AOVs; render them with --aov".into()))
-                }
+                Some(_) => Err(Failure::Invalid(
+                    "--aov-output: the partial renders contain no AOVs; render them with --aov".into(),
+                )),
                 None => Ok(None),
             };
         }
@@ -235,11 +236,11 @@ impl Merge {
                 let samples = samples(&sample_counts.unwrap_or(SampleCountStats::uniform(picture.samples)));
                 if picture.clamped { format!("{samples}, {}", clamping(film)) } else { samples }
             }
-            MergeOutput::Part(length) if picture.finished => format!("complete, {}", bytes(*length)),
-            MergeOutput::Part(length) => format!("incomplete, {}", bytes(*length)),
+            MergeOutput::PartialRender(length) if picture.finished => format!("complete, {}", bytes(*length)),
+            MergeOutput::PartialRender(length) => format!("incomplete, {}", bytes(*length)),
         };
-        let parts = counted(self.parts.len() as u128, "part");
-        let line = format!("{}: {width}x{height}, {what}, of {parts}, {}", self.output, duration(took));
+        let count = counted(self.partial_renders.len() as u128, "partial render");
+        let line = format!("{}: {width}x{height}, {what}, of {count}, {}", self.output, duration(took));
         if self.output == STANDARD_OUTPUT || self.stats.as_deref() == Some(STANDARD_OUTPUT) {
             console::print_message(&line);
             return Ok(());
@@ -254,7 +255,7 @@ impl Merge {
                 json!({"mean": film.mean, "hash": film.hash, "clamped": ClampStats::of(film)})
             }
             MergeOutput::Picture(FilmSummary { hash, mean, .. }, _) => json!({"mean": mean, "hash": hash}),
-            MergeOutput::Part(_) => serde_json::Value::Null,
+            MergeOutput::PartialRender(_) => serde_json::Value::Null,
         };
         let sample_counts = if let MergeOutput::Picture(_, sample_counts) = merged { *sample_counts } else { None };
         let mut json = json!({
@@ -264,7 +265,7 @@ impl Merge {
             "samples": sample_counts.map_or(picture.samples, |sample_counts| sample_counts.max),
             "finished": picture.finished,
             "camera": stats::camera(picture.viewpoint.as_ref()),
-            "parts": self.parts.len(),
+            "parts": self.partial_renders.len(),
             "seconds": {"total": seconds},
             "film": film,
         });

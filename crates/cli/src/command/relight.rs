@@ -19,7 +19,7 @@ use std::time::Instant;
 /// Flags of `juggler relight`.
 #[derive(Debug, Args)]
 pub struct Relight {
-    /// All parts (.jfilm) of a picture rendered with `--aov light_groups`, in any order
+    /// All partial renders (.jfilm) of a picture rendered with `--aov light_groups`, in any order
     #[arg(required = true, value_name = "FILM")]
     films: Vec<String>,
     /// Factors of light groups, such as key=2,fill=#ffc080

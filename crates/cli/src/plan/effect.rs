@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn flags_of_levels_are_refused_where_light_is_kept() {
+    fn display_flags_are_rejected_for_scene_referred_formats() {
         for flag in ["--tone agx", "--exposure 1", "--white-balance 3200", "--look ham", "--dither on"] {
             let name = flag.split(' ').next().unwrap();
             for ending in ["exr", "hdr", "pfm"] {
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_and_denoising_need_what_they_act_on() {
+    fn max_depth_needs_an_integrator_with_depth_and_denoising_two_samples() {
         let acts = |integrator: &str, samples: u32, settings: &Settings| {
             let render = format!(r#"{{"integrator": "{integrator}", "samples": {samples}}}"#);
             let scene = Scene::from_json(format!(r#"{{"version": 1, "render": {render}}}"#), "a.json").unwrap();

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn clusters_say_which_shard_it_is() {
+    fn cluster_variables_give_the_shard_index() {
         for name in INDICES {
             assert_eq!(auto(&[(name, "3")]), Ok(Shard { index: 3, count: 4 }));
         }

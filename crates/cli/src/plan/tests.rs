@@ -68,7 +68,7 @@ fn webps_are_pictures_unless_frames_go_into_one() {
 }
 
 #[test]
-fn frames_are_shared_in_turns() {
+fn shards_get_frames_in_turn() {
     for output in ["f_##.png", "f.gif"] {
         let frames = |shard: &str| {
             let frame_outputs =
@@ -104,7 +104,7 @@ fn partial_renders_are_known_by_their_ending_and_keep_a_film() {
 }
 
 #[test]
-fn moments_become_shots() {
+fn times_and_frames_become_frame_outputs() {
     let frame_outputs = |line: &str| plan(line).unwrap().frame_outputs(30, 24.0).unwrap();
     let frames = |line: &str| frame_outputs(line).iter().map(|frame_output| frame_output.frame).collect::<Vec<_>>();
     assert_eq!(frames("a"), [0.0]);
@@ -128,7 +128,7 @@ fn standard_output_holds_one_output() {
 }
 
 #[test]
-fn flags_that_exclude_each_other() {
+fn mutually_exclusive_flags_are_rejected() {
     for line in ["a --frame 1 --at 2", "a --frame 1 --frames 1..2", "a --frames 1..2 --at 1", "a -q --progress bar"] {
         assert!(RenderArgs::from_words(line.split(' ')).is_err(), "{line}");
     }

@@ -33,7 +33,7 @@ fn limits_of_time_and_noise_are_reported() {
 }
 
 #[test]
-fn a_time_limit_is_what_a_render_goes_by() {
+fn progress_follows_the_time_limit() {
     let control = Control::default();
     let Some(start) = Instant::now().checked_sub(Duration::from_secs(4)) else { return };
     let snapshot = Snapshot::at(&control, &Goal::Time(Duration::from_secs(10), u64::MAX), start, None);
@@ -42,7 +42,7 @@ fn a_time_limit_is_what_a_render_goes_by() {
 }
 
 #[test]
-fn frames_have_their_time_together() {
+fn remaining_time_is_estimated_over_all_frames() {
     let second = FrameProgress::new(4).after(Some(Duration::from_secs(10)));
     assert_eq!(second.left(0.5, Duration::from_secs(5)), Some(Duration::from_secs(25)));
     assert_eq!(second.fraction(0.5), 0.375);
@@ -57,7 +57,7 @@ fn frames_have_their_time_together() {
 }
 
 #[test]
-fn nothing_rendered_is_nothing_known() {
+fn no_samples_give_no_estimate() {
     let snapshot = Snapshot::at(&Control::default(), &Goal::Samples(100), Instant::now(), None);
     assert!(snapshot.fraction == 0.0 && snapshot.eta.is_none());
 }

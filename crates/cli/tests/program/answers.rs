@@ -93,7 +93,7 @@ fn built_in_scenes_are_listed_and_render() {
 }
 
 #[test]
-fn what_is_in_a_scene() {
+fn info_describes_a_scene() {
     let folder = Folder::new();
     let words = folder.good("info ball.json").stdout;
     assert!(words.starts_with("Ball") && words.contains("main, top") && words.contains("4 frames, 2 s"), "{words}");
@@ -201,7 +201,7 @@ fn comparisons_answer_with_their_status() {
 }
 
 #[test]
-fn comparisons_tell_how_different_pictures_look_and_where() {
+fn compare_reports_the_perceived_difference_and_its_location() {
     let folder = Folder::new();
     for (name, flags) in [("a.pfm", ""), ("b.exr", "--seed 1"), ("a.png", ""), ("b.png", "--exposure 1")] {
         folder.good(&format!("render ball.json -q -o {name} {flags}"));
@@ -232,7 +232,7 @@ fn comparisons_tell_how_different_pictures_look_and_where() {
 }
 
 #[test]
-fn nobody_listening_is_no_failure() {
+fn closed_standard_output_is_no_error_for_text() {
     let folder = Folder::new();
     for line in ["schema", "--help", "scenes"] {
         let mut child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -243,7 +243,7 @@ fn nobody_listening_is_no_failure() {
 }
 
 #[test]
-fn a_reader_of_the_picture_that_goes_away_is_a_failure_but_no_panic() {
+fn closed_standard_output_is_an_error_for_a_picture() {
     let folder = Folder::new();
     let mut command = folder.command("render ball.json --size 400x400 --samples 1 -q -o - --format pfm");
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -257,7 +257,7 @@ fn a_reader_of_the_picture_that_goes_away_is_a_failure_but_no_panic() {
 const COLORED: [&str; 2] = ["render jugler", "render ball.json --size 3"];
 
 #[test]
-fn no_color_without_a_terminal() {
+fn output_without_a_terminal_has_no_color() {
     let folder = Folder::new();
     for line in [COLORED[0], COLORED[1], "render ball.json --progress bar"] {
         let output = folder.command(line).output().unwrap();
@@ -267,7 +267,7 @@ fn no_color_without_a_terminal() {
 
 #[cfg(unix)]
 #[test]
-fn color_on_a_terminal_unless_it_is_not_wanted() {
+fn output_on_a_terminal_has_color_unless_disabled() {
     let folder = Folder::new();
     for line in COLORED {
         for (variable, colored) in
@@ -282,7 +282,7 @@ fn color_on_a_terminal_unless_it_is_not_wanted() {
 
 #[cfg(unix)]
 #[test]
-fn a_terminal_gets_no_picture() {
+fn pictures_are_not_written_to_a_terminal() {
     let folder = Folder::new();
     folder.good("render ball.json -q -o a.jfilm");
     for line in ["render ball.json -o -", "merge a.jfilm -o -"] {
@@ -374,7 +374,7 @@ fn rays_are_measured_on_built_in_meshes_and_on_files() {
 }
 
 #[test]
-fn a_warning_is_no_reason_to_say_no() {
+fn check_accepts_scenes_with_warnings() {
     let folder = Folder::new();
     fs::write(folder.path("plain.json"), r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#).unwrap();
     assert!(folder.good("check plain.json").stdout.contains("no mistakes"));

@@ -102,7 +102,7 @@ fn partial_renders_of_other_motion_do_not_merge() {
 }
 
 #[test]
-fn files_say_from_where_the_picture_was_taken() {
+fn files_contain_camera_matrices() {
     let folder = Folder::new();
     let stats = folder.good(&format!("render {BALL} -o a.exr -q --stats -")).stdout;
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
@@ -123,7 +123,7 @@ fn files_say_from_where_the_picture_was_taken() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn invalid_aov_flags_are_reported() {
     let folder = Folder::new();
     for (line, said) in [
         ("render ball.json --aov dept", "did you mean `depth`"),
@@ -144,7 +144,7 @@ fn what_cannot_be_is_said() {
 }
 
 #[test]
-fn lights_are_mixed_anew_without_a_ray() {
+fn relighting_needs_no_rays() {
     let folder = Folder::new();
     let scene = |key: f64, color: &str| {
         let lights = format!(
@@ -178,7 +178,7 @@ fn lights_are_mixed_anew_without_a_ray() {
 }
 
 #[test]
-fn noise_is_taken_out_the_same_way_by_shards() {
+fn merged_shards_denoise_like_the_whole() {
     let folder = Folder::new();
     let line = format!("render {BALL} --denoise");
     let noisy = folder.hash(&format!("{BALL} -o noisy.pfm"));

@@ -15,7 +15,7 @@ fn refused(lines: &[&str]) {
 }
 
 #[test]
-fn wrong_tones() {
+fn invalid_tone_flags_are_rejected() {
     let folder = Folder::new();
     for line in [
         "render ball.json --white-balance warm",
@@ -35,7 +35,7 @@ fn wrong_tones() {
 }
 
 #[test]
-fn wrong_command_lines() {
+fn invalid_command_lines_are_rejected() {
     refused(&[
         "",
         "rendr",
@@ -64,7 +64,7 @@ fn wrong_command_lines() {
 }
 
 #[test]
-fn wrong_colors_and_files() {
+fn invalid_colors_and_files_are_rejected() {
     refused(&[
         "render ball.json --tone sepia",
         "render ball.json --bits 12",
@@ -79,7 +79,7 @@ fn wrong_colors_and_files() {
 }
 
 #[test]
-fn rays_that_cannot_be_measured() {
+fn invalid_ray_benchmarks_are_rejected() {
     let folder = Folder::new();
     for line in ["blob:0", "blob:3 --kind primery", "blob:3 --kernel packet,none", "blob:3 --quality good"] {
         folder.bad(&format!("bench rays {line}"), 2);
@@ -95,7 +95,7 @@ fn rays_that_cannot_be_measured() {
 }
 
 #[test]
-fn names_that_were_probably_meant() {
+fn misspelled_scenes_get_suggestions() {
     let folder = Folder::new();
     let message = folder.bad("render jugler", 2);
     assert_eq!(
@@ -110,7 +110,7 @@ fn names_that_were_probably_meant() {
 }
 
 #[test]
-fn files_that_cannot_be() {
+fn unwritable_and_unreadable_files_are_reported() {
     let folder = Folder::new();
     fs::create_dir(folder.path("folder.png")).unwrap();
     fs::write(folder.path("junk.png"), "no picture").unwrap();
@@ -146,7 +146,7 @@ fn full_disks_are_failures_of_the_system() {
 }
 
 #[test]
-fn scenes_with_mistakes() {
+fn scene_errors_are_reported_with_file_and_line() {
     let folder = Folder::new();
     fs::write(folder.path("bad.json"), "{\"version\": 1,\n \"objects\": [{\"shape\": {\"spere\": {}}}]}").unwrap();
     for (command, status) in [("render", 2), ("info", 2), ("check", 1)] {
@@ -162,7 +162,7 @@ fn scenes_with_mistakes() {
 }
 
 #[test]
-fn too_little_memory_is_said_before_rendering() {
+fn too_little_memory_is_reported_before_rendering() {
     let folder = Folder::new();
     let message = folder.bad("render ball.json --size 20000x20000 -o a.jpg --max-memory 512M", 2);
     assert!(message.contains("512.0 MiB") && message.contains("GiB") && message.contains("JPEG"), "{message}");
@@ -202,7 +202,7 @@ fn flags_that_cannot_act_are_refused_and_settings_warned_of() {
 }
 
 #[test]
-fn errors_say_what_helps() {
+fn errors_suggest_a_remedy() {
     let folder = Folder::new();
     for (line, said) in [
         ("render ball.json -o a.webm", ".mp4"),

@@ -31,7 +31,7 @@ const WORDS: [(&str, &str); 4] = [
 ];
 
 #[test]
-fn what_is_no_file_is_refused_by_every_reader() {
+fn every_reader_rejects_pipes_and_folders() {
     let folder = folder();
     for (name, words) in WORDS {
         for line in [
@@ -60,7 +60,7 @@ fn what_is_no_file_is_refused_by_every_reader() {
 }
 
 #[test]
-fn scenes_name_what_is_no_file() {
+fn scenes_report_referenced_pipes_and_folders() {
     let folder = folder();
     for (name, words) in WORDS {
         let scenes = [
@@ -103,7 +103,7 @@ fn comparing_and_merging_keep_to_a_budget() {
         assert!(message.contains("of memory, more than --max-memory 1.0 MiB"), "{line}: {message}");
     }
     let message = folder.bad("merge good.jfilm -o a.jfilm --max-memory 1M", 2);
-    assert!(message.contains("merging the parts needs about"), "{message}");
+    assert!(message.contains("merging the partial renders needs about"), "{message}");
     // FLIP needs most memory; without room for it, the other results are printed.
     folder.good("render ball.json --size 400x300 --samples 1 -o a.pfm");
     folder.good("render ball.json --size 400x300 --samples 1 --seed 2 -o b.pfm");

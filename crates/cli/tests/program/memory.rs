@@ -101,7 +101,7 @@ fn a_large_picture_fits_into_little_memory() {
 }
 
 #[test]
-fn a_mesh_fits_where_its_tree_does() {
+fn memory_of_a_mesh_includes_its_hierarchy() {
     let folder = with_mesh(400);
     // The mesh has 320,000 triangles.
     fits(&folder, "mesh.json --size 64x36 --samples 1 -o a.png", budget(58), 2);
@@ -196,7 +196,7 @@ fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
 
 /// Limits memory by a control group, if the system allows its creation.
 #[test]
-fn a_control_group_holds_it() {
+fn render_stays_within_a_control_group() {
     let folder = with_mesh(300);
     let most = format!("MemoryMax={}", budget(64));
     let line = format!("render mesh.json --size 2000x2000 --samples 1 -o a.png --quiet --max-memory {}", budget(64));

@@ -77,7 +77,7 @@ fn partial_renders_merge_into_the_whole_picture() {
     folder.good("merge 0.jfilm -o whole.png");
     let parts = shards(&folder, 3);
     let line = folder.good(&format!("merge {parts} -o parts.png")).stdout;
-    assert!(line.starts_with("parts.png: 70x40, 40 samples, of 3 parts, "), "{line}");
+    assert!(line.starts_with("parts.png: 70x40, 40 samples, of 3 partial renders, "), "{line}");
     assert_eq!(fs::read(folder.path("whole.png")).unwrap(), fs::read(folder.path("parts.png")).unwrap());
     // Through a larger partial render, and to standard output.
     let line = folder.good("merge 2.jfilm 0.jfilm -o some.jfilm").stdout;

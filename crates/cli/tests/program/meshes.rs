@@ -19,7 +19,7 @@ fn with_floor() -> Folder {
 }
 
 #[test]
-fn info_of_a_mesh() {
+fn info_describes_a_mesh() {
     let folder = with_floor();
     let words = folder.good("info floor.obj").stdout;
     for said in [
@@ -46,7 +46,7 @@ fn info_of_a_mesh() {
 }
 
 #[test]
-fn a_mesh_that_cannot_be_read() {
+fn unreadable_mesh_is_reported() {
     let folder = Folder::new();
     fs::write(folder.path("broken.ply"), "ply\nformat ascii 1.0\nelement x\n").unwrap();
     assert!(
@@ -82,7 +82,7 @@ fn objects_share_a_mesh_and_its_hierarchy() {
 
 /// A mesh can be rendered and checked like a scene, and converts to a scene with the same picture.
 #[test]
-fn a_mesh_in_place_of_a_scene() {
+fn mesh_is_rendered_like_a_scene() {
     let folder = Folder::new();
     fs::write(folder.path("tri.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     folder.good("render tri.obj --size 24x18 --samples 2 --quiet");

@@ -95,7 +95,7 @@ fn interrupted(folder: &Folder, line: &str) -> String {
 }
 
 #[test]
-fn a_frame_under_way_goes_on_too() {
+fn interrupted_frame_of_a_movie_is_resumed() {
     let folder = Folder::new();
     let line = "render ball.json --size 160x120 --frames 0..1 --samples 20000 --threads 1 -o film.apng";
     let log = interrupted(&folder, line);
@@ -172,7 +172,7 @@ fn a_movie_is_made_by_one_process_at_a_time() {
 }
 
 #[test]
-fn numbered_pictures_that_are_there_are_left() {
+fn existing_numbered_pictures_are_not_rendered_again() {
     let folder = Folder::new();
     for ending in ["png", "exr", "hdr"] {
         let line = format!("{LINE} --frames 0..3 -o f_#.{ending}");

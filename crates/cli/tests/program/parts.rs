@@ -8,7 +8,7 @@ use std::process::Stdio;
 const BALL: &str = "ball.json --size 48x36";
 
 #[test]
-fn a_checkpoint_changes_nothing_and_is_gone_on_with() {
+fn resuming_from_a_checkpoint_gives_the_same_bits() {
     let folder = Folder::new();
     let straight = |samples: u32| {
         folder.good(&format!("render {BALL} --samples {samples} -o straight.png -q"));
@@ -26,7 +26,7 @@ fn a_checkpoint_changes_nothing_and_is_gone_on_with() {
 }
 
 #[test]
-fn logs_say_what_was_there_already() {
+fn logs_report_resumed_samples() {
     let folder = Folder::new();
     let said = |flags: &str| {
         let line = format!("render {BALL} --checkpoint kept.jfilm -o part.jfilm {flags}");
@@ -38,7 +38,7 @@ fn logs_say_what_was_there_already() {
 }
 
 #[test]
-fn another_picture_does_not_go_on() {
+fn checkpoint_of_another_picture_is_rejected() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --samples 16 -q --checkpoint kept.jfilm"));
     let kept = fs::read(folder.path("kept.jfilm")).unwrap();
@@ -86,7 +86,7 @@ fn an_interrupted_render_keeps_its_work() {
 }
 
 #[test]
-fn shards_make_the_picture() {
+fn merged_shards_equal_the_whole_picture() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --samples 40 -o straight.png -q"));
     for count in [2, 5] {
@@ -129,7 +129,7 @@ fn with_killed_shards(folder: &Folder, picture: &str) -> bool {
 }
 
 #[test]
-fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
+fn killed_shards_are_rendered_again_and_duplicate_shards_named() {
     // Use more samples on fast machines, until the shards are killed before they finish.
     let found = [400, 1600, 6400, 25_600].into_iter().find_map(|samples| {
         let folder = Folder::new();
@@ -202,7 +202,7 @@ fn noise_targets_give_one_picture_on_any_threads_and_shards() {
 }
 
 #[test]
-fn a_picture_ended_by_time_is_made_again_from_its_counts() {
+fn time_limited_picture_is_reproduced_from_its_sample_counts() {
     let folder = Folder::new();
     let stats: Value = folder.stats(&format!("{BALL} --time 0.3 -o timed.png --checkpoint timed.jfilm"));
     assert!(stats["seconds"]["render"].as_f64().unwrap() < 10.0);
@@ -225,7 +225,7 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
 }
 
 #[test]
-fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
+fn unwritable_checkpoint_does_not_lose_the_picture() {
     let folder = Folder::new();
     // A limit on file sizes stands for a full disk: the picture fits, the checkpoint does not.
     let program = env!("CARGO_BIN_EXE_juggler");

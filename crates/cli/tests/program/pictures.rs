@@ -100,7 +100,7 @@ fn a_crop_is_a_rectangle_of_the_picture() {
 }
 
 #[test]
-fn what_flags_change_and_what_they_do_not() {
+fn only_flags_that_affect_the_samples_change_the_hash() {
     let folder = Folder::new();
     let plain = folder.hash("ball.json");
     for same in
@@ -170,7 +170,7 @@ fn a_converted_scene_is_the_same_picture() {
 /// Regression test: transforms that stretch a flat shape beyond what single precision can invert
 /// made rays hit the same shape forever.
 #[test]
-fn extreme_scales_end() {
+fn renders_of_extreme_scales_terminate() {
     let folder = Folder::new();
     let shapes = ["\"disk\"", "\"rectangle\"", r#"{"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 0, 1]]}}"#];
     for (shape, scale) in shapes.iter().flat_map(|shape| ["1e24", "1e27", "1e30"].map(|scale| (shape, scale))) {

@@ -11,7 +11,7 @@ fn json(text: &str) -> Value {
 }
 
 #[test]
-fn a_probe_is_the_pixel_that_render_makes() {
+fn probe_equals_the_rendered_pixel() {
     let folder = Folder::new();
     for flags in ["", "--seed 7", "--frame 2", "--at 1", "--camera top", "--integrator classic", "--integrator normals"]
     {
@@ -28,7 +28,7 @@ fn a_probe_is_the_pixel_that_render_makes() {
 }
 
 #[test]
-fn a_probe_says_why_in_words() {
+fn probe_explains_a_pixel() {
     let folder = Folder::new();
     let said = folder.good(&format!("probe {BALL} 12,9")).stdout;
     for part in [
@@ -56,7 +56,7 @@ fn a_probe_says_why_in_words() {
 }
 
 #[test]
-fn probes_of_what_is_not_there_are_refused() {
+fn probes_outside_the_picture_are_rejected() {
     let folder = Folder::new();
     for (line, said) in [
         ("probe ball.json 16,0", "X is 0 to 15, Y is 0 to 8"),

@@ -36,7 +36,7 @@ fn get(host: &str, path: &str) -> String {
 }
 
 #[test]
-fn it_says_where_it_is_and_ends_by_a_signal() {
+fn serve_prints_its_url_and_ends_by_a_signal() {
     for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
         let folder = Folder::new();
         let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --threads 1");
@@ -63,7 +63,7 @@ fn other_machines_need_a_flag_and_a_token() {
 }
 
 #[test]
-fn a_token_can_be_done_without_on_this_machine_alone() {
+fn token_may_be_disabled_only_on_loopback() {
     let folder = Folder::new();
     let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --no-token --threads 1");
     let host = url.strip_suffix('/').unwrap();
@@ -74,7 +74,7 @@ fn a_token_can_be_done_without_on_this_machine_alone() {
 }
 
 #[test]
-fn what_cannot_be_served_is_said() {
+fn unservable_scenes_and_busy_ports_are_reported() {
     let folder = Folder::new();
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let message = folder.bad(&format!("serve ball.json --addr {}", taken.local_addr().unwrap()), 3);

@@ -22,7 +22,7 @@ fn interrupt(folder: &Folder, signal: &str) -> Run {
 }
 
 #[test]
-fn an_interrupted_render_leaves_what_was_there() {
+fn interrupted_render_keeps_existing_files() {
     for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
         let folder = Folder::new();
         fs::write(folder.path("out.png"), "old").unwrap();
@@ -35,7 +35,7 @@ fn an_interrupted_render_leaves_what_was_there() {
 }
 
 #[test]
-fn progress_comes_while_it_renders() {
+fn progress_is_reported_during_the_render() {
     let folder = Folder::new();
     let line = "render ball.json --samples 1000000 --size 200x200 -o out.png --progress json";
     let mut child = folder.command(line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
@@ -86,7 +86,7 @@ fn ignores_hangups() -> bool {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_that_goes_away_ends_a_render_in_order() {
+fn hangup_of_the_terminal_ends_a_render_cleanly() {
     if !ignores_hangups() {
         let folder = Folder::new();
         let run = interrupt(&folder, "-HUP");
@@ -96,7 +96,7 @@ fn a_terminal_that_goes_away_ends_a_render_in_order() {
 }
 
 #[test]
-fn what_a_killed_render_left_goes_with_the_next_that_succeeds() {
+fn next_successful_render_removes_files_of_a_killed_render() {
     let folder = Folder::new();
     assert_eq!(interrupt(&folder, "-KILL").status, -1);
     assert_eq!(folder.files(), [".out.png.part"]);

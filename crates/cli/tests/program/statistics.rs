@@ -9,7 +9,7 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_keys_are_those_that_were_promised() {
+fn statistics_have_the_documented_keys() {
     let folder = Folder::new();
     folder.good("render ball.json --stats stats.json --threads 2");
     let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("stats.json")).unwrap()).unwrap();
@@ -47,7 +47,7 @@ fn the_keys_are_those_that_were_promised() {
 }
 
 #[test]
-fn the_fingerprint_is_one_of_everything_that_decides_the_pixels() {
+fn fingerprint_covers_everything_that_affects_pixels() {
     let folder = Folder::new();
     let fingerprint =
         |flags: &str| folder.stats(&format!("ball.json {flags}"))["fingerprint"].as_str().unwrap().to_owned();
@@ -81,7 +81,7 @@ fn progress_is_a_stream_of_events() {
 }
 
 #[test]
-fn what_clamping_removes_is_always_reported() {
+fn radiance_removed_by_clamping_is_always_reported() {
     let folder = Folder::new();
     let integrator = r#""integrator": {"path": {"max_depth": 5, "clamp_direct": 0.4, "clamp_indirect": 0.02}}"#;
     let scene = SCENE.replace(r#""samples": 2"#, &format!(r#""samples": 2, {integrator}"#));

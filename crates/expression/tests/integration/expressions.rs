@@ -25,7 +25,7 @@ fn error(text: &str) -> (Range<usize>, String, Option<String>) {
 }
 
 #[test]
-fn binds_as_in_school() {
+fn operators_have_the_precedence_of_mathematics() {
     for (text, expected) in [
         ("1 + 2 * 3", 7.0),
         ("(1 + 2) * 3", 9.0),
@@ -72,7 +72,7 @@ fn functions_have_their_known_values() {
 }
 
 #[test]
-fn says_where_and_what() {
+fn errors_state_position_and_cause() {
     assert_eq!(error("1 + farme"), (4..9, "nothing is called `farme`".into(), Some("did you mean `frame`?".into())));
     assert_eq!(error("sni(1)").2, Some("did you mean `sin`?".into()));
     assert_eq!(error("1 +"), (3..3, "a number is missing here".into(), None));
@@ -97,13 +97,13 @@ fn vectors_are_used_by_component() {
 }
 
 #[test]
-fn what_uses_a_mistake_is_no_other_mistake() {
+fn expressions_with_an_invalid_input_report_no_second_error() {
     assert_eq!(evaluate("1 / (broken.x - 1)", &names(0.0)), Ok(None));
     assert!(evaluate("broken +", &names(0.0)).is_err());
 }
 
 #[test]
-fn mentions_its_names() {
+fn inputs_are_listed_once_with_their_position() {
     let program = Program::parse("sin(ball.x) + 2 * frame * ball.x + ball.y").unwrap();
     let inputs: Vec<_> = program.inputs().iter().map(|input| (&*input.name, input.component.as_deref())).collect();
     assert_eq!(inputs, [("ball", Some("x")), ("frame", None), ("ball", Some("y"))]);
@@ -136,7 +136,7 @@ fn the_first_error_is_reported() {
 }
 
 #[test]
-fn is_bounded() {
+fn hostile_expressions_are_bounded() {
     for hostile in ["(".repeat(4000), "-".repeat(4000), "1^".repeat(2000), "sin(".repeat(1000), "1".repeat(5000)] {
         assert!(evaluate(&hostile, &Names::default()).is_err());
     }

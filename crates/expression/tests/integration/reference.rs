@@ -181,7 +181,7 @@ fn names() -> Names {
 }
 
 #[test]
-fn compiled_expressions_have_the_bits_of_a_tree() {
+fn compiled_expressions_equal_tree_evaluation_bit_for_bit() {
     const COUNT: usize = 20_000;
     let (mut random, names, mut evaluator) = (Random::new(61), names(), PointEvaluator::default());
     let (mut finite, mut longest) = (0, 0);

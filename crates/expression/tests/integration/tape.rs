@@ -55,7 +55,7 @@ fn a_tape_ends_with_its_result() {
 }
 
 #[test]
-fn missing_inputs_are_no_numbers() {
+fn missing_inputs_evaluate_to_nan() {
     let program = Program::parse("x + y").unwrap();
     let mut evaluator = PointEvaluator::default();
     assert_eq!(evaluator.evaluate(&program, &[1.0, 2.0]), 3.0);
@@ -63,7 +63,7 @@ fn missing_inputs_are_no_numbers() {
 }
 
 #[test]
-fn operations_have_their_results() {
+fn operations_have_known_results() {
     assert_eq!(Unary::Sign.apply(-0.0).to_bits(), (-0.0f64).to_bits());
     assert_eq!(Binary::Modulo.apply([-1.0, 4.0]), 3.0);
     assert_eq!(Ternary::If.apply([f64::NAN, 1.0, 2.0]), 1.0);

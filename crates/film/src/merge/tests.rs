@@ -113,7 +113,7 @@ fn shuffle<T>(items: &mut [T], random: &mut Random) {
 }
 
 #[test]
-fn shards_in_any_order_are_the_whole() {
+fn shards_merge_in_any_order_to_the_whole_film() {
     let mut random = Random::new(3);
     let expected = whole();
     for count in 1..=7 {
@@ -153,7 +153,7 @@ fn clamped_energy_is_summed_over_all_partial_renders() {
 }
 
 #[test]
-fn any_cut_and_any_way_of_joining_is_the_whole() {
+fn any_partition_and_merge_order_gives_the_whole_film() {
     let mut random = Random::new(4);
     let expected = whole();
     let tiling = Tiling::new(REGION);
@@ -260,7 +260,7 @@ fn missing_samples_of_partial_renders_without_shards_are_named() {
 }
 
 #[test]
-fn the_same_file_twice_is_doubled() {
+fn merging_a_file_twice_is_rejected_as_repeated_samples() {
     let folder = Folder::new();
     let file = folder.shard(0, 1);
     let tiles = Tiling::new(REGION).tile_count();
@@ -325,14 +325,14 @@ fn crops_are_partial_renders_too() {
 }
 
 #[test]
-fn a_single_partial_render_that_is_no_whole_picture_is_named() {
+fn merging_a_single_shard_names_the_missing_shards() {
     let folder = Folder::new();
     let message = folder.problems(&[folder.shard(1, 2)]);
     assert_eq!(message, "the partial render `1.jfilm` cannot be merged:\n  still to do: shard 0 of 2 (--shard 0/2)");
 }
 
 #[test]
-fn nothing_is_no_picture() {
+fn merging_no_files_is_an_error() {
     let error = Merge::open::<PathBuf>(&[], MergeGoal::Whole).unwrap_err();
     assert_eq!(error.to_string(), "the partial renders cannot be merged:\n  no partial render was given");
 }

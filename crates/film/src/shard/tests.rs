@@ -83,7 +83,7 @@ fn shards_cost_about_the_same() {
 }
 
 #[test]
-fn a_costly_region_is_shared() {
+fn costly_regions_are_balanced_between_shards() {
     // A corner of a hundred times the cost, and stripes one tile wide.
     let corner = |pixels: &Rect| if pixels.x < 400 && pixels.y < 300 { 100.0 } else { 1.0 };
     let columns = |pixels: &Rect| if (pixels.x / TILE_EDGE).is_multiple_of(2) { 100.0 } else { 1.0 };
@@ -113,7 +113,7 @@ fn neighbors_are_assigned_to_different_shards() {
 }
 
 #[test]
-fn noise_and_time_leave_samples_together() {
+fn shards_do_not_split_samples_with_noise_or_time_limits() {
     let small = work(20, 20, 0..4096);
     assert!(small.shard(0, 8).iter().all(|unit| unit.samples.len() < 4096));
     for stop in [Stop::Noise { level: 0.1 }, Stop::Time { seconds: 5.0 }] {
@@ -135,7 +135,7 @@ fn the_plan_never_changes() {
 }
 
 #[test]
-fn frames_are_whole_as_far_as_that_goes() {
+fn shards_get_whole_frames_and_split_only_the_remainder() {
     let of = |index, count| frames(10..17, index, count);
     let whole = |frame| FrameShard { frame, index: 0, count: 1 };
     let cut = |index| FrameShard { frame: 16, index, count: 3 };

@@ -68,7 +68,7 @@ fn a_blurred_picture_is_the_mean_of_its_instants() {
 }
 
 #[test]
-fn what_decides_a_blurred_picture_is_in_its_fingerprint() {
+fn fingerprints_include_frame_and_shutter() {
     let of = |frame: f64, shutter: [f64; 2]| {
         let settings = Settings { shutter: Some(shutter), ..Settings::default() };
         picture(frame, &settings).fingerprint().hash()

@@ -105,7 +105,7 @@ fn more_than_a_billion_triangles_need_little_memory() {
 /// Eighteen nested groups, all worth instancing: the innermost levels are instanced and the others
 /// expanded, because the nesting depth is limited.
 #[test]
-fn levels_within_levels_have_an_end() {
+fn nesting_depth_of_instances_is_limited() {
     let spheres = || (0..15_u16).map(|i| Object::new(Sphere { radius: 0.3 }).at(f32::from(i), 0.0, 0.0));
     let mut scene = Scene::new().size(16, 9).samples(1).group("g0", spheres().chain(spheres()));
     for i in 1..18 {

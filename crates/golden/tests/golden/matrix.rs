@@ -153,7 +153,7 @@ fn map_parallel<T: Send>(names: &[&str], call: impl Fn(&str) -> T + Sync) -> Vec
 }
 
 #[test]
-fn one_scene_one_hash() {
+fn scene_hashes_do_not_depend_on_threads_shards_or_vector_units() {
     report_missing_simd_levels();
     let wide = std::env::var_os("JUGGLER_MATRIX").is_some_and(|value| value == "wide");
     let test_size = if wide { &WIDE } else { &NARROW };
@@ -172,7 +172,7 @@ fn one_scene_one_hash() {
 }
 
 #[test]
-fn noise_gives_one_hash_too() {
+fn noise_limited_hashes_do_not_depend_on_threads_or_shards() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["step-12b", "depth-of-field", "cornell-cube"] {
         let test_size = TestSize { width: 48, samples: 256, ..NARROW };

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_does_not_add_up() {
+    fn rounded_frame_times_do_not_drift() {
         assert_eq!((0..4).map(|frame| ticks_until(frame, 100.0, 30.0)).collect::<Vec<_>>(), [0, 3, 7, 10]);
         assert_eq!(ticks_until(u32::MAX, 1000.0, 1000.0), u64::from(u32::MAX));
     }

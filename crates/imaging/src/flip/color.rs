@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_opponents_and_back_is_none() {
+    fn opponent_color_transform_is_invertible() {
         let filters = ColorFilters::new(67.0);
         let light = [0.3, 0.7, 0.1];
         let [x, y, z] = product(&filters.to_xyz, light);

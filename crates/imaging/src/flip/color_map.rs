@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_becomes_ever_brighter() {
+    fn color_map_has_increasing_luminance() {
         let shades: Vec<f32> = (0..=1000).map(|i| color(i as f32 / 1000.0).luminance()).collect();
         assert!(shades.windows(2).all(|pair| pair[0] < pair[1]));
         assert!(color(f32::NAN) == color(0.0) && color(2.0) == color(1.0) && color(-1.0) == color(0.0));

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_step_is_an_edge_and_a_flat_place_is_nothing() {
+    fn feature_detector_finds_edges_and_ignores_flat_regions() {
         let filters = FeatureFilters::new(67.0);
         let step = Plane { width: 40, values: (0..1600).map(|i| if i % 40 < 20 { 0.0 } else { 1.0 }).collect() };
         let flat = Plane { width: 40, values: vec![0.7; 1600] };

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_brightest_and_the_median_are_shown_well() {
+    fn exposures_range_from_the_brightest_pixel_to_the_median() {
         assert!((tone_mapped(inverse_tone_curve()) - 0.85).abs() < 1e-5);
         let pixels = [0.01_f32, 0.02, 0.5, 3.0, 40.0].map(Rgb::splat);
         let exposures = Exposures::from_reference(pixels.into_iter());

@@ -116,7 +116,7 @@ fn measured(pair: &Pair) -> f64 {
 }
 
 #[test]
-fn the_authors_evaluator_says_the_same() {
+fn flip_matches_the_reference_implementation() {
     let folder = std::env::var("JUGGLER_FLIP_PICTURES").ok();
     for pair in ldr().into_iter().chain(hdr()) {
         if let Some(folder) = &folder {
@@ -137,7 +137,7 @@ fn keep(folder: &Path, pair: &Pair) {
 }
 
 #[test]
-fn the_same_is_no_difference_and_opposites_are_the_largest() {
+fn flip_of_equal_images_is_0_and_of_opposite_colors_the_maximum() {
     for range in [DynamicRange::Ldr, DynamicRange::Hdr] {
         let picture = image(|place| spots(place, 0, 20.0));
         let found = flip(&picture, &picture, range, PIXELS_PER_DEGREE).unwrap();
@@ -162,7 +162,7 @@ fn maps_are_where_the_difference_is() {
 }
 
 #[test]
-fn odd_numbers_and_sizes_do_no_harm() {
+fn nonfinite_pixels_and_odd_sizes_give_valid_maps() {
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30];
     let picture = image(|[x, _]| Rgb::splat(odd[x as usize % 5]));
     for range in [DynamicRange::Ldr, DynamicRange::Hdr] {

@@ -31,7 +31,7 @@ fn written(path: &Path, header: &LayeredHeader, pieces: &[usize]) {
 }
 
 #[test]
-fn parts_are_what_an_independent_reader_finds() {
+fn multipart_exr_is_read_by_an_independent_reader() {
     let folder = tempfile::tempdir().unwrap();
     let header = header(&[("normal", &["X", "Y", "Z"]), ("depth", &["Z"]), ("uv", &["U", "V"])]);
     let (one, two) = (folder.path().join("one.exr"), folder.path().join("two.exr"));
@@ -75,7 +75,7 @@ fn parts_are_what_an_independent_reader_finds() {
 }
 
 #[test]
-fn a_file_for_each_layer_and_arrays_for_numpy() {
+fn layers_are_written_to_separate_files_and_numpy_arrays() {
     let folder = tempfile::tempdir().unwrap();
     let header = header(&[("depth", &["Z"])]);
     written(&folder.path().join("a.{}.npy"), &header, &[30, 7]);
@@ -94,7 +94,7 @@ fn a_file_for_each_layer_and_arrays_for_numpy() {
 }
 
 #[test]
-fn colors_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
+fn only_color_layers_are_converted_to_the_primaries() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let mut plain = header(&[("normal", &["X", "Y", "Z"])]);

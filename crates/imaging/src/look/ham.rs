@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn each_pixel_holds_or_modifies() {
+    fn ham_codes_modify_one_channel_or_select_the_palette() {
         let bytes = picture(61, 40);
         for dithers in [false, true] {
             let image = HamImage::new(&bytes, 61, dithers);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_better_than_sixteen_colors_and_than_greed() {
+    fn ham_encoding_beats_the_palette_and_the_greedy_encoder() {
         let bytes = picture(80, 60);
         let image = HamImage::new(&bytes, 80, false);
         let found = total(image.rows().flatten(), &bytes);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn anything_is_a_picture() {
+    fn ham_encoding_accepts_any_size() {
         for (bytes, width) in [(vec![], 0), (vec![], 5), (vec![1, 2, 3], 1), (vec![200; 3 * 7], 7)] {
             let image = HamImage::new(&bytes, width, true);
             assert_eq!(image.rows().flatten().count(), bytes.len() / 3);

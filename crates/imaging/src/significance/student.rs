@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_and_closed_forms() {
+    fn student_distribution_matches_tables_and_closed_forms() {
         // Table of two-sided quantiles at 5 %, 1 % and 0.1 %.
         let table = [
             (12.706_204_736, 1.0, 0.05),
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn gamma_of_whole_and_half_numbers() {
+    fn log_gamma_matches_factorials_and_half_integers() {
         let factorials = [(1.0, 1.0), (2.0, 1.0), (5.0, 24.0), (11.0, 3_628_800.0), (0.5, std::f64::consts::PI.sqrt())];
         for (x, gamma) in factorials {
             assert!((ln_gamma(x) - f64::ln(gamma)).abs() < 1e-12, "{x}");

@@ -47,7 +47,7 @@ fn chances(law: Law, count: usize, size: [u32; 2]) -> Vec<f64> {
 }
 
 #[test]
-fn chances_of_equals_are_even_and_false_alarms_as_rare_as_promised() {
+fn p_values_of_equal_images_are_calibrated() {
     let even = chances(even, 150, [64, 48]);
     // The test is slightly conservative, since blocks of different sizes are correlated.
     let mean = even.iter().sum::<f64>() / even.len() as f64;
@@ -61,7 +61,7 @@ fn chances_of_equals_are_even_and_false_alarms_as_rare_as_promised() {
 }
 
 #[test]
-fn what_differs_is_found() {
+fn different_images_are_detected() {
     let mut random = Random::new(42);
     let size = [96, 64];
     for law in [even as Law, rare] {
@@ -82,7 +82,7 @@ fn what_differs_is_found() {
 }
 
 #[test]
-fn one_pixel_alone_never_decides() {
+fn single_pixel_never_decides_significance() {
     let mut random = Random::new(43);
     let a = estimate(&mut random, [64, 48], even, scene);
     let mut b = estimate(&mut random, [64, 48], even, scene);
@@ -95,7 +95,7 @@ fn one_pixel_alone_never_decides() {
 }
 
 #[test]
-fn what_has_no_noise_is_the_same_or_not() {
+fn noise_free_images_are_either_equal_or_different() {
     let flat = |value: f32| NoisyImage {
         width: 40,
         height: 20,
@@ -119,7 +119,7 @@ fn what_has_no_noise_is_the_same_or_not() {
 }
 
 #[test]
-fn degrees_of_freedom_of_few_blocks() {
+fn degrees_of_freedom_follow_the_number_of_blocks() {
     for (blocks, expected) in [(0, 0.0), (1, 0.0), (2, 1.0), (4, 2.0), (8, 2.6849), (1 << 20, 3.5)] {
         assert!((degrees_of_freedom(blocks) - expected).abs() < 1e-4, "{blocks}: {}", degrees_of_freedom(blocks));
     }

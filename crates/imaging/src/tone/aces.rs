@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_published_formula() {
+    fn aces_matches_the_published_formula() {
         let mut random = Random::new(8);
         for _ in 0..5_000 {
             let light = random.rgb() * juggler_math::portable::exp2(random.range(-8.0, 6.0));
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn greys_stay_grey_and_rise_to_white() {
+    fn gray_stays_gray_and_rises_to_white() {
         let gray = |v: f32| Aces {}.map(Rgb::splat(v));
         for i in 0..100 {
             let Rgb { r, g, b } = gray(i as f32 * 0.1);

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sigmoid_is_the_one_that_the_polynomial_was_fitted_to() {
+    fn agx_sigmoid_matches_its_closed_form_and_the_published_polynomial() {
         let mut squares = 0.0;
         for i in 0..=1000 {
             let x = f64::from(i) / 1000.0;
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_published_formula() {
+    fn agx_matches_the_published_formula() {
         let mut random = Random::new(10);
         for look in [AgxLook::Base, AgxLook::Punchy, AgxLook::Golden] {
             let mut off = 0.0;
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn middle_grey_is_half_and_greys_stay_grey() {
+    fn middle_gray_maps_to_half_and_gray_stays_gray() {
         let Rgb { r, g, b } = Agx::default().map(Rgb::splat(0.18));
         assert!((portable::powf(g, 1.0 / 2.2) - 0.5).abs() < 1e-4 && (r - g).abs() < 1e-4 && (g - b).abs() < 1e-4);
         let grays: Vec<f32> =

@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn all_thresholds_come_equally_often() {
+    fn dither_thresholds_are_uniform() {
         let mut counts = [0_u32; 256];
         (0..512).for_each(|y| (0..512).for_each(|x| counts[usize::from(threshold(x, y))] += 1));
         let (least, most) = (counts.iter().min().unwrap(), counts.iter().max().unwrap());
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_is_the_value() {
+    fn dithering_preserves_the_mean() {
         // The mean over 64 × 64 pixels equals the value far more closely than with white noise,
         // whose standard deviation is 0.5 / 64.
         for i in 0..=64 {
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn small_places_have_the_right_mean_too() {
+    fn dithering_preserves_local_means() {
         // Means over 8 × 8 pixels of a gradient, as the eye averages them; rounding errs by up to
         // half a level.
         let (width, height) = (256_u32, 64_u32);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_a_level_stays_that_level() {
+    fn dithering_keeps_exact_levels() {
         for tone in [Tone::default(), linear()] {
             let decode = |k: u32| tone.curve.channel_curve().decode(f64::from(k) / 255.0) as f32;
             // Also slightly off the level, as sums of equal samples may be.
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_not_matter_how_rows_come() {
+    fn dithering_does_not_depend_on_row_batches() {
         let pixels: Vec<Rgb> = (0..50 * 40).map(|i| Rgb::splat(i as f32 / 2000.0)).collect();
         let whole = bytes(&Tone::default(), 50, &pixels, 2000);
         for piece in [50, 150, 7] {

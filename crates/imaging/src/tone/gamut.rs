@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_shown_is_left_and_what_cannot_touches_the_border() {
+    fn gamut_mapping_keeps_colors_inside_and_moves_others_to_the_boundary() {
         assert_eq!(map_to_gamut([0.0, 0.25, 1.0], LUMINANCES), [0.0, 0.25, 1.0]);
         let mapped = map_to_gamut([0.0, 0.0, 3.0], LUMINANCES);
         assert!(mapped[2] == 1.0 && mapped[0] > 0.0 && mapped[0] == mapped[1], "{mapped:?}");

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_inverse_undoes() {
+    fn matrix_inverse_inverts() {
         let matrix = Matrix([[2.0, 0.5, -1.0], [0.25, 3.0, 0.0], [1.0, -2.0, 4.0]]);
         for product in [matrix.times(&matrix.inverse()), matrix.inverse().times(&matrix)] {
             let one = Matrix::diagonal([1.0; 3]);
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn products_go_from_right_to_left() {
+    fn matrix_products_apply_from_right_to_left() {
         let (first, then) =
             (Matrix([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), Matrix::diagonal([2.0, 3.0, 5.0]));
         assert_eq!(then.times(&first).apply([1.0, 10.0, 100.0]), [20.0, 3.0, 500.0]);

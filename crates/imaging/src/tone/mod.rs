@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn known_levels() {
+    fn known_radiances_have_known_levels() {
         let level = |curve, linear| Tone::new(curve).levels(Rgb::splat(linear), 255)[1];
         // 18 % gray is level 118 in sRGB; linear 0.5 is level 188.
         assert_eq!((level(AnyCurve::default(), 0.18), level(AnyCurve::default(), 0.5)), (118, 188));
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn curves_undo_themselves() {
+    fn decoding_inverts_encoding() {
         for curve in [AnyCurve::default(), AnyCurve::Gamma(Gamma { gamma: 1.8 }), AnyCurve::Linear(Linear {})] {
             for i in 0..=1000 {
                 let encoded = f64::from(i) / 1000.0;
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn another_white_makes_its_grey_neutral_and_others_not() {
+    fn white_balance_makes_gray_under_its_light_neutral() {
         let light = WhiteBalance { kelvin: 2856.0, tint: 0.0 };
         let bulb = light.matrix().inverse().color(Rgb::splat(0.4));
         let levels_with = |white_balance| Tone { white_balance, ..Tone::default() }.levels(bulb, 65_535);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn wide_primaries_show_the_same_colors_by_other_numbers() {
+    fn wide_primaries_encode_the_same_colors() {
         for curve in
             every_curve().into_iter().filter(|curve| !matches!(curve, AnyCurve::Gamma(_) | AnyCurve::Linear(_)))
         {

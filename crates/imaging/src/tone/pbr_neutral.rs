@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_specifications_formula() {
+    fn pbr_neutral_matches_the_specification() {
         let mut random = Random::new(9);
         for _ in 0..5_000 {
             let light = random.rgb() * juggler_math::portable::exp2(random.range(-6.0, 7.0));
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn base_colors_keep_their_numbers_under_white_light_with_a_white_mirror() {
+    fn pbr_neutral_preserves_base_colors_with_4_percent_specular() {
         // A dielectric of base color c under white light shows c plus 4 % specular reflection.
         for base in [Rgb::new(0.1, 0.5, 0.75), Rgb::new(0.7, 0.06, 0.05)] {
             let mapped = PbrNeutral {}.map(base + Rgb::splat(0.04));

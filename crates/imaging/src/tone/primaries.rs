@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn published_matrices() {
+    fn primaries_match_published_matrices() {
         // IEC 61966-2-1.
         let srgb = Primaries::Srgb.chromaticities().to_xyz();
         close(&srgb, [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], 6e-5);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn white_stays_white_and_ways_lead_back() {
+    fn conversions_of_primaries_preserve_white_and_are_invertible() {
         for primaries in Primaries::ALL {
             let there = Primaries::Srgb.chromaticities().to(&primaries.chromaticities());
             assert!(there.apply([1.0; 3]).iter().all(|v| (v - 1.0).abs() < 1e-12), "{primaries:?}");
@@ -171,14 +171,14 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_says_wrongly_is_not_followed() {
+    fn invalid_chromaticities_are_ignored() {
         let nothing = Chromaticities { red: [0.0; 2], green: [0.0; 2], blue: [0.0; 2], white: [0.0; 2] };
         let line = Chromaticities { red: [0.1, 0.1], green: [0.2, 0.2], blue: [0.3, 0.3], white: [0.3, 0.3] };
         assert!(nothing.to_srgb().is_none() && line.to_srgb().is_none_or(|matrix| matrix.is_finite()));
     }
 
     #[test]
-    fn bradford_from_a_to_d65_is_the_published_one() {
+    fn bradford_adaptation_from_a_to_d65_matches_the_published_matrix() {
         // Lindbloom, Chromatic Adaptation, table for Bradford: A (1.09850, 1, 0.35585) to D65
         // (0.95047, 1, 1.08883).
         let of = |xyz: [f64; 3]| [xyz[0], xyz[1]].map(|v| v / xyz.iter().sum::<f64>());

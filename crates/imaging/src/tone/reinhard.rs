@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_papers_formula_on_luminance() {
+    fn reinhard_matches_the_papers_formula_on_luminance() {
         let curve = Reinhard { white: 2.5 };
         for i in 0..200 {
             let l = f64::from(i) * 0.02;
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn it_never_falls_up_to_white() {
+    fn reinhard_is_monotonic_up_to_white() {
         let curve = Reinhard::default();
         let levels: Vec<f32> = (0..=400).map(|i| curve.map(Rgb::splat(i as f32 * 0.01)).g).collect();
         assert!(levels.windows(2).all(|pair| pair[0] < pair[1]));

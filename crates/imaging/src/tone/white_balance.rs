@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn known_lights_lie_where_the_cie_says() {
+    fn standard_illuminants_match_cie_chromaticities() {
         // CIE 15:2018, table T.3: D50, D55, D65, D75 at 5003, 5503, 6504 and 7504 K; illuminant A
         // at 2856 K.
         for (kelvin, x, y) in [
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn low_temperatures_are_those_of_black_bodies() {
+    fn low_color_temperatures_match_black_bodies() {
         for kelvin in [1700.0, 2000.0, 2400.0, 2856.0, 3200.0, 4000.0] {
             let (found, expected) = (light(kelvin), planck(kelvin));
             let error = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn the_line_has_no_step() {
+    fn chromaticity_is_continuous_in_temperature() {
         let mut last = light(1667.0);
         for kelvin in (1667..25_000).step_by(5) {
             let next = light(f64::from(kelvin));
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn grey_under_the_light_becomes_neutral_and_keeps_its_luminance() {
+    fn gray_under_the_light_becomes_neutral_and_keeps_its_luminance() {
         let srgb = Primaries::Srgb.chromaticities();
         for (kelvin, tint) in [(2856.0, 0.0), (3200.0, 8.0), (4500.0, -12.0), (6504.0, 0.0), (12_000.0, 20.0)] {
             let balance = WhiteBalance { kelvin, tint };
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn tint_is_duv() {
+    fn tint_equals_duv_times_1000() {
         for kelvin in [2500.0, 4500.0, 6504.0, 9000.0] {
             let on_line = uv(light(kelvin));
             for tint in [-20.0, 5.0, 20.0] {
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_breaks_it() {
+    fn white_balance_of_any_temperature_is_finite() {
         for kelvin in [f64::NAN, 0.0, -5.0, f64::INFINITY] {
             assert!(WhiteBalance { kelvin, tint: 0.0 }.matrix().is_finite());
         }

@@ -144,7 +144,7 @@ fn frames_that_do_not_change_take_hardly_any_room() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said_before() {
+fn unsupported_animations_are_rejected_before_writing() {
     let refuse = |format, header: &AnimationHeader| {
         let file = Shared::default();
         let refused = animation_writer(format, Destination::seekable("x.gif", file.clone()), header).err().unwrap();

@@ -67,7 +67,7 @@ fn sides(format: ImageFormat) -> [u32; 2] {
 }
 
 #[test]
-fn no_size_is_believed_that_the_bytes_cannot_hold() {
+fn claimed_sizes_beyond_the_file_length_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("file");
     for format in ImageFormat::ALL {
@@ -93,7 +93,7 @@ fn no_size_is_believed_that_the_bytes_cannot_hold() {
 
 /// The best compressible image, a single color, is still accepted.
 #[test]
-fn what_compresses_best_is_read() {
+fn most_compressible_image_is_accepted() {
     let black = juggler_math::Image::from_pixels(600, 500, vec![juggler_math::Rgb::BLACK; 300_000]).unwrap();
     for format in ImageFormat::ALL {
         let bytes = encode(format, &black, &header(&black));
@@ -103,7 +103,7 @@ fn what_compresses_best_is_read() {
 }
 
 #[test]
-fn sides_are_limited_by_the_head() {
+fn side_limit_applies_to_the_header() {
     let image = picture(150, 3, 1.0);
     let limits = Limits { longest_side: 149, ..Limits::default() };
     for format in ImageFormat::ALL {
@@ -115,7 +115,7 @@ fn sides_are_limited_by_the_head() {
 }
 
 #[test]
-fn the_end_of_a_file_is_named_by_its_byte() {
+fn unexpected_end_of_file_names_the_byte() {
     let image = picture(40, 30, 1.0);
     for format in [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Hdr, ImageFormat::Webp, ImageFormat::Exr] {
         let bytes = encode(format, &image, &header(&image));
@@ -129,7 +129,7 @@ fn the_end_of_a_file_is_named_by_its_byte() {
 }
 
 #[test]
-fn a_wrong_checksum_is_said_in_words_with_its_place() {
+fn wrong_checksum_is_reported_with_its_byte() {
     let image = picture(40, 30, 1.0);
     let mut bytes = encode(ImageFormat::Png, &image, &header(&image));
     bytes[29] ^= 1;

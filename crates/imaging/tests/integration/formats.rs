@@ -46,7 +46,7 @@ fn exr_floats_keep_every_bit_and_halves_eleven() {
 }
 
 #[test]
-fn floats_that_are_no_numbers_survive_where_floats_are_kept() {
+fn nonfinite_values_survive_in_float_formats() {
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.0, -3.5, 1e-40];
     let image =
         Image::from_pixels(2, 1, vec![Rgb::new(odd[0], odd[1], odd[2]), Rgb::new(odd[3], odd[4], odd[5])]).unwrap();
@@ -100,7 +100,7 @@ fn all_levels_of_a_16_bit_png_are_exact() {
 }
 
 #[test]
-fn every_png_is_for_srgb_displays_whatever_the_look() {
+fn every_png_declares_srgb_for_any_tone_curve() {
     let image = Image::filled(3, 2, Rgb::splat(0.25));
     for curve in [AnyCurve::Gamma(Gamma { gamma: 2.2 }), AnyCurve::Linear(juggler_imaging::tone::Linear {})] {
         let tone = Tone { dither: false, ..Tone::new(curve) };
@@ -114,7 +114,7 @@ fn every_png_is_for_srgb_displays_whatever_the_look() {
 }
 
 #[test]
-fn the_gamma_that_a_foreign_png_names_is_undone() {
+fn gamma_chunk_of_a_foreign_png_is_decoded() {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
     encoder.set_color(png::ColorType::Rgb);

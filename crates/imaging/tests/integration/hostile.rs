@@ -105,7 +105,7 @@ fn a_small_file_that_claims_a_huge_size_costs_little() {
 }
 
 #[test]
-fn what_is_no_picture_is_said_so() {
+fn files_that_are_not_images_are_reported() {
     for bytes in [&b""[..], b"P", b"hello world, hello", b"\x89PNG", b"RIFF1234WAVE"] {
         let error = try_all(bytes).unwrap_err();
         assert!(matches!(error, ImageError::UnknownContent { .. }), "{error}");

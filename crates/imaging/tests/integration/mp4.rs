@@ -52,7 +52,7 @@ fn words(bytes: &[u8]) -> Vec<u32> {
 const TABLE: &str = "moov/trak/mdia/minf/stbl";
 
 #[test]
-fn the_table_says_what_is_there() {
+fn mp4_header_describes_the_stream() {
     let header = header(48, 32, 7, 3.0);
     let file = film(&header);
     let kinds: Vec<String> = boxes(&file).into_iter().map(|(kind, _)| kind).collect();
@@ -98,7 +98,7 @@ fn every_sample_is_one_frame_of_the_stream() {
 }
 
 #[test]
-fn the_same_bytes_on_any_threads() {
+fn mp4_bytes_do_not_depend_on_threads() {
     let header = header(64, 48, 6, 24.0);
     let [one, four] = [1, 4].map(|_| {
         let header = header.clone();
@@ -110,7 +110,7 @@ fn the_same_bytes_on_any_threads() {
 }
 
 #[test]
-fn odd_sizes_and_paces_are_as_they_are() {
+fn mp4_keeps_odd_sizes_and_fractional_frame_rates() {
     let file = film(&header(17, 19, 3, 30_000.0 / 1001.0));
     let head = within(&file, "moov/trak/tkhd");
     assert_eq!(head[head.len() - 8..], [0, 17, 0, 0, 0, 19, 0, 0]);

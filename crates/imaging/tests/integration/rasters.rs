@@ -28,7 +28,7 @@ fn png(color: png::ColorType, depth: png::BitDepth, gamma: Option<f32>, samples:
 }
 
 #[test]
-fn every_format_brings_the_samples_that_the_image_is_made_of() {
+fn raster_samples_of_every_format_match_the_image() {
     let image = picture(19, 18, 3.0);
     for format in ImageFormat::ALL {
         let bytes = encode(format, &image, &header(&image));
@@ -47,7 +47,7 @@ fn every_format_brings_the_samples_that_the_image_is_made_of() {
 }
 
 #[test]
-fn a_png_keeps_alpha_words_and_its_curve() {
+fn png_raster_keeps_alpha_16_bit_samples_and_transfer_function() {
     use png::{BitDepth, ColorType};
     let raster = read(&png(ColorType::Rgba, BitDepth::Eight, None, &[1, 2, 3, 4, 5, 6, 7, 8])).unwrap();
     let layout = RasterLayout { format: ImageFormat::Png, width: 2, height: 1, channels: 4, sample_bytes: 1 };

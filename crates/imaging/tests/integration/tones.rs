@@ -75,7 +75,7 @@ fn looks_and_16_bits_are_not_dithered() {
 }
 
 #[test]
-fn wide_pngs_say_so_and_are_read_back_as_the_same_light() {
+fn wide_gamut_png_declares_its_primaries_and_reads_back() {
     let pixels = (0..40 * 30).map(|i| Rgb::new(srgb_decode((i % 40) as f32 / 40.0), 0.2, (i / 40) as f32 / 30.0));
     let image = Image::from_pixels(40, 30, pixels.collect()).unwrap();
     let options = Options { png_16_bit: true, ..Options::default() };
@@ -93,7 +93,7 @@ fn wide_pngs_say_so_and_are_read_back_as_the_same_light() {
 }
 
 #[test]
-fn a_png_that_only_says_chromaticities_is_read_by_them() {
+fn png_with_only_chromaticities_is_converted_by_them() {
     let p3 = Primaries::DisplayP3.chromaticities();
     let pair = |[x, y]: [f64; 2]| (x as f32, y as f32);
     let mut bytes = Vec::new();
@@ -111,7 +111,7 @@ fn a_png_that_only_says_chromaticities_is_read_by_them() {
 }
 
 #[test]
-fn wide_exrs_hold_other_numbers_and_the_same_light() {
+fn wide_gamut_exr_reads_back_as_the_same_radiance() {
     let image = picture(33, 17, 100.0);
     let plain = encode(ImageFormat::Exr, &image, &header(&image));
     for primaries in [Primaries::DisplayP3, Primaries::Rec2020, Primaries::Acescg] {
@@ -130,7 +130,7 @@ fn wide_exrs_hold_other_numbers_and_the_same_light() {
 }
 
 #[test]
-fn formats_that_cannot_say_it_refuse() {
+fn formats_without_primaries_reject_wide_gamuts() {
     let image = picture(8, 8, 1.0);
     let refused = |format, primaries, options| {
         let header = Header { options, ..with(&image, Tone { primaries, ..WIDE }) };
@@ -150,7 +150,7 @@ fn formats_that_cannot_say_it_refuse() {
 }
 
 #[test]
-fn curves_that_cross_channels_reach_files() {
+fn tone_curves_across_channels_apply_to_files() {
     let image = Image::filled(4, 4, Rgb::new(20.0, 0.1, 0.1));
     let tone = Tone::new(AnyCurve::Agx(Agx::default()));
     let bytes = encode(ImageFormat::Png, &image, &with(&image, Tone { dither: false, ..tone.clone() }));

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_decoded_then_tried_as_written() {
+    fn file_names_are_tried_percent_decoded_then_literally() {
         assert_eq!(names("a.bin"), ["a.bin"]);
         assert_eq!(names("my%20model/t%C3%BCr.bin"), ["my model/tür.bin", "my%20model/t%C3%BCr.bin"]);
         assert_eq!(names("50%.bin"), ["50%.bin"], "no percent-encoding");

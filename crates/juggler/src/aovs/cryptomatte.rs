@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn known_hashes() {
+    fn murmur3_matches_known_hashes() {
         // Appleby's own test vectors, and names whose IDs appear in the specification's sample
         // images.
         for (text, expected) in [("", 0), ("a", 0x3c25_69b2), ("abc", 0xb3dd_93fa), ("Hello, world!", 0xc036_3e43)] {

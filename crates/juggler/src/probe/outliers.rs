@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_edges_do_not_stand_out_and_specks_do() {
+    fn fireflies_are_outliers_but_noise_and_edges_are_not() {
         let mut random = Random::new(5);
         let mut noise = || 1.0 + 0.2 * f64::from(random.vec2().element_sum() - 1.0);
         let noise: Vec<f64> = (0..1200).map(|_| noise()).collect();

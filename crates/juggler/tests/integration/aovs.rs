@@ -58,7 +58,7 @@ fn at(x: f32, y: f32) -> usize {
 }
 
 #[test]
-fn what_is_seen_is_what_stands_there() {
+fn geometry_aovs_match_the_scene() {
     let requested = [Aov::Alpha, Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Position, Aov::Samples, Aov::NotFinite];
     let (found, _) = layers(SCENE, &requested);
     let value = |channel: &str, pixel: usize| found[channel][pixel];
@@ -81,7 +81,7 @@ fn what_is_seen_is_what_stands_there() {
 }
 
 #[test]
-fn light_is_the_sum_of_its_ways_and_of_its_groups() {
+fn radiance_is_the_sum_of_path_kinds_and_of_light_groups() {
     let (found, picture) = layers(SCENE, &[Aov::Emission, Aov::Direct, Aov::Indirect, Aov::LightGroups]);
     let sums: [&[&str]; 2] =
         [&["emission", "direct", "indirect"], &["light_group_rest", "light_group_key", "light_group_sky"]];
@@ -120,7 +120,7 @@ fn masks_are_the_exact_shares_of_pixels() {
 }
 
 #[test]
-fn samples_that_a_limit_cuts_are_counted() {
+fn clamped_samples_are_counted() {
     let limits = |limits: &str| {
         let scene = SCENE.replace(r#""max_depth": 4"#, &format!(r#""max_depth": 4 {limits}"#));
         layers(&scene, &[Aov::Clamped, Aov::NotFinite]).0["clamped.Y"].clone()
@@ -137,7 +137,7 @@ fn samples_that_a_limit_cuts_are_counted() {
 }
 
 #[test]
-fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
+fn depth_is_measured_from_the_camera_through_transparent_surfaces() {
     let card = r#""translate": [-0.485, 0, 1]}], "material": "red"}"#;
     let invisible = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
     let scene = SCENE.replace(card, invisible);
@@ -149,7 +149,7 @@ fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
 }
 
 #[test]
-fn a_picture_whose_halves_are_apart_says_so() {
+fn fingerprint_includes_separate_halves() {
     let scene = Scene::from_json(SCENE, "test").unwrap();
     let [plain, own, oidn] = [None, Some(Denoiser::Own), Some(Denoiser::Oidn)].map(|denoiser| {
         let picture = Picture::new(&scene, &Settings { denoiser, ..Settings::default() }).unwrap();

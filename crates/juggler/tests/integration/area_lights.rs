@@ -39,7 +39,7 @@ fn an_area_light_is_an_emissive_shape() {
 }
 
 #[test]
-fn classic_pictures_are_lit_as_much_by_area_lights() {
+fn area_lights_are_equally_bright_in_the_classic_integrator() {
     for form in [
         r#""shape": {"rectangle": {"size": [1.5, 0.8]}}"#,
         r#""shape": {"disk": {"radius": 0.7}}"#,

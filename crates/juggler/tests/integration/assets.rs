@@ -43,7 +43,7 @@ fn images_in_memory_are_images_in_files() {
 }
 
 #[test]
-fn assets_decide_pictures_and_fingerprints_of_their_own_scene_alone() {
+fn assets_affect_only_their_own_scene() {
     let first = scene("wood", "heaven").image("wood", pixels()).image("heaven", pixels());
     let mut other = pixels();
     other.pixels_mut()[5] = Rgb::new(0.0, 9.0, 0.0);
@@ -58,7 +58,7 @@ fn assets_decide_pictures_and_fingerprints_of_their_own_scene_alone() {
 }
 
 #[test]
-fn meshes_and_what_is_missing() {
+fn mesh_assets_are_loaded_and_missing_assets_are_errors() {
     let mesh = Scene::new().size(8, 8).samples(1).add(Object::new(Mesh::from_file("part.obj")));
     assert!(juggler::render(&mesh, &Settings::default()).is_err(), "there is no such file");
     let wavefront = Asset::from_bytes(*b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

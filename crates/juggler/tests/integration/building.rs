@@ -9,7 +9,7 @@ fn triangle() -> Mesh {
 }
 
 #[test]
-fn builders_write_what_a_file_says() {
+fn built_scene_equals_the_json_scene() {
     let json = r#"{
         "version": 1,
         "render": {

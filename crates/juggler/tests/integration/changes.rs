@@ -25,7 +25,7 @@ fn hash(picture: &Picture) -> String {
 }
 
 #[test]
-fn changed_worlds_are_those_that_are_built_anew() {
+fn incrementally_updated_world_equals_a_rebuilt_world() {
     let scene = Scene::from_json(SCENE, "changed.json").unwrap();
     let settings = Settings::default();
     let first = Picture::new(&scene, &settings).unwrap();

@@ -193,22 +193,22 @@ fn compare(parts: &Value) -> usize {
 }
 
 #[test]
-fn mattes_are_the_coverage_of_what_is_out_of_focus() {
+fn cryptomatte_matches_coverage_with_depth_of_field() {
     assert_eq!(compare(&serde_json::from_str(BLURRED).unwrap()), 0);
 }
 
 #[test]
-fn mattes_are_the_coverage_of_what_is_seen_through_holes() {
+fn cryptomatte_matches_coverage_behind_opacity() {
     assert_eq!(compare(&serde_json::from_str(OPEN).unwrap()), 0);
 }
 
 #[test]
-fn mattes_are_the_coverage_of_what_moves() {
+fn cryptomatte_matches_coverage_with_motion_blur() {
     assert_eq!(compare(&serde_json::from_str(MOVING).unwrap()), 0);
 }
 
 #[test]
-fn mattes_hold_the_six_largest_of_a_crowd() {
+fn cryptomatte_keeps_the_six_largest_coverages() {
     let lost = compare(&crowd());
     assert!((6..40).contains(&lost), "{lost}");
 }

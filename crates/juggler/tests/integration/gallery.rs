@@ -18,7 +18,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn each_scene_shows_something() {
+fn every_gallery_scene_is_valid_and_not_black() {
     for file in files("gallery").into_iter().chain(files("lighting")) {
         let name = file.display();
         let scene = Scene::load(&file).unwrap();

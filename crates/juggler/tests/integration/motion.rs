@@ -52,7 +52,7 @@ fn check(channels: &Channels, layer: &str, of_objects: bool, expected: impl Fn(f
 const ALL: [Aov; 3] = [Aov::Motion, Aov::MotionBack, Aov::Alpha];
 
 #[test]
-fn a_ball_goes_as_many_pixels_as_it_is_moved() {
+fn motion_vectors_of_a_translated_sphere_are_its_displacement() {
     let ball = r#""objects": [{"shape": {"sphere": {"radius": 0.4}}, "transform": [{"translate": ["=frame / 4", "=frame * frame / 16", 0]}]}]"#;
     // With an open shutter the mean over the samples is the same for linear motion.
     for more in ["", r#", "shutter": [0, 0.5]"#] {
@@ -67,7 +67,7 @@ fn a_ball_goes_as_many_pixels_as_it_is_moved() {
 }
 
 #[test]
-fn a_disc_turns_about_its_middle() {
+fn motion_vectors_of_a_rotating_disk_match_the_closed_form() {
     let disc = r#""objects": [{"shape": {"disk": {"radius": 0.8}}, "transform": [
         {"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"rotate": {"axis": [0, 0, 1], "degrees": "=30 * frame"}}]}]"#;
     let (found, _) = render(&scene(FLAT, "", disc), 2.0, &ALL);
@@ -80,7 +80,7 @@ fn a_disc_turns_about_its_middle() {
 }
 
 #[test]
-fn objects_take_their_surfaces_along() {
+fn motion_vectors_follow_deforming_and_instanced_surfaces() {
     // A sphere that grows by half, a mesh stretched to the right, and a group instanced twice
     // within another.
     let wall = r#"{"mesh": {"positions": [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]],
@@ -106,7 +106,7 @@ fn objects_take_their_surfaces_along() {
 }
 
 #[test]
-fn what_comes_or_goes_is_moved_by_the_camera_alone() {
+fn appearing_and_disappearing_objects_have_only_camera_motion() {
     let objects = r#""objects": [
         {"shape": {"sphere": {"radius": 0.3}}, "visible": "=frame < 1", "transform": [{"translate": ["=frame", 0.5, 0]}]},
         {"shape": {"sphere": {"radius": 0.3}}, "transform": [{"translate": ["=frame / 8", -0.5, 0]}]}]"#;
@@ -156,7 +156,7 @@ fn direction(pixel: usize, degrees: f32) -> [f32; 4] {
 }
 
 #[test]
-fn what_stands_still_has_no_motion_to_the_bit() {
+fn static_objects_have_exactly_zero_motion() {
     let objects = r#""objects": [{"shape": "plane", "transform": [{"rotate": {"axis": [1, 2, 3], "degrees": 70}}, {"translate": [0.3, 0.1, 7]}]}
         MORE]"#;
     let camera = DEEP.replace("\"=0.1 * frame\"", "0.1").replace("\"=3 * frame\"", "9");

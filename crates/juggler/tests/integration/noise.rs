@@ -41,7 +41,7 @@ fn estimated(scene: &Scene, seed: u64, samples: u32, size: [u32; 2]) -> NoisyIma
 }
 
 #[test]
-fn pictures_of_other_seeds_are_the_same_as_often_as_was_promised() {
+fn significance_of_different_seeds_is_calibrated() {
     let scene = room(1.0, GLASS);
     for (first, second) in [(32, 32), (32, 96)] {
         let pairs: Vec<f64> = (0..40)
@@ -60,7 +60,7 @@ fn pictures_of_other_seeds_are_the_same_as_often_as_was_promised() {
 }
 
 #[test]
-fn a_brighter_light_and_another_material_are_found() {
+fn significance_detects_changed_lights_and_materials() {
     let plain = estimated(&room(1.0, GLASS), 1, 64, LARGE);
     let brighter = estimated(&room(1.02, GLASS), 2, 64, LARGE);
     let other = estimated(&room(1.0, r#"{"dielectric": {"ior": 1.6}}"#), 3, 64, LARGE);

@@ -42,7 +42,7 @@ fn leaves(branch: &Branch) -> [f64; 3] {
 }
 
 #[test]
-fn the_mean_is_the_pixel_to_the_bit_and_every_account_of_its_light_adds_up_to_it() {
+fn probe_mean_equals_the_pixel_and_its_contributions_sum_to_it() {
     for filter in [r#""box""#, r#"{"gaussian": {"radius": 1.5}}"#, r#""mitchell""#] {
         let scene = scene(filter);
         for integrator in [None, Some("direct"), Some("classic"), Some("normals"), Some("ambient_occlusion")] {
@@ -111,7 +111,7 @@ fn objects_are_reported_by_their_names() {
 }
 
 #[test]
-fn pixels_outside_and_the_smallest_picture() {
+fn probe_rejects_outside_pixels_and_accepts_one_pixel_pictures() {
     let scene = scene(r#""box""#);
     let small = Settings { size: Some([1, 1]), samples: Some(1), ..Settings::default() };
     let probe = probed(&scene, &small, [0, 0]);
@@ -126,7 +126,7 @@ fn pixels_outside_and_the_smallest_picture() {
 }
 
 #[test]
-fn the_tree_can_be_cut_and_loses_nothing() {
+fn truncated_path_tree_keeps_the_total() {
     let scene = scene(r#""box""#);
     let prober = Prober::new(&scene, Picture::new(&scene, &Settings::default()).unwrap());
     for (depth, branches) in [(0, 5), (1, 1), (2, 2), (5, 0)] {

@@ -30,7 +30,7 @@ fn times(point: Vec3, matrix: &Matrix4) -> [f32; 3] {
 }
 
 #[test]
-fn what_a_pixel_shows_is_projected_into_that_pixel() {
+fn projection_of_the_position_aov_is_its_pixel() {
     let crop = Some(Rect { x: 7, y: 5, width: 40, height: 30 });
     for (camera, crop) in CAMERAS.iter().flat_map(|camera| [(camera, None), (camera, crop)]) {
         let aovs = vec![Aov::Position, Aov::Alpha];
@@ -55,7 +55,7 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
 }
 
 #[test]
-fn known_points_are_where_they_are_known_to_be() {
+fn camera_matrices_map_known_points() {
     for camera in CAMERAS {
         let viewpoint = picture(camera, &Settings::default()).viewpoint().unwrap();
         let center = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_ndc);

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn phases_integrate_to_one() {
+    fn haze_phase_function_integrates_to_one() {
         let steps = 20_000;
         let cos = |i: i32| (f64::from(i) + 0.5) / f64::from(steps) * 2.0 - 1.0;
         let sum: f64 = (0..steps).map(|i| f64::from(haze_phase(cos(i) as f32))).sum();

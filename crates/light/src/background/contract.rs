@@ -159,7 +159,7 @@ fn light_is_finite_and_never_negative() {
 }
 
 #[test]
-fn json_goes_round() {
+fn json_round_trips() {
     for background in AnyBackground::examples() {
         let text = serde_json::to_string(&background).unwrap();
         let again = serde_json::from_str::<AnyBackground>(&text).unwrap();
@@ -174,7 +174,7 @@ fn json_goes_round() {
 }
 
 #[test]
-fn says_what_is_wrong() {
+fn invalid_fields_are_named() {
     for (json, field) in [
         (r#"{"solid": {"color": [0, -1, 0]}}"#, "color"),
         (r#"{"gradient": {"zenith": [1e39, 0, 0]}}"#, "zenith"),

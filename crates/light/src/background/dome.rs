@@ -92,7 +92,7 @@ mod tests {
     use juggler_math::testing::{Random, close};
 
     #[test]
-    fn color_is_that_of_the_point_on_the_sphere() {
+    fn dome_color_is_that_of_the_point_on_its_sphere() {
         let dome = Dome { radius: 3.0, bottom: Rgb::BLACK, top: Rgb::WHITE };
         let mut random = Random::new(101);
         for _ in 0..2000 {

@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn the_picture_lies_as_documented() {
+    fn panorama_orientation_matches_the_documentation() {
         // Red increases to the right, green increases downward.
         let panorama = Environment::from_function(64, 32, |x, y| Rgb::new(x as f32, y as f32, 0.0));
         for (direction, x, y) in [
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn one_color_is_that_everywhere_and_picked_evenly() {
+    fn uniform_panorama_is_sampled_uniformly() {
         let flat = Environment::from_function(16, 8, |_, _| Rgb::new(0.5, 1.0, 2.0));
         for u in [Vec2::new(0.1, 0.9), Vec2::ZERO, Vec2::splat(0.999)] {
             let sample = flat.sample(u).unwrap();
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_that_cannot_be_are_refused_and_odd_pixels_are_dark() {
+    fn invalid_panoramas_are_rejected_and_invalid_pixels_are_black() {
         let mut environment = Environment::from_file("a.exr");
         assert_eq!(environment.prepare().unwrap_err().field, "file");
         assert!(environment.sample(Vec2::ZERO).is_none());

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn grahams_sky_goes_by_the_square() {
+    fn sine_squared_gradient_matches_grahams_sky() {
         let json = r#"{"horizon": [0.7, 0.7, 1], "zenith": [0.1, 0.1, 1], "blend": "sine_squared"}"#;
         for (y, red) in [(0.0f32, 0.7), (0.5, 0.55), (-0.5, 0.55), (1.0, 0.1)] {
             let direction = Vec3::new((1.0 - y * y).sqrt(), y, 0.0);

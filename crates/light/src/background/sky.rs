@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sun_gives_what_the_air_lets_through() {
+    fn sun_disk_has_the_transmitted_irradiance() {
         for (elevation, turbidity) in [(90.0, 1.0), (35.0, 2.5), (5.0, 4.0)] {
             let sky = sky(elevation, turbidity);
             let tables = sky.prepared.0.as_ref().unwrap();
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn the_disk_is_where_it_should_be_and_as_large() {
+    fn sun_disk_has_its_position_and_size() {
         let sky = sky(35.0, 2.5);
         let at = |elevation: f32, azimuth: f32| {
             let (sin, cos) = portable::sin_cos(elevation.to_radians());

@@ -52,7 +52,7 @@ fn energy(name: &str, shading: &Shading, wo: Vec3, random: &mut Random) -> Rgb {
 }
 
 #[test]
-fn light_is_finite_and_no_more_than_there_was() {
+fn scattered_light_is_finite_and_conserves_energy() {
     let mut random = Random::new(811);
     for (name, table, id) in examples() {
         for _ in 0..60 {
@@ -111,7 +111,7 @@ fn directions_follow_their_density() {
 }
 
 #[test]
-fn what_is_opaque_looks_the_same_from_both_sides() {
+fn opaque_materials_are_two_sided() {
     let mut random = Random::new(812);
     let sided = |name: &str| ["phong", "normal_map", "bump_map", "\"red\""].iter().any(|kind| name.contains(kind));
     let mut compared = 0;
@@ -140,7 +140,7 @@ fn what_is_opaque_looks_the_same_from_both_sides() {
 }
 
 #[test]
-fn what_has_an_inside_stands_on_its_outside() {
+fn shading_normals_of_dielectrics_point_outside() {
     let mut random = Random::new(813);
     let (mut inside, mut thin) = (0, 0);
     for (name, table, id) in examples() {
@@ -278,7 +278,7 @@ fn textures_beyond_their_range_are_cut_off() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_by_its_path() {
+fn invalid_fields_are_rejected_by_path() {
     for (json, path) in [
         (r#"{"diffuse": {"roughness": 2}}"#, "diffuse.roughness"),
         (r#"{"conductor": {"anisotropy": -2}}"#, "conductor.anisotropy"),
@@ -305,7 +305,7 @@ fn what_cannot_be_is_refused_by_its_path() {
 }
 
 #[test]
-fn opacity_may_have_sharp_edges() {
+fn alpha_cutoff_makes_opacity_binary() {
     for (fields, opacity) in [(r#""opacity": 0.4"#, 0.4), (r#""opacity": 0.4, "alpha_cutoff": 0.5"#, 0.0)] {
         let (table, id) = compile(&format!(r#"{{"principled": {{{fields}}}}}"#)).unwrap();
         assert!(table.has_opacity(id) && table.is_transparent(id));

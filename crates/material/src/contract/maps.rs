@@ -29,7 +29,7 @@ fn light(table: &MaterialTable, id: MaterialId, view: &ShadingView, wi: Vec3) ->
 }
 
 #[test]
-fn a_map_of_normals_that_do_not_lean_changes_nothing() {
+fn flat_normal_map_changes_nothing() {
     let mut random = Random::new(821);
     for inner in [r#"{"diffuse": {}}"#, r#"{"plastic": {"roughness": 0.5}}"#, r#"{"dielectric": {"roughness": 0.6}}"#] {
         let (plain, plain_id) = compile(inner).unwrap();
@@ -66,7 +66,7 @@ fn leaning_cosine(normal: Vec3, leaning: Vec3, wi: Vec3) -> f32 {
 }
 
 #[test]
-fn a_map_that_leans_is_a_surface_that_leans() {
+fn tilted_normal_map_equals_a_tilted_surface() {
     let mut random = Random::new(822);
     let json = r#"{"normal_map": {"texture": [0.8, 0.4, 0.9], "strength": 0.5, "material": {"diffuse": {"reflectance": 0.7}}}}"#;
     let (table, id) = compile(json).unwrap();
@@ -98,7 +98,7 @@ fn mirrored_coordinates_mirror_normals() {
 }
 
 #[test]
-fn a_height_that_rises_evenly_is_a_slope() {
+fn linear_bump_map_tilts_the_normal_by_its_gradient() {
     // The height is the luminance of (u, v, 0), or of the fractional parts of the point in object
     // space.
     let (red, green) = (0.2126, 0.7152);
@@ -126,7 +126,7 @@ fn a_height_that_rises_evenly_is_a_slope() {
 }
 
 #[test]
-fn maps_lie_on_maps() {
+fn nested_normal_maps_combine() {
     let t = tangents(Vec3::X, Vec3::NEG_Z);
     let lean = |x: f32, inner: &str| {
         let color = format!("[{}, 0.5, {}]", 0.5 + 0.5 * x, 0.5 + 0.5 * (1.0 - x * x).sqrt());
@@ -139,7 +139,7 @@ fn maps_lie_on_maps() {
 }
 
 #[test]
-fn no_normal_shows_what_is_below_the_surface() {
+fn shading_normals_reflect_the_view_above_the_surface() {
     let mut random = Random::new(823);
     let (mut bent, t) = (0, tangents(Vec3::X, Vec3::NEG_Z));
     for _ in 0..2000 {
@@ -182,7 +182,7 @@ fn brushed_metal_follows_the_coordinates() {
 }
 
 #[test]
-fn rotations_run_from_u_to_v_whichever_way_that_is() {
+fn anisotropy_rotation_turns_from_u_to_v() {
     let surface = ground();
     let (table, id) =
         compile(r#"{"principled": {"metallic": 1, "anisotropy": 0.7, "anisotropy_rotation": 0.125}}"#).unwrap();

@@ -11,7 +11,7 @@ fn medium(json: &str) -> Medium {
 }
 
 #[test]
-fn colors_are_absorption() {
+fn medium_color_at_a_distance_becomes_absorption() {
     let green = medium(r#"{"color": [0.25, 1, 0.5], "distance": 2, "absorption": [0, 0.1, 0]}"#);
     let transmittance = green.transmittance(4.0);
     assert!(
@@ -48,7 +48,7 @@ fn weights_agree_with_the_beer_lambert_law() {
 }
 
 #[test]
-fn places_of_scattering_follow_the_exponential() {
+fn scattering_distances_follow_the_exponential() {
     let fog = medium(r#"{"scattering": 0.7}"#);
     let mut random = Random::new(82);
     let (mut observed, count) = ([0.0; 20], 1_000_000);
@@ -79,7 +79,7 @@ fn phase_functions_follow_their_density_and_sum_to_one() {
 }
 
 #[test]
-fn the_solid_of_highest_priority_is_there() {
+fn interior_of_highest_priority_wins() {
     let interior = |ior: f32, priority: i32| Interior { ior, priority, medium: Medium::default() };
     let table = [interior(1.5, 0), interior(1.33, -1), interior(2.4, 0)];
     let id = |place| InteriorId::new(place).unwrap();

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_three_forms_of_a_color() {
+    fn colors_are_read_from_arrays_numbers_and_hexadecimal_strings() {
         assert_eq!(read("[0.1, 2, 3e1]"), Ok(Rgb::new(0.1, 2.0, 30.0)));
         assert_eq!(read("0.5"), Ok(Rgb::splat(0.5)));
         assert_eq!(read("1"), Ok(Rgb::WHITE));
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn json_round_trips() {
         let mut random = crate::testing::Random::new(41);
         for _ in 0..1000 {
             let color = random.rgb() * random.range(0.0, 1e6);
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_say_what_a_color_is() {
+    fn color_errors_state_the_valid_forms() {
         for wrong in ["true", "{}", "[1, 2]", "[1, 2, 3, 4]"] {
             assert!(read(wrong).unwrap_err().contains("linear [r, g, b]"), "{wrong}");
         }

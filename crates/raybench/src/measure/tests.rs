@@ -53,7 +53,7 @@ fn tracers_take_turns_and_each_comes_first() {
 }
 
 #[test]
-fn the_slower_one_has_the_lower_rate() {
+fn slower_tracer_has_the_lower_rate() {
     let wait = |milliseconds| {
         move |_: &[Ray], _: &mut Scratch| {
             let start = Stopwatch::start(CpuClock::Thread);
@@ -71,7 +71,7 @@ fn the_slower_one_has_the_lower_rate() {
 }
 
 #[test]
-fn medians() {
+fn median_of_odd_even_and_empty_lists() {
     assert_eq!((median([3.0, 1.0, 2.0]), median([4.0, 1.0]), median([5.0])), (2.0, 2.5, 5.0));
     assert!(
         median([]).is_nan() && measure_alternately(&[], &[&|_, _| HitSummary::default()], 1, 1)[0].cpu_rate().is_nan()
@@ -79,7 +79,7 @@ fn medians() {
 }
 
 #[test]
-fn sums_tell_tracers_apart() {
+fn hit_summaries_distinguish_tracers() {
     let summary = HitSummary::from_distances([Some(1.0), None, Some(2.5)].into_iter());
     assert_eq!(summary, HitSummary { hits: 2, distance: 3.5 });
     assert!(summary.agrees(&summary) && !summary.agrees(&HitSummary { hits: 3, ..summary }));
@@ -91,7 +91,7 @@ fn sums_tell_tracers_apart() {
 }
 
 #[test]
-fn all_kernels_come_to_the_same_and_to_what_single_calls_say() {
+fn all_kernels_agree_with_single_ray_queries() {
     let mesh = MeshSpec::parse("hall:3").unwrap().make();
     let trees = [Quality::Balanced, Quality::Best].map(|quality| kernel::build(&mesh, quality).unwrap());
     for (_, bvh) in trees.into_iter().flat_map(kernel::with_tests) {

@@ -14,7 +14,7 @@ fn small() -> impl Iterator<Item = (&'static str, Mesh)> {
 }
 
 #[test]
-fn names_and_sizes() {
+fn mesh_names_and_sizes_are_parsed() {
     let all: Vec<&str> = BUILT_IN.iter().map(|kind| kind.name).collect();
     assert_eq!(all, SMALL.map(|(name, _)| name));
     for kind in BUILT_IN {
@@ -39,7 +39,7 @@ fn meshes_have_the_sizes_that_are_documented() {
 }
 
 #[test]
-fn triangles_name_corners_and_corners_are_finite() {
+fn triangle_indices_are_valid_and_positions_finite() {
     for (name, mesh) in small() {
         let corners = mesh.positions.len() as u32;
         assert!(mesh.triangles.iter().flatten().all(|corner| *corner < corners), "{name}");
@@ -54,10 +54,10 @@ fn triangles_name_corners_and_corners_are_finite() {
     }
 }
 
-/// Figures of different machines must be of the same meshes: these hashes may change only together
-/// with a note in CHANGELOG.
+/// Benchmarks on different machines use the same meshes: these hashes may change only together with
+/// a note in CHANGELOG.
 #[test]
-fn meshes_are_the_same_bits_as_ever() {
+fn meshes_match_golden_hashes() {
     let known = [2_442_935_998, 2_175_274_366, 3_031_150_253, 3_497_501_880, 2_586_744_402, 483_235_478];
     let hashes = small().map(|(_, mesh)| {
         let bits = mesh.positions.iter().flat_map(|p| p.to_array()).map(f32::to_bits);

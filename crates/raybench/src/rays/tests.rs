@@ -30,7 +30,7 @@ fn a_tile_is_eight_packets_of_four_by_two_pixels() {
 }
 
 #[test]
-fn tiles_are_as_many_as_wanted_and_from_everywhere() {
+fn tiles_have_the_requested_count_and_cover_the_image() {
     assert_eq!(tiles(usize::MAX), (0..TILES).collect::<Vec<_>>());
     for count in [1, 64, 640, 20_000, 100_000, 500_000, 1_500_000] {
         let chosen = tiles(count);
@@ -65,7 +65,7 @@ fn camera_rays_go_through_their_pixels() {
 }
 
 #[test]
-fn all_kinds_are_what_they_say() {
+fn all_ray_sets_have_their_documented_properties() {
     let (mesh, bvh, sets) = sets("blob:20", 30_000);
     assert_eq!(sets.each_ref().map(|set| set.kind), Kind::ALL);
     let [primary, shadow, ao, diffuse, diffuse2, random] = sets.map(|set| set.rays);
@@ -98,7 +98,7 @@ fn key(ray: &Ray) -> [u32; 6] {
 }
 
 #[test]
-fn no_ray_meets_the_triangle_that_it_leaves() {
+fn rays_do_not_hit_the_triangle_that_they_leave() {
     for name in ["blob:20", "hall:3", "stadium:8", "terrain:64"] {
         let (mesh, bvh, [primary, _, _, diffuse, ..]) = sets(name, 30_000);
         let from: Vec<u32> = primary.rays.iter().filter_map(|ray| Some(bvh.closest(ray)?.index)).collect();
@@ -132,7 +132,7 @@ fn diffuse_rays_leave_with_the_density_of_the_cosine() {
 }
 
 #[test]
-fn rays_on_a_mesh_that_nobody_sees() {
+fn empty_mesh_has_only_primary_rays() {
     let view = View::around(&juggler_math::Aabb::EMPTY);
     let mesh = Mesh { positions: Vec::new(), triangles: Vec::new(), view };
     let bvh = kernel::build(&mesh, Quality::Fast).unwrap();

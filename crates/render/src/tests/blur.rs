@@ -29,7 +29,7 @@ fn covered(world: &World, camera: &ShutterCamera, size: UVec2) -> Vec<f32> {
 }
 
 #[test]
-fn a_moving_edge_covers_the_share_of_time_that_it_has_passed() {
+fn motion_blur_of_a_moving_edge_is_linear() {
     let size = UVec2::new(32, 1);
     for count in [2, 3, 17] {
         let key = |i: usize| Transform::translation(Vec3::X * (i as f32 / (count - 1) as f32));
@@ -46,7 +46,7 @@ fn a_moving_edge_covers_the_share_of_time_that_it_has_passed() {
 /// A half plane rotates by at most half a turn; the covered fraction of the time follows from the
 /// angles.
 #[test]
-fn a_spinning_disk_covers_by_the_angle() {
+fn motion_blur_of_a_rotating_half_plane_follows_its_angle() {
     for (turn, keys) in [(0.25, 2), (0.25, 17), (0.5, 17)] {
         let key = |i: usize| {
             Transform::rotation(Vec3::Z, turn * std::f32::consts::TAU * i as f32 / (keys - 1) as f32).unwrap()
@@ -107,7 +107,7 @@ fn times(size: UVec2, samples: u32, moves: bool) -> Vec<f32> {
 }
 
 #[test]
-fn times_are_uniform_and_each_part_of_the_time_has_its_sample() {
+fn ray_times_are_uniform_and_stratified() {
     let all = times(UVec2::new(64, 64), 16, true);
     let mut counts = [0.0; 64];
     all.iter().for_each(|time| counts[(time * 64.0) as usize] += 1.0);

@@ -44,7 +44,7 @@ fn light(tile: &Tile) -> f64 {
 }
 
 #[test]
-fn what_is_taken_and_what_is_left_are_all_there_was() {
+fn clamped_and_remaining_radiance_sum_to_the_unclamped() {
     for samples in [1, 37] {
         let all = light(&tile(&path(None, None), samples));
         let mut taken = vec![];
@@ -60,7 +60,7 @@ fn what_is_taken_and_what_is_left_are_all_there_was() {
 }
 
 #[test]
-fn limits_that_nothing_reaches_change_no_bit() {
+fn clamping_limits_above_all_contributions_change_no_bit() {
     let (plain, clamped) = (tile(&path(None, None), 20), tile(&path(Some(1e9), Some(1e9)), 20));
     assert_eq!(plain, clamped);
     assert_eq!(clamped.clamped(), ClampedRadiance::default());
@@ -68,7 +68,7 @@ fn limits_that_nothing_reaches_change_no_bit() {
 }
 
 #[test]
-fn nothing_brighter_than_the_limit_is_left() {
+fn clamped_contributions_stay_below_the_limit() {
     // With a single sample: at most one light sample and one emission at each of six vertices.
     let means = tile(&path(Some(0.5), Some(0.5)), 1).means();
     let brightest = means.iter().map(|mean| mean.max_channel()).fold(0.0, f32::max);
@@ -76,7 +76,7 @@ fn nothing_brighter_than_the_limit_is_left() {
 }
 
 #[test]
-fn the_sum_is_the_same_whoever_renders_what() {
+fn clamped_sum_does_not_depend_on_threads_or_shards() {
     let integrator = path(Some(1.5), Some(0.05));
     let whole = tile(&integrator, 40).clamped();
     for threads in [1, 2, 4] {

@@ -44,7 +44,7 @@ fn contrast(world: &World, integrator: &AnyIntegrator, eye: Vec3, aim: Vec3) -> 
 }
 
 #[test]
-fn pictures_are_smooth_from_afar_and_sharp_from_near() {
+fn mip_mapped_textures_are_smooth_from_afar_and_sharp_nearby() {
     let world = floor(r#"{"image": {"file": "noise"}}"#);
     let sharp = floor(r#"{"image": {"file": "noise", "filter": "bilinear"}}"#);
     let (far, near) = (Vec3::new(0.3, 50.0, 0.3), Vec3::new(0.3, 0.02, 0.3));
@@ -65,7 +65,7 @@ fn pictures_are_smooth_from_afar_and_sharp_from_near() {
 /// The path integrator filters procedural textures; the classic integrator keeps them sharp, even
 /// beside image textures.
 #[test]
-fn patterns_fade_in_paths_alone() {
+fn only_the_path_integrator_filters_procedural_textures() {
     let world = floor(r#"{"noise": {"space": "world", "scale": 200}}"#);
     let (far, aim) = (Vec3::new(0.3, 50.0, 0.3), Vec3::new(0.3, 0.0, 0.2));
     let path = contrast(&world, &juggler_integrator::Path::default().into(), far, aim);

@@ -17,7 +17,7 @@ fn seen(world: &World, eye: Vec3, samples: u32) -> Vec<Rgb> {
 
 /// From the center of a sphere, all directions are attenuated over one radius (Beer–Lambert law).
 #[test]
-fn from_within_a_sphere_that_absorbs_everything_is_dimmed_alike() {
+fn absorbing_sphere_attenuates_all_directions_equally_from_its_center() {
     let sphere = r#"{"sphere": {"radius": 2}}"#;
     let dark = r#"{"boundary": {"medium": {"absorption": [0.1, 0.3, 0.7]}}}"#;
     let left = Rgb::new(0.1, 0.3, 0.7).map(|absorption| portable::exp(-2.0 * absorption)) * BACKGROUND;
@@ -40,7 +40,7 @@ fn from_within_a_sphere_that_absorbs_everything_is_dimmed_alike() {
 /// In fog of albedo 1, lit from all directions by the same radiance, the radiance is the same
 /// everywhere.
 #[test]
-fn in_fog_that_only_scatters_there_is_the_light_around_it() {
+fn white_fog_in_uniform_light_has_that_radiance_everywhere() {
     let room = r#"{"cuboid": {"min": [-2, -2, -2], "max": [2, 2, 2]}}"#;
     let fog = |absorption: f32| {
         format!(r#"{{"boundary": {{"medium": {{"scattering": 0.4, "absorption": {absorption}, "anisotropy": 0.5}}}}}}"#)
@@ -57,7 +57,7 @@ fn in_fog_that_only_scatters_there_is_the_light_around_it() {
 /// From under water the sky appears within Snell's window, its radiance scaled by n²; beyond it,
 /// total internal reflection shows the ground.
 #[test]
-fn under_water_the_sky_is_a_disk() {
+fn sky_seen_from_under_water_fills_snells_window() {
     let sea = [(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"dielectric": {"ior": 1.33}}"#)];
     let world = world(&sea, &[], Rgb::WHITE);
     let integrator = juggler_integrator::Path::default().into();

@@ -34,7 +34,7 @@ fn difference(a: Rgb, b: Rgb) -> f32 {
 }
 
 #[test]
-fn it_is_the_pixel_of_the_picture_to_the_bit_and_its_ways_sum_up_to_it() {
+fn inspected_pixel_equals_the_rendered_pixel_and_the_sum_of_its_contributions() {
     let size = UVec2::new(9, 7);
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let clamped = Path { clamp_direct: Some(2.0), clamp_indirect: Some(0.3), ..Path::default() };
@@ -109,7 +109,7 @@ impl Summary {
 }
 
 #[test]
-fn vertices_follow_each_other_and_are_reported_by_kind() {
+fn inspected_vertices_are_consecutive_and_classified() {
     let size = UVec2::new(15, 11);
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let (world, apart) = room().with_separate_lights();
@@ -139,7 +139,7 @@ fn vertices_follow_each_other_and_are_reported_by_kind() {
 }
 
 #[test]
-fn a_cancelled_look_ends() {
+fn cancelled_inspection_ends() {
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", PIXEL);
     let (world, integrator) = (room(), Path::default().into());
     let control = Control::default();

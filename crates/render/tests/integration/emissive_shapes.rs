@@ -22,7 +22,7 @@ fn corners(transform: &Transform) -> [Vec3; 4] {
 }
 
 #[test]
-fn an_emitter_is_seen_as_bright_as_it_is_from_its_front() {
+fn emitter_shows_its_radiance_on_its_emitting_sides() {
     let from = |eye: f32, sides: &str| {
         let emitter = format!(r#"{{"emissive": {{"radiance": 3, "scale": 2, "sides": "{sides}"}}}}"#);
         let scene = Scene::new().with(SQUARE, Vec3::ZERO, &emitter);
@@ -35,7 +35,7 @@ const TEXTURES: &str = r#"{"tiles": {"checker": {"size": 0.25, "even": 4, "odd":
 
 /// 64 tiles, every other one brighter.
 #[test]
-fn a_textured_emitter() {
+fn textured_emitter_matches_the_sum_of_its_tiles() {
     let emitter = r#"{"emissive": {"radiance": "tiles"}}"#;
     let place = down(Vec3::new(0.2, 1.0, -0.1));
     let scene = Scene::textured(TEXTURES)
@@ -53,7 +53,7 @@ fn a_textured_emitter() {
 /// Instances in instances: rotated, scaled and, in every other case, mirrored, with its own
 /// material and with an inherited one.
 #[test]
-fn an_emitter_in_a_group_in_a_group() {
+fn nested_instances_of_an_emitter_match_the_closed_form() {
     for (mirror, inherits) in [(1.0, false), (-1.0, false), (1.0, true), (-1.0, true)] {
         let mut scene = Scene::floor();
         let emitter = scene.material(EMITTER);
@@ -80,7 +80,7 @@ fn geometry(objects: Vec<Object>) -> Arc<Geometry> {
 /// A mesh as one emitter: the four sides of a pyramid whose top points down, all visible from a
 /// point below.
 #[test]
-fn a_mesh() {
+fn mesh_emitter_matches_the_closed_form() {
     let base = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, 2.0, z));
     let top = Vec3::new(0.1, 1.4, 0.2);
     let positions = [base[0], base[1], base[2], base[3], top].map(json).join(", ");
@@ -97,7 +97,7 @@ fn a_mesh() {
 
 /// Shapes that are sampled as a whole, from a point where their silhouette has a closed form.
 #[test]
-fn a_cuboid_and_an_ellipsoid() {
+fn cuboid_and_ellipsoid_emitters_match_closed_forms() {
     let cuboid = r#"{"cuboid": {"min": [-1, 1, -1], "max": [1, 2, 1]}}"#;
     let scene = Scene::floor().with(cuboid, Vec3::ZERO, EMITTER);
     traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * polygon(&corners(&down(Vec3::Y)), Vec3::Y));
@@ -110,7 +110,7 @@ fn a_cuboid_and_an_ellipsoid() {
 }
 
 #[test]
-fn a_moving_emitter() {
+fn moving_emitter_matches_the_integral_over_time() {
     let keys = [Vec3::new(-2.0, 2.0, 0.0), Vec3::new(2.0, 2.0, 1.0)].map(Transform::translation);
     let motion = Motion::from_keys(keys.to_vec()).unwrap();
     let scene = Scene::floor().placed(r#"{"sphere": {"radius": 0.5}}"#, motion, EMITTER);
@@ -123,7 +123,7 @@ fn a_moving_emitter() {
 
 /// A black sheet with an opacity of 0.3 transmits 0.7 of the light.
 #[test]
-fn a_partly_opaque_sheet() {
+fn partly_opaque_sheet_attenuates_an_emitter() {
     let sheet = r#"{"mask": {"opacity": 0.3, "material": {"diffuse": {"reflectance": 0}}}}"#;
     let emitter = Scene::floor().placed(SQUARE, down(Vec3::Y * 2.0), EMITTER);
     let scene = emitter.with(r#"{"rectangle": {"size": [50, 50]}}"#, Vec3::Y, sheet);
@@ -136,7 +136,7 @@ fn a_partly_opaque_sheet() {
 
 /// Emission is scaled by opacity and by the mixing weight, for light and BSDF sampling alike.
 #[test]
-fn an_emitter_of_some_opacity_and_one_of_two_materials() {
+fn opacity_and_mixing_weight_scale_emission() {
     let expected = SHOWN * 3.0 * polygon(&corners(&down(Vec3::Y)), Vec3::Y);
     let masked = format!(r#"{{"mask": {{"opacity": 0.4, "material": {EMITTER}}}}}"#);
     traced(Scene::floor().placed(SQUARE, down(Vec3::Y), &masked), &at_origin(), 512).is(0.4 * expected);
@@ -150,7 +150,7 @@ fn an_emitter_of_some_opacity_and_one_of_two_materials() {
 /// A sheet that mixes an opaque and a partly transparent material: shadows have the mean
 /// transmittance.
 #[test]
-fn shadows_of_mixed_opacity() {
+fn shadows_of_mixed_materials_have_the_mean_transmittance() {
     let black = r#"{"diffuse": {"reflectance": 0}}"#;
     let light = r#"{"point": {"position": [0, 2, 0], "intensity": 5}}"#;
     let below = looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO);
@@ -164,7 +164,7 @@ fn shadows_of_mixed_opacity() {
 
 /// The `phong` material: its emission acts as an area light.
 #[test]
-fn classic_materials() {
+fn phong_materials_match_closed_forms() {
     let emitter = r#"{"phong": {"diffuse": 0, "specular": 0, "emission": 3}}"#;
     let scene = Scene::floor().with(r#"{"sphere": {"radius": 0.5}}"#, Vec3::Y * 2.0, emitter);
     traced(scene, &at_origin(), 256).is(SHOWN * 3.0 * PI * 0.25 / 4.0);

@@ -41,7 +41,7 @@ fn white_objects_vanish() {
 /// The tables of multiple scattering are accurate to half a percent per surface, and paths hit two
 /// or more surfaces.
 #[test]
-fn rough_objects_vanish_nearly() {
+fn rough_white_objects_nearly_vanish_in_a_furnace() {
     for roughness in [0.05, 0.3, 1.0] {
         let of = |kind: &str| format!(r#"{{"{kind}, "roughness": {roughness}}}}}"#);
         let kinds = [
@@ -61,7 +61,7 @@ fn rough_objects_vanish_nearly() {
 
 /// Without energy compensation, light is lost, more on rougher surfaces.
 #[test]
-fn what_is_not_compensated_is_darker() {
+fn rough_metal_without_energy_compensation_is_darker() {
     let of = |roughness: f64| {
         sphere(
             &format!(

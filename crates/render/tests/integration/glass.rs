@@ -30,7 +30,7 @@ fn interface(cos: f64, ior: f64) -> [f64; 2] {
 }
 
 #[test]
-fn one_pane_and_two() {
+fn transmittance_of_one_and_two_panes_matches_the_closed_form() {
     let glass = r#"{"dielectric": {"ior": 1.5}}"#;
     for cos in [1.0, 0.7, 0.25] {
         let share = fresnel(cos, 1.5);
@@ -49,7 +49,7 @@ fn one_pane_and_two() {
 }
 
 #[test]
-fn colored_glass() {
+fn colored_glass_absorbs_along_the_refracted_path() {
     let glass = r#"{"dielectric": {"ior": 1.5, "medium": {"color": 0.5, "distance": 0.2}}}"#;
     for cos in [1.0f64, 0.6] {
         let share = fresnel(cos, 1.5);
@@ -63,7 +63,7 @@ fn colored_glass() {
 /// Water that overlaps its glass, and water that only touches it: the interface between them has
 /// the indices 1.33 and 1.5, wherever the water's own surface lies inside the glass.
 #[test]
-fn water_in_a_glass() {
+fn water_in_glass_has_the_right_interfaces() {
     let cos = 0.8f64;
     // Cosine of the refraction angle in a medium of this index.
     let inside = |ior: f64| (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
@@ -82,7 +82,7 @@ fn water_in_a_glass() {
 /// An emitting wall inside glass: its radiance decreases on the way into the air by the square of
 /// the index.
 #[test]
-fn an_emitter_in_glass() {
+fn radiance_of_an_emitter_in_glass_scales_with_the_squared_index() {
     let upright = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
     for (roughness, cos) in [(0.0, 1.0f32), (0.0, 0.6), (0.02, 0.9)] {
         let glass = format!(r#"{{"dielectric": {{"ior": 1.5, "roughness": {roughness}}}}}"#);
@@ -99,7 +99,7 @@ fn an_emitter_in_glass() {
 
 /// A layer of water inside a block of glass: from glass to water and back.
 #[test]
-fn one_within_another() {
+fn nested_dielectrics_transmit_by_the_closed_form() {
     let scene = pane(Scene::new(), 0.0, 1.0, r#"{"dielectric": {"ior": 1.5}}"#);
     let scene = pane(scene, 0.4, 0.6, r#"{"dielectric": {"ior": 1.33, "priority": 1}}"#);
     let (outer, inner) = (interface(1.0, 1.5), interface(1.0, 1.33 / 1.5));
@@ -110,7 +110,7 @@ fn one_within_another() {
 /// A floor under a pane in uniform light: the hemispherical transmittance T comes through, and the
 /// pane returns the fraction R of the light that the floor reflects.
 #[test]
-fn light_through_a_pane() {
+fn floor_below_a_pane_matches_the_closed_form() {
     let reflectance = |cos: f64| {
         let share = fresnel(cos.max(1e-9), 1.5);
         2.0 * share / (1.0 + share)
@@ -129,7 +129,7 @@ fn light_through_a_pane() {
 /// The closed form is that of a light straight above, which a pane of thickness t moves nearer by t
 /// (1 - 1/n).
 #[test]
-fn a_caustic_of_a_pane() {
+fn caustic_of_a_pane_matches_the_closed_form() {
     let emitter = r#"{"sphere": {"radius": 0.2}}"#;
     let scene = Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.01}}"#)
@@ -151,7 +151,7 @@ fn a_caustic_of_a_pane() {
 
 /// A glass sphere on a white floor under a white sky is invisible, whatever light it focuses.
 #[test]
-fn a_sphere_on_a_white_floor() {
+fn glass_sphere_on_a_white_floor_vanishes() {
     let scene = Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 1}}"#)
         .with(r#"{"sphere": {"radius": 1}}"#, Vec3::new(0.2, 1.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#)

@@ -17,7 +17,7 @@ fn down(at: Vec3) -> Transform {
 }
 
 #[test]
-fn a_sphere() {
+fn sphere_emitter_matches_the_closed_form() {
     for (center, radius) in [(Vec3::new(0.0, 3.0, 0.0), 1.0), (Vec3::new(-2.0, 2.5, -1.0), 0.8)] {
         let scene = Scene::floor().with(&format!(r#"{{"sphere": {{"radius": {radius}}}}}"#), center, EMITTER);
         let distance = f64::from(center.length());
@@ -27,13 +27,13 @@ fn a_sphere() {
 }
 
 #[test]
-fn a_disk() {
+fn disk_emitter_matches_the_closed_form() {
     let scene = Scene::floor().placed(r#"{"disk": {"radius": 1.5}}"#, down(Vec3::Y * 2.0), EMITTER);
     traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * 2.25 / (2.25 + 4.0));
 }
 
 #[test]
-fn a_rectangle_above_and_one_beside() {
+fn rectangle_emitters_match_the_closed_form() {
     let size = r#"{"rectangle": {"size": [2, 3]}}"#;
     let center = Vec3::new(0.3, 1.2, -0.5);
     let above = Scene::floor().placed(size, down(center), EMITTER);
@@ -46,7 +46,7 @@ fn a_rectangle_above_and_one_beside() {
 }
 
 #[test]
-fn a_triangle() {
+fn triangle_emitter_matches_the_closed_form() {
     let corners = [Vec3::new(-1.0, 1.0, 0.5), Vec3::new(0.8, 2.0, 1.0), Vec3::new(0.3, 1.5, -1.4)];
     for corners in [corners, [corners[0], corners[2], corners[1]]] {
         let vertices = corners.map(json).join(", ");
@@ -64,7 +64,7 @@ fn a_triangle() {
 /// The form factor of two parallel unit squares at a distance of 1 is 0.19982, that of two that
 /// share an edge at a right angle 0.20004 (Howell, C-11 and C-14).
 #[test]
-fn squares_of_a_box() {
+fn squares_of_a_box_match_published_form_factors() {
     let square = r#"{"rectangle": {"size": [1, 1]}}"#;
     let show = r#"{"diffuse": {"reflectance": 1}}"#;
     let emitter = r#"{"emissive": {"radiance": 1}}"#;
@@ -109,7 +109,7 @@ fn a_spot_fades_between_its_angles() {
 /// All points of the sun's disk have the same radiance, so the irradiance has the cosine of its
 /// center times the mean cosine within the disk.
 #[test]
-fn a_sun_of_any_size() {
+fn sun_of_any_angular_size_matches_the_closed_form() {
     for angle in [0.0f64, 0.53, 40.0] {
         let light =
             format!(r#"{{"directional": {{"direction": [1, -2, 2], "intensity": 4, "angle_degrees": {angle}}}}}"#);
@@ -138,7 +138,7 @@ fn lights_add_up() {
 
 /// 1,024 tiles equal one rectangle.
 #[test]
-fn a_thousand_tiles() {
+fn rectangle_of_1024_emitters_equals_one_rectangle() {
     let center = Vec3::new(0.3, 1.5, -0.2);
     let side = 2.0 / 32.0;
     let tile = format!(r#"{{"rectangle": {{"size": [{side}, {side}]}}}}"#);
@@ -153,7 +153,7 @@ fn a_thousand_tiles() {
 /// An integrating sphere: diffuse interreflection makes the irradiance uniform after the first
 /// bounce (Sumpner 1892).
 #[test]
-fn a_closed_sphere() {
+fn integrating_sphere_is_uniform() {
     let shell = r#"{"sphere": {"radius": 2}}"#;
     let wall = r#"{"diffuse": {"reflectance": 0.5}}"#;
     let light = r#"{"point": {"position": [0, 0, 0], "intensity": 12.566370614}}"#;

@@ -13,7 +13,7 @@ fn furnace(options: &str) -> Estimate {
 }
 
 #[test]
-fn depth_cuts_the_series() {
+fn max_depth_truncates_the_series_of_bounces() {
     for depth in [1, 2, 3, 5, 9] {
         let options = format!(r#""max_depth": {depth}, "roulette_depth": null"#);
         furnace(&options).is(1.0 - 0.75f64.powi(depth));
@@ -22,7 +22,7 @@ fn depth_cuts_the_series() {
 
 /// `max_diffuse` limits the number of diffuse bounces; light samples at the last one still count.
 #[test]
-fn kinds_of_scattering_cut_the_series() {
+fn limits_of_bounce_kinds_truncate_the_series() {
     for most in [0, 1, 2, 4] {
         let options = format!(r#""max_diffuse": {most}, "roulette_depth": null"#);
         furnace(&options).is(1.0 - 0.75f64.powi(most + 1));
@@ -56,7 +56,7 @@ fn roulette_changes_no_mean() {
 /// Inside dense glass, radiance is larger by the square of the index, which Russian roulette must
 /// compensate.
 #[test]
-fn roulette_behind_glass() {
+fn russian_roulette_behind_glass_is_unbiased() {
     let scene = Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.5}}"#)
         .with(

@@ -36,7 +36,7 @@ fn clear_media_absorb() {
 
 /// Unscattered transmittance of fog, with scattered light disabled.
 #[test]
-fn fog_dims() {
+fn fog_attenuates_unscattered_light() {
     let scene = layer(0.6, r#"{"scattering": [0.5, 1, 2], "absorption": [0.2, 0, 0.1]}"#).with(
         r#"{"rectangle": {"size": [4000, 4000]}}"#,
         -Vec3::Y,
@@ -68,7 +68,7 @@ fn fog_scatters_once() {
 /// Single scattering of light from an emissive shape, which scattered rays can hit too, along a ray
 /// through a sphere of fog.
 #[test]
-fn fog_scatters_the_light_of_emitters_once() {
+fn single_scattering_of_an_emitter_matches_quadrature() {
     let fog = r#"{"boundary": {"medium": {"scattering": 0.5}}}"#;
     let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, fog).with(
         r#"{"sphere": {"radius": 0.5}}"#,
@@ -112,7 +112,7 @@ fn once(coefficient: f64, steps: u32) -> f64 {
 /// Fog of albedo 1, optically thick: a half space in uniform light reflects all of it. With
 /// absorption, it reflects 1 - H(μ) √(1 - ω), with Chandrasekhar's H function.
 #[test]
-fn thick_fog_gives_light_back() {
+fn reflectance_of_thick_fog_matches_the_h_function() {
     let albedo = 0.8f64;
     let scene = layer(40.0, r#"{"scattering": 0.8, "absorption": 0.2}"#).in_light(1.0);
     let camera = looking(Vec3::new(0.6, 40.8, 0.0), Vec3::new(0.0, 40.0, 0.0));
@@ -139,7 +139,7 @@ fn chandrasekhar(cos: f64, albedo: f64) -> f64 {
 
 /// A floor in fog under the sun: attenuated on the way down and on the way up.
 #[test]
-fn a_floor_under_fog() {
+fn floor_in_an_absorbing_medium_is_attenuated_twice() {
     let light = r#"{"directional": {"direction": [0, -1, 0], "intensity": 4}}"#;
     let scene = layer(0.6, r#"{"absorption": 0.5}"#).lit(light).with(
         r#"{"plane": {}}"#,
@@ -160,7 +160,7 @@ fn a_floor_under_fog() {
 
 /// Fog of higher priority hides a block of glass: light in the fog passes it unchanged.
 #[test]
-fn glass_that_is_hidden_in_fog() {
+fn fog_of_higher_priority_hides_glass() {
     let fog = r#"{"boundary": {"priority": 1, "medium": {"scattering": 1}}}"#;
     let scene = || {
         Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, fog).with(
@@ -178,7 +178,7 @@ fn glass_that_is_hidden_in_fog() {
 
 /// Overlapping media: the one of higher priority applies.
 #[test]
-fn fog_in_fog() {
+fn overlapping_media_use_the_higher_priority() {
     let boundary = |absorption: f64, priority: i32| {
         format!(r#"{{"boundary": {{"priority": {priority}, "medium": {{"absorption": {absorption}}}}}}}"#)
     };

@@ -261,7 +261,7 @@ impl Case<'_> {
 }
 
 #[test]
-fn every_shape_that_emits_is_a_furnace() {
+fn emissive_shapes_of_every_kind_form_a_furnace() {
     let all = is_deep();
     let strategies: &[(&str, u32)] =
         if all { &[("mis", 1), ("mis", 4), ("bsdf", 1), ("light", 1)] } else { &[("mis", 1)] };

@@ -29,12 +29,12 @@ fn shown(background: &AnyBackground, rows: u32) -> f64 {
 }
 
 #[test]
-fn the_same_everywhere() {
+fn uniform_sky_matches_the_closed_form() {
     traced(Scene::floor().in_light(3.0), &at_origin(), 16).is(1.5);
 }
 
 #[test]
-fn from_the_horizon_to_the_zenith() {
+fn gradient_sky_matches_the_closed_form() {
     // ∫ cos (h + (z - h) cos) dω / π = h / 3 + 2 z / 3, and (h + z) / 2 for a blend by the squared
     // cosine.
     for (blend, expected) in [("sine", 1.0 / 3.0 + 8.0 / 3.0), ("sine_squared", 2.5)] {
@@ -44,7 +44,7 @@ fn from_the_horizon_to_the_zenith() {
 }
 
 #[test]
-fn a_clear_sky_with_its_sun() {
+fn clear_sky_and_sun_match_quadrature() {
     let sky = |sun: bool| {
         prepared(read(&format!(r#"{{"sky": {{"sun_elevation_degrees": 30, "turbidity": 3, "sun": {sun}}}}}"#)))
     };
@@ -75,7 +75,7 @@ pub fn panorama() -> AnyBackground {
 }
 
 #[test]
-fn a_panorama_with_a_hot_spot() {
+fn panorama_with_a_hot_spot_matches_quadrature() {
     let expected = shown(&panorama(), 1500);
     traced(Scene::floor().before(panorama()), &at_origin(), 256).is(expected);
 }

@@ -40,7 +40,7 @@ fn each<T: DeserializeOwned>(folder: &str, least: usize, check: impl Fn(&T) -> R
 }
 
 #[test]
-fn documented_kinds_are_right() {
+fn json_examples_of_the_documentation_are_valid() {
     let text = |error: &dyn std::error::Error| error.to_string();
     each("camera/src", 3, |camera: &AnyCamera| camera.projection([4, 3].into()).map(|_| ()).map_err(|e| text(&e)));
     each("texture/src", 17, |texture: &AnyTexture| texture.check().map_err(|e| text(&e)));

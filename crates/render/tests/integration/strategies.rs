@@ -170,7 +170,7 @@ fn all_techniques_find_the_same_light() {
 
 /// The `sampling` option changes only the noise, also for caustics of specular spheres.
 #[test]
-fn all_settings_of_sampling_have_one_mean() {
+fn all_sampling_options_have_the_same_mean() {
     // Light sampling through glass is correct, but too noisy for this test.
     let caustics = crate::caustics::SCENES.into_iter().filter(|(name, _)| !name.contains("glass") && *name != "sky");
     let caustics = caustics.map(|(name, build)| (name, build(false), crate::caustics::look()));

@@ -55,7 +55,7 @@ fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
 }
 
 #[test]
-fn threads_and_tiles_cannot_be_seen() {
+fn pixels_do_not_depend_on_threads_and_tiles() {
     let (world, camera, integrator) = (world(), camera(), path(""));
     let (filter, pattern) = (read::<AnyFilter>(r#"{"box": {}}"#), read::<AnySampler>(r#"{"sobol": {}}"#));
     let job = Job {

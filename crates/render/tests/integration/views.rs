@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// A small disk far behind the focal plane appears as a uniform circle of confusion of radius
 /// `R |d - f| / f`, with the same total light.
 #[test]
-fn a_circle_of_confusion() {
+fn defocused_disk_has_its_circle_of_confusion() {
     let (lens, focus, distance, radius) = (0.2f64, 4.0, 6.0, 0.02);
     let turned = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
     let scene = Scene::new().placed(
@@ -42,7 +42,7 @@ fn a_circle_of_confusion() {
 
 /// An emitter in a mirror has its radiance times the reflectance, in a curved mirror too.
 #[test]
-fn an_emitter_in_a_mirror() {
+fn mirror_reflects_an_emitter_by_its_reflectance() {
     let emitter = r#"{"emissive": {"radiance": 3}}"#;
     let sheet = Transform::rotation(Vec3::Z, std::f32::consts::FRAC_PI_2).unwrap();
     let sheet = sheet.then(&Transform::translation(Vec3::X * 5.0));
@@ -74,7 +74,7 @@ fn an_emitter_in_a_mirror() {
 
 /// Two parallel mirrors attenuate at each reflection.
 #[test]
-fn mirrors_in_mirrors() {
+fn parallel_mirrors_attenuate_at_each_reflection() {
     let mirror = r#"{"conductor": {"reflectance": 0.9, "grazing": 0.9}}"#;
     let wall = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
     let at = |z: f32| wall.then(&Transform::translation(Vec3::Z * z));

@@ -126,7 +126,7 @@ fn furnace(material: &str, is_within: bool, edge: u32, samples: u32) -> Estimate
 }
 
 #[test]
-fn every_kind_of_material_keeps_light_and_adds_none() {
+fn every_white_material_conserves_energy() {
     let cases: Vec<Case> = metals().into_iter().chain(coats()).chain(transmitting()).chain(combined()).collect();
     let (edge, samples, most_noise) = if is_deep() { (32, 256, 0.0015) } else { (16, 64, 0.006) };
     let mut wrong = Vec::new();

@@ -116,7 +116,7 @@ fn rough_metal_vanishes() {
 
 /// Light that a tilted shading normal would send to the wrong side of the surface is not lost.
 #[test]
-fn glass_under_a_map_of_normals_vanishes() {
+fn glass_with_a_normal_map_vanishes_in_a_furnace() {
     let few = [(1.5, 0.5, 1.0, false), (1.5, 0.5, 0.3, true)];
     let grid = [1.2, 1.5, 2.0].into_iter().flat_map(|ior| [0.2, 0.5, 0.9].map(|roughness| (ior, roughness)));
     let grid = grid.flat_map(|(ior, roughness)| [0.1, 1.0, 3.0].map(|strength| (ior, roughness, strength)));
@@ -141,7 +141,7 @@ fn glass_under_a_map_of_normals_vanishes() {
 /// Mixtures and layers of `principled` keep 99 % of the energy, also dense glass with metal from
 /// inside, where light hits the metal about thirty times before it leaves.
 #[test]
-fn principled_glass_and_what_lies_over_it_vanishes() {
+fn principled_glass_and_its_layers_vanish_in_a_furnace() {
     let outside = [
         r#""transmission": 0.4"#,
         r#""transmission": 0.4, "clearcoat": 1"#,

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_of_64_points_has_its_length_and_is_gone_along_evenly() {
+    fn circle_through_64_points_has_its_length_and_constant_speed() {
         let circle = circle(64);
         assert!((circle.length() - 2.0 * TAU).abs() < 1e-4, "{}", circle.length());
         let points: Vec<DVec3> = (0..=1000).map(|i| circle.point_at(f64::from(i) / 1000.0)).collect();
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_one_repeats_and_an_open_one_stays_at_its_ends() {
+    fn closed_curve_repeats_and_open_curve_clamps() {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 3.0, 0.0), DVec3::new(-2.0, 1.0, 4.0)];
         let closed = Curve::from_points(points.clone(), true).unwrap();
         for fraction in [0.0, 0.2, 0.77] {
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_through_all_its_points_without_corners() {
+    fn curve_interpolates_its_points_with_continuous_tangents() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0], [-4.0, 2.0, 1.0]].map(DVec3::from);
         for closed in [false, true] {
             let curve = Curve::from_points(points.to_vec(), closed).unwrap();
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_lines_stay_straight_and_odd_ones_are_sound() {
+    fn collinear_points_give_a_line_and_degenerate_curves_are_valid() {
         let line = Curve::from_points(vec![DVec3::ZERO, DVec3::X, DVec3::X * 5.0], false).unwrap();
         assert!((line.length() - 5.0).abs() < 1e-9 && line.point_at(0.5).distance(DVec3::X * 2.5) < 1e-9);
         for (points, closed) in [(vec![DVec3::Y], true), (vec![DVec3::Y; 3], false), (vec![DVec3::Y; 3], true)] {

@@ -99,7 +99,7 @@ mod tests {
 
     /// Reference values, computed with 50 digits.
     #[test]
-    fn known_values_of_css() {
+    fn easing_matches_reference_values_of_css() {
         for (easing, share, value) in [
             (Easing::In, 0.5, 0.315_356_813),
             (Easing::Out, 0.5, 0.684_643_187),
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn all_begin_at_0_end_at_1_and_rise() {
+    fn easing_curves_rise_from_0_to_1() {
         for ease in NAMED.map(Ease::Named).into_iter().chain([Ease::Bezier([1.0, 0.0, 0.0, 1.0])]) {
             assert_eq!((ease.at(0.0), ease.at(1.0)), (0.0, 1.0));
             let values: Vec<f64> = (0..=1000).map(|i| ease.at(f64::from(i) / 1000.0)).collect();
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn curves_may_leave_the_square_upwards_but_not_sideways() {
+    fn bezier_control_points_may_exceed_the_unit_range_in_y_but_not_in_x() {
         let back = Ease::Bezier([0.5, -1.0, 0.5, 2.0]);
         assert!(back.at(0.2) < 0.0 && back.at(0.8) > 1.0 && back.error().is_none());
         assert!(Ease::Bezier([-0.1, 0.0, 0.5, 1.0]).error().is_some());

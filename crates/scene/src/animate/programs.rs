@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limited_length_of_texts_is_kept() {
+    fn program_cache_limits_the_total_text_length() {
         let programs = Programs::default();
         let text = |i: usize| format!("{i:<width$}", width = juggler_expression::MAX_LENGTH);
         let is_kept = |i: usize| {

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_light_has_its_closed_form() {
+    fn brightest_illuminance_matches_closed_forms() {
         let far = r#"{"point": {"position": [0, 1, 9], "intensity": 9}}"#;
         for (lights, light, expected) in [
             (r#"{"point": {"position": [3, 5, 0], "intensity": 50}}"#, Some("lights[0]"), 2.0),

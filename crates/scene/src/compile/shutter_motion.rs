@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn lights_go_from_moment_to_moment() {
+    fn light_positions_are_interpolated_between_keys() {
         let moments = [lights(0.0, 1.0, 2), lights(4.0, 2.0, 2), lights(4.0, 3.0, 2)];
         let all = lights_of(&moments[1], &moments);
         for (time, x) in [(0.0, 0.0), (0.25, 2.0), (0.5, 4.0), (0.99, 4.0)] {

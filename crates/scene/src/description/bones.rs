@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn the_joint_is_as_far_from_the_ends_as_the_bones_are_long() {
+    fn distances_from_joint_to_ends_equal_bone_lengths() {
         for (to, normal) in [([1.0, 6.0, 3.0], [0.0, 0.0, 1.0]), ([3.0, 4.0, 4.0], [1.0, 0.3, -2.0])] {
             let bones = bones(to, normal, true);
             let joint = bones.joint().unwrap();
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_cannot_be() {
+    fn impossible_joints_are_rejected_by_field() {
         let fails = |to, normal| bones(to, normal, true).joint().unwrap_err();
         assert_eq!(fails([1.0, 2.0, 3.0], [0.0, 0.0, 1.0]).field, "to");
         assert_eq!(fails([1.0, 6.0, 3.0], [0.0, 1.0, 0.0]).field, "plane_normal");

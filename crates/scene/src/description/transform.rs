@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_looks_at_a_point_faces_it_upright() {
+    fn look_at_faces_the_target_upright() {
         let step = look([1.0, 2.0, 3.0], [1.0, 2.0, 13.0]);
         let place = TransformStep::LookAt(step).transform().unwrap();
         assert!(near(place.point(Vec3::ZERO), [1.0, 2.0, 3.0]) && near(place.vector(Vec3::X), [1.0, 0.0, 0.0]));
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_up_and_along_its_own_top_there_is_a_way() {
+    fn look_at_handles_directions_parallel_to_up() {
         for (to, forward) in [([0.0, 5.0, 0.0], Vec3::Z), ([0.0, -5.0, 0.0], Vec3::Y), ([1.0, 2.0, 3.0], Vec3::NEG_Y)] {
             let step = LookAt { forward, ..look([0.0; 3], to) };
             let place = TransformStep::LookAt(step).transform().unwrap();

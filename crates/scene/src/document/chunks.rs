@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn long_lists_are_taken_out_and_nothing_else_moves() {
+    fn split_extracts_long_lists_and_keeps_all_other_positions() {
         let text = text(1000);
         let (rest, lists) = split(&text).unwrap();
         assert_eq!((rest.len(), lists.len(), lists[0].key, lists[0].elements.len()), (text.len(), 1, "objects", 1000));
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_short_or_wrong_is_left_to_others() {
+    fn split_ignores_short_and_malformed_lists() {
         assert_eq!(split(&text(999)), None);
         let long = text(1000);
         for (from, to) in [(" , ", " , , "), ("\"lights\": []", "\"objects\": []"), ("], \"title\"", "}, \"title\"")] {

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_name_the_place() {
+    fn nesting_errors_name_the_path() {
         let inner = format!("{{\"a\": [1, 2], \"\\u0062\": [0, {{\"c\": {}", "[".repeat(61));
         let path = check(&format!("/* [ */ [{{}}, \"[\\\"\", {inner}")).unwrap_err().path.unwrap();
         assert_eq!(path.to_string(), format!("[2].b[1].c{}", "[0]".repeat(60)));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn only_text_is_text() {
+    fn only_utf_8_is_accepted_as_text() {
         assert_eq!(text(b"\xef\xbb\xbf{}".to_vec()), Ok("{}".into()));
         assert!(text(vec![0x89, b'P', b'N', b'G', 0]).is_err());
         assert!(text(vec![b'a', 0xc3]).unwrap_err().contains("byte 1"));

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn few_and_many_members_are_found_alike() {
+    fn members_are_found_in_small_and_large_objects() {
         let mut members = Members::default();
         for i in 0..100 {
             members.insert(format!("k{i}"), member(i));

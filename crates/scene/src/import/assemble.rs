@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn complete_normals_stay_and_useless_ones_go() {
+    fn valid_normals_are_kept_and_invalid_normals_dropped() {
         let tilted = Vec3::new(0.0, 3.0, 4.0);
         assert_eq!(triangle([tilted; 3]).mesh.normals, [tilted; 3]);
         let none = triangle([Vec3::ZERO, Vec3::NAN, Vec3::INFINITY]);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_show_is_a_fault_that_says_what_was_left_out() {
+    fn empty_mesh_error_lists_what_was_ignored() {
         let mut parts = MeshParts { warnings: vec!["2 lines".into()], ..MeshParts::default() };
         parts.faces.push(&[1], &Limits::default()).unwrap();
         let error = parts.assemble().unwrap_err();

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn says_file_place_and_expectation() {
+    fn import_errors_state_file_position_and_expectation() {
         let kind = FilePosition::Line(7).error("expected a number");
         let error = ImportError { path: "models/cow.obj".into(), kind };
         assert_eq!(error.to_string(), "models/cow.obj: line 7: expected a number");

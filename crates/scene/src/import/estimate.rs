@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_binary_ply_is_known_by_its_head_and_length() {
+    fn size_of_a_binary_ply_follows_from_header_and_length() {
         // A quadrilateral and a triangle, with a color each.
         let body = vec![0; 4 * 12 + (1 + 4 * 4 + 1) + (1 + 3 * 4 + 1)];
         let found = of("a.ply", &ply("binary_little_endian", &body));
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_are_counted() {
+    fn size_of_a_text_mesh_is_counted_or_sampled() {
         let small = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1 4//1\nf 1//2 2//2 3//2\n";
         let found = of("a.obj", small.as_bytes());
         // There are seven distinct corners, more than positions.
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn soups_and_what_is_no_mesh() {
+    fn size_of_an_stl_follows_from_its_triangle_count() {
         let mut stl = vec![0; 84 + 50 * 10];
         stl[80] = 10;
         assert_eq!(of("a.stl", &stl).triangles, 10);

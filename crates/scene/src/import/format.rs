@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn endings_in_any_case() {
+    fn file_extensions_ignore_case() {
         assert_eq!(name(of_name(Path::new("a/b.c/part.STL"))), Some("STL"));
         assert_eq!(name(of_name(Path::new("x.Ply"))), Some("PLY"));
         assert_eq!(name(of_name(Path::new("obj"))), None);
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn content_speaks_when_it_is_plain() {
+    fn format_is_detected_from_unambiguous_content() {
         assert_eq!(name(of_content(b"ply\r\nformat ascii 1.0\r\n")), Some("PLY"));
         assert_eq!(name(of_content(b"# made by hand\n\nv 0 0 0\n")), Some("OBJ"));
         assert_eq!(name(of_content(b" Solid cube\n")), Some("STL"));

@@ -10,7 +10,7 @@ const TABLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n
                      element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 #[test]
-fn the_three_formats_are_one_mesh_whatever_their_name_says() {
+fn all_formats_give_the_same_mesh_under_any_file_extension() {
     let expected = parse(Path::new("a.obj"), TRIANGLE.as_bytes(), &Limits::default()).unwrap();
     assert!(expected.warnings.is_empty());
     for (name, text, is) in [
@@ -44,7 +44,7 @@ fn files_are_loaded_and_their_size_is_limited() {
 }
 
 #[test]
-fn what_cannot_be_read_is_named() {
+fn unreadable_files_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let missing = load(&folder.path().join("none.ply"), &Limits::default()).unwrap_err();
     assert!(matches!(missing.kind, ImportErrorKind::Read(_)));
@@ -90,7 +90,7 @@ fn variants(text: &str, changes: &[(&str, &str)]) -> Vec<String> {
 }
 
 #[test]
-fn pieces_of_an_obj_do_not_show() {
+fn chunk_size_does_not_change_an_obj() {
     let mut text =
         String::from("# cut me \\\nmtllib a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n");
     text += "g a b\nusemtl c\nf 1 2 3\nf -4//1 -2/2 -1/-1/-1\n\n  # v 7 7 7\nv .5 \\\n .5 \\\n\\\n0\nf 1 2 -1 4\ns 1\n";
@@ -111,7 +111,7 @@ fn pieces_of_an_obj_do_not_show() {
 }
 
 #[test]
-fn pieces_of_a_text_ply_do_not_show() {
+fn chunk_size_does_not_change_a_text_ply() {
     let mut text = String::from("ply\nformat ascii 1.0\nelement face 9\nproperty list uchar int vertex_indices\n");
     text += "element junk 2\nproperty list int int j\nelement vertex 12\nproperty float x\nproperty double y\nproperty float z\n";
     text += "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nend_header\n";
@@ -130,7 +130,7 @@ fn pieces_of_a_text_ply_do_not_show() {
 }
 
 #[test]
-fn pieces_of_a_binary_ply_do_not_show() {
+fn chunk_size_does_not_change_a_binary_ply() {
     let mut bytes = b"ply\nformat binary_big_endian 1.0\nelement vertex 20\nproperty float x\nproperty uchar red\nproperty short y\n\
         property float z\nelement face 30\nproperty uchar flags\nproperty list uchar ushort vertex_indices\nend_header\n"
         .to_vec();
@@ -159,7 +159,7 @@ fn pieces_of_a_binary_ply_do_not_show() {
 }
 
 #[test]
-fn pieces_of_an_stl_do_not_show() {
+fn chunk_size_does_not_change_an_stl() {
     let mut text = String::from("solid facet\nfacet\n");
     for i in 0..9 {
         let name = ["  FACET", "facet", "\t facet"][i % 3];

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_and_continuations_only_in_wavefront() {
+    fn comments_and_line_continuations_apply_only_to_obj() {
         let text = b"f 1 \\\r\n 2\\\n3 # not 4 \\\nv #x\n\\";
         let found = words(Scanner::with_obj_rules(text));
         let expected = [(1, "f"), (1, "1"), (2, "2"), (3, "3"), (4, "v"), (5, "\\")];
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers() {
+    fn integers_are_parsed_without_overflow() {
         let cases: [(&[u8], Option<i64>); 9] = [
             (b"0", Some(0)),
             (b"-17", Some(-17)),

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_are_known_by_mark_and_by_name() {
+    fn unsupported_formats_are_detected_by_content_and_extension() {
         let name = |found: Option<UnsupportedFormat>| found.map(UnsupportedFormat::name);
         assert_eq!(name(UnsupportedFormat::of_content(b"glTF\x02\0\0\0")), Some("glTF"));
         assert_eq!(name(UnsupportedFormat::of_content(b"Kaydara FBX Binary  \0")), Some("FBX"));
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_name_the_format_and_those_that_are_read() {
+    fn messages_name_the_unsupported_and_the_supported_formats() {
         let message = |file: &str| UnsupportedFormat::of_name(Path::new(file)).unwrap().to_string();
         assert_eq!(message("a.glb"), "glTF is not supported; supported mesh formats: OBJ, PLY and STL");
         assert!(

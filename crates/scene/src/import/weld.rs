@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_in_order_of_first_appearance() {
+    fn welded_vertices_are_numbered_in_order_of_first_appearance() {
         let mut welder = Welder::default();
         let limits = Limits { vertices: 3, ..Limits::default() };
         let keys = [[7, 0, 0], [1, 2, 3], [7, 0, 0], [3, 2, 1], [1, 2, 3]];
@@ -164,7 +164,7 @@ mod tests {
     /// Welds triangles of few distinct corners in pieces of several sizes and compares with one
     /// piece.
     #[test]
-    fn pieces_are_welded_as_the_whole() {
+    fn chunk_size_does_not_change_welding() {
         let limits = Limits::default();
         let corner = |i: u32| [0, juggler_math::hash::mix(i) % 500, 0];
         let weld = |size: usize| {

@@ -136,7 +136,7 @@ mod tests {
 
     /// Value forms are recognized by their key alone, so no field or kind may have the same name.
     #[test]
-    fn nothing_else_is_called_as_a_value_form() {
+    fn no_field_or_kind_has_the_name_of_a_value_form() {
         let schema = Schema::get();
         let forms: Vec<&str> = crate::animate::forms().collect();
         for (name, definition) in schema.definitions().filter(|(name, _)| *name != "ValueForm") {

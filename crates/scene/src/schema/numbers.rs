@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_that_say_nothing_go_and_bits_stay() {
+    fn single_precision_numbers_are_shortened_without_changing_bits() {
         let numbers = [0.8_f32, 1.0, f32::MAX, f32::MIN_POSITIVE, 1.0e-45, -0.0, 16_777_216.0, 0.1 + 0.2];
         let mut json = serde_json::json!(numbers.map(f64::from));
         shorten_numbers(&mut json);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn other_numbers_stay_as_they_are() {
+    fn integers_and_double_precision_numbers_are_unchanged() {
         let mut json = serde_json::json!([0.1, 7, u64::MAX, 1.0e300, {"deep": [0.3]}]);
         let before = json.clone();
         shorten_numbers(&mut json);

@@ -85,7 +85,7 @@ fn loops_and_ping_pongs_fold_time() {
 }
 
 #[test]
-fn steps_carry_anything() {
+fn step_interpolation_accepts_values_of_any_type() {
     let keys = json!([[0, "near"], [1, {"sphere": {"radius": "=1+1"}}], [2, [true, null]]]);
     let form = json!({"animate": {"keys": keys, "interpolation": "step"}});
     assert_eq!(value(form.clone(), 0.99), json!("near"));
@@ -96,7 +96,7 @@ fn steps_carry_anything() {
 }
 
 #[test]
-fn colors_are_mixed_as_light() {
+fn colors_are_interpolated_in_linear_space() {
     let form = json!({"animate": {"keys": [[0, "#ff0000"], [1, "#0000ff"], [2, [0, 1, 1]]]}});
     assert_eq!(value(form.clone(), 0.5), json!([0.5, 0, 0.5]));
     assert_eq!(value(form.clone(), 1.5), json!([0, 0.5, 1]));
@@ -164,7 +164,7 @@ fn smooth_has_no_corners_at_keys_nor_at_seams() {
 }
 
 #[test]
-fn rotations_turn_evenly_and_the_shorter_way() {
+fn slerp_rotates_at_constant_speed_along_the_shorter_arc() {
     let turn = |degrees: f64| json!({"axis": [0, 0, 2], "degrees": degrees});
     let form = |to: f64| json!({"animate": {"keys": [[0, [0, 0, 0, 3]], [1, turn(to)]], "interpolation": "slerp"}});
     for (to, shorter) in [(90.0, 90.0), (200.0, -160.0), (-30.0, -30.0)] {
@@ -252,7 +252,7 @@ fn camera_and_followers_share_a_variable() {
 }
 
 #[test]
-fn what_is_not_visible_is_not_there() {
+fn invisible_objects_are_not_compiled() {
     let text = r#"{"version": 1, "animation": {"frames": 4, "frames_per_second": 1},
         "groups": {"pair": [{"shape": "sphere"}, {"shape": "sphere", "visible": false}]},
         "objects": [{"shape": "sphere", "visible": "=frame < 2"}, {"group": "pair", "visible": "=frame"},
@@ -268,7 +268,7 @@ fn what_is_not_visible_is_not_there() {
 
 /// Invisible objects are not expanded: a billion of them cost nothing.
 #[test]
-fn what_is_not_visible_costs_nothing() -> Result<(), SceneError> {
+fn invisible_groups_are_not_expanded() -> Result<(), SceneError> {
     let ten = |group: &str| Value::from(vec![json!({"group": group, "visible": 0}); 10]);
     let mut groups = serde_json::Map::new();
     groups.insert("g0".into(), json!([{"shape": "sphere"}]));
@@ -281,7 +281,7 @@ fn what_is_not_visible_costs_nothing() -> Result<(), SceneError> {
 }
 
 #[test]
-fn maps_of_names_are_no_value_forms() {
+fn keys_of_name_maps_are_not_value_forms() {
     let text = r#"{"version": 1, "groups": {"joint": [{"shape": "sphere"}]}, "materials": {"animate": {"phong": {}}},
         "textures": {"along": "checker"}, "objects": [{"group": "joint", "material": "animate"}]}"#;
     assert!(Scene::from_json(text, "a.json").unwrap().compile().is_ok());
@@ -299,7 +299,7 @@ fn subtrees_without_motion_are_shared() {
 }
 
 #[test]
-fn what_depends_on_time_is_known() {
+fn time_dependence_of_values_is_detected() {
     let keys = json!([[0, 1], [1, 2]]);
     for (depends, variables, here) in [
         (false, json!({}), json!(["=2*pi", "frame", 3])),
@@ -319,7 +319,7 @@ fn what_depends_on_time_is_known() {
 }
 
 #[test]
-fn a_survey_tells_what_moves() {
+fn survey_lists_animated_values() {
     let text = r#"{"version": 1, "animation": {"frames": 4, "frames_per_second": 1},
         "paths": {"way": {"points": [[0, 0, 0], [1, 0, "=frame"]]}}, "variables": {"t": "seconds / 2", "still": "=2*pi"},
         "objects": [{"shape": {"sphere": {"radius": {"animate": {"keys": [[1, 1], [4, 2]], "interpolation": "smooth",
@@ -354,7 +354,7 @@ fn paths_of_included_files_belong_to_the_scene() {
 }
 
 #[test]
-fn a_number_of_visibility_is_yes_or_no() {
+fn numeric_visibility_becomes_a_boolean() {
     let scene = |visible: &str| {
         let text = format!(r#"{{"version": 1, "objects": [{{"shape": "sphere", "visible": {visible}}}]}}"#);
         Scene::from_json(text, "a.json").unwrap().fingerprint()
@@ -366,7 +366,7 @@ fn a_number_of_visibility_is_yes_or_no() {
 
 /// Tracks move items while the shutter is open; tracks evaluated at a constant time do not move.
 #[test]
-fn tracks_are_seen_by_an_open_shutter() {
+fn tracks_move_items_while_the_shutter_is_open() {
     let moves = |at: &str, shutter: &str| {
         let text = format!(
             r#"{{"version": 1, "animation": {{"frames": 8, "frames_per_second": 4}}, "render": {{"shutter": {shutter}}},

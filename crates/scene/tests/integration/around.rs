@@ -50,7 +50,7 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
 }
 
 #[test]
-fn printers_have_z_up() {
+fn stl_files_are_read_as_z_up() {
     let bundle = Bundle::from_iter([("tower.stl".to_owned(), TOWER.as_bytes().to_vec())]);
     let scene = Scene::from_bundle(bundle, "tower.stl").unwrap();
     let bounds = scene.compile().unwrap().world.bounds();
@@ -59,7 +59,7 @@ fn printers_have_z_up() {
 
 /// A scene that is written to another folder still refers to its files.
 #[test]
-fn files_are_named_from_the_folder_that_a_scene_is_written_to() {
+fn saved_scenes_refer_to_files_relative_to_their_folder() {
     let folder = tempfile::tempdir().unwrap();
     for sub in ["models", "scenes"] {
         fs::create_dir(folder.path().join(sub)).unwrap();
@@ -98,7 +98,7 @@ fn formats_that_are_not_read_yet_are_named() {
 }
 
 #[test]
-fn broken_meshes_say_where() {
+fn malformed_meshes_are_reported_with_their_line() {
     assert_eq!(
         message("a.obj", b"v 0 0\n"),
         "cannot read `a.obj`: line 1: expected a number for z, found the end of the line"

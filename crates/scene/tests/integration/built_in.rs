@@ -38,7 +38,7 @@ fn every_built_in_scene_is_sound() {
 }
 
 #[test]
-fn every_built_in_scene_says_what_it_is() {
+fn every_built_in_scene_has_title_and_description() {
     for built_in in built_in_scenes() {
         let BuiltIn { name, .. } = built_in;
         let description = Scene::built_in(name).unwrap().description;
@@ -61,7 +61,7 @@ fn no_built_in_scene_needs_another_file() {
 }
 
 #[test]
-fn a_slip_in_the_name_is_understood() {
+fn misspelled_built_in_name_gets_a_suggestion() {
     let error = Scene::built_in("jugler").unwrap_err();
     assert!(matches!(error, SceneError::UnknownBuiltIn { .. }));
     assert_eq!(error.to_string(), "no built-in scene is called `jugler`; did you mean `juggler`?");

@@ -22,7 +22,7 @@ fn warnings(scene: &Scene) -> Vec<(String, String)> {
 }
 
 #[test]
-fn scenes_of_the_classic_kind_stay_classic() {
+fn phong_scenes_default_to_the_classic_integrator() {
     for members in [
         r#""objects": [{"shape": "sphere"}]"#,
         r#""lights": [{"point": {}}, {"spot": {}}, {"directional": {}}, {"ambient": {}}], "objects": []"#,
@@ -44,7 +44,7 @@ fn scenes_of_the_classic_kind_stay_classic() {
 }
 
 #[test]
-fn what_classic_cannot_do_asks_for_paths() {
+fn features_beyond_classic_select_the_path_integrator() {
     for (members, says) in [
         (sphere(r#"{"emissive": {}}"#), "`emissive` at `objects[0].material`"),
         (
@@ -76,7 +76,7 @@ fn what_classic_cannot_do_asks_for_paths() {
 }
 
 #[test]
-fn a_chosen_integrator_counts_as_one_that_is_named() {
+fn default_integrator_has_the_fingerprint_of_the_named_integrator() {
     for (material, name) in [(r#"{"phong": {}}"#, "classic"), (r#"{"diffuse": {}}"#, "path")] {
         let open = scene(&sphere(material));
         let named = scene(&format!(r#""render": {{"integrator": "{name}"}}, {}"#, sphere(material)));
@@ -93,7 +93,7 @@ fn a_chosen_integrator_counts_as_one_that_is_named() {
 }
 
 #[test]
-fn unlit_scenes_get_light_that_their_integrator_finds() {
+fn scenes_without_lights_get_a_default_light_for_their_integrator() {
     let key = |members: &str| {
         let world = scene(members).compile().unwrap().world;
         let light = world.lights()[0].at(0.0).light.sample(Vec3::ZERO, juggler_math::Vec2::ZERO).unwrap();
@@ -168,7 +168,7 @@ fn grouped(lights: usize, objects: usize) -> Scene {
 }
 
 #[test]
-fn more_light_groups_than_can_be_kept_apart_are_refused_by_name() {
+fn number_of_light_groups_is_limited() {
     let most = grouped(9, (1 << 16) - 10);
     assert_eq!(most.check().errors(), 0, "{}", most.check());
     let more = grouped(9, (1 << 16) - 9);

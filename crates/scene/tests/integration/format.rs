@@ -63,7 +63,7 @@ fn schema_and_reference_are_current() {
 
 /// The reference's whole scenes are valid and its links lead somewhere.
 #[test]
-fn the_reference_holds_true() {
+fn scenes_of_the_reference_are_valid_and_its_links_resolve() {
     let text = reference();
     let scenes = text.split("```").skip(1).step_by(2).filter(|block| block.contains("\"version\""));
     let scenes: Vec<&str> = scenes.filter_map(|block| Some(block.split_once('\n')?.1)).collect();
@@ -93,7 +93,7 @@ fn the_reference_holds_true() {
 
 /// Short forms give the same scene and are written out in full.
 #[test]
-fn short_forms_mean_the_same() {
+fn short_forms_equal_long_forms() {
     let sphere = |transform: &str, color: &str| {
         let material = format!(r#"{{"phong": {{"diffuse": "{color}"}}}}"#);
         let object = format!(r#"{{"shape": "sphere", "transform": {transform}, "material": {material}}}"#);
@@ -111,7 +111,7 @@ fn short_forms_mean_the_same() {
 
 /// Colors that look like 8-bit levels are allowed with a warning; bright lights cause none.
 #[test]
-fn levels_of_a_picture_are_warned_of() {
+fn colors_that_look_like_8_bit_levels_cause_warnings() {
     let warned = |text: &str| {
         let scene = scene(&format!(r#"{{"version": 1, "objects": [{{"shape": "sphere"}}], {text}}}"#));
         assert!(scene.compile().is_ok());
@@ -132,7 +132,7 @@ fn levels_of_a_picture_are_warned_of() {
 
 /// The limits of 32-bit and 64-bit numbers are allowed values themselves.
 #[test]
-fn limits_allow_their_own_values() {
+fn limits_of_number_types_are_valid_values() {
     let allowed = [
         r#"{"version": 1, "render": {"seed": 18446744073709551615}}"#,
         r#"{"version": 1, "render": {"integrator": {"path": {"clamp_direct": 1e-6, "clamp_indirect": 1e30}}}}"#,

@@ -50,7 +50,7 @@ fn complaint(folder: &TempDir, file: &str) -> String {
 }
 
 #[test]
-fn levels_are_srgb_and_floats_linear_by_default() {
+fn integer_images_default_to_srgb_and_float_images_to_linear() {
     let folder = folder();
     let red =
         |name: &str, space| AssetCache::default().image(&folder.path().join(name), space).unwrap().texel(0, 0, 0)[0];
@@ -68,7 +68,7 @@ fn levels_are_srgb_and_floats_linear_by_default() {
 }
 
 #[test]
-fn pictures_are_kept_in_as_few_bytes_as_hold_them() {
+fn textures_keep_the_smallest_sufficient_sample_type() {
     let folder = folder();
     for (name, bytes_a_sample) in [("a.png", 1), ("a.jpg", 1), ("a.exr", 2), ("a.hdr", 2), ("deep.png", 4)] {
         let path = folder.path().join(name);
@@ -105,7 +105,7 @@ fn a_picture_is_read_once_and_is_part_of_the_fingerprint() {
 }
 
 #[test]
-fn files_in_memory_serve_too() {
+fn bundled_files_are_loaded() {
     let folder = folder();
     let png = fs::read(folder.path().join("a.png")).unwrap();
     let text = scene("textures/a.png", r#", "color_space": "linear""#);

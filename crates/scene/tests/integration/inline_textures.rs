@@ -22,7 +22,7 @@ fn problems(text: String) -> Problems {
 }
 
 #[test]
-fn a_texture_in_place_is_that_texture_under_a_name() {
+fn inline_texture_becomes_a_named_texture() {
     let marble = r#"{"marble": {"scale": 2, "stone": [0.9, 0.8, 0.7]}}"#;
     let scene = Scene::from_json(scene(marble, ""), "inline.json").unwrap();
     let name = "/materials/wall/phong/diffuse";
@@ -36,7 +36,7 @@ fn a_texture_in_place_is_that_texture_under_a_name() {
 }
 
 #[test]
-fn textures_lie_in_textures_and_in_objects_materials() {
+fn inline_textures_nest_in_textures_and_materials() {
     let nested = r#"{"mix": {"a": {"noise": {}}, "b": {"checker": {"even": "tiles", "odd": {"wood": {}}}}, "amount": {"fbm": {}}}}"#;
     let tiles = r#", "textures": {"tiles": {"checker": {"odd": {"dots": {}}}}}"#;
     let text = scene(nested, tiles).replace(

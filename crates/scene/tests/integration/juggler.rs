@@ -187,7 +187,7 @@ fn joints_bend_the_right_way() {
 /// Known positions that test the closed forms: the top of the high arc, throw and catch, the top of
 /// the low arc.
 #[test]
-fn balls_meet_hands_and_heights() {
+fn ball_positions_match_closed_forms() {
     let at = |frame: f64| -> Vec<DVec3> { spheres(frame)[..3].iter().map(|ball| ball.0).collect() };
     let near = |a: DVec3, b: [f64; 3]| assert!((a - DVec3::from(b)).length() < NEAR, "{a} is not at {b:?}");
     for (frame, balls) in [
@@ -248,7 +248,7 @@ const FRAMES: [[f64; 11]; 30] = [
 ];
 
 #[test]
-fn all_thirty_frames_are_those_of_the_table() {
+fn all_thirty_frames_match_the_reference_table() {
     const DIGITS: [i32; 11] = [3, 3, 3, 3, 3, 3, 4, 5, 5, 4, 4];
     for (frame, expected) in (0..30).zip(FRAMES) {
         let spheres = spheres(f64::from(frame) + 0.5);

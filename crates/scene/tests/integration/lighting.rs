@@ -65,7 +65,7 @@ fn towards(world: &World, direction: Vec3) -> f32 {
 }
 
 #[test]
-fn a_panorama_is_seen_and_read_once() {
+fn panorama_is_visible_and_loaded_once() {
     let folder = folder();
     for file in ["a.exr", "a.hdr", "a.png"] {
         let scene = load(&folder, &panorama(file, r#", "scale": 4"#));
@@ -97,7 +97,7 @@ fn a_panorama_is_seen_and_read_once() {
 }
 
 #[test]
-fn files_in_memory_serve_too() {
+fn bundled_files_are_loaded() {
     let folder = folder();
     let file = |name: &str| (name.to_owned(), fs::read(folder.path().join(name)).unwrap());
     let text = panorama("panoramas/a.exr", "").replace(
@@ -111,7 +111,7 @@ fn files_in_memory_serve_too() {
 }
 
 #[test]
-fn skies_are_prepared() {
+fn skies_are_precomputed_for_each_frame() {
     let folder = folder();
     let scene = load(&folder, &scene(r#"{"sky": {"sun_elevation_degrees": "=20 + 10 * frame"}}"#, ""));
     let up = |scene: &Scene| towards(&scene.compile().unwrap().world, Vec3::Y);

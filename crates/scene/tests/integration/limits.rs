@@ -120,7 +120,7 @@ fn last_key(path: &str) -> &str {
 }
 
 #[test]
-fn every_limit_of_the_schema_is_allowed_itself() {
+fn schema_limits_are_inclusive() {
     let cases = cases();
     let mut refused = Vec::new();
     for Case { path, scene } in &cases {

@@ -63,7 +63,7 @@ fn said(name: &str, field: &Value) -> BTreeSet<&'static str> {
 }
 
 #[test]
-fn units_are_those_of_the_list() {
+fn schema_units_equal_the_list_of_units() {
     let listed: BTreeSet<&str> = UNITS.iter().map(|unit| unit.name).collect();
     assert_eq!(listed.len(), UNITS.len(), "a unit is listed twice");
     let used: BTreeSet<&str> = stated(Schema::get().root()).into_iter().filter_map(Value::as_str).collect();

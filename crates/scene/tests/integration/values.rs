@@ -66,7 +66,7 @@ fn place(scene: &Scene, object: usize) -> Vec3 {
 
 /// Each of these changes once had no effect or was lost at another frame.
 #[test]
-fn what_a_program_changes_is_kept() {
+fn programmatic_edits_survive_frame_changes() {
     // A moving object that is replaced stands still.
     let mut scene = moving();
     let before = scene.fingerprint();
@@ -92,7 +92,7 @@ fn what_a_program_changes_is_kept() {
 }
 
 #[test]
-fn changes_anywhere_in_a_scene_are_kept() {
+fn edits_anywhere_in_a_scene_survive_frame_changes() {
     // Moving objects may change their positions in the list.
     let mut scene = moving();
     scene.description.objects.remove(1);
@@ -113,9 +113,9 @@ fn changes_anywhere_in_a_scene_are_kept() {
     assert_is_one(&scene, "everywhere");
 }
 
-/// Programs' changes are rejected for the same reasons as texts.
+/// Edits by a program are rejected for the same reasons as JSON text.
 #[test]
-fn what_a_program_changes_is_checked() {
+fn programmatic_edits_are_validated() {
     let refused = |change: &dyn Fn(&mut Scene), path: &str, words: &str| {
         let mut scene = moving();
         change(&mut scene);
@@ -156,7 +156,7 @@ fn what_a_program_changes_is_checked() {
 }
 
 #[test]
-fn copies_share_what_is_not_changed() {
+fn copies_share_unchanged_items() {
     let scene = moving();
     let mut copy = scene.clone();
     copy.description.objects[3].name = Some("mine".into());
@@ -210,7 +210,7 @@ fn put(json: &mut Value, pointer: &str, value: &Value) {
 
 /// An edited scene equals the scene written with the edit, and both are rejected alike.
 #[test]
-fn edited_scenes_are_those_that_are_written_anew() {
+fn edited_scenes_equal_scenes_parsed_with_the_edit() {
     let mut numbers = Numbers(38);
     let texts = [MOVING, built_in_scenes().iter().find(|scene| scene.name == "sphere-triangle-shadow").unwrap().json];
     let (mut same, mut refused) = (0, 0);
@@ -265,7 +265,7 @@ fn long(count: usize, last: &str) -> Result<Scene, SceneError> {
 
 /// A long list, which is parsed in chunks, gives the same scene as a short one.
 #[test]
-fn long_lists_are_read_as_short_ones_are() {
+fn long_and_short_lists_give_the_same_scene() {
     let [long, short] = [2500, 600].map(|count| long(count, r#"{"shape": "plane"}"#).unwrap());
     for frame in [0.0, 2.5] {
         let [long, short] = [&long, &short].map(|scene| scene.at_frame(frame).unwrap().description);
@@ -306,7 +306,7 @@ fn mistakes_in_long_lists_have_their_places() {
 /// Numbers of moving transforms are set in the deserialized objects; deserializing the objects'
 /// JSON gives the same bits.
 #[test]
-fn numbers_of_transforms_that_move_are_those_that_are_read() {
+fn animated_transforms_equal_their_deserialized_json() {
     let steps = [
         r#"{"translate": ["=frame / 3", 1, "=-sin(frame) * wide"]}"#,
         r#"{"rotate": {"axis": [0, "=1 + frame / 7", 0.5], "degrees": "=frame * 10.1"}}"#,
@@ -350,7 +350,7 @@ fn numbers_of_transforms_that_move_are_those_that_are_read() {
 
 /// Static items are shared by all frames and not evaluated while the shutter is open.
 #[test]
-fn only_what_moves_is_read_again() {
+fn frames_share_static_items() {
     let mut scene = long(2500, r#"{"shape": "plane"}"#).unwrap();
     let later = scene.at_frame(3.0).unwrap();
     let same = (0..2501).filter(|i| scene.description.objects[*i].is_same(&later.description.objects[*i]));

@@ -354,7 +354,7 @@ fn every_wrong_animation_is_reported_with_reason_and_place() {
 
 /// Each error gives one message.
 #[test]
-fn mistakes_do_not_breed() {
+fn each_animation_error_gives_few_messages() {
     let tables =
         [(wrong_settings(), 2), (wrong_keys(), 2), (wrong_paths(), 3), (wrong_joints(), 1), (wrong_variables(), 1)];
     let mut many = String::new();

@@ -236,7 +236,7 @@ fn broken_and_odd_meshes() {
 }
 
 #[test]
-fn a_wrong_material_is_not_a_missing_one() {
+fn invalid_material_is_not_also_reported_as_missing() {
     let text = r##"{"version": 1,
  "materials": {"red": {"phong": {"difuse": "#c02020"}}},
  "groups": {"pair": [{"shape": {"sphere": {"radus": 1}}}]},
@@ -265,7 +265,7 @@ fn ten_mistakes_are_ten_messages() {
 }
 
 #[test]
-fn what_people_see_in_a_terminal_has_colors() {
+fn messages_have_colors_only_in_a_terminal() {
     let Err(SceneError::Problems(problems)) = Scene::from_json(r#"{"version": 3}"#, "a.json") else { panic!() };
     assert!(problems.render(true).contains("\u{1b}["));
     assert!(!problems.render(false).contains("\u{1b}["));

@@ -11,7 +11,7 @@ fn serve_remote() -> Serving {
 }
 
 #[test]
-fn it_listens_to_this_machine_alone() {
+fn server_listens_on_loopback_by_default() {
     assert!(ServerOptions::default().address.ip().is_loopback());
     let session = crate::common::small_session();
     let options = ServerOptions { address: SocketAddr::from(([0, 0, 0, 0], 0)), ..ServerOptions::default() };
@@ -20,7 +20,7 @@ fn it_listens_to_this_machine_alone() {
 }
 
 #[test]
-fn a_port_in_use_is_said() {
+fn busy_port_is_reported() {
     let serving = serve();
     let options = ServerOptions { address: serving.address, ..ServerOptions::default() };
     let error = Server::bind(crate::common::small_session(), options, |_| ()).err().unwrap();
@@ -28,7 +28,7 @@ fn a_port_in_use_is_said() {
 }
 
 #[test]
-fn only_own_names_lead_in() {
+fn foreign_host_headers_are_rejected() {
     let serving = serve_open();
     let port = serving.address.port();
     for own in [format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")] {
@@ -71,7 +71,7 @@ fn pages_of_other_sites_get_no_socket() {
 }
 
 #[test]
-fn nothing_changes_by_a_plain_request() {
+fn methods_that_change_state_are_rejected() {
     let serving = serve_open();
     let (host, own) = (format!("Host: {}", serving.host()), format!("Origin: http://{}", serving.host()));
     for method in ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "NONSENSE"] {
@@ -114,7 +114,7 @@ fn other_users_of_this_machine_need_the_token() {
 }
 
 #[test]
-fn other_machines_need_the_token_even_where_none_is_wanted() {
+fn remote_servers_require_a_token_even_if_disabled() {
     needs_its_token(&serve_remote());
     let address = SocketAddr::from(([0, 0, 0, 0], 0));
     needs_its_token(&serve_with(ServerOptions {
@@ -126,7 +126,7 @@ fn other_machines_need_the_token_even_where_none_is_wanted() {
 }
 
 #[test]
-fn a_server_without_a_token_lets_this_machine_in() {
+fn local_server_without_a_token_is_accessible() {
     let serving = serve_open();
     assert!(!serving.url.contains("token"), "{}", serving.url);
     assert_eq!(serving.request("GET", "/", &[&format!("Host: {}", serving.host())]).status, 200);
@@ -186,7 +186,7 @@ fn the_page_gets_a_cookie_for_the_token() {
 }
 
 #[test]
-fn everything_is_sent_with_headers_that_keep_others_out() {
+fn responses_have_security_headers() {
     let serving = serve_open();
     for path in ["/", "/page.js", "/catalogue.json", "/nothing"] {
         let answer = serving.get(path);
@@ -200,7 +200,7 @@ fn everything_is_sent_with_headers_that_keep_others_out() {
 }
 
 #[test]
-fn no_file_of_the_disk_is_given_out() {
+fn path_traversal_is_rejected() {
     let serving = serve();
     for path in ["/../Cargo.toml", "/..%2fCargo.toml", "/thumbnail/..%2f..%2fx.jpg", "/save/..%2fx.png", "/etc/passwd"]
     {

@@ -79,7 +79,7 @@ fn resident_kilobytes() -> u64 {
 }
 
 #[test]
-fn nonsense_is_refused_and_forgotten() {
+fn random_messages_are_rejected_without_memory_growth() {
     let serving = serve();
     let mut numbers = Numbers(7);
     let mut page = serving.page();

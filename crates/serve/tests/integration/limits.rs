@@ -36,7 +36,7 @@ fn seventeen_pages_are_too_many() {
 }
 
 #[test]
-fn half_a_request_is_not_waited_for() {
+fn incomplete_requests_time_out() {
     let serving = serve_with(ServerOptions { limits: short_limits(), ..ServerOptions::default() });
     let begun = ["", "GET / HT", "GET / HTTP/1.1\r\nHost: "];
     let mut streams: Vec<_> = begun
@@ -67,7 +67,7 @@ fn half_a_request_is_not_waited_for() {
 }
 
 #[test]
-fn a_connection_that_is_kept_and_not_used_is_closed() {
+fn idle_connections_are_closed() {
     let serving = serve_with(ServerOptions { limits: short_limits(), token: false, ..ServerOptions::default() });
     let mut stream = serving.connect();
     write!(stream, "GET /icon.svg HTTP/1.1\r\nHost: {}\r\n\r\n", serving.host()).unwrap();
@@ -107,7 +107,7 @@ fn a_silent_page_is_let_go() {
 }
 
 #[test]
-fn a_long_head_is_refused() {
+fn long_request_headers_are_rejected() {
     let serving = serve_open();
     let answer =
         serving.request("GET", "/", &[&format!("Host: {}", serving.host()), &format!("X: {}", "a".repeat(100_000))]);

@@ -5,7 +5,7 @@ use serde_json::json;
 use std::time::{Duration, Instant};
 
 #[test]
-fn a_picture_comes_at_once_gets_better_and_ends_without_loss() {
+fn frames_arrive_at_once_and_the_final_frame_is_lossless() {
     let serving = serve();
     let mut page = serving.page();
     let (first, image) = page.next_frame(|_| true);
@@ -25,7 +25,7 @@ fn a_picture_comes_at_once_gets_better_and_ends_without_loss() {
 }
 
 #[test]
-fn edits_show() {
+fn edits_change_the_frame() {
     let serving = serve();
     let mut page = serving.page();
     let before = page.next_text("status", |status| status["stage"] == "finished");
@@ -42,7 +42,7 @@ fn edits_show() {
 }
 
 #[test]
-fn what_pages_may_not_ask_for_is_refused() {
+fn forbidden_edits_of_pages_are_rejected() {
     let serving = serve();
     let mut page = serving.page();
     let scene = page.next_text("status", |status| status["scene"] != "")["scene"].clone();
@@ -92,7 +92,7 @@ fn one_page_steers_and_the_others_watch() {
 }
 
 #[test]
-fn a_slow_page_costs_pictures_not_memory() {
+fn slow_pages_skip_frames_and_use_no_more_memory() {
     let serving = serve();
     let mut page = serving.page();
     page.next_text("status", |status| status["stage"] == "finished");
@@ -118,7 +118,7 @@ fn a_slow_page_costs_pictures_not_memory() {
 }
 
 #[test]
-fn a_page_that_goes_loses_nothing() {
+fn rendering_continues_after_a_page_disconnects() {
     let serving = serve();
     let mut page = serving.page();
     page.next_frame(|_| true);

@@ -93,7 +93,7 @@ fn settings_change_the_picture_or_say_what_is_wrong() {
 }
 
 #[test]
-fn only_what_decides_samples_begins_anew() {
+fn only_edits_that_affect_samples_restart_the_render() {
     let session = opened("juggler");
     let (hash, rgba) = (session.status().hash.clone(), session.frame().unwrap().rgba.clone());
     for edit in [Edit::Setting(Setting::Exposure(2.0)), Edit::Show(Channel::Noise), Edit::Show(Channel::Samples)] {
@@ -107,7 +107,7 @@ fn only_what_decides_samples_begins_anew() {
 }
 
 #[test]
-fn what_clamping_removes_is_reported() {
+fn radiance_removed_by_clamping_is_reported() {
     let session = opened("juggler");
     assert_eq!(session.status().clamped, None);
     let by = |limit: f32| {
@@ -120,7 +120,7 @@ fn what_clamping_removes_is_reported() {
 }
 
 #[test]
-fn every_channel_shows_something_else() {
+fn every_channel_shows_a_different_image() {
     let session = opened("juggler");
     // The noise estimate needs 64 samples.
     after(&session, Edit::Setting(Setting::Samples(64)));
@@ -136,7 +136,7 @@ fn every_channel_shows_something_else() {
 }
 
 #[test]
-fn values_are_set_and_taken_away_and_wrong_ones_refused() {
+fn scene_values_are_set_and_removed_and_invalid_values_rejected() {
     let (_folder, name) = in_folder();
     let session = opened(&name);
     let before = session.status().hash.clone();
@@ -166,7 +166,7 @@ fn values_are_set_and_taken_away_and_wrong_ones_refused() {
 }
 
 #[test]
-fn moments_are_frames_of_the_animation() {
+fn edits_of_time_select_animation_frames() {
     let (_folder, name) = in_folder();
     let session = opened(&name);
     let first = session.status().hash.clone();
@@ -197,7 +197,7 @@ fn a_region_is_refined_alone_and_the_rest_later() {
 }
 
 #[test]
-fn probes_know_what_is_there() {
+fn probes_report_shape_material_and_depth() {
     let (_folder, name) = in_folder();
     let session = opened(&name);
     let probe = session.probe([24, 18]).unwrap();
@@ -250,7 +250,7 @@ fn bookmarks_go_into_the_file_or_into_memory() {
 }
 
 #[test]
-fn scenes_are_switched_and_unknown_ones_leave_the_last() {
+fn scenes_are_switched_and_unknown_names_keep_the_current_scene() {
     let session = opened("juggler");
     let status = after(&session, Edit::Scene("one-sphere".into()));
     assert_eq!((status.scene.as_str(), status.error.as_ref()), ("one-sphere", None));
@@ -296,7 +296,7 @@ fn pictures_are_saved_as_an_offline_render_writes_them() {
 }
 
 #[test]
-fn wild_edits_do_no_harm() {
+fn random_edits_never_panic() {
     let session = Session::open("juggler", SessionOptions { size: Some([24, 18]), ..options() });
     let mut bits = 7_u64;
     let mut random = move |n: u64| {

@@ -83,7 +83,7 @@ fn saved_edits_show_at_once_and_mistakes_leave_the_picture() {
 }
 
 #[test]
-fn a_file_that_is_wrong_at_first_is_shown_once_it_is_right() {
+fn invalid_file_is_shown_once_it_is_corrected() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.json");
     let session = watched(&file);

@@ -41,7 +41,7 @@ fn mean_pixel(session: &Session) -> [f64; 3] {
 }
 
 #[test]
-fn groups_are_mixed_with_the_samples_that_are_there() {
+fn light_group_gains_apply_to_existing_samples() {
     let session = opened(SCENE);
     let before = settled(&session, 0);
     assert_eq!(before.light_groups, [("rest".into(), [1.0; 3]), ("key".into(), [1.0; 3])]);
@@ -73,7 +73,7 @@ fn groups_are_mixed_with_the_samples_that_are_there() {
 }
 
 #[test]
-fn a_camera_that_moves_shows_the_lights_as_they_are_mixed() {
+fn moving_camera_shows_light_group_gains() {
     let session = opened(SCENE);
     settled(&session, 0);
     gain(&session, "rest", [0.0; 3]);

@@ -43,7 +43,7 @@ fn the_hash_is_that_of_an_offline_render() {
 }
 
 #[test]
-fn wild_edits_that_lead_back_leave_nothing() {
+fn random_edits_that_are_undone_restore_the_hash() {
     let session = Session::open("juggler", options(2));
     finished(&session, 0);
     for i in 0..40 {

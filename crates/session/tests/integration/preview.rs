@@ -72,7 +72,7 @@ fn passes_over_the_whole_picture_come_before_samples() {
 }
 
 #[test]
-fn orbits_turn_about_what_the_camera_looks_at() {
+fn orbits_pivot_about_the_look_at_point() {
     let session = of(&ball(r#""look_at": [1, 0, 1]"#));
     assert!(near(session.status().interest, [1.0, 0.0, 1.0]), "{:?}", session.status().interest);
     // The pivot has no effect while a point is chosen.
@@ -90,7 +90,7 @@ fn orbits_turn_about_what_the_camera_looks_at() {
 }
 
 #[test]
-fn orbits_turn_about_what_is_under_the_pointer_where_nothing_is_looked_at() {
+fn orbits_without_look_at_pivot_about_the_point_under_the_pointer() {
     let session = of(&ball(r#""direction": [0, 0, -1]"#));
     assert!(near(session.status().interest, [3.0, 0.0, -5.0]), "the middle: {:?}", session.status().interest);
     // The sphere is 3 units to the left at distance 10, where half the film (40 degrees) spans 3.64
@@ -137,7 +137,7 @@ fn saved(session: &Session) -> Vec<Rgb> {
 }
 
 #[test]
-fn the_denoised_preview_is_that_of_an_offline_render_and_can_be_taken_back() {
+fn denoised_preview_equals_the_offline_render_and_can_be_disabled() {
     let session = of(DIM);
     let (plain, noisy) = (session.status(), session.frame().unwrap().rgba.clone());
     assert!(!plain.denoise && !plain.denoised);
@@ -186,7 +186,7 @@ fn a_long_picture_is_denoised_before_it_is_finished() {
 }
 
 #[test]
-fn what_cannot_be_denoised_is_said() {
+fn pictures_too_large_to_denoise_are_reported() {
     let session = of(DIM);
     session.edit(Edit::Setting(Setting::Size([2048, 1100])));
     let revision = session.edit(Edit::Setting(Setting::Denoise(true)));

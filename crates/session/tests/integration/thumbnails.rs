@@ -42,7 +42,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn every_built_in_scene_has_one_and_they_are_small() {
+fn every_built_in_scene_has_a_small_thumbnail() {
     let bytes: usize = built_in_scenes().iter().filter_map(|scene| thumbnail(scene.name)).map(<[u8]>::len).sum();
     assert!(bytes <= MOST_BYTES, "{bytes}");
     for scene in built_in_scenes() {
@@ -54,7 +54,7 @@ fn every_built_in_scene_has_one_and_they_are_small() {
 }
 
 #[test]
-fn they_show_what_the_scenes_show() {
+fn thumbnails_match_their_scenes() {
     let display = Tone::default();
     let thumbnails: Vec<(&str, Vec<f64>)> =
         built_in_scenes().iter().map(|scene| (scene.name, fields(&decoded(scene.name), &display))).collect();

@@ -4,7 +4,7 @@ use super::*;
 use crate::{Cuboid, Cylinder, Disk, Mesh, MeshData, Polygon, Rectangle, Sphere, Triangle, Tube};
 
 #[test]
-fn json_goes_round() {
+fn json_round_trips() {
     for shape in AnyShape::examples() {
         let text = serde_json::to_string(&shape).unwrap();
         assert_eq!(serde_json::from_str::<AnyShape>(&text).unwrap(), shape, "{text}");

@@ -87,7 +87,7 @@ fn spheres_in_world_space_agree_with_those_in_object_space() {
 
 /// Rays at the limits of floats miss or hit finite points: no infinity, no NaN.
 #[test]
-fn rays_at_the_ends_of_the_floats_give_finite_answers() {
+fn rays_with_extreme_coordinates_give_finite_hits() {
     let extremes = [0.0, -0.0, 1e-45, 1e-38, -1e-20, 1.0, -1e20, 1e37, 3e38];
     let pick = |random: &mut Random| Vec3::from_array(std::array::from_fn(|_| extremes[random.below(extremes.len())]));
     let mut random = Random::new(18);
@@ -125,7 +125,7 @@ fn rays_at_the_ends_of_the_floats_give_finite_answers() {
 
 /// Surface coordinates at known points.
 #[test]
-fn coordinates_are_where_the_documentation_says() {
+fn uv_coordinates_match_the_documentation() {
     let uv = |json: &str, from: [f32; 3], to: [f32; 3]| {
         let mut shape: AnyShape = serde_json::from_str(json).unwrap();
         shape.prepare().unwrap();

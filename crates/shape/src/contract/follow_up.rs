@@ -42,7 +42,7 @@ fn leaving_direction(random: &mut Random, normal: Vec3, side: f32) -> Vec3 {
 }
 
 #[test]
-fn follow_up_rays_are_free_of_their_surface() {
+fn spawned_rays_do_not_hit_their_own_surface() {
     let mut random = Random::new(14);
     for shape in shapes() {
         for transform in transforms(&shape, &mut random) {
@@ -81,7 +81,7 @@ fn is_another_point(shape: &AnyShape, ray: &Ray, before: &Hit, side: f32, hit: H
 }
 
 #[test]
-fn offsets_stay_small_against_shape_and_place() {
+fn ray_origin_offsets_are_small_relative_to_shape_and_position() {
     let mut random = Random::new(15);
     for shape in shapes() {
         for transform in transforms(&shape, &mut random) {

@@ -53,7 +53,7 @@ fn hits_lie_on_the_surface_within_the_stated_error_and_the_bounds() {
 }
 
 #[test]
-fn ranges_are_kept_to_the_bit() {
+fn t_min_and_t_max_are_exact_and_inclusive() {
     for_every_hit(2, |shape, ray, hit| {
         assert_eq!(shape.intersect(&ray.with_t_max(hit.t)), Some(hit), "{shape:?} {ray:?}");
         assert_eq!(shape.intersect(&ray.with_t_max(hit.t.next_down())), None, "{shape:?} {ray:?}");
@@ -69,7 +69,7 @@ fn ranges_are_kept_to_the_bit() {
 }
 
 #[test]
-fn occlusion_is_intersection() {
+fn occlusion_agrees_with_intersection() {
     for shape in shapes() {
         for ray in rays(&shape, 3) {
             let hit = shape.intersect(&ray);
@@ -97,7 +97,7 @@ fn distances_are_in_units_of_the_direction() {
 }
 
 #[test]
-fn convex_shapes_are_crossed_twice_and_flat_ones_once() {
+fn convex_shapes_are_hit_twice_and_flat_shapes_once() {
     for shape in shapes() {
         for ray in rays(&shape, 5) {
             let hits = all_hits(&shape, &ray);
@@ -114,7 +114,7 @@ fn convex_shapes_are_crossed_twice_and_flat_ones_once() {
 }
 
 #[test]
-fn normals_are_unit_and_at_right_angles_to_the_surface() {
+fn normals_have_unit_length_and_are_perpendicular_to_the_surface() {
     for_every_hit(6, |shape, ray, hit| {
         let surface = shape.surface(ray, &hit);
         assert!((surface.normal.length() - 1.0).abs() < 1e-6 && (surface.shading_normal.length() - 1.0).abs() < 1e-6);

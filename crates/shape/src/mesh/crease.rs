@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn positions_at_one_place_are_smoothed_together_and_keep_their_coordinates() {
+    fn coincident_positions_share_smooth_normals_and_keep_their_uvs() {
         // Triangles that share no positions, as in files without indices.
         let whole = strip(&[20.0]);
         let positions: Vec<Vec3> =
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_and_round_are_the_ends() {
+    fn crease_angle_0_is_flat_and_180_is_smooth() {
         let data = strip(&[20.0, 60.0, 170.0]);
         let round = smooth(data.clone(), 180.0);
         assert_eq!(round.positions.len(), data.positions.len());

@@ -41,7 +41,7 @@ fn triangles_without_area_are_counted_and_clones_share() {
 }
 
 #[test]
-fn normals_blend_and_a_globe_of_triangles_shades_like_a_sphere() {
+fn normals_are_interpolated_and_a_tessellated_sphere_shades_like_a_sphere() {
     let mesh = prepared(floor([Vec3::Y, Vec3::new(0.0, 1.0, 1.0) * 9.0, Vec3::Y]));
     let surface = surface_below(&mesh, 0.0, 2.0);
     let expected = (Vec3::Y + Vec3::new(0.0, 1.0, 1.0).normalize()).normalize();
@@ -82,7 +82,7 @@ fn wandering(moments: usize, bent: bool) -> Vec<MeshData> {
 }
 
 #[test]
-fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
+fn moving_mesh_equals_the_interpolated_static_mesh_at_each_time() {
     let mut random = juggler_math::testing::Random::new(51);
     for (moments, bent, kept) in [(2, false, 2), (17, false, 2), (17, true, 17)] {
         let keys = wandering(moments, bent);
@@ -114,7 +114,7 @@ fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
 }
 
 #[test]
-fn morphs_blend_corners_and_normals_follow() {
+fn morph_targets_blend_positions_and_recompute_normals() {
     let base = globe(24, 12, 1.0, Vec3::ZERO);
     let wide: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p * Vec3::new(3.0, 1.0, 1.0)).collect();
     let high: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p + Vec3::Y).collect();

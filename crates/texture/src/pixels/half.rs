@@ -33,7 +33,7 @@ mod tests {
     use juggler_math::testing::Random;
 
     #[test]
-    fn all_halves_go_round() {
+    fn all_half_floats_round_trip() {
         for half in (0..=u16::MAX).filter(|half| half >> 10 & 31 != 31) {
             assert_eq!(from_f32(to_f32(half)), half, "{half:#x} {}", to_f32(half));
         }
@@ -42,7 +42,7 @@ mod tests {
     }
 
     #[test]
-    fn others_go_to_the_nearest() {
+    fn floats_are_rounded_to_the_nearest_half() {
         let mut random = Random::new(730);
         for _ in 0..20_000 {
             let value = random.range(-2.0, 2.0) * [1e-7, 1e-4, 1.0, 1e4][random.below(4)];

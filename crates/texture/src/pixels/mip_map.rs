@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_keep_their_mean_in_light_not_in_levels() {
+    fn mip_levels_of_bytes_average_in_linear_space() {
         // Alternating black and white has half of the light, level 188.
         let bytes: Vec<u8> = (0..64 * 64).map(|i| if (i + i / 64) % 2 == 0 { 0 } else { 255 }).collect();
         let mip_map = MipMap::from_bytes([64, 64], 1, bytes, srgb_decode_f64).unwrap();
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_take_a_third_more_in_the_kind_of_the_picture() {
+    fn mip_levels_add_a_third_and_keep_the_sample_type() {
         let bytes = MipMap::from_bytes([256, 256], 4, vec![7; 1 << 18], srgb_decode_f64).unwrap();
         assert_eq!((bytes.bytes(), bytes.levels(), bytes.has_alpha()), (349_524, 9, true));
         let halves = MipMap::from_floats([256, 256], 1, vec![0.5; 1 << 16]).unwrap();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_are_read_as_they_lie() {
+    fn texels_map_channels_to_rgba() {
         let of = |channels, bytes: &[u8]| {
             MipMap::from_bytes([1, 1], channels, bytes.to_vec(), |level| level)
                 .unwrap()
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_none() {
+    fn mismatched_sizes_are_rejected() {
         for (size, channels, count) in [([2, 2], 3, 11), ([0, 5], 1, 0), ([1, 1], 5, 5), ([1, 1], 0, 0)] {
             assert!(MipMap::from_bytes(size, channels, vec![0; count], |level| level).is_none());
         }

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn bilinear_and_nearest_agree_with_a_plane_of_texels() {
+    fn bilinear_and_nearest_filters_match_the_reference() {
         let mut random = Random::new(740);
         let picture = random_picture(5, 3, &mut random);
         for _ in 0..3000 {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn far_away_there_is_a_color_too() {
+    fn huge_coordinates_and_footprints_give_finite_colors() {
         let picture = random_picture(7, 4, &mut Random::new(741));
         for far in [1e6, -1e9, 1e30, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN] {
             for (wrap, filter) in

@@ -96,7 +96,7 @@ mod tests {
     use juggler_math::color::srgb_decode_f64;
 
     #[test]
-    fn levels_go_round_and_others_go_to_the_nearest() {
+    fn levels_round_trip_and_other_values_round_to_the_nearest_level() {
         for table in [DecodingTable::new(srgb_decode_f64), DecodingTable::new(|level| level)] {
             for level in 0..=255u8 {
                 assert_eq!(table.nearest(table.light(level)), level);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_take_no_more_than_they_need() {
+    fn texels_use_the_smallest_sufficient_type() {
         assert_eq!(
             Texels::from_floats(vec![1.0, -0.5, 65_504.0, f32::NAN]),
             Texels::Halves(vec![0x3c00, 0xb800, 0x7bff, 0])

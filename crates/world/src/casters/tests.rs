@@ -25,7 +25,7 @@ fn spheres(radii: &[f32]) -> World {
 }
 
 #[test]
-fn of_many_spheres_the_largest_are_sampled() {
+fn largest_spheres_are_kept_as_caustic_casters() {
     // All radii differ, and their order in the scene is neither rising nor falling.
     let mut radii: Vec<f32> = (0..40).map(|i| 0.1 + 0.01 * ((i * 17) % 40) as f32).collect();
     let world = spheres(&radii);

@@ -37,7 +37,7 @@ fn footprints_cover_the_area_that_a_cone_cuts_out() {
 }
 
 #[test]
-fn densities_count_units_of_coordinates_and_objects() {
+fn densities_relate_uv_and_object_space_to_world_space() {
     let shape = AnyShape::from(Rectangle { size: [4.0, 1.0] });
     let world = world_with(shape, Transform::scale(Vec3::splat(3.0)).unwrap(), true);
     let (_, found) = hit_point(&world, Ray::new(Vec3::new(0.5, 7.0, 0.2), Vec3::NEG_Y)).unwrap();
@@ -46,7 +46,7 @@ fn densities_count_units_of_coordinates_and_objects() {
 }
 
 #[test]
-fn materials_that_ask_for_tangents_get_them() {
+fn materials_with_maps_get_tangents() {
     for (recipe, asks) in [("normal_map", true), ("bump_map", true), ("diffuse", false)] {
         let recipe = serde_json::from_str(&format!(r#"{{"{recipe}": {{}}}}"#)).unwrap();
         let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
@@ -65,7 +65,7 @@ fn materials_that_ask_for_tangents_get_them() {
 
 /// Finite differences on a rotated, scaled and translated sphere, and on an ellipsoid.
 #[test]
-fn steps_in_the_world_go_as_the_derivatives_say() {
+fn world_space_derivatives_equal_finite_differences() {
     let mut random = Random::new(751);
     let turned = random.rotation();
     for scale in [Vec3::splat(2.5), Vec3::new(1.0, 2.0, 0.5)] {

@@ -36,7 +36,7 @@ fn ids(world: &World, place: Vec3) -> Interiors {
 }
 
 #[test]
-fn places_are_in_what_is_around_them() {
+fn interiors_of_a_point_are_the_solids_around_it() {
     let metal = r#"{"phong": {}}"#;
     let objects = [
         (ROOM, at(Vec3::ZERO), FOG),
@@ -73,7 +73,7 @@ fn places_are_in_what_is_around_them() {
 }
 
 #[test]
-fn open_surfaces_do_not_deceive() {
+fn interiors_are_found_within_open_surfaces() {
     let open = r#"{"cylinder": {"radius": 3, "y_min": -2, "y_max": 2, "capped": false}}"#;
     let world = world(&[(open, at(Vec3::ZERO), FOG), (SPHERE, at(Vec3::X * 40.0), GLASS)]);
     let fog = Interiors::NONE.entered(InteriorId::new(0).unwrap());
@@ -83,7 +83,7 @@ fn open_surfaces_do_not_deceive() {
 }
 
 #[test]
-fn what_is_below_a_plane_is_below_however_it_is_turned() {
+fn points_below_a_rotated_plane_are_inside_it() {
     let mut random = Random::new(823);
     for _ in 0..50 {
         let turn = random.rotation();

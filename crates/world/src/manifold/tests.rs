@@ -42,7 +42,7 @@ fn random_point(random: &mut Random) -> Vec3 {
 }
 
 #[test]
-fn every_path_leads_from_one_end_to_the_other() {
+fn specular_paths_connect_both_end_points() {
     let mut random = Random::new(2601);
     for kind in kinds() {
         let mut found = 0;
@@ -127,7 +127,7 @@ fn solid_angle_ratios_equal_finite_differences() {
 }
 
 #[test]
-fn an_end_at_infinity_is_one_that_is_very_far() {
+fn end_point_at_infinity_equals_a_distant_end_point() {
     let mut random = Random::new(2604);
     for kind in kinds() {
         for _ in 0..500 {

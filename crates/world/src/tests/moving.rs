@@ -30,7 +30,7 @@ fn in_motion(random: &mut Random) -> World {
 }
 
 #[test]
-fn what_moves_equals_brute_force_at_every_time() {
+fn moving_objects_equal_brute_force_at_every_time() {
     let world = in_motion(&mut Random::new(40));
     assert!(world.moves() && !grove(&mut Random::new(24)).moves());
     equals_brute_force(&world, 300);

@@ -22,7 +22,7 @@ fn whole(mesh: &TriangleList) -> Bvh {
 }
 
 #[test]
-fn division_never_costs_and_mostly_pays_for_long_triangles() {
+fn spatial_splits_never_increase_the_sah_cost() {
     for (count, long) in [(3, 3), (100, 20), (3000, 0), (3000, 300), (40_000, 300)] {
         let (positions, triangles) = crossed(count, long);
         let tree = TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap();
@@ -88,7 +88,7 @@ fn check_points(corners: [Vec3; 3], boxes: &[Aabb]) {
 }
 
 #[test]
-fn any_number_of_threads_divides_the_same() {
+fn spatial_splits_do_not_depend_on_threads() {
     let (positions, triangles) = crossed(60_000, 500);
     let build = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn medians() {
+    fn median_of_odd_and_empty_lists() {
         assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[5.0]), median(&[])), (2.0, 5.0, 0.0));
     }
 

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn long_lists_are_cut_and_stills_say_little() {
+    fn long_lists_are_truncated_and_stills_have_one_row() {
         let many = rows(&Animation::default(), &survey(25));
         assert_eq!((many.len(), many.last().unwrap().1.as_str()), (24, "... and 5 more"));
         assert_eq!(rows(&Animation::default(), &Survey::default()), [("animation", "none".into())]);

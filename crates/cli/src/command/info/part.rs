@@ -11,7 +11,7 @@ use std::path::Path;
 /// Maximum number of samples per pixel, so in effect no limit.
 const MOST_SAMPLES: u32 = 1 << 24;
 
-/// Summary of the tiles of a part.
+/// Summary of the tiles of a partial render.
 struct Contents {
     /// Number of tiles with samples.
     tiles: usize,

@@ -1,5 +1,5 @@
-//! Memory estimate of a merge, from the headers of the parts: bands of rows, file writers, and the
-//! denoiser.
+//! Memory estimate of a merge, from the headers of the partial renders: bands of rows, file writers,
+//! and the denoiser.
 
 use crate::failure::Failure;
 use crate::memory;
@@ -11,13 +11,13 @@ use juggler::{Aov, AovSet};
 
 /// Number of pixels in a band of rows; more if a single row of tiles has more.
 const BAND: u64 = 1 << 20;
-/// Bytes per tile of a part: its position and its ranges of samples.
+/// Bytes per tile of a partial render: its position and its ranges of samples.
 const TILE_BYTES: u64 = 160;
 /// Bytes per name of an object or material in Cryptomatte manifests.
 const NAME: u64 = 400;
 
 /// Refuses a merge that needs more than `most` bytes. `picture` describes the output file, unless
-/// it is a part.
+/// it is a partial render.
 pub fn check(
     merge: &film::Merge,
     set: &AovSet,
@@ -39,5 +39,5 @@ pub fn check(
         needed = needed.saturating_add(format.memory_needed(header, seekable)).saturating_add(denoise);
         needed = needed.saturating_add(if has_names { names } else { 0 });
     }
-    memory::check("merging the parts", needed, most)
+    memory::check("merging the partial renders", needed, most)
 }

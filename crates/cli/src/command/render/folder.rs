@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_that_is_cleared_away_is_made_anew_by_who_waits_for_it() {
+    fn waiting_process_recreates_a_removed_folder() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("film.gif.frames").to_string_lossy().into_owned();
         let first = FrameFolder::open(&path, Access::Exclusive).unwrap();

@@ -26,10 +26,10 @@ fn read(path: &Path, bytes: &[u8]) -> Result<(), PartialRenderError> {
 }
 
 #[test]
-fn the_format_does_not_change_unseen() {
+fn file_format_matches_the_golden_file() {
     let bytes = tiny();
     if std::env::var_os("JUGGLER_BLESS").is_some() {
-        let place = concat!(env!("CARGO_MANIFEST_DIR"), "/src/part/tests/tiny.jfilm");
+        let place = concat!(env!("CARGO_MANIFEST_DIR"), "/src/partial_render/tests/tiny.jfilm");
         std::fs::write(place, &bytes).unwrap();
         return;
     }
@@ -75,7 +75,7 @@ fn no_changed_byte_is_overlooked() {
 }
 
 #[test]
-fn bytes_that_follow_are_seen() {
+fn trailing_bytes_are_rejected() {
     let (_folder, path) = place("long.jfilm");
     for more in [1, 32, 5000] {
         let mut bytes = tiny();
@@ -104,7 +104,7 @@ fn garbage_is_refused() {
 }
 
 #[test]
-fn chunks_that_changed_places_are_seen() {
+fn swapped_chunks_are_rejected() {
     let (_folder, path) = place("a.jfilm");
     let region = Rect { x: 0, y: 0, width: 32, height: 16 };
     let tiling = Tiling::new(region);
@@ -177,7 +177,7 @@ fn a_file_as_the_readme_describes_it_is_read() {
 }
 
 #[test]
-fn claims_are_not_believed() {
+fn forged_counts_and_lengths_are_rejected() {
     let counts = [2, 1 << 32, u64::MAX / 44, u64::MAX / 43, u64::MAX];
     for count in counts {
         Forged { count: Some(count), ..Forged::new() }.refused();
@@ -194,7 +194,7 @@ fn claims_are_not_believed() {
 }
 
 #[test]
-fn tiles_are_those_of_the_region_and_come_once() {
+fn tiles_outside_the_region_and_duplicate_tiles_are_rejected() {
     let chunk = Forged::new().chunks[0].1.clone();
     let forged = |chunks: Vec<(u64, Vec<u8>)>| Forged { chunks, ..Forged::new() }.refused();
     assert!(forged(vec![(1, chunk.clone())]).contains("tile 1 is outside of its region"));
@@ -203,7 +203,7 @@ fn tiles_are_those_of_the_region_and_come_once() {
 }
 
 #[test]
-fn chunks_hold_runs_of_samples() {
+fn malformed_sample_runs_are_rejected() {
     let run = |start: u32, end: u32, length: u32, packed: &[u8]| {
         [&start.to_le_bytes()[..], &end.to_le_bytes(), &length.to_le_bytes(), packed].concat()
     };
@@ -221,7 +221,7 @@ fn chunks_hold_runs_of_samples() {
 }
 
 #[test]
-fn heads_are_checked() {
+fn malformed_headers_are_rejected() {
     let header = |header: &[u8]| Forged { header: header.to_vec(), ..Forged::new() }.refused();
     assert!(header(b"").contains("its header is malformed") && header(b"\xff").contains("its header is malformed"));
     assert!(header("[".repeat(100_000).as_bytes()).contains("its header is malformed"));
@@ -239,7 +239,7 @@ fn heads_are_checked() {
 }
 
 #[test]
-fn heads_of_what_no_picture_can_be_are_refused_by_name() {
+fn headers_beyond_the_limits_of_a_render_are_rejected_by_field() {
     let refused = |change: &dyn Fn(&mut RenderDescription)| {
         let mut part = description(TINY, 21);
         // Without any AOVs the header omits `layers`.

@@ -37,7 +37,7 @@ fn a_partial_render_is_read_back() {
 }
 
 #[test]
-fn tiles_come_in_any_order_and_some_do_not() {
+fn tiles_may_be_in_any_order_or_missing() {
     let (_folder, path) = place("a.jfilm");
     let tiling = Tiling::new(REGION);
     let some = [5, 1, 4].map(|number| (number, tile(tiling.tile(number).unwrap(), 0..16)));
@@ -51,7 +51,7 @@ fn tiles_come_in_any_order_and_some_do_not() {
 }
 
 #[test]
-fn the_head_is_text() {
+fn header_is_readable_json_text() {
     let (_folder, path) = place("a.jfilm");
     write(&path, &description(REGION, 100), []).unwrap();
     let bytes = std::fs::read(&path).unwrap();
@@ -75,7 +75,7 @@ fn tiles_of_other_pixels_and_tiles_given_twice_are_refused() {
 }
 
 #[test]
-fn descriptions_that_cannot_be_are_refused() {
+fn invalid_render_descriptions_are_rejected() {
     let (_folder, path) = place("a.jfilm");
     let good = description(REGION, 100);
     let wrong = [
@@ -128,7 +128,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn sums_of_all_bits_come_back(sums in prop::collection::vec(sum(), 0..300)) {
+    fn arbitrary_sums_round_trip_bit_for_bit(sums in prop::collection::vec(sum(), 0..300)) {
         let packed = pack(&sums, true);
         prop_assert_eq!(bits(&unpack(&packed, sums.len(), true).unwrap()), bits(&sums));
         prop_assert!(unpack(&packed, sums.len() + 64, true).is_none());
@@ -159,7 +159,7 @@ proptest! {
 }
 
 #[test]
-fn what_clamping_took_comes_back() {
+fn clamped_radiance_round_trips() {
     let (_folder, path) = place("a.jfilm");
     let clamped = RenderDescription { clamped: true, ..description(REGION, 100) };
     let made = clamped_tiles(REGION, 0..100);
@@ -182,7 +182,7 @@ fn what_clamping_took_comes_back() {
 }
 
 #[test]
-fn smooth_pixels_take_little_room() {
+fn smooth_pixels_compress_to_a_quarter() {
     let sums: Vec<Sum> =
         (0..256).map(|i| Sum { total: [1.0 + f64::from(i as f32 / 1000.0); 3], ..Sum::default() }).collect();
     let size = pack(&sums, false).len();
@@ -202,7 +202,7 @@ fn a_tile_in_too_many_runs_is_refused() {
 }
 
 #[test]
-fn matrices_come_back_to_the_bit() {
+fn camera_matrices_round_trip_bit_for_bit() {
     let (_folder, path) = place("a.jfilm");
     let number = |i: usize| ((i * 37 % 11) as f32 - 4.3) / 3.0 * 10f32.powi(i as i32 % 9 - 6);
     let matrix =

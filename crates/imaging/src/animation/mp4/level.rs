@@ -49,7 +49,7 @@ mod tests {
     /// maximum area is that of the example frame, each side may be a multiple of the frame's, and
     /// the pixel rate is that of the example.
     #[test]
-    fn rows_follow_from_the_frames_of_the_specification() {
+    fn av1_level_limits_follow_from_the_specification() {
         // Level, width, height, frames per second, maximum side as a multiple of the frame's.
         let examples: [(u8, u32, u32, u32, u32); 14] = [
             (0, 512, 288, 30, 4),

@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn better_is_finer() {
+    fn higher_quality_has_a_finer_quantizer() {
         assert_eq!([100, 80, 65, 50, 1].map(quantizer_for_quality), [4, 80, 117, 155, 250]);
         assert!((1..100).all(|quality| quantizer_for_quality(quality) >= quantizer_for_quality(quality + 1)));
     }

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn color_lies_level_with_the_left_column() {
+    fn chroma_samples_are_cosited_with_the_left_column() {
         // White, white, red, red: the second chroma sample is 3/4 red, the first is neutral.
         let row = [[255; 3], [255; 3], [255, 0, 0], [255, 0, 0]].concat();
         let [_, blue, _] = planes(4, 1, &row);

@@ -151,7 +151,7 @@ fn numbers_must_be_finite() {
 }
 
 #[test]
-fn methods_need_their_type() {
+fn accessor_methods_check_component_and_element_types() {
     let mut file = Builder::default();
     let vectors = Index::from(file.floats("VEC3", 3, &[1.0, 2.0, 3.0]) as u32);
     let joints = Index::from(file.array(5121, "VEC4", 1, &[1, 2, 3, 4]) as u32);

@@ -28,7 +28,7 @@ fn accessor(members: &str) -> String {
 }
 
 #[test]
-fn ranges_are_exact() {
+fn accessor_ranges_are_checked_to_the_byte() {
     let floats = |offset: u64, count: u64| {
         accessor(&format!(r#""byteOffset": {offset}, "componentType": 5126, "type": "VEC3", "count": {count}"#))
     };
@@ -90,7 +90,7 @@ fn the_first_buffer_may_be_the_bin_chunk() {
 }
 
 #[test]
-fn versions_and_extensions_are_known() {
+fn unsupported_versions_and_extensions_are_rejected() {
     let open = |text: &str| Gltf::open("a.gltf", text.as_bytes().to_vec(), &Limits::default());
     let version = |version: &str| open(&format!(r#"{{"asset": {{"version": "{version}"}}}}"#));
     assert!(version("2.0").is_ok() && version("2.1").is_ok());
@@ -225,7 +225,7 @@ fn every_index_is_checked() {
 }
 
 #[test]
-fn variants_and_samplers_exist() {
+fn references_to_variants_and_samplers_are_checked() {
     let variants = |variant: u32, material: u32| {
         let mapping = format!(r#"{{"variants": [0, {variant}], "material": {material}}}"#);
         format!(

@@ -296,7 +296,7 @@ fn unknown_properties_are_ignored() {
 }
 
 #[test]
-fn transforms_may_choose_the_set() {
+fn texture_transforms_may_override_the_uv_set() {
     let set = |info: &str| {
         let document = document(&format!(r#""materials": [{{"normalTexture": {info}}}]"#));
         document.materials[0].normal_texture.as_ref().unwrap().set().get()

@@ -73,7 +73,7 @@ fn all_codecs_and_filters_are_tested() {
 
 /// The example of the extension's README: four bits per byte and two sentinels.
 #[test]
-fn the_example_of_the_specification_has_its_differences() {
+fn example_of_the_specification_is_decoded() {
     let group = [0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5];
     let differences = [-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0];
     // Header, plane 0 with mode 2, planes 1 to 3 with mode 0, and a tail of zeros.
@@ -86,7 +86,7 @@ fn the_example_of_the_specification_has_its_differences() {
     }
 }
 
-/// A stream that is cut at any length is refused: its tail has another place then.
+/// A stream that is truncated at any length is rejected, because its tail moves.
 #[test]
 fn cut_streams_are_errors() {
     for known in known() {

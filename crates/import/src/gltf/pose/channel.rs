@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn components_are_those_of_the_target() {
+    fn number_of_components_follows_from_the_target() {
         for (pointer, components) in [
             ("/nodes/0/translation", 3),
             ("/nodes/0/rotation", 4),

@@ -115,7 +115,7 @@ fn primitives_without_positions_or_faces_are_left_out() {
 }
 
 #[test]
-fn attributes_take_our_conventions() {
+fn attributes_are_converted_to_our_conventions() {
     let file = file(|file| {
         let up = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
         let normals = file.floats("VEC3", 3, &up);
@@ -236,7 +236,7 @@ fn wrong_bounds_are_a_warning() {
 }
 
 #[test]
-fn draco_is_a_hook() {
+fn draco_primitives_use_the_given_decoder() {
     let file = file(|file| {
         let view = file.view(b"DRACO", "");
         let extension =

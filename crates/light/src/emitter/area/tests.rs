@@ -133,7 +133,7 @@ fn narrow_views_follow_their_density() {
 }
 
 #[test]
-fn directions_to_round_ones_follow_their_density() {
+fn directions_to_spheres_follow_their_density() {
     let center = vec3(0.0, 1.0, 0.0);
     let (light, mut random) = (sphere(center, 0.7), Random::new(1107));
     for from in SHADING_POINTS.into_iter().chain([center + vec3(0.0, 0.701, 0.0)]).filter(|p| p.distance(center) > 0.7)
@@ -198,7 +198,7 @@ fn polygon_irradiance(corners: &[Vec3], from: Vec3, normal: Vec3) -> f64 {
 }
 
 #[test]
-fn irradiance_of_polygons_is_lamberts() {
+fn irradiance_of_polygons_matches_lamberts_formula() {
     let mut random = Random::new(1104);
     for height in [2.0f32, 0.3, 0.02, 30.0] {
         for _ in 0..4 {
@@ -268,7 +268,7 @@ fn samples_lie_on_the_light_and_in_its_bounds_at_all_scales() {
 }
 
 #[test]
-fn what_is_no_surface_is_refused() {
+fn degenerate_emitters_are_rejected() {
     assert!(RectangleEmitter::new(Vec3::ZERO, [Vec3::X, vec3(0.1, 1.0, 0.0)]).is_none());
     assert!(RectangleEmitter::new(Vec3::ZERO, [Vec3::X, Vec3::ZERO]).is_none());
     assert!(RectangleEmitter::new(Vec3::NAN, [Vec3::X, Vec3::Y]).is_none());

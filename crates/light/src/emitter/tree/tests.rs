@@ -54,7 +54,7 @@ fn illuminates(random: &mut Random, light: &LightBounds, point: Vec3, normal: Ve
 }
 
 #[test]
-fn normals_in_all_directions_fill_the_sphere_to_the_last_bit() {
+fn solid_angle_of_all_normals_is_exactly_four_pi() {
     use std::f64::consts::PI;
     assert_eq!(child_bounds::solid_angle(PI, PI).to_bits(), (4.0 * PI).to_bits());
     assert_eq!(juggler_math::portable::acos_f64(-1.0).to_bits(), PI.to_bits());
@@ -158,7 +158,7 @@ fn lights_that_cannot_emit_are_never_sampled() {
 }
 
 #[test]
-fn coincident_lights_share_evenly_and_from_their_place_too() {
+fn coincident_lights_are_sampled_uniformly_even_from_their_position() {
     let lights = vec![point_light(Vec3::new(1.0, 2.0, 3.0), 7.0); 1000];
     let tree = LightTree::build(&lights);
     for point in [Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), Vec3::splat(1e38), Vec3::splat(1e-38)] {
@@ -170,7 +170,7 @@ fn coincident_lights_share_evenly_and_from_their_place_too() {
 }
 
 #[test]
-fn scenes_of_all_sizes_are_the_same() {
+fn light_tree_probabilities_do_not_depend_on_scale() {
     let mut random = Random::new(1004);
     let lights = any_lights(&mut random, 200);
     let tree = LightTree::build(&lights);
@@ -191,7 +191,7 @@ fn scenes_of_all_sizes_are_the_same() {
 }
 
 #[test]
-fn extremes_in_one_scene_stay_numbers() {
+fn extreme_lights_give_finite_probabilities() {
     let mut random = Random::new(1005);
     let number = |random: &mut Random| {
         let exponent = random.range(-15.0, 15.0);
@@ -244,7 +244,7 @@ fn relative_variance(lights: &[LightBounds], point: Vec3, normal: Vec3, probabil
 }
 
 #[test]
-fn many_lights_vary_far_less_than_by_power() {
+fn light_tree_has_lower_variance_than_power_sampling() {
     let mut random = Random::new(1006);
     // Downlights below a ceiling, and point lights.
     let downlight = |random: &mut Random| {
@@ -267,7 +267,7 @@ fn many_lights_vary_far_less_than_by_power() {
 }
 
 #[test]
-fn lights_that_face_anywhere_vary_little_from_among_them_too() {
+fn light_tree_has_low_variance_among_randomly_oriented_lights() {
     let mut random = Random::new(1007);
     let flat = |random: &mut Random| {
         let position = Vec3::from_array([0; 3].map(|_| random.range(-1.0, 1.0)));

@@ -28,7 +28,7 @@ fn plain_indices_keep_the_order_of_the_file() {
 }
 
 #[test]
-fn all_forms_of_a_corner() {
+fn all_forms_of_face_vertices_are_read() {
     let streams = "vt 0 0\nvt 1 0\nvt .5 1 9\nvn 0 0 1\nvn 0 0 2\n";
     let full = read(&format!("{SQUARE}{streams}f 1/1/1 2/2/1 3/3/2\n")).mesh;
     assert_eq!(full.uvs, [Vec2::ZERO, Vec2::X, vec2(0.5, 1.0)]);
@@ -70,7 +70,7 @@ fn faces_may_stand_before_their_vertices() {
 }
 
 #[test]
-fn polygons_are_cut() {
+fn polygons_are_triangulated() {
     let pentagon = "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 2 0\nf 1 2 3 4 5\n";
     assert_eq!(read(pentagon).mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
     let dart = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv .5 1 0\nf 1 2 3 4\n";
@@ -80,14 +80,14 @@ fn polygons_are_cut() {
 }
 
 #[test]
-fn numbers_comments_continuations_and_line_ends() {
+fn comments_continuations_and_line_ends_are_read() {
     let text = "# made by hand \\\r\n  v 1e1 -2.5E-1 +.5 # first\r\n\r\nv\t0 0 \\\r\n 0\r\nv 1 0 0\r\nv 7 \\\n\\\n7 7\r\nf 1 \\\r\n2 3";
     let mesh = read(text).mesh;
     assert_eq!(mesh.positions, [vec3(10.0, -0.25, 0.5), Vec3::ZERO, Vec3::X]);
 }
 
 #[test]
-fn what_has_no_place_is_counted() {
+fn ignored_statements_are_counted() {
     let text = "mtllib a.mtl\no name\ng a b\nusemtl red\ns 1\nv 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0\nusemtl blue\nf 1 2 3\nl 1 2\np 1\nf 1 2\n";
     let Imported { mesh, warnings } = read(text);
     assert_eq!(mesh.triangles.len(), 1);
@@ -109,7 +109,7 @@ fn a_warning_about_many_kinds_stays_short() {
 }
 
 #[test]
-fn partly_missing_normals_and_uvs() {
+fn missing_normals_and_uvs_become_zero() {
     let text = format!("{SQUARE}vn 0 .6 .8\nvt .3 .4\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n");
     let Imported { mesh, warnings } = read(&text);
     assert_eq!(mesh.triangles[0], [0, 1, 2]);
@@ -122,13 +122,13 @@ fn partly_missing_normals_and_uvs() {
 }
 
 #[test]
-fn a_normal_that_is_not_a_number_is_as_none() {
+fn invalid_normals_are_treated_as_missing() {
     let mesh = read(&format!("{SQUARE}vn nan 0 0\nvn 0 0 0\nf 1//1 2//2 3//1\n")).mesh;
     assert!(mesh.normals.is_empty());
 }
 
 #[test]
-fn a_mesh_has_its_form_without_undefined_normals_and_uvs() {
+fn undefined_normals_and_uvs_are_ignored() {
     let Imported { mesh, warnings } = read(&format!("{SQUARE}vt 1 1\nf 1/1/1 2/2/1 3/1/1\n"));
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (3, 1));
     assert_eq!((mesh.normals.as_slice(), mesh.uvs.as_slice()), (&[][..], &[Vec2::ONE, Vec2::ZERO, Vec2::ONE][..]));

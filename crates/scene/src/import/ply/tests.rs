@@ -48,7 +48,7 @@ fn big(kind: &str, value: u8) -> Vec<u8> {
 }
 
 #[test]
-fn a_text_with_a_polygon() {
+fn text_ply_with_a_polygon_is_triangulated() {
     let Imported { mesh, warnings } = read(SQUARE);
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), Vec3::Y]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
@@ -56,7 +56,7 @@ fn a_text_with_a_polygon() {
 }
 
 #[test]
-fn every_type_in_both_byte_orders_face_before_vertex() {
+fn all_scalar_types_are_read_in_both_byte_orders() {
     let expected = read(SQUARE);
     let types = "char uchar short ushort int uint float double int8 uint8 int16 uint16 int32 uint32 float32 float64";
     for scalar in types.split(' ') {
@@ -75,7 +75,7 @@ fn every_type_in_both_byte_orders_face_before_vertex() {
 }
 
 #[test]
-fn odd_white_space_line_ends_and_empty_lines() {
+fn unusual_white_space_and_line_ends_are_accepted() {
     let expected = read(SQUARE);
     assert_eq!(read(SQUARE.replace('\n', "\r\n")), expected);
     assert_eq!(read(SQUARE.replace('\n', "\r")), expected);
@@ -90,7 +90,7 @@ fn odd_white_space_line_ends_and_empty_lines() {
 }
 
 #[test]
-fn normals_and_surface_coordinates_by_all_their_names() {
+fn normals_and_uvs_are_read_under_all_property_names() {
     for names in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
         let text = format!(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty uchar red\nproperty float ny\nproperty double {}\n\
@@ -243,7 +243,7 @@ fn faults_of_binary_files_name_the_byte() {
 }
 
 #[test]
-fn headers_have_an_end() {
+fn header_length_is_limited() {
     let elements: String = (0..2000).map(|index| format!("element e{index} 0\n")).collect();
     let (place, message) = error(SQUARE.replace("element vertex", &format!("{elements}element vertex")));
     assert_eq!((place, message.as_str()), (FilePosition::Line(1003), "more than 1000 elements"));

@@ -44,7 +44,7 @@ fn text_and_binary_weld_to_the_same_mesh() {
 }
 
 #[test]
-fn keywords_in_any_case_on_any_lines_and_several_solids() {
+fn keywords_ignore_case_and_line_breaks_and_solids_are_joined() {
     let text = format!(
         "SOLID one\nFacet Normal -nan(ind) -nan(ind) x OUTER loop vertex 0 0 0 \nvertex 1 0 0 vertex 0 1e0 0\nendloop EndFacet\nEndSolid one two\n\nsolid\n{}endsolid",
         facet(UPPER)
@@ -53,7 +53,7 @@ fn keywords_in_any_case_on_any_lines_and_several_solids() {
 }
 
 #[test]
-fn zero_and_minus_zero_are_one_place() {
+fn zero_and_negative_zero_are_welded() {
     let mirrored = [vec3(-0.0, 0.0, -0.0), Vec3::Y, Vec3::X];
     let mesh = read(&binary("", &[LOWER, mirrored])).mesh;
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 1]]);

@@ -47,7 +47,7 @@ fn is_right(text: &str, rule: &'static Rule) -> bool {
 }
 
 #[test]
-fn every_line_leads_to_something_that_is_written_as_it_says() {
+fn every_table_entry_names_an_existing_target_with_a_valid_example() {
     let lines = TABLE.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
     assert_eq!(lines.count(), ENTRIES.len(), "every line is read");
     assert!(ENTRIES.iter().map(|entry| entry.words.len()).sum::<usize>() > 1000);
@@ -85,7 +85,7 @@ fn each_word_occurs_once_per_place() {
 
 /// The innermost owner takes precedence, and a key that the kind lacks is not suggested.
 #[test]
-fn words_are_found_by_place() {
+fn foreign_words_are_suggested_by_context() {
     let light = |kind: &str| {
         let family = Rule::named("AnyLight").unwrap();
         family.kinds.iter().find(|(name, _)| *name == kind).unwrap().1.get()
@@ -116,7 +116,7 @@ fn words_are_found_by_place() {
 }
 
 #[test]
-fn links_of_the_page_lead_somewhere() {
+fn links_of_the_names_page_resolve() {
     let (page, reference) = (page(), reference());
     let anchor = |heading: &str| heading.trim().to_lowercase().replace(['`', ':'], "").replace(' ', "-");
     let headings = reference.lines().filter(|line| line.starts_with('#'));

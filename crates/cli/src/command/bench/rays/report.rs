@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_of_rates() {
+    fn table_of_rates_is_formatted() {
         let expected = "\
 blob: 100 triangles
 build, 2 threads                   seconds bytes/tri  SAH cost
