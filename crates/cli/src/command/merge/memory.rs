@@ -1,5 +1,5 @@
-//! Memory estimate of a merge, from the headers of the partial renders: bands of rows, file writers,
-//! and the denoiser.
+//! Memory estimate of a merge, from the headers of the partial renders: bands of rows, file
+//! writers, and the denoiser.
 
 use crate::failure::Failure;
 use crate::memory;
