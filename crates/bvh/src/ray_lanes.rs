@@ -106,7 +106,7 @@ impl RayLanes {
             enter = simd.most((simd.splat(near) - origin) * inverse, enter);
             leave = simd.least((simd.splat(far) - origin) * inverse, leave);
         }
-        let leave = leave.mul_add(simd.splat(WIDEN), simd.splat(MARGIN));
+        let leave = leave * WIDEN + MARGIN;
         bits(enter.simd_le(simd.least(leave, simd.load(&self.t_max))))
     }
 }
