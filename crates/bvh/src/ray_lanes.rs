@@ -63,7 +63,7 @@ impl RayLanes {
         }
         self.t_min = t_min.into();
         self.ray_t_max = simd.least(t_max, simd.splat(FARTHEST)).into();
-        self.t_max = simd.least(t_max * SLACK + MARGIN, simd.splat(f32::MAX)).into();
+        self.t_max = cull_distances(simd, t_max).into();
         self.farthest = cull_distance(high[7]);
         for lane in rays.len()..WIDTH {
             (self.t_min[lane], self.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -86,8 +86,7 @@ impl RayLanes {
     /// nothing.
     #[inline(always)]
     pub fn shorten_to<S: Lanes>(&mut self, simd: S, t_max: &[f32; WIDTH]) {
-        let t_max = simd.least(simd.load(t_max) * SLACK + MARGIN, simd.splat(f32::MAX));
-        let t_max = simd.least(t_max, simd.load(&self.t_max));
+        let t_max = simd.least(cull_distances(simd, simd.load(t_max)), simd.load(&self.t_max));
         self.t_max = t_max.into();
         self.farthest = t_max.reduce_max();
     }
@@ -109,6 +108,12 @@ impl RayLanes {
         let leave = leave * WIDEN + MARGIN;
         bits(enter.simd_le(simd.least(leave, simd.load(&self.t_max))))
     }
+}
+
+/// [`cull_distance`] of eight rays.
+#[inline(always)]
+fn cull_distances<S: Lanes>(simd: S, t_max: f32x8<S>) -> f32x8<S> {
+    simd.least(t_max * SLACK + MARGIN, simd.splat(f32::MAX))
 }
 
 #[inline(always)]

@@ -32,8 +32,9 @@ use juggler_math::{Ray, Vec3};
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
 pub(crate) const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
 
-/// Absolute margin of distances, for those that are subnormal. It is normal itself, since subnormal
-/// operands are slow on some processors.
+/// Absolute margin of the distances of box tests, which relative margins do not widen enough when
+/// the distances are subnormal. The margin itself is a normal number, since subnormal operands are
+/// slow on some processors.
 pub(crate) const MARGIN: f32 = f32::MIN_POSITIVE;
 
 /// Relative error bound of a plane's offset: 2 ulps for the rounding of reciprocal and offset,

@@ -6,6 +6,8 @@
 //! restore the energy.
 
 use crate::prepare::brightness;
+use crate::speckles::WINDOW_RADIUS;
+use crate::window::neighbors;
 use crate::{Noisy, speckles};
 use juggler_math::Rgb;
 use rayon::prelude::*;
@@ -13,21 +15,18 @@ use rayon::prelude::*;
 /// Maximum brightness of a pixel, relative to the brightest pixel in its window. The factor is less
 /// than 3, because the coarse grids scale neighboring pixels by slightly different factors.
 const FACTOR: f32 = 2.75;
-/// Radius of that window, in pixels.
-const WINDOW_RADIUS: usize = 3;
 
 /// Limits single bright pixels. Pixels with black surroundings stay as they are.
 pub(crate) fn limit(noisy: &Noisy, pixels: &mut [Rgb]) {
     let brightness: Vec<f32> = pixels.par_iter().map(|color| brightness(*color)).collect();
     pixels.par_iter_mut().enumerate().for_each(|(i, pixel)| {
         let own = brightness[i];
-        let least = own / FACTOR;
-        // Skip the search of the window in the common case: a direct neighbor is as bright.
-        if brightest(noisy.width, &brightness, i, 1) >= least {
+        // Skip the search of the window in the common case: a direct neighbor is bright enough.
+        if own <= FACTOR * brightest(noisy.width, &brightness, i, 1) {
             return;
         }
         let around = brightest(noisy.width, &brightness, i, WINDOW_RADIUS);
-        if around > 0.0 && around < least {
+        if around > 0.0 {
             let limit = (FACTOR * around).max(speckles::confirmed_brightness(noisy, i));
             if own > limit {
                 *pixel = *pixel * (limit / own);
@@ -38,11 +37,7 @@ pub(crate) fn limit(noisy: &Noisy, pixels: &mut [Rgb]) {
 
 /// Brightness of the brightest other pixel of a window, at least 0.
 fn brightest(width: usize, brightness: &[f32], i: usize, radius: usize) -> f32 {
-    let (x, y, height) = (i % width, i / width, brightness.len() / width);
-    let rows = y.saturating_sub(radius)..height.min(y + radius + 1);
-    let columns = x.saturating_sub(radius)..width.min(x + radius + 1);
-    let window = rows.flat_map(|row| columns.clone().map(move |column| row * width + column));
-    window.filter(|&at| at != i).fold(0.0, |brightest, at| brightness[at].max(brightest))
+    neighbors(width, brightness.len(), i, radius).fold(0.0, |brightest, at| brightness[at].max(brightest))
 }
 
 #[cfg(test)]

@@ -36,6 +36,7 @@ mod strips;
 mod tile;
 mod upper_bound;
 mod weights;
+mod window;
 
 #[cfg(test)]
 mod tests;

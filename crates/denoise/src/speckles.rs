@@ -7,13 +7,14 @@
 use crate::Noisy;
 use crate::features::{FEATURES, Feature, pixel_features};
 use crate::prepare::{brightness, is_known};
+use crate::window::neighbors;
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
 /// Maximum brightness of a pixel, relative to the second brightest pixel in its window.
 const FACTOR: f32 = 1.2;
-/// Radius of that window, in pixels.
-const WINDOW_RADIUS: usize = 3;
+/// Radius of the window of a single bright pixel, in pixels.
+pub(crate) const WINDOW_RADIUS: usize = 3;
 /// Number of half-differences by which the mean of a highlight must exceed its surroundings.
 /// Clamped fireflies are equally bright, so that both halves may have one: a small factor would
 /// take such a pair for a highlight.
@@ -39,17 +40,11 @@ pub(crate) fn clamp(noisy: &Noisy, pixels: &[Rgb]) -> Vec<Rgb> {
 /// Whether the features of pixel `i` differ from the mean of its neighbors: a distant light is no
 /// firefly.
 fn is_other_surface(noisy: &Noisy, i: usize) -> bool {
-    let (x, y) = (i % noisy.width, i / noisy.width);
     let (mut mean, mut count) = ([0.0; FEATURES], 0.0);
-    for row in y.saturating_sub(1)..noisy.height.min(y + 2) {
-        for column in x.saturating_sub(1)..noisy.width.min(x + 2) {
-            let at = row * noisy.width + column;
-            if at != i {
-                let features = features(noisy, at);
-                (0..FEATURES).for_each(|k| mean[k] += features[k]);
-                count += 1.0;
-            }
-        }
+    for at in neighbors(noisy.width, noisy.width * noisy.height, i, 1) {
+        let features = features(noisy, at);
+        (0..FEATURES).for_each(|k| mean[k] += features[k]);
+        count += 1.0;
     }
     let own = features(noisy, i);
     let square = |k: usize| (own[k] - mean[k] / count) * (own[k] - mean[k] / count);
@@ -72,17 +67,10 @@ pub(crate) fn confirmed_brightness(noisy: &Noisy, i: usize) -> f32 {
 
 /// Brightness of the second brightest pixel in the window around pixel `i`.
 fn second_brightest(width: usize, brightness: &[f32], i: usize) -> f32 {
-    let height = brightness.len() / width;
-    let (x, y) = (i % width, i / width);
     let (mut first, mut second) = (0.0_f32, 0.0_f32);
-    for row in y.saturating_sub(WINDOW_RADIUS)..height.min(y + WINDOW_RADIUS + 1) {
-        for column in x.saturating_sub(WINDOW_RADIUS)..width.min(x + WINDOW_RADIUS + 1) {
-            let at = row * width + column;
-            if at != i {
-                second = second.max(brightness[at].min(first));
-                first = first.max(brightness[at]);
-            }
-        }
+    for at in neighbors(width, brightness.len(), i, WINDOW_RADIUS) {
+        second = second.max(brightness[at].min(first));
+        first = first.max(brightness[at]);
     }
     second
 }
