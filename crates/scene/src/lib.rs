@@ -27,6 +27,7 @@ mod integrator;
 mod item;
 pub mod kind;
 mod mesh_scene;
+pub mod model;
 mod motion;
 pub mod named;
 pub mod path;

@@ -2,11 +2,11 @@
 
 use super::document::{Buffer, CompressedView, Index};
 use super::error::{Fault, GltfError, Place};
-use super::files::{FileError, Files};
 use super::location::Location;
 use super::meshopt;
 use super::open::Gltf;
 use super::uri::{self, Uri};
+use super::{FileError, Files};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,11 +1,11 @@
 //! Opening of a file: container, document and structure, without the contents of buffers.
 
+use super::Files;
 use super::check;
 use super::container::Container;
 use super::data::GltfData;
 use super::document::Document;
 use super::error::GltfError;
-use super::files::Files;
 use super::json::{self, Json};
 use super::limits::Limits;
 use super::warning::Warnings;

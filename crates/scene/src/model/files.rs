@@ -1,4 +1,4 @@
-//! Reading of the files that a document names: buffers and images beside it.
+//! Reading of the files that a model file names: buffers, images and libraries of materials.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,9 @@ pub enum FileError {
     Read(String),
 }
 
-/// Source of the files that a document names.
+/// Source of the files that a model file names.
 pub trait Files {
-    /// Reads a file. `name` is relative to the folder of the document, with the separators `/`, and
+    /// Reads a file. `name` is relative to the folder of the model file, with the separators `/`, and
     /// does not leave that folder.
     ///
     /// # Errors

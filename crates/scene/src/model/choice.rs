@@ -1,0 +1,54 @@
+//! What of a model file is used: scene, variant, animation and time.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Choice of what a model file shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelChoice {
+    /// Scene of the file. Defaults to the file's own choice.
+    pub scene: Option<NameOrIndex>,
+    /// Variant of the materials. Defaults to the materials without a variant.
+    pub variant: Option<NameOrIndex>,
+    /// Animation clip.
+    pub animation: AnimationChoice,
+    /// Time in the clip, in seconds.
+    pub seconds: f64,
+    /// What happens after the end of the clip.
+    pub repeat: ModelRepeat,
+    /// Whether light intensities are photometric (candela, lux) and are divided by 683 lm/W.
+    pub photometric: bool,
+}
+
+/// Name of a part of a file, or its index, counted from 0.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum NameOrIndex {
+    /// Index, counted from 0.
+    Index(u32),
+    /// Name, as written in the file.
+    Name(String),
+}
+
+/// Animation clip of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum AnimationChoice {
+    /// First clip of the file, if it has one.
+    #[default]
+    First,
+    /// No clip: the rest pose.
+    None,
+    /// Clip by name or index.
+    Clip(NameOrIndex),
+}
+
+/// What happens after the end of a clip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelRepeat {
+    /// The clip starts again.
+    #[default]
+    Loop,
+    /// The last pose stays.
+    Once,
+}

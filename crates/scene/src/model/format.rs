@@ -1,0 +1,67 @@
+//! Formats of model files, which other crates implement (`juggler-import` implements glTF).
+
+use super::{Files, ModelChoice, ModelParts, ModelSummary};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A format of model files.
+pub trait ModelFormat: Debug + Send + Sync {
+    /// Display name, such as "glTF".
+    fn name(&self) -> &'static str;
+
+    /// File name extensions, in lower case, without dots.
+    fn extensions(&self) -> &'static [&'static str];
+
+    /// Whether the first bytes of a file are certainly of this format.
+    fn is_content(&self, head: &[u8]) -> bool;
+
+    /// Opens a model file. `name` is the file's name in messages; `files` reads the files that it
+    /// names.
+    ///
+    /// # Errors
+    ///
+    /// The file or one of its files is not valid, is missing, or exceeds a limit.
+    fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError>;
+}
+
+/// An opened model file. All files that it names are read.
+pub trait ModelFile: Debug + Send + Sync {
+    /// BLAKE3 hash of the file and of the files that it names.
+    fn digest(&self) -> [u8; 32];
+
+    /// Names of the files that the file names, relative to its folder.
+    fn files(&self) -> &[String];
+
+    /// Translates the file to parts of a scene. The names of all parts begin with `prefix`.
+    ///
+    /// The time of the choice changes values only: the numbers, the order and the names of objects,
+    /// materials, lights and cameras are the same at all times. Meshes that do not deform share
+    /// their arrays at all times.
+    ///
+    /// # Errors
+    ///
+    /// The content is not valid, or the choice names something that the file does not have.
+    fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError>;
+
+    /// Describes the file for people and programs.
+    ///
+    /// # Errors
+    ///
+    /// As [`ModelFile::parts`].
+    fn summary(&self, choice: &ModelChoice) -> Result<ModelSummary, ModelError>;
+}
+
+/// Why a model file cannot be read: all faults at once, each with its place in the file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .faults.join("\n"))]
+pub struct ModelError {
+    /// Messages such as "car.glb: /accessors/7: needs 48 bytes from byte 1020". At least one.
+    pub faults: Vec<String>,
+}
+
+impl ModelError {
+    /// Creates an error of a single fault.
+    pub fn new(fault: impl Into<String>) -> Self {
+        Self { faults: vec![fault.into()] }
+    }
+}
