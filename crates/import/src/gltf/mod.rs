@@ -21,6 +21,7 @@ pub mod document;
 pub mod draco;
 mod error;
 pub mod extensions;
+mod format;
 mod json;
 pub mod ktx2;
 pub mod ktx2_head;
@@ -30,16 +31,19 @@ pub mod meshopt;
 mod open;
 pub mod pose;
 mod primitive;
+mod summary;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
 mod tests;
+mod translate;
 mod uri;
 mod warning;
 
 pub use container::is_binary;
 pub use data::GltfData;
 pub use error::{Fault, GltfError, Place};
+pub use format::GltfFormat;
 pub use juggler_scene::model::{FileError, Files};
 pub use limits::Limits;
 pub use open::Gltf;
