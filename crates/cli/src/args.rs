@@ -1,6 +1,7 @@
 //! Command-line arguments. [`crate::plan`] derives what to render from them.
 
 use crate::command::Command as Task;
+use crate::model_args::ModelArgs;
 use crate::progress::Progress;
 use crate::tips;
 use crate::value::{self, FrameRange, Shard};
@@ -94,9 +95,12 @@ pub struct ViewArgs {
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
-    /// Scene file, mesh (PLY, OBJ, STL), built-in scene (see `juggler scenes`), or `-` for standard
-    /// input
+    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene (see `juggler scenes`), or `-`
+    /// for standard input
     pub scene: String,
+
+    #[command(flatten)]
+    pub model: ModelArgs,
 
     /// Output file; its extension selects the format
     ///

@@ -8,6 +8,7 @@ mod failure;
 mod format;
 mod interrupt;
 mod memory;
+mod model_args;
 mod output;
 mod plan;
 mod progress;

@@ -15,6 +15,7 @@ pub use view::end_warning;
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
+use crate::model_args::ModelArgs;
 use crate::output::{STANDARD_OUTPUT, at_most_one_stream, has_number, numbered};
 use crate::progress::Progress;
 use crate::source;
@@ -33,6 +34,8 @@ const FALLBACK_THREADS: usize = 1;
 pub struct Plan {
     /// Scene file or name of a built-in scene.
     pub scene: String,
+    /// What a model file shows.
+    pub model: ModelArgs,
     /// Overrides of the scene's settings.
     pub settings: Settings,
     /// Frames or time to render.
@@ -124,6 +127,7 @@ impl Plan {
         Ok(Self {
             settings: Settings { aovs, ..settings(&args, output_kind) },
             scene: args.scene,
+            model: args.model,
             times,
             output,
             aov_output: args.aov_output,

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::format::bytes;
+use crate::model_args::ModelArgs;
 use juggler::scene::document::{bytes_to_read, read_text};
 use juggler::scene::import::{Content, estimate};
 use juggler::scene::{Scene, named};
@@ -21,7 +22,7 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     if name == STANDARD_INPUT {
         let text = standard_input()?;
         check_memory(bytes_to_read(text.as_bytes()), STANDARD_INPUT_NAME, most)?;
-        return Ok(Scene::from_json(text, STANDARD_INPUT_NAME)?);
+        return Ok(juggler::loader().from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
     if Content::detect(path).is_mesh() {
@@ -30,7 +31,18 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
-    Ok(Scene::named(name)?)
+    Ok(juggler::loader().named(name)?)
+}
+
+/// Loads as [`load`], and selects what a model file shows.
+///
+/// # Errors
+///
+/// As [`load`]; also if flags for models are given and the file is no model.
+pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Scene, Failure> {
+    let mut scene = load(name, most)?;
+    model.apply(name, &mut scene)?;
+    Ok(scene)
 }
 
 /// Checks that a scene file or built-in scene of this name exists, without checking its contents.
@@ -41,7 +53,7 @@ pub fn find(name: &str) -> Result<(), Failure> {
     if path.exists() && !path.is_dir() && !is_foreign {
         return Ok(());
     }
-    Scene::named(name).map(drop).map_err(Failure::from)
+    juggler::loader().named(name).map(drop).map_err(Failure::from)
 }
 
 fn check_memory(needed: u64, name: &str, most: Option<u64>) -> Result<(), Failure> {

@@ -36,6 +36,12 @@ pub enum SceneError {
     /// The mesh file cannot be loaded, so no scene can be made around it.
     #[error("{0}")]
     Mesh(String),
+    /// The model file cannot be opened, so no scene can be made around it.
+    #[error("{}", faults.join("\n"))]
+    Model {
+        /// Messages, each with its place in the file.
+        faults: Vec<String>,
+    },
     /// The file cannot be written.
     #[error("cannot write `{}`: {}", path.display(), plain_io(source))]
     Write {

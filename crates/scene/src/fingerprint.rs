@@ -8,13 +8,13 @@
 
 use crate::compile::{Files, image_files, light_files};
 use crate::description::{Description, Object, Render};
-use crate::integrator::IntegratorChoice;
 use crate::item::Item;
 use crate::motion::Tracks;
 use crate::path::Path;
 use crate::shared::Shared;
 use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
+use juggler_integrator::AnyIntegrator;
 use juggler_shape::AnyShape;
 use serde::{Deserialize, Serialize};
 use serde_json::ser::Formatter;
@@ -31,16 +31,17 @@ const INTERPRETATION_VERSION: &[u8] = b"juggler scene 2\n";
 pub struct Fingerprint(BTreeMap<String, String>);
 
 impl Fingerprint {
-    /// Computes the fingerprint of a description, its motion while the shutter is open, and the
-    /// files it refers to.
-    pub(crate) fn compute(scene: &Description, tracks: &Tracks, files: &Files<'_>) -> Self {
+    /// Computes the fingerprint of a description with this integrator, its motion while the
+    /// shutter is open, the files it refers to, and its models: hashes of their files, and times.
+    pub(crate) fn compute(
+        scene: &Description,
+        integrator: AnyIntegrator,
+        tracks: &Tracks,
+        files: &Files<'_>,
+        models: &[([u8; 32], Vec<f64>)],
+    ) -> Self {
         // Clear the settings that do not affect pixels.
-        let settings = Render {
-            samples: 0,
-            integrator: Some(IntegratorChoice::for_scene(scene).integrator),
-            camera: None,
-            ..(*scene.render).clone()
-        };
+        let settings = Render { samples: 0, integrator: Some(integrator), camera: None, ..(*scene.render).clone() };
         let mut parts = Self::default();
         for (key, value) in serde_json::to_value(&settings).unwrap_or_default().as_object().into_iter().flatten() {
             match value.as_str() {
@@ -64,6 +65,9 @@ impl Fingerprint {
         parts.insert_section("objects", objects, objects.is_empty());
         if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
             parts.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
+        }
+        if !models.is_empty() {
+            parts.insert("models", &digest_of(&models));
         }
         for (file, hash) in digests(scene, files) {
             let name = file.file_name().unwrap_or_default().to_string_lossy();

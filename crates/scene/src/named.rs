@@ -2,7 +2,7 @@
 
 use crate::presets::built_in_scenes;
 use crate::suggest::closest;
-use crate::{Scene, SceneError};
+use crate::{Loader, Scene, SceneError};
 use std::path::Path;
 
 /// Maximum number of file names of a folder that are searched for suggestions.
@@ -22,13 +22,20 @@ pub struct UnknownName {
 impl Scene {
     /// Loads a scene file, or the built-in scene of this name if there is no such file.
     pub fn named(name: &str) -> Result<Self, SceneError> {
+        Loader::default().named(name)
+    }
+}
+
+impl Loader {
+    /// Loads a file, or the built-in scene of this name if there is no such file.
+    pub fn named(self, name: &str) -> Result<Scene, SceneError> {
         let path = Path::new(name);
         // A dangling link gets the error of loading it.
         if (path.exists() || path.is_symlink()) && !path.is_dir() {
-            return Self::load(path);
+            return self.load(path);
         }
         if built_in_scenes().iter().any(|scene| scene.name == name) {
-            return Self::built_in(name);
+            return Scene::built_in(name);
         }
         if path.is_dir() {
             let message = format!("`{name}` is a folder, not a scene file");

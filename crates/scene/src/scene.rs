@@ -7,6 +7,7 @@ use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_par
 use crate::fingerprint::{Fingerprint, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
+use crate::model::ExpansionMemo;
 use crate::motion::{self, Tracks, read_list};
 use crate::path::{Path as ScenePath, PathRef};
 use crate::relocate::relocate;
@@ -44,6 +45,8 @@ pub struct Scene {
     pub(crate) asset_cache: AssetCache,
     /// Motion while the shutter is open, computed on first use.
     tracks: Arc<Mutex<Option<CachedTracks>>>,
+    /// The scene with its models expanded, computed on first use.
+    pub(crate) expansion: ExpansionMemo,
 }
 
 /// The merged files of a scene.
@@ -81,13 +84,16 @@ impl Scene {
         Self::read(Path::new(name), AssetCache::new(bundle.into()))
     }
 
-    fn read(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
+    pub(crate) fn read(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
+        if asset_cache.is_model(path) {
+            return Self::around_model(path, asset_cache);
+        }
         match asset_cache.store().content(path) {
             Content::Scene => {}
             Content::Mesh { z_up } => {
                 let bounds = asset_cache.bounds(path).map_err(SceneError::Mesh)?;
                 let description = mesh_scene::describe_mesh_scene(&path.to_string_lossy(), &bounds, z_up);
-                return Ok(Self { description, asset_cache, ..Self::default() });
+                return Ok(Self::around(description, asset_cache));
             }
             Content::Unsupported(format) => return Err(SceneError::Foreign { path: path.into(), format }),
         }
@@ -98,13 +104,18 @@ impl Scene {
         Self::parse(text, &path.to_string_lossy(), asset_cache)
     }
 
+    /// A generated scene.
+    pub(crate) fn around(description: Description, asset_cache: AssetCache) -> Self {
+        Self { description, asset_cache, ..Self::default() }
+    }
+
     /// Parses a scene. `name` is the text's name in messages; file names in the scene are relative
     /// to the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
         Self::parse(text.into(), name, AssetCache::default())
     }
 
-    fn parse(text: String, name: &str, asset_cache: AssetCache) -> Result<Self, SceneError> {
+    pub(crate) fn parse(text: String, name: &str, asset_cache: AssetCache) -> Result<Self, SceneError> {
         let (mut document, mut findings) = Document::read(name, text, asset_cache.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
         let programs = animate::Programs::default();
@@ -141,7 +152,7 @@ impl Scene {
     pub fn at_frame(&self, frame: f64) -> Result<Self, SceneError> {
         let edits_merged = self.edits_merged();
         let moving = edits_merged.time_dependent();
-        let mut scene = Self { frame, tracks: Arc::default(), ..self.clone() };
+        let mut scene = Self { frame, tracks: Arc::default(), expansion: ExpansionMemo::default(), ..self.clone() };
         if moving.is_empty() {
             scene.description = edits_merged.into_owned();
             return Ok(scene);
@@ -182,17 +193,29 @@ impl Scene {
     /// Finds the problems as [`Scene::check`] does, and the light with the largest unoccluded
     /// illuminance at the center of the scene.
     pub fn check_with_light(&self) -> (Problems, Option<Illuminance>) {
-        let (tracks, wrong) = self.tracks();
-        let (assembly, more) = Assembly::from_scene(&self.description, &tracks, self.files());
+        let (assembly, wrong, more) = self.assembly();
         (self.report(merge_findings(merge_findings(self.schema_findings(), wrong), more)), assembly.illuminance)
     }
 
     /// Builds the world.
     pub fn compile(&self) -> Result<Compiled, SceneError> {
-        let (tracks, wrong) = self.tracks();
-        let (assembly, more) = Assembly::from_scene(&self.description, &tracks, self.files());
+        let (assembly, wrong, more) = self.assembly();
         let warnings = self.warnings(wrong, more)?;
         Ok(assembly.compile((*self.description.render).clone(), warnings))
+    }
+
+    /// Parts of the world, with the findings about motion and those of the compilation.
+    fn assembly(&self) -> (Assembly, Vec<Finding>, Vec<Finding>) {
+        let (tracks, wrong) = self.tracks();
+        let (assembly, more) = match self.expanded() {
+            None => Assembly::from_scene(&self.description, &tracks, self.files()),
+            Some(expansion) => {
+                let (assembly, more) =
+                    Assembly::from_scene(&expansion.description, &expansion.tracks, self.files_of(&expansion));
+                (assembly, merge_findings(expansion.findings.clone(), more))
+            }
+        };
+        (assembly, wrong, more)
     }
 
     /// Returns the warnings, or an error if any finding is an error. `motion` are the findings
@@ -227,18 +250,24 @@ impl Scene {
         let images = image_files(scene, &files).into_iter().map(|(file, _)| file);
         let lights = light_files(scene, &files).into_iter().map(|(file, _)| file);
         let files: BTreeSet<PathBuf> = mesh_files(scene, &files).into_iter().chain(images).chain(lights).collect();
-        texts.map(PathBuf::from).chain(files).collect()
+        texts.map(PathBuf::from).chain(files).chain(self.model_paths()).collect()
     }
 
     /// The scene's integrator with the reason for it: the integrator that the scene names, or the
     /// one that supports its contents.
     pub fn integrator_choice(&self) -> IntegratorChoice {
-        IntegratorChoice::for_scene(&self.description)
+        match self.expanded() {
+            None => IntegratorChoice::for_scene(&self.description),
+            Some(expansion) => IntegratorChoice::for_scene(&expansion.description),
+        }
     }
 
     /// Estimates what building the world needs memory for, without reading files.
     pub fn needs(&self) -> Needs {
-        Needs::from_scene(&self.description, self.files())
+        match self.expanded() {
+            None => Needs::from_scene(&self.description, self.files()),
+            Some(expansion) => Needs::from_scene(&expansion.description, self.files_of(&expansion)),
+        }
     }
 
     /// Lists what moves in the scene, for display.
@@ -248,12 +277,14 @@ impl Scene {
 
     /// Whether anything in the scene may differ between frames.
     pub fn depends_on_time(&self) -> bool {
-        !self.edits_merged().time_dependent().is_empty()
+        !self.edits_merged().time_dependent().is_empty() || self.has_moving_models()
     }
 
     /// Fingerprint of everything that affects the pixels, except the number of samples.
     pub fn fingerprint(&self) -> Fingerprint {
-        Fingerprint::compute(&self.description, &self.tracks().0, &self.files())
+        let models = self.expanded().map(|expansion| expansion.identities.clone()).unwrap_or_default();
+        let integrator = self.integrator_choice().integrator;
+        Fingerprint::compute(&self.description, integrator, &self.tracks().0, &self.files(), &models)
     }
 
     /// The scene as the text of a scene file, including its animation.

@@ -75,6 +75,17 @@ impl Store {
         }
     }
 
+    /// First bytes of a file, by which formats are recognized; none if the file cannot be read.
+    pub(crate) fn head(&self, path: &Path) -> Vec<u8> {
+        match &self.backend {
+            Backend::Disk => import::head(path),
+            Backend::Memory(bundle) => {
+                let bytes = bundle.find(path).map(|(_, bytes)| bytes.as_slice()).unwrap_or_default();
+                bytes.get(..16.min(bytes.len())).unwrap_or_default().to_vec()
+            }
+        }
+    }
+
     /// Reads the bytes of a file or asset.
     pub(crate) fn read_bytes(&self, path: &Path, limits: &Limits) -> Result<Cow<'_, [u8]>, ImportError> {
         if let Some(asset) = self.assets.at(path) {

@@ -13,6 +13,9 @@ impl Scene {
     /// in memory are never prepared twice. The result equals the result of [`Scene::compile`], bit
     /// for bit.
     pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
+        if self.expanded().is_some() || before.expanded().is_some() {
+            return self.compile();
+        }
         let (tracks, wrong) = self.tracks();
         let change = self.change_since(before);
         let found = if self.has_world(before, &change) {
@@ -48,6 +51,7 @@ impl Scene {
         change.is_within(&[Title, Settings, Tone, Camera, Animation, Asset])
             // The default lights depend on the integrator.
             && (!self.description.lights.is_empty() || follows_paths(self) == follows_paths(other))
+            && self.has_models_of(other)
             && digests(&self.description, &self.files()) == digests(&other.description, &other.files())
             && same_motion()
     }

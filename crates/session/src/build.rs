@@ -84,7 +84,7 @@ impl BuildRequest {
 
     fn build(mut self) -> Result<Subject, Error> {
         let file = match self.task.clone() {
-            Task::Open => Arc::new(Scene::named(&self.name)?),
+            Task::Open => Arc::new(juggler::loader().named(&self.name)?),
             Task::Reload(scene) => self.reload(&scene)?,
             Task::InMemory(scene) => scene,
         };
@@ -157,7 +157,7 @@ impl BuildRequest {
     /// there too.
     fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
         let is_file = Path::new(&self.name).is_file();
-        let new = Arc::new(if is_file { old.reload(&self.name)? } else { Scene::named(&self.name)? });
+        let new = Arc::new(if is_file { old.reload(&self.name)? } else { juggler::loader().named(&self.name)? });
         if !self.values.is_empty() {
             let [before, after] = [old, &new].map(|scene| scene.to_value());
             self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));

@@ -52,7 +52,7 @@ impl WorkerRenderer {
         let build = if files.is_empty() {
             BuildRequest::open(name, None)
         } else {
-            let scene = Scene::from_bundle(Bundle::from_iter(files), name);
+            let scene = juggler::loader().from_bundle(Bundle::from_iter(files), name);
             BuildRequest::from_scene(scene.map_err(|error| error_text(&error.into()))?, name, None)
         };
         let subject = build.run().map_err(|error| error.text)?;

@@ -2,6 +2,7 @@
 
 use crate::console;
 use crate::failure::Failure;
+use crate::model_args::ModelArgs;
 use crate::source;
 use clap::Args;
 use juggler::scene::{Illuminance, Problems};
@@ -9,14 +10,16 @@ use juggler::scene::{Illuminance, Problems};
 /// Flags of `juggler check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Scene file, mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
+    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
     scene: String,
+    #[command(flatten)]
+    model: ModelArgs,
 }
 
 impl Check {
     /// Prints mistakes and warnings; warnings alone are no failure.
     pub fn run(self) -> Result<(), Failure> {
-        match source::load(&self.scene, None) {
+        match source::load_model(&self.scene, &self.model, None) {
             Ok(scene) => {
                 let (problems, light) = scene.check_with_light();
                 self.answer(&problems, light.as_ref())

@@ -2,6 +2,7 @@
 //! a mesh becomes a scene around it.
 
 use crate::failure::Failure;
+use crate::model_args::ModelArgs;
 use crate::output;
 use crate::source;
 use clap::Args;
@@ -10,19 +11,21 @@ use std::path::Path;
 /// Flags of `juggler convert`.
 #[derive(Debug, Args)]
 pub struct Convert {
-    /// Scene file, mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
+    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
     scene: String,
     /// Output file, or `-` for standard output
     output: String,
     /// Evaluate the scene at this frame, without expressions and animations
     #[arg(long, value_name = "N")]
     frame: Option<u32>,
+    #[command(flatten)]
+    model: ModelArgs,
 }
 
 impl Convert {
     /// Writes the scene.
     pub fn run(self) -> Result<(), Failure> {
-        let scene = source::load(&self.scene, None)?;
+        let scene = source::load_model(&self.scene, &self.model, None)?;
         let scene = match self.frame {
             Some(frame) => scene.at_frame(f64::from(frame))?.still(),
             None => scene,

@@ -1,12 +1,14 @@
 //! `juggler info`: contents of a scene or mesh, and metadata of a picture or partial render.
 
 mod mesh;
+mod model;
 mod motion;
 mod part;
 
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, counted};
+use crate::model_args::ModelArgs;
 use crate::reproduce;
 use crate::source;
 use clap::Args;
@@ -23,12 +25,14 @@ use std::path::Path;
 /// Flags of `juggler info`.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// Scene file, built-in scene, `-` for standard input, mesh (PLY, OBJ, STL), picture, or
-    /// partial render (.jfilm)
+    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene, `-` for standard input,
+    /// picture, or partial render (.jfilm)
     scene: String,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    model: ModelArgs,
 }
 
 impl Info {
@@ -51,7 +55,7 @@ impl Info {
         if film::is_partial_render(&start) {
             return part::text(path, self.json);
         }
-        let scene = source::load(&self.scene, None)?;
+        let scene = source::load_model(&self.scene, &self.model, None)?;
         let compiled = scene.compile()?;
         let text = if self.json { to_json } else { to_words };
         Ok(text(&self.scene, &scene, &compiled))
@@ -95,7 +99,7 @@ fn layer_text(LayerName { name, channels }: &LayerName) -> String {
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     let geometry = compiled.world.geometry_stats();
     let settings = &compiled.settings;
-    let description = &scene.description;
+    let (description, shown) = (&scene.description, scene.expanded_description());
     let title = if description.title.is_empty() { name } else { &description.title };
     let cameras: Vec<&str> = compiled.cameras.iter().map(|(name, _)| name.as_str()).collect();
     let [width, height] = settings.size;
@@ -116,12 +120,13 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("emitting", counted(geometry.emitting_shapes as u128, "shape"));
     row("background", background_text(compiled.world.background()));
     row("infinite", infinite_lights_text(&compiled.world.infinite_lights()));
-    row("materials", description.materials.len().to_string());
-    row("textures", textures_text(description.textures.len(), geometry.texture_bytes));
+    row("materials", shown.materials.len().to_string());
+    row("textures", textures_text(shown.textures.len(), geometry.texture_bytes));
     row("cameras", cameras.join(", "));
     row("bounds", bounds_text(&compiled.world.bounds()));
     row("memory", memory_text(geometry.geometry_bytes, geometry.bvh_bytes));
     motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
+    model::rows(scene).into_iter().for_each(|(key, value)| row(&key, value));
     lines.join("\n")
 }
 
@@ -171,7 +176,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     let world = &compiled.world;
     let geometry = world.geometry_stats();
     let settings = &compiled.settings;
-    let description = &scene.description;
+    let (description, shown) = (&scene.description, scene.expanded_description());
     let far = world.infinite_lights().into_iter().map(|(kind, chance)| json!({"kind": kind, "chance": chance}));
     let far: Vec<Value> = far.collect();
     json!({
@@ -194,8 +199,8 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "illuminance": compiled.illuminance.as_ref().map(|Illuminance { light, value }| json!({"light": light, "middle": value})),
         "background": {"kind": world.background().name(), "mean": world.background().mean_radiance().to_array()},
         "far_lights": far,
-        "materials": description.materials.len(),
-        "textures": description.textures.len(),
+        "materials": shown.materials.len(),
+        "textures": shown.textures.len(),
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         "bounds": corners(&compiled.world.bounds()),
         "memory": {
@@ -204,6 +209,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "texture_bytes": geometry.texture_bytes,
         },
         "animation": motion::json(&description.animation, &scene.survey()),
+        "models": model::json(scene),
     })
     .to_string()
 }

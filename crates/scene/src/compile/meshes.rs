@@ -8,6 +8,7 @@ use crate::asset::Asset;
 use crate::description::Description;
 use crate::document::Sources;
 use crate::import::{ImportError, ImportErrorKind, Limits, parse};
+use crate::model::{ModelCache, ModelFormat, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
@@ -25,6 +26,7 @@ pub struct AssetCache {
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
     images: ImageCache,
     light_files: LightFiles,
+    models: ModelCache,
 }
 
 /// Mesh file.
@@ -39,7 +41,7 @@ struct Entry {
 }
 
 /// Length and modification time of a file.
-pub(super) fn file_stamp(path: &std::path::Path) -> Option<(u64, SystemTime)> {
+pub(crate) fn file_stamp(path: &std::path::Path) -> Option<(u64, SystemTime)> {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.len(), metadata.modified().ok()?))
 }
@@ -48,6 +50,22 @@ impl AssetCache {
     /// Creates an empty cache of files from a store.
     pub fn new(store: Store) -> Self {
         Self { store, ..Self::default() }
+    }
+
+    /// Sets the formats of models that can be opened.
+    #[must_use]
+    pub fn with_formats(self, formats: &'static [&'static dyn ModelFormat]) -> Self {
+        Self { models: ModelCache::new(formats), ..self }
+    }
+
+    /// Model file.
+    pub(crate) fn model(&self, path: &std::path::Path) -> Arc<OpenedModel> {
+        self.models.get(path, &self.store)
+    }
+
+    /// Whether a file is in a known format of models, by its first bytes or its name.
+    pub(crate) fn is_model(&self, path: &std::path::Path) -> bool {
+        self.models.format(path, &self.store.head(path)).is_some()
     }
 
     /// Adds an asset under a name, or replaces the asset of that name. Other scenes that share the
@@ -76,7 +94,8 @@ impl AssetCache {
         let kept = entries.iter().filter(|(path, entry)| same(path, entry));
         let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
         let (images, light_files) = (self.images.without_changed_files(), self.light_files.without_changed_files());
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), images, light_files }
+        let models = self.models.without_changed_files();
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), images, light_files, models }
     }
 
     /// Hash of a file's content; zeros for a file that cannot be read, which compilation reports.
@@ -132,7 +151,7 @@ impl Entry {
     }
 }
 
-pub(super) fn import_error_message(error: &ImportError) -> String {
+pub(crate) fn import_error_message(error: &ImportError) -> String {
     let shown = error.path.display();
     match &error.kind {
         ImportErrorKind::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),

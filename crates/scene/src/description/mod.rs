@@ -22,6 +22,7 @@ use std::collections::BTreeSet;
 
 mod animation;
 mod bones;
+mod model;
 mod object;
 mod read;
 mod render;
@@ -32,6 +33,7 @@ mod transform;
 pub use animation::{Animation, Component, ScenePath, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
+pub use model::Model;
 pub use object::{GroupName, Object, Visible};
 pub(crate) use read::deserialize_scene;
 pub use render::{CameraName, Render};

@@ -1,10 +1,10 @@
-//! Objects: a shape, a group, a list of objects, a chain or a limb, with transform and material.
+//! Objects: a shape, a group, a list of objects, a chain, a limb or a model, with transform and material.
 //!
 //! ```json
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
-use super::{Chain, Limb, Objects, Rotate, ScaleFactors, TransformStep, transform};
+use super::{Chain, Limb, Model, Objects, Rotate, ScaleFactors, TransformStep, transform};
 use crate::item::Item;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_math::Vec3;
@@ -12,7 +12,8 @@ use juggler_shape::AnyShape;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Object of the scene. Requires exactly one of `shape`, `group`, `objects`, `chain` and `limb`.
+/// Object of the scene. Requires exactly one of `shape`, `group`, `objects`, `chain`, `limb` and
+/// `model`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(extend("oneOf" = [
@@ -20,7 +21,8 @@ use serde::{Deserialize, Serialize};
     {"required": ["group"]},
     {"required": ["objects"]},
     {"required": ["chain"]},
-    {"required": ["limb"]}
+    {"required": ["limb"]},
+    {"required": ["model"]}
 ]))]
 pub struct Object {
     /// Name of the object. In the scene's own `objects`, it identifies the object in masks; objects
@@ -42,6 +44,9 @@ pub struct Object {
     /// Spheres along two bones that meet in a joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limb: Option<Limb>,
+    /// Model file of another format.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<Model>,
     /// Transform from the object's space to that of its parent: a list of steps, applied in order,
     /// or a single step. Defaults to the identity.
     #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "transform::steps")]
@@ -144,6 +149,11 @@ impl Object {
     /// Creates an object of spheres along two bones.
     pub fn limb(limb: Limb) -> Self {
         Self { limb: Some(limb), ..Self::default() }
+    }
+
+    /// Creates an object of a model file.
+    pub fn model(model: Model) -> Self {
+        Self { model: Some(model), ..Self::default() }
     }
 
     /// Sets the name.

@@ -24,6 +24,17 @@ pub enum Content {
     Unsupported(UnsupportedFormat),
 }
 
+/// First 16 bytes of a regular file; fewer if it is shorter or cannot be read.
+pub fn head(path: &Path) -> Vec<u8> {
+    let mut head = Vec::new();
+    if let Ok(file) = regular::open(path)
+        && file.take(16).read_to_end(&mut head).is_err()
+    {
+        head.clear();
+    }
+    head
+}
+
 impl Content {
     /// Detects the content from the file's first bytes, its size in bytes and the extension of its
     /// name. Unambiguous content takes precedence: JSON is a scene whatever its name, except

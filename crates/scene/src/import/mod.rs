@@ -28,6 +28,7 @@ mod unsupported;
 mod weld;
 
 pub use detect::Content;
+pub(crate) use detect::head;
 pub use error::{FilePosition, ImportError, ImportErrorKind};
 pub use estimate::{Estimate, estimate};
 pub use unsupported::UnsupportedFormat;

@@ -1,13 +1,23 @@
 //! Models: scenes of other formats, whole or as objects of a scene.
 
+mod cache;
 mod choice;
+mod expand;
 mod files;
 mod format;
+mod instance;
+mod model_scene;
 mod parts;
+mod placed;
+mod scene;
 mod summary;
 
+pub(crate) use cache::{ModelCache, OpenedModel};
 pub use choice::{AnimationChoice, ModelChoice, ModelRepeat, NameOrIndex};
+pub(crate) use expand::{Expansion, SceneTime, expand, has_models};
 pub use files::{FileError, Files};
 pub use format::{ModelError, ModelFile, ModelFormat};
+pub(crate) use model_scene::{describe_model_scene, frames_of};
 pub use parts::ModelParts;
+pub(crate) use scene::ExpansionMemo;
 pub use summary::{ExtensionSupport, ModelClip, ModelExtension, ModelSummary};

@@ -157,7 +157,7 @@ mod tests {
         let (_, sphere) = schema.kinds(definition("AnyShape")).find(|(name, _)| *name == "sphere").unwrap();
         assert!(schema.is_all_default(sphere));
         assert_eq!(schema.kinds(definition("Object")).count(), 0);
-        assert_eq!(exactly_one(definition("Object")), ["shape", "group", "objects", "chain", "limb"]);
+        assert_eq!(exactly_one(definition("Object")), ["shape", "group", "objects", "chain", "limb", "model"]);
         for (name, schema) in schema.definitions().filter(|(_, s)| s.get("type").is_some_and(|t| t == "object")) {
             assert!(schema.get("additionalProperties").is_some(), "{name}");
         }

@@ -6,6 +6,7 @@ mod words;
 use crate::args::ViewArgs;
 use crate::console;
 use crate::failure::Failure;
+use crate::model_args::ModelArgs;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{effect, end_warning};
 use crate::source;
@@ -65,13 +66,16 @@ pub struct Probe {
     threads: Option<u16>,
 
     #[command(flatten)]
+    model: ModelArgs,
+
+    #[command(flatten)]
     view: ViewArgs,
 }
 
 impl Probe {
     /// Probes the pixel, or finds the fireflies of the picture, and prints the report.
     pub fn run(self) -> Result<(), Failure> {
-        let scene = source::load(&self.scene, None)?;
+        let scene = source::load_model(&self.scene, &self.model, None)?;
         let frame = self.view.frame(scene.description.animation.frames_per_second);
         let beyond = self.view.frame.and_then(|frame| end_warning(frame, scene.description.animation.frames));
         beyond.iter().for_each(|warning| console::print_message(warning));

@@ -85,7 +85,7 @@ struct FrameRender<'t> {
 
 impl RenderCommand {
     fn run(self, start: Instant) -> Result<(), Failure> {
-        let scene = source::load(&self.plan.scene, self.plan.max_memory)?;
+        let scene = source::load_model(&self.plan.scene, &self.plan.model, self.plan.max_memory)?;
         effect::check_scene(&self.plan.settings, &scene)?;
         let animation = scene.description.animation;
         let header = self.plan.movie.as_ref().map(|movie| self.header(movie, &scene)).transpose()?;

@@ -1,0 +1,53 @@
+//! Flags that select what a model file shows.
+
+use crate::failure::Failure;
+use clap::Args;
+use juggler::scene::Scene;
+use juggler::scene::model::NameOrIndex;
+
+/// Flags for model files (glTF).
+#[derive(Clone, Debug, Default, Args)]
+pub struct ModelArgs {
+    /// Variant of a model's materials, by name or index
+    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    pub variant: Option<String>,
+
+    /// Animation clip of a model, by name or index; `none` for the rest pose
+    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    pub animation: Option<String>,
+
+    /// Scene of a model file, by name or index
+    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    pub model_scene: Option<String>,
+}
+
+impl ModelArgs {
+    /// Selects what the model shows.
+    ///
+    /// # Errors
+    ///
+    /// A flag is given and the scene is not one model file.
+    pub fn apply(&self, name: &str, scene: &mut Scene) -> Result<(), Failure> {
+        let flags =
+            [("--variant", &self.variant), ("--animation", &self.animation), ("--model-scene", &self.model_scene)];
+        let Some((flag, _)) = flags.into_iter().find(|(_, value)| value.is_some()) else { return Ok(()) };
+        let is_single = scene.is_around_model();
+        let object = scene.description.objects.first_mut().filter(|_| is_single);
+        let Some(model) = object.and_then(|object| object.model.as_mut()) else {
+            return Err(Failure::Invalid(format!(
+                "{flag} is for model files (.gltf, .glb); `{name}` is another scene"
+            )));
+        };
+        let chosen = |text: &Option<String>| text.as_deref().map(name_or_index);
+        model.variant = chosen(&self.variant).or(model.variant.take());
+        model.animation = chosen(&self.animation).or(model.animation.take());
+        model.scene = chosen(&self.model_scene).or(model.scene.take());
+        scene.fit_animation();
+        Ok(())
+    }
+}
+
+/// A number is an index, any other text a name.
+fn name_or_index(text: &str) -> NameOrIndex {
+    text.parse().map_or_else(|_| NameOrIndex::Name(text.to_owned()), NameOrIndex::Index)
+}

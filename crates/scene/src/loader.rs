@@ -1,0 +1,43 @@
+//! Loading of scenes by programs that know formats of models.
+
+use crate::compile::AssetCache;
+use crate::model::ModelFormat;
+use crate::store::{Bundle, Store};
+use crate::{Scene, SceneError};
+use std::path::Path;
+
+/// Loads scene files, mesh files and files of the model formats that it knows.
+///
+/// [`Scene::load`] knows no model format. The scenes of a loader keep its formats, for models among
+/// their objects and for [`Scene::reload`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Loader {
+    formats: &'static [&'static dyn ModelFormat],
+}
+
+impl Loader {
+    /// Creates a loader that knows these formats.
+    pub const fn new(formats: &'static [&'static dyn ModelFormat]) -> Self {
+        Self { formats }
+    }
+
+    /// Loads a file as [`Scene::load`] does. A model becomes a scene that shows it, with a light if
+    /// it has none.
+    pub fn load(self, path: impl AsRef<Path>) -> Result<Scene, SceneError> {
+        Scene::read(path.as_ref(), self.cache(Store::default()))
+    }
+
+    /// Reads a scene from files in memory, as [`Loader::load`] does from disk.
+    pub fn from_bundle(self, bundle: Bundle, name: &str) -> Result<Scene, SceneError> {
+        Scene::read(Path::new(name), self.cache(bundle.into()))
+    }
+
+    /// Parses a scene as [`Scene::from_json`] does.
+    pub fn from_json(self, text: impl Into<String>, name: &str) -> Result<Scene, SceneError> {
+        Scene::parse(text.into(), name, self.cache(Store::default()))
+    }
+
+    fn cache(self, store: Store) -> AssetCache {
+        AssetCache::new(store).with_formats(self.formats)
+    }
+}

@@ -1,0 +1,121 @@
+//! Model files of a scene. Each is opened once and shared by all objects, frames and copies of the
+//! scene.
+
+use super::{FileError, Files, ModelFile, ModelFormat};
+use crate::compile::file_stamp;
+use crate::import::{ImportErrorKind, Limits};
+use crate::report::plain_io;
+use crate::store::Store;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+
+/// Opened model files by canonical path, and the formats that can be opened.
+#[derive(Clone, Debug, Default)]
+pub struct ModelCache {
+    formats: &'static [&'static dyn ModelFormat],
+    entries: Arc<Mutex<BTreeMap<PathBuf, Arc<OpenedModel>>>>,
+}
+
+/// An opened model file, or error messages.
+#[derive(Debug)]
+pub struct OpenedModel {
+    /// The file, or messages that name it.
+    pub file: Result<Arc<dyn ModelFile>, Vec<String>>,
+    /// The file and the files that it names, each with length and modification time before it was
+    /// read.
+    stamps: Vec<(PathBuf, Option<(u64, SystemTime)>)>,
+}
+
+impl OpenedModel {
+    /// The file and the files that it names.
+    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.stamps.iter().map(|(path, _)| path)
+    }
+}
+
+impl ModelCache {
+    /// Cache of these formats.
+    pub fn new(formats: &'static [&'static dyn ModelFormat]) -> Self {
+        Self { formats, ..Self::default() }
+    }
+
+    /// Format of a file by its first bytes, or else by the extension of its name.
+    pub fn format(&self, path: &Path, head: &[u8]) -> Option<&'static dyn ModelFormat> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        let is_named =
+            |format: &&dyn ModelFormat| format.extensions().iter().any(|e| e.eq_ignore_ascii_case(extension));
+        let by_content = self.formats.iter().find(|format| format.is_content(head));
+        by_content.or_else(|| self.formats.iter().find(|format| is_named(format))).copied()
+    }
+
+    /// Cache without the files that have changed.
+    pub fn without_changed_files(&self) -> Self {
+        let same = |model: &OpenedModel| {
+            model.file.is_ok() && model.stamps.iter().all(|(path, stamp)| stamp.is_some() && *stamp == file_stamp(path))
+        };
+        let entries = self.entries();
+        let kept = entries.iter().filter(|(_, model)| same(model));
+        let kept = kept.map(|(path, model)| (path.clone(), Arc::clone(model))).collect();
+        Self { formats: self.formats, entries: Arc::new(Mutex::new(kept)) }
+    }
+
+    /// Opens a file without holding the lock, as for meshes.
+    pub fn get(&self, path: &Path, store: &Store) -> Arc<OpenedModel> {
+        let name = store.canonical_name(path);
+        if let Some(known) = self.entries().get(&name) {
+            return Arc::clone(known);
+        }
+        let model = Arc::new(self.open(path, store));
+        Arc::clone(self.entries().entry(name).or_insert(model))
+    }
+
+    fn open(&self, path: &Path, store: &Store) -> OpenedModel {
+        let (folder, shown) = (path.parent().unwrap_or(Path::new("")), path.display().to_string());
+        let mut stamps = vec![(path.to_owned(), file_stamp(path))];
+        let failed = |message: String| OpenedModel { file: Err(vec![message]), stamps: stamps.clone() };
+        let bytes = match store.read_bytes(path, &Limits::default()) {
+            Ok(bytes) => bytes.into_owned(),
+            Err(error) => return failed(crate::compile::import_error_message(&error)),
+        };
+        let Some(format) = self.format(path, &bytes) else {
+            return failed(format!("`{shown}` is in no known format of models"));
+        };
+        let beside = FolderFiles { folder, store };
+        match format.open(&shown, bytes, &beside) {
+            Ok(file) => {
+                let others = file.files().iter().map(|name| folder.join(name));
+                stamps.extend(others.map(|path| (path.clone(), file_stamp(&path))));
+                OpenedModel { file: Ok(file), stamps }
+            }
+            Err(error) => OpenedModel { file: Err(error.faults), stamps },
+        }
+    }
+
+    fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<OpenedModel>>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Files in the folder of a model file.
+struct FolderFiles<'f> {
+    folder: &'f Path,
+    store: &'f Store,
+}
+
+impl Files for FolderFiles<'_> {
+    fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        let limits = Limits { file_bytes: limit, ..Limits::default() };
+        match self.store.read_bytes(&self.folder.join(name), &limits) {
+            Ok(bytes) => Ok(bytes.into_owned()),
+            Err(error) => Err(match error.kind {
+                ImportErrorKind::Read(error) if error.kind() == ErrorKind::NotFound => FileError::Missing,
+                ImportErrorKind::Read(error) => FileError::Read(plain_io(&error).to_string()),
+                ImportErrorKind::TooMany { found, limit, .. } => FileError::TooLarge { found, limit },
+                kind => FileError::Read(kind.to_string()),
+            }),
+        }
+    }
+}

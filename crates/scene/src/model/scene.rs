@@ -1,0 +1,135 @@
+//! Models of a scene: expansion on first use, and scenes around model files.
+
+use super::{Expansion, ModelSummary, SceneTime, describe_model_scene, expand, has_models};
+use crate::compile::{AssetCache, Files};
+use crate::description::{Description, Model, Object};
+use crate::item::Item;
+use crate::path::{Path as ScenePath, PathRef};
+use crate::{Scene, SceneError};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Expansion of a scene with the inputs that it was computed from.
+#[derive(Clone, Debug, Default)]
+pub struct ExpansionMemo(Arc<Mutex<Option<KnownExpansion>>>);
+
+/// A computed expansion.
+#[derive(Debug)]
+struct KnownExpansion {
+    scene: Description,
+    frame: f64,
+    expansion: Arc<Expansion>,
+}
+
+impl Scene {
+    /// The scene with its models expanded; `None` without models.
+    pub(crate) fn expanded(&self) -> Option<Arc<Expansion>> {
+        if !has_models(&self.description) {
+            return None;
+        }
+        let mut known = self.expansion.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known.as_ref().filter(|known| known.frame == self.frame && known.scene == self.description)
+        {
+            return Some(Arc::clone(&known.expansion));
+        }
+        let (tracks, _) = self.tracks();
+        let frames_per_second = self.description.animation.frames_per_second;
+        let time = SceneTime { frame: self.frame, shutter: self.description.render.shutter, frames_per_second };
+        let expansion = Arc::new(expand(self.files(), &tracks, time));
+        *known = Some(KnownExpansion {
+            scene: self.description.clone(),
+            frame: self.frame,
+            expansion: Arc::clone(&expansion),
+        });
+        Some(expansion)
+    }
+
+    /// Files of the scene with its models expanded.
+    pub(crate) fn files_of<'s>(&'s self, expansion: &'s Expansion) -> Files<'s> {
+        Files { scene: &expansion.description, sources: self.sources(), asset_cache: &expansion.asset_cache }
+    }
+
+    /// Creates the scene that shows a model file.
+    pub(crate) fn around_model(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
+        let opened = asset_cache.model(path);
+        let model = opened.file.as_ref().map_err(|faults| SceneError::Model { faults: faults.clone() })?;
+        let description = describe_model_scene(&path.to_string_lossy(), &**model);
+        Ok(Self::around(description, asset_cache))
+    }
+
+    /// Whether the scene shows one model file that was given in place of a scene.
+    pub fn is_around_model(&self) -> bool {
+        self.sources().names().next().is_none()
+            && matches!(self.description.objects.as_slice(), [object] if object.model.is_some())
+    }
+
+    /// Sets the length of the animation to that of the chosen clip of the scene's first model.
+    pub fn fit_animation(&mut self) {
+        let summary = self.model_summaries().into_iter().next().map(|(_, summary)| summary);
+        let seconds = summary.and_then(|summary| summary.clips.get(summary.clip?).map(|clip| clip.seconds));
+        self.description.animation.frames = super::frames_of(seconds.unwrap_or(0.0));
+    }
+
+    /// Names of the model files of the scene and of the files that these name.
+    pub(crate) fn model_paths(&self) -> Vec<PathBuf> {
+        let models = self.models();
+        let opened = models.iter().map(|(path, model)| self.opened(path, model));
+        opened.flat_map(|opened| opened.paths().cloned().collect::<Vec<_>>()).collect()
+    }
+
+    /// Whether a model of the scene has an animation that shows.
+    pub(crate) fn has_moving_models(&self) -> bool {
+        self.models().iter().any(|(path, model)| {
+            let opened = self.opened(path, model);
+            let summary = opened.file.as_ref().ok().and_then(|file| file.summary(&model.choice(0.0)).ok());
+            model.at.is_none() && summary.is_some_and(|summary| summary.clip.is_some())
+        })
+    }
+
+    /// Whether both scenes have the same model files with the same contents.
+    pub(crate) fn has_models_of(&self, other: &Self) -> bool {
+        let identities = |scene: &Self| scene.expanded().map(|expansion| expansion.identities.clone());
+        identities(self) == identities(other)
+    }
+
+    /// Paths of the scene's models, each with a description of the model's file.
+    pub fn model_summaries(&self) -> Vec<(String, ModelSummary)> {
+        let models = self.models();
+        let summary = |(path, model): &(ScenePath, Model)| {
+            let opened = self.opened(path, model);
+            let summary = opened.file.as_ref().ok()?.summary(&model.choice(0.0)).ok()?;
+            Some((path.to_string(), summary))
+        };
+        models.iter().filter_map(summary).collect()
+    }
+
+    /// The scene's description with its models expanded to objects, materials, textures and lights.
+    pub fn expanded_description(&self) -> Description {
+        self.expanded().map_or_else(|| self.description.clone(), |expansion| expansion.description.clone())
+    }
+
+    fn opened(&self, path: &ScenePath, model: &Model) -> Arc<super::OpenedModel> {
+        self.asset_cache.model(&self.files().locate(&path.key("file"), &model.file))
+    }
+
+    /// Models of the scene with their paths.
+    fn models(&self) -> Vec<(ScenePath, Model)> {
+        let mut found = Vec::new();
+        let groups = PathRef::Root.key("groups");
+        for (name, objects) in self.description.groups.iter() {
+            collect(objects, &groups.key(name), &mut found);
+        }
+        collect(&self.description.objects, &PathRef::Root.key("objects"), &mut found);
+        found
+    }
+}
+
+fn collect(objects: &[Item<Object>], path: &PathRef<'_>, found: &mut Vec<(ScenePath, Model)>) {
+    for (i, object) in objects.iter().enumerate() {
+        let path = path.index(i);
+        if let Some(model) = &object.model {
+            found.push((ScenePath::from(&path.key("model")), model.clone()));
+        }
+        collect(object.inner(), &path.key("objects"), found);
+    }
+}
