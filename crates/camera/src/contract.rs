@@ -108,6 +108,40 @@ fn fields_of_view_span_their_angles() {
     }
 }
 
+/// On both sides of the aspect ratio, the film's corner, the footprint of a pixel and the
+/// projection of a point agree.
+#[test]
+fn narrow_pictures_keep_the_width_of_the_fitted_aspect() {
+    let tangent = portable::tan(20f32.to_radians());
+    for (kind, half_height, depth) in [("perspective", tangent, 1.0), ("thin_lens", tangent, 5.0)] {
+        let json = format!(r#"{{"{kind}": {{"eye": [0, 0, 0], "direction": [0, 0, -1], "fit_aspect": 2}}}}"#);
+        fits(&parse(&json), half_height * depth, depth);
+    }
+    fits(&parse(r#"{"orthographic": {"direction": [0, 0, -1], "eye": [0, 0, 0], "fit_aspect": 2}}"#), 2.0, 1.0);
+}
+
+fn fits(camera: &AnyCamera, half_height: f32, depth: f32) {
+    for (size, expected) in [
+        (UVec2::new(80, 20), Vec2::new(4.0, 1.0)),
+        (UVec2::new(40, 20), Vec2::new(2.0, 1.0)),
+        (UVec2::new(20, 20), Vec2::new(2.0, 2.0)),
+        (UVec2::new(10, 40), Vec2::new(2.0, 8.0)),
+    ] {
+        let (expected, projection) = (expected * half_height, camera.projection(size).unwrap());
+        let ray = projection.ray(Vec2::new(size.x as f32, 0.0), Vec2::splat(0.5), 0.0);
+        let corner = ray.at((-depth - ray.origin.z) / ray.direction.z);
+        assert!(close3(corner, expected.extend(-depth), 1e-5), "{camera:?} {size}: {corner} {expected}");
+        let found = WorldToFilm::new(&projection).unwrap().point(expected.extend(-depth)).unwrap();
+        assert!((found.as_vec2() - Vec2::new(size.x as f32, 0.0)).length() < 1e-3, "{camera:?} {size}: {found}");
+        let pixel = |x: f32| {
+            let ray = projection.ray(size.as_vec2() * 0.5 + Vec2::new(x, 0.0), Vec2::splat(0.5), 0.0);
+            ray.at((-depth - ray.origin.z) / ray.direction.z)
+        };
+        let step = pixel(1.0) - pixel(0.0);
+        assert!(close(step.x, 2.0 * expected.x / size.x as f32, 1e-5), "{camera:?} {size}: {step}");
+    }
+}
+
 #[test]
 fn vertical_angle_is_the_zoom_angle_of_scalablitz() {
     // ScalaBlitz's ray through pixel (x, y): zoom · ((2x/W - 1) · W/H, 1 - 2y/H) with zoom = tan(π
@@ -208,6 +242,9 @@ fn invalid_fields_are_named() {
         (r#""vertical_fov_degrees": 180"#, "vertical_fov_degrees"),
         (r#""horizontal_fov_degrees": -5"#, "horizontal_fov_degrees"),
         (r#""horizontal_fov_degrees": 50, "vertical_fov_degrees": 50"#, "horizontal_fov_degrees"),
+        (r#""fit_aspect": 0"#, "fit_aspect"),
+        (r#""fit_aspect": 1e39"#, "fit_aspect"),
+        (r#""fit_aspect": 2, "horizontal_fov_degrees": 50"#, "fit_aspect"),
         (r#""screen": {"width": 0, "distance": 1}"#, "screen.width"),
         (r#""screen": {"width": 1e30, "distance": 1e-30}"#, "screen"),
         (r#""view_plane": {"width": 1, "height": 1, "distance": -1}"#, "view_plane.distance"),

@@ -39,6 +39,7 @@ pub(super) struct FieldOfView {
     pub horizontal_degrees: Option<f32>,
     pub screen: Option<VirtualScreen>,
     pub view_plane: Option<ViewPlane>,
+    pub fit_aspect: Option<f32>,
 }
 
 const DEFAULT_VERTICAL_DEGREES: f32 = 40.0;
@@ -66,12 +67,15 @@ impl FieldOfView {
             horizontal_degrees: self.horizontal_degrees.map(angle),
             screen: self.screen.map(screen),
             view_plane: self.view_plane.map(plane),
+            fit_aspect: self.fit_aspect,
         }
     }
 
     /// Half of the width and height of the film at unit distance from the eye.
     pub fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
         self.check_single()?;
+        let gives_width = self.horizontal_degrees.is_some() || self.screen.is_some() || self.view_plane.is_some();
+        check_fit_aspect(self.fit_aspect, gives_width, "vertical_fov_degrees")?;
         let size = size.max(UVec2::ONE).as_vec2();
         let from_width = |x: f32| Vec2::new(x, x * size.y / size.x);
         let (field, half) = if let Some(degrees) = self.horizontal_degrees {
@@ -87,7 +91,8 @@ impl FieldOfView {
         } else {
             let degrees = self.vertical_degrees.unwrap_or(DEFAULT_VERTICAL_DEGREES);
             let y = half_tangent("vertical_fov_degrees", degrees)?;
-            ("vertical_fov_degrees", Vec2::new(y * size.x / size.y, y))
+            let half = Vec2::new(y * size.x / size.y, y);
+            ("vertical_fov_degrees", half * enlargement_to_fit(self.fit_aspect, size))
         };
         // Stay within limits where no ray overflows or loses its direction.
         if half.min_element() >= 1e-12 && half.max_element() <= 1e12 {
@@ -123,6 +128,28 @@ fn half_tangent(field: &'static str, degrees: f32) -> Result<f32, InvalidCamera>
         return Ok(sin / cos.max(f32::MIN_POSITIVE));
     }
     Err(InvalidCamera::new(field, format!("`{field}` must lie between 0 and 180, it is {degrees}")))
+}
+
+/// Factor on the film's extent by which a picture narrower than `fit_aspect` keeps the width that a
+/// picture of that aspect ratio has.
+pub(super) fn enlargement_to_fit(fit_aspect: Option<f32>, size: Vec2) -> f32 {
+    fit_aspect.map_or(1.0, |aspect| (aspect * size.y / size.x).max(1.0))
+}
+
+/// Checks `fit_aspect`, which needs a given height: `gives_width` is whether other fields give the
+/// width, and `height_field` is the field that gives the height.
+pub(super) fn check_fit_aspect(
+    fit_aspect: Option<f32>,
+    gives_width: bool,
+    height_field: &str,
+) -> Result<(), InvalidCamera> {
+    let Some(aspect) = fit_aspect else { return Ok(()) };
+    positive([("fit_aspect", aspect)])?;
+    if gives_width {
+        let message = format!("`fit_aspect` needs `{height_field}`: other fields give the width already");
+        return Err(InvalidCamera::new("fit_aspect", message));
+    }
+    Ok(())
 }
 
 /// Rejects numbers that are not finite and above 0.

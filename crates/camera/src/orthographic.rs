@@ -6,7 +6,7 @@
 //!
 //! Rays start on the film, a plane through `eye`: objects behind it are not visible.
 
-use super::field_of_view::positive;
+use super::field_of_view::{check_fit_aspect, enlargement_to_fit, positive};
 use super::pose::{CameraAxes, LocalTranslation, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec2, Vec3};
@@ -57,6 +57,12 @@ pub struct Orthographic {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub width: Option<f32>,
+    /// Aspect ratio, width / height, of the narrowest picture that keeps `height`. A
+    /// narrower picture keeps the width that a picture of this aspect ratio has and shows more above
+    /// and below, so nothing at its sides is lost. By default `height` holds for every picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub fit_aspect: Option<f32>,
 }
 
 impl Default for Orthographic {
@@ -72,6 +78,7 @@ impl Default for Orthographic {
             r#move: LocalTranslation::default(),
             height: None,
             width: None,
+            fit_aspect: None,
         }
     }
 }
@@ -92,12 +99,14 @@ impl Orthographic {
 
     fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
         positive([("width", self.width.unwrap_or(1.0)), ("height", self.height.unwrap_or(1.0))])?;
+        check_fit_aspect(self.fit_aspect, self.width.is_some(), "height")?;
         let size = size.max(UVec2::ONE).as_vec2();
         let extent = match (self.width, self.height) {
             (Some(width), Some(height)) => Vec2::new(width, height),
             (Some(width), None) => Vec2::new(width, width * size.y / size.x),
             (None, height) => Vec2::new(size.x / size.y, 1.0) * height.unwrap_or(DEFAULT_HEIGHT),
         };
+        let extent = extent * enlargement_to_fit(self.fit_aspect, size);
         if !(extent.min_element() > 0.0 && extent.is_finite()) {
             return Err(InvalidCamera::new(
                 "width",
@@ -147,7 +156,7 @@ impl Orthographic {
     /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let above = Self { eye: Vec3::new(0.0, 9.0, 0.0), width: Some(3.0), ..Self::default() };
-        vec![Self::default(), above]
+        vec![Self::default(), above, Self { fit_aspect: Some(2.0), ..Self::default() }]
     }
 }
 

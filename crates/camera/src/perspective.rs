@@ -62,6 +62,12 @@ pub struct Perspective {
     /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
+    /// Aspect ratio, width / height, of the narrowest picture that keeps `vertical_fov_degrees`. A
+    /// narrower picture keeps the width that a picture of this aspect ratio has and shows more above
+    /// and below, so nothing at its sides is lost. By default `vertical_fov_degrees` holds for every picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub fit_aspect: Option<f32>,
 }
 
 impl Default for Perspective {
@@ -79,6 +85,7 @@ impl Default for Perspective {
             horizontal_fov_degrees: None,
             screen: None,
             view_plane: None,
+            fit_aspect: None,
         }
     }
 }
@@ -103,6 +110,7 @@ impl Perspective {
             horizontal_degrees: self.horizontal_fov_degrees,
             screen: self.screen,
             view_plane: self.view_plane,
+            fit_aspect: self.fit_aspect,
         }
     }
 }
@@ -156,6 +164,6 @@ impl Perspective {
             view_plane: Some(ViewPlane { width: 500.0, height: 500.0, distance: 660.0 }),
             ..Self::default()
         };
-        vec![Self::default(), juggler, chess]
+        vec![Self::default(), juggler, chess, Self { fit_aspect: Some(2.0), ..Self::default() }]
     }
 }

@@ -62,6 +62,12 @@ pub struct ThinLens {
     /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
+    /// Aspect ratio, width / height, of the narrowest picture that keeps `vertical_fov_degrees`. A
+    /// narrower picture keeps the width that a picture of this aspect ratio has and shows more above
+    /// and below, so nothing at its sides is lost. By default `vertical_fov_degrees` holds for every picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub fit_aspect: Option<f32>,
     /// Radius of the lens in scene units, 0 or more. Larger lenses blur more outside the focal
     /// plane; 0 is a pinhole.
     #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
@@ -87,6 +93,7 @@ impl Default for ThinLens {
             horizontal_fov_degrees: None,
             screen: None,
             view_plane: None,
+            fit_aspect: None,
             lens_radius: 0.05,
             focus_distance: 5.0,
         }
@@ -113,6 +120,7 @@ impl ThinLens {
             horizontal_degrees: self.horizontal_fov_degrees,
             screen: self.screen,
             view_plane: self.view_plane,
+            fit_aspect: self.fit_aspect,
         }
     }
 }
@@ -162,7 +170,8 @@ impl ThinLens {
     /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
         let aside = Self { eye: Vec3::new(3.0, 1.0, 4.0), roll_degrees: 10.0, lens_radius: 0.3, ..Self::default() };
-        vec![Self::default(), aside, Self { lens_radius: 0.0, ..Self::default() }]
+        let fitted = Self { fit_aspect: Some(2.0), ..aside.clone() };
+        vec![Self::default(), aside, Self { lens_radius: 0.0, ..Self::default() }, fitted]
     }
 }
 

@@ -61,6 +61,12 @@ pub enum CausticStage {
 }
 
 impl ScatterCounts {
+    /// Whether no event occurred, so that the path is a camera ray still.
+    #[inline]
+    pub fn is_none(&self) -> bool {
+        self.is_only_specular() && self.specular == 0
+    }
+
     /// Whether no event but specular ones occurred, so that lights have not been sampled yet.
     #[inline]
     pub fn is_only_specular(&self) -> bool {

@@ -264,6 +264,20 @@ impl<'a> VertexOutput<'a> {
         self.buffers.next.push(ray, path);
     }
 
+    /// Traces `ray` as the only branch of a ray tree at a vertex that it passes through.
+    pub fn trace_through(&mut self, ray: Ray) {
+        let pass_throughs = self.path.history.pass_throughs.saturating_add(1);
+        let path = PathState {
+            depth: self.path.depth + 1,
+            sampler: self.path.sampler.branch(0),
+            history: PathHistory { pass_throughs, ..self.path.history },
+            beta: self.beta,
+            cone: self.cone,
+            ..*self.path
+        };
+        self.buffers.next.push(ray, path);
+    }
+
     /// Continues the path by `ray`, with the throughput times `weight`. `steps` is the increase of
     /// the depth.
     #[inline]

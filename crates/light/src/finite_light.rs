@@ -114,6 +114,32 @@ pub(super) fn sample_extent(
     (distance > 0.0).then(|| PointOnLight { towards_center, wi: to * (1.0 / distance), distance, falloff })
 }
 
+/// Factor max(min(1 - (d/r)⁴, 1), 0) at `distance` from a light of range `range`
+/// (KHR_lights_punctual).
+fn range_falloff(distance: f32, range: f32) -> f32 {
+    let squared = (distance / range) * (distance / range);
+    (1.0 - squared * squared).clamp(0.0, 1.0)
+}
+
+/// Factor by which a light's `range`, if it has one, dims it at `from`.
+#[inline]
+pub(super) fn range_factor(range: Option<f32>, center: Vec3, from: Vec3) -> f32 {
+    range.map_or(1.0, |range| range_falloff((center - from).length(), range))
+}
+
+/// Factor from the intensity to the power per steradian that counts for light selection. A light
+/// without inverse-square falloff counts at `world_radius`, or at its range if that is nearer, so
+/// the estimate stays above 0 wherever the light shines.
+pub(super) fn power_per_intensity(attenuation: &Attenuation, range: Option<f32>, world_radius: f32) -> f32 {
+    let radius = range.map_or(world_radius, |range| world_radius.min(range));
+    attenuation.at(radius) * radius * radius
+}
+
+/// Checks the range of a light.
+pub(super) fn check_range(range: Option<f32>) -> Result<(), InvalidLight> {
+    range.map_or(Ok(()), |range| in_range("range", range, 1e-30, f32::MAX))
+}
+
 /// Mean over all directions, on a stratified grid.
 pub(super) fn mean_over_sphere(value: impl Fn(Vec3) -> f32) -> f32 {
     const ROWS: u16 = 128;

@@ -14,6 +14,7 @@ mod ies;
 mod photometry;
 mod point;
 mod spot;
+mod spot_falloff;
 mod strength;
 
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub use area::AreaShape;
 pub use finite_light::{Attenuation, Extent};
 pub use ies::{Ies, IesProfile};
 pub use photometry::InvalidIes;
+pub use spot_falloff::SpotFalloff;
 
 /// Sample of the light that arrives at a point without occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -42,6 +42,12 @@ pub struct Point {
     pub power: Option<f32>,
     /// Falloff with distance.
     pub attenuation: Attenuation,
+    /// Distance d from the light's center at which its light ends: a factor of 1 − (d / `range`)⁴
+    /// on the falloff. By default there is no end. `intensity` and `power` hold for the light
+    /// without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-30), extend("x-unit" = "scene units"))]
+    pub range: Option<f32>,
     /// Size of the light, for soft shadows. The default is a point, which casts hard shadows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub extent: Option<Extent>,
@@ -66,6 +72,7 @@ impl Default for Point {
             intensity: None,
             power: None,
             attenuation: Attenuation::default(),
+            range: None,
             extent: None,
             samples: 1,
             ies: None,
@@ -90,7 +97,7 @@ impl Point {
 
     /// Power without the photometric file; see [`Light::power`].
     fn power_without_ies(&self, world_radius: f32) -> f32 {
-        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        let at_radius = finite_light::power_per_intensity(&self.attenuation, self.range, world_radius);
         4.0 * PI * at_radius * (self.color * self.intensity()).luminance()
     }
 }
@@ -104,6 +111,7 @@ impl Light for Point {
         let strength = Strength { field: "intensity", value: self.intensity, power: self.power };
         strength.check(self.color, self.color * self.intensity())?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;
+        finite_light::check_range(self.range)?;
         finite_light::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
@@ -112,6 +120,9 @@ impl Light for Point {
         let mut radiance = self.color * (self.intensity() * point.falloff);
         if let Some(ies) = &self.ies {
             radiance = radiance * ies.factor(-point.towards_center, Vec3::NEG_Y);
+        }
+        if self.range.is_some() {
+            radiance = radiance * finite_light::range_factor(self.range, self.position, from);
         }
         let arrives = radiance.is_finite() && !radiance.is_black();
         arrives.then_some(LightSample { wi: point.wi, distance: point.distance, radiance, pdf: 1.0 })
@@ -163,14 +174,13 @@ impl Point {
             extent: Some(Extent::Square { side: 15.0 }),
             color: Rgb::new(1.0, 0.5, 0.25),
             intensity: Some(3.0),
-            power: None,
             samples: 16,
-            ies: None,
-            light_group: None,
+            ..Self::default()
         };
         let measured = Self { ies: Some(super::ies::tests::luminaire()), ..Self::default() };
         let bulb = Self { power: Some(60.0), ..measured.clone() };
-        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured, bulb]
+        let ending = Self { range: Some(200.0), position: Vec3::ONE, ..Self::default() };
+        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured, bulb, ending]
     }
 }
 
@@ -195,6 +205,26 @@ mod tests {
                 assert!((sample.distance - distance).abs() < 1e-5 * distance && sample.pdf == 1.0);
                 assert!((sample.wi - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
             }
+        }
+    }
+
+    #[test]
+    fn light_ends_at_its_range() {
+        let light = Point { range: Some(2.0), intensity: Some(3.0), ..Point::default() };
+        for (distance, factor) in [(0.5f32, 255.0 / 256.0), (1.0, 15.0 / 16.0), (1.5, 175.0 / 256.0)] {
+            let sample = light.sample(Vec3::new(0.0, distance, 0.0), Vec2::ZERO).unwrap();
+            let expected = 3.0 * factor / (distance * distance);
+            assert!((sample.radiance.r / expected - 1.0).abs() < 1e-6, "{distance}: {sample:?}");
+        }
+        for distance in [2.0, 2.5, 1e20, f32::MAX] {
+            assert_eq!(light.sample(Vec3::new(0.0, 0.0, distance), Vec2::ZERO), None);
+        }
+        let even = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
+        let even = Point { range: Some(2.0), attenuation: even, ..Point::default() };
+        assert_eq!((even.power(100.0), even.power(1.0)), (even.power(2.0), even.power(2.0) / 4.0));
+        assert!(even.bounds(100.0).unwrap().power > 0.0);
+        for range in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert_eq!(Point { range: Some(range), ..Point::default() }.check().unwrap_err().field, "range");
         }
     }
 

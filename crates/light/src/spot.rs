@@ -7,16 +7,18 @@
 //! ```
 //!
 //! With θ the angle between the axis and the direction from the light's center, the intensity is
-//! constant up to `beam_degrees`, falls linearly with θ to 0 at `cutoff_degrees`, and is multiplied
-//! by max(0, cos θ)^`beam_exponent`. (The teaching engine's falloff angle is the difference of the
+//! constant up to `beam_degrees`, falls to 0 at `cutoff_degrees` (by default linearly with θ; see
+//! [`SpotFalloff`]), and is multiplied by max(0, cos θ)^`beam_exponent`. (The teaching engine's falloff angle is the difference of the
 //! two angles. Its first formula has an exponent of 1 and no edge: both angles are 90.)
 //!
 //! With this falloff f, a light of radiant intensity I on its axis emits the radiant flux Φ = I ∫ f
-//! dω, so `power` gives I = Φ / ∫ f dω. The integral is numerical; for a sharp cone of half angle c
-//! it is 2π (1 - cos c). (Blender keeps the intensity of the whole sphere when a cone restricts it;
+//! dω, so `power` gives I = Φ / ∫ f dω. With the linear falloff the integral is numerical; for a
+//! sharp cone of half angle c it is 2π (1 - cos c). The falloffs by the cosine, without an exponent
+//! and a photometric file, have closed forms. (Blender keeps the intensity of the whole sphere when a cone restricts it;
 //! pbrt's `power` divides by the integral, as here.)
 
 use super::finite_light::{self, Attenuation, Extent};
+use super::spot_falloff::SpotFalloff;
 use super::strength::Strength;
 use super::{Ies, InvalidLight, Light, LightSample, check_direction, in_range};
 use crate::emitter::LightBounds;
@@ -49,15 +51,23 @@ pub struct Spot {
     pub power: Option<f32>,
     /// Falloff with distance.
     pub attenuation: Attenuation,
+    /// Distance d from the light's center at which its light ends: a factor of 1 − (d / `range`)⁴
+    /// on the falloff. By default there is no end. `intensity` and `power` hold for the light
+    /// without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-30), extend("x-unit" = "scene units"))]
+    pub range: Option<f32>,
     /// Angle from the axis up to which the intensity is constant, in degrees. Between
-    /// `beam_degrees` and `cutoff_degrees` the intensity falls linearly with the angle itself, not
-    /// with its cosine, and without a smooth step.
+    /// `beam_degrees` and `cutoff_degrees` the intensity falls as `falloff` says.
     #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     pub beam_degrees: f32,
     /// Cut-off angle: the angle from the axis beyond which the light emits nothing, in degrees;
     /// `beam_degrees` or more.
     #[schemars(range(min = 0, max = 180), extend("x-unit" = "degrees"))]
     pub cutoff_degrees: f32,
+    /// Falloff between `beam_degrees` and `cutoff_degrees`. The default is linear in the angle.
+    #[serde(skip_serializing_if = "SpotFalloff::is_default")]
+    pub falloff: SpotFalloff,
     /// Exponent of the cosine of the angle from the axis. Larger values concentrate the light
     /// around the axis; 0 has no effect.
     #[schemars(range(min = 0))]
@@ -87,8 +97,10 @@ impl Default for Spot {
             intensity: None,
             power: None,
             attenuation: Attenuation::default(),
+            range: None,
             beam_degrees: 25.0,
             cutoff_degrees: 30.0,
+            falloff: SpotFalloff::Linear,
             beam_exponent: 0.0,
             extent: None,
             samples: 1,
@@ -101,9 +113,11 @@ impl Default for Spot {
 impl Spot {
     /// Falloff of the intensity at an angle with cosine `cos` from the axis, 0 to 1.
     fn angular_falloff(&self, cos: f32) -> f32 {
-        let angle = portable::acos(cos.clamp(-1.0, 1.0));
         let (beam, cutoff) = (self.beam_degrees.to_radians(), self.cutoff_degrees.to_radians());
-        let edge = if angle <= beam {
+        let angle = portable::acos(cos.clamp(-1.0, 1.0));
+        let edge = if self.falloff != SpotFalloff::Linear {
+            self.falloff.at_cosine(cos, portable::cos(beam), portable::cos(cutoff))
+        } else if angle <= beam {
             1.0
         } else if angle < cutoff {
             (cutoff - angle) / (cutoff - beam)
@@ -131,6 +145,10 @@ impl Spot {
             });
             return 2.0 * std::f32::consts::TAU * mean;
         }
+        if self.falloff != SpotFalloff::Linear && self.beam_exponent == 0.0 {
+            let cosine = |degrees: f32| portable::cos(degrees.to_radians());
+            return self.falloff.integral_of_cosine(cosine(self.beam_degrees), cosine(self.cutoff_degrees));
+        }
         // Integrate over bands of equal solid angle within the cut-off by the midpoint rule.
         let size = 1.0 - portable::cos(self.cutoff_degrees.to_radians());
         let falloff = |i: u16| self.angular_falloff(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
@@ -152,6 +170,7 @@ impl Light for Spot {
         in_range("beam_exponent", self.beam_exponent, 0.0, f32::MAX)?;
         let strength = Strength { field: "intensity", value: self.intensity, power: self.power };
         strength.check(self.color, self.color * self.intensity())?;
+        finite_light::check_range(self.range)?;
         finite_light::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
@@ -161,6 +180,9 @@ impl Light for Spot {
         let mut radiance = self.color * (self.intensity() * point.falloff * self.angular_falloff(cos));
         if let Some(ies) = &self.ies {
             radiance = radiance * ies.factor(-point.towards_center, self.direction);
+        }
+        if self.range.is_some() {
+            radiance = radiance * finite_light::range_factor(self.range, self.position, from);
         }
         let arrives = radiance.is_finite() && !radiance.is_black();
         arrives.then_some(LightSample { wi: point.wi, distance: point.distance, radiance, pdf: 1.0 })
@@ -187,12 +209,12 @@ impl Light for Spot {
     }
 
     fn power(&self, world_radius: f32) -> f32 {
-        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        let at_radius = finite_light::power_per_intensity(&self.attenuation, self.range, world_radius);
         self.falloff_integral() * at_radius * (self.color * self.intensity()).luminance()
     }
 
     fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
-        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        let at_radius = finite_light::power_per_intensity(&self.attenuation, self.range, world_radius);
         let ies_factor = self.ies.as_ref().map_or(1.0, Ies::max_factor);
         let power = 2.0 * std::f32::consts::TAU * ies_factor * at_radius * (self.color * self.intensity()).luminance();
         // Bound: constant up to the beam angle, some light from there to the cut-off angle.
@@ -230,7 +252,11 @@ impl Spot {
         };
         let measured = Self { ies: Some(super::ies::tests::luminaire()), cutoff_degrees: 70.0, ..Self::default() };
         let stage = Self { power: Some(100.0), beam_degrees: 10.0, cutoff_degrees: 25.0, ..Self::default() };
-        vec![Self::default(), chess, cosine, measured, stage]
+        let squared = Self { falloff: SpotFalloff::SquaredCosine, range: Some(200.0), ..stage.clone() };
+        let smooth = Self { falloff: SpotFalloff::SmoothCosine, beam_degrees: 0.0, ..stage.clone() };
+        let sharp = Self { falloff: SpotFalloff::SquaredCosine, beam_degrees: 25.0, ..stage.clone() };
+        let gathered = Self { falloff: SpotFalloff::SmoothCosine, beam_exponent: 2.0, ..chess.clone() };
+        vec![Self::default(), chess, cosine, measured, stage, squared, smooth, sharp, gathered]
     }
 }
 
@@ -253,6 +279,38 @@ mod tests {
         assert_eq!([90.01, 120.0, 180.0].map(|degrees| at(&spot, degrees)), [0.0; 3]);
         let sharp = Spot { beam_degrees: 20.0, cutoff_degrees: 20.0, ..Spot::default() };
         assert_eq!((at(&sharp, 19.99), at(&sharp, 20.01)), (1.0, 0.0));
+    }
+
+    #[test]
+    fn falloffs_by_the_cosine_have_their_formulas() {
+        let (beam, cutoff) = (portable::cos(20f32.to_radians()), portable::cos(50f32.to_radians()));
+        let (beam_degrees, cutoff_degrees) = (20.0, 50.0);
+        let squared = Spot { falloff: SpotFalloff::SquaredCosine, beam_degrees, cutoff_degrees, ..Spot::default() };
+        let smooth = Spot { falloff: SpotFalloff::SmoothCosine, ..squared.clone() };
+        for degrees in [0.0f32, 10.0, 19.9, 20.1, 25.0, 35.0, 45.0, 49.9] {
+            let x = ((portable::cos(degrees.to_radians()) - cutoff) / (beam - cutoff)).clamp(0.0, 1.0);
+            assert!((at(&squared, degrees) - x * x).abs() < 1e-5, "{degrees}");
+            assert!((at(&smooth, degrees) - (3.0 * x * x - 2.0 * x * x * x)).abs() < 1e-5, "{degrees}");
+        }
+        for degrees in [50.1, 90.0, 130.0, 180.0] {
+            assert_eq!((at(&squared, degrees), at(&smooth, degrees)), (0.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn closed_forms_match_numerical_integrals() {
+        let angles = [(0.0, 0.5), (0.0, 45.0), (10.0, 10.5), (30.0, 30.0), (20.0, 90.0), (60.0, 180.0), (180.0, 180.0)];
+        for ((beam_degrees, cutoff_degrees), falloff) in angles
+            .into_iter()
+            .flat_map(|angles| [SpotFalloff::SquaredCosine, SpotFalloff::SmoothCosine].map(|falloff| (angles, falloff)))
+        {
+            let spot = Spot { beam_degrees, cutoff_degrees, falloff, ..Spot::default() };
+            let size = 1.0 - f64::from(portable::cos(f32::to_radians(cutoff_degrees)));
+            let value = |i: u32| f64::from(spot.angular_falloff((1.0 - size * (f64::from(i) + 0.5) / 2e5) as f32));
+            let expected = std::f64::consts::TAU * size * (0..200_000).map(value).sum::<f64>() / 2e5;
+            let found = f64::from(spot.falloff_integral());
+            assert!((found - expected).abs() <= 2e-3 * expected, "{spot:?}: {found} {expected}");
+        }
     }
 
     #[test]

@@ -106,8 +106,9 @@ impl IntegratorRequirements {
     pub fn from_scene(scene: &Description) -> Self {
         let mut found = Self::default();
         let background = scene.background.as_ref();
-        if let Some(BackgroundInput::Kind(kind @ (AnyBackground::Environment(_) | AnyBackground::Sky(_)))) =
-            background.map(|item| &**item)
+        if let Some(BackgroundInput::Kind(
+            kind @ (AnyBackground::Environment(_) | AnyBackground::Sky(_) | AnyBackground::Studio(_)),
+        )) = background.map(|item| &**item)
         {
             found.sky =
                 Some(IntegratorRequirement { path: Path::root().key("background"), kind: kind.name(), is_light: true });

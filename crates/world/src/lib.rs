@@ -218,6 +218,12 @@ impl World {
         self.background.radiance(ray)
     }
 
+    /// Background radiance along a camera ray that leaves the world unscattered.
+    #[inline]
+    pub fn visible_background_radiance(&self, ray: &Ray) -> Rgb {
+        self.background.visible_as().unwrap_or_else(|| self.background.radiance(ray))
+    }
+
     /// Whether anything moves while the shutter is open, so that the time of a ray matters.
     #[inline]
     pub fn moves(&self) -> bool {

@@ -86,9 +86,13 @@ impl Integrator for Classic {
         }
     }
 
-    fn escape(&self, world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+    fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
         output.record_miss(ray);
-        output.add(world.background_radiance(ray), world.background_group());
+        // A camera ray has met nothing but holes.
+        let is_camera_ray = path.depth == u32::from(path.history.pass_throughs);
+        let radiance =
+            if is_camera_ray { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
+        output.add(radiance, world.background_group());
     }
 }
 

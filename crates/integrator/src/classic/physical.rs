@@ -36,7 +36,7 @@ impl Classic {
         // Pass through by opacity.
         if shading.opacity < 1.0 && choices.y >= shading.opacity {
             if room {
-                output.trace_branch(vertex.surface.spawn_ray(ray.direction, ray.time), Rgb::WHITE, 0);
+                output.trace_through(vertex.surface.spawn_ray(ray.direction, ray.time));
             }
             return;
         }

@@ -199,6 +199,10 @@ impl Integrator for Path {
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
         if !self.sample_medium(world, ray, f32::INFINITY, path, output) {
             output.record_miss(ray);
+            if path.history.events.is_none() {
+                // Light sampling cannot generate camera rays: their weight is 1.
+                return output.add(world.visible_background_radiance(ray), world.background_group());
+            }
             let light = || world.background_pdf(ray.direction);
             let weight = self.emission_weight(world, path, ray, light, HitEmitter::Background, |_, _| light());
             output.add(world.background_radiance(ray) * weight, world.background_group());

@@ -14,7 +14,7 @@
 
 use super::direction_table::{DirectionTable, azimuth_turns};
 use super::orientation::{Orientation, check_direction, in_range};
-use super::{Background, BackgroundSample, InvalidBackground};
+use super::{Background, BackgroundSample, InvalidBackground, check_color};
 use juggler_math::{Image, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -40,6 +40,11 @@ pub struct Environment {
     #[serde(default = "up")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
+    /// Radiance that camera rays see instead, also through holes. Mirrors, glass and surfaces see
+    /// the image. By default camera rays see it, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
+    pub visible_as: Option<Rgb>,
     /// Image from [`Environment::load`] or [`Environment::set_panorama`], shared by clones.
     #[serde(skip)]
     panorama: Option<Arc<Panorama>>,
@@ -77,8 +82,8 @@ impl Environment {
     /// Creates an environment without an image; see [`Environment::load`] and
     /// [`Environment::set_panorama`].
     pub fn from_file(file: impl Into<String>) -> Self {
-        let (panorama, orientation) = (None, Orientation::default());
-        Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, panorama, orientation }
+        let (visible_as, panorama, orientation) = (None, None, Orientation::default());
+        Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, visible_as, panorama, orientation }
     }
 
     /// Sets the image of the file; call [`Background::prepare`] afterwards. Returns an error if the
@@ -181,7 +186,8 @@ impl Background for Environment {
     fn check(&self) -> Result<(), InvalidBackground> {
         in_range("scale", self.scale, 0.0, MAX_LIGHT)?;
         in_range("rotation_degrees", self.rotation_degrees, -1e4, 1e4)?;
-        check_direction("up", self.up)
+        check_direction("up", self.up)?;
+        self.visible_as.map_or(Ok(()), |color| check_color("visible_as", color))
     }
 
     fn prepare(&mut self) -> Result<(), InvalidBackground> {
@@ -198,6 +204,10 @@ impl Background for Environment {
     fn radiance(&self, ray: &Ray) -> Rgb {
         let Some(panorama) = &self.panorama else { return Rgb::BLACK };
         panorama.radiance(self.orientation.to_local(ray.direction)) * self.scale
+    }
+
+    fn visible_as(&self) -> Option<Rgb> {
+        self.visible_as
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
@@ -236,6 +246,7 @@ impl Environment {
     pub fn examples() -> Vec<Self> {
         let spots = Self::from_function(32, 16, |x, y| Rgb::splat(if (x * 7 + y * 5) % 23 == 0 { 9.0 } else { 0.3 }));
         let mut rotated = Self { scale: 2.5, rotation_degrees: 77.0, up: Vec3::new(0.3, 0.2, -2.0), ..spots.clone() };
+        rotated.visible_as = Some(Rgb::new(0.9, 0.5, 0.2));
         rotated.prepare().unwrap();
         let single =
             Self::from_function(24, 12, |x, y| if (x, y) == (23, 3) { Rgb::new(50.0, 40.0, 30.0) } else { Rgb::BLACK });

@@ -11,6 +11,7 @@ mod gradient;
 mod orientation;
 mod sky;
 mod solid;
+mod studio;
 
 #[cfg(test)]
 mod contract;
@@ -49,6 +50,10 @@ pub trait Background: Send + Sync {
     }
     /// Radiance along a ray with a unit direction.
     fn radiance(&self, ray: &Ray) -> Rgb;
+    /// Radiance that camera rays see instead, if it differs. It lights nothing.
+    fn visible_as(&self) -> Option<Rgb> {
+        None
+    }
     /// Samples a direction of the sphere with `u` in the unit square; `None` if the background is
     /// black.
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
@@ -82,6 +87,7 @@ juggler_math::closed_set! {
         dome::Dome,
         environment::Environment,
         sky::Sky,
+        studio::Studio,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Infinite lights, against sums over all directions.
 
-use crate::probe::{Scene, at_origin, read, traced};
+use crate::probe::{Scene, at_origin, measure, read, traced};
+use juggler_integrator::AnyIntegrator;
 use juggler_light::background::{AnyBackground, Environment, Panorama};
 use juggler_math::{Image, Ray, Rgb, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -78,4 +79,31 @@ pub fn panorama() -> AnyBackground {
 fn panorama_with_a_hot_spot_matches_quadrature() {
     let expected = shown(&panorama(), 1500);
     traced(Scene::floor().before(panorama()), &at_origin(), 256).is(expected);
+}
+
+/// Camera rays see `visible_as`, through holes too; floors and mirrors see the studio itself.
+#[test]
+fn what_is_visible_instead_of_the_background_is_seen_by_camera_rays_only() {
+    let studio = |visible: &str| prepared(read(&format!(r#"{{"studio": {{{visible}}}}}"#)));
+    let [seen, plain] = [r#""visible_as": [0.25, 0.25, 0.25]"#, ""].map(studio);
+    let hole = || {
+        let mask = r#"{"mask": {"opacity": 0, "material": {"diffuse": {}}}}"#;
+        Scene::new().with(r#"{"plane": {}}"#, Vec3::ZERO, mask)
+    };
+    let mirror = || Scene::new().with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"conductor": {"reflectance": 0.9}}"#);
+    for integrator in [r#"{"path": {}}"#, r#"{"direct": {}}"#, r#"{"classic": {}}"#] {
+        let integrator: AnyIntegrator = read(integrator);
+        let color = |scene: Scene, background: &AnyBackground| {
+            measure(&scene.before(background.clone()).world(), &at_origin(), &*integrator, 64).mean
+        };
+        for scene in [Scene::new, hole] {
+            assert!((color(scene(), &seen) - 0.25).abs() < 1e-6, "{integrator:?}");
+            assert!(color(scene(), &plain) < 0.2, "{integrator:?}");
+        }
+        for scene in [Scene::floor, mirror] {
+            assert_eq!(color(scene(), &seen), color(scene(), &plain), "{integrator:?}");
+        }
+    }
+    // The floor shows the irradiance π of the studio.
+    traced(Scene::floor().before(seen), &at_origin(), 256).is(0.5);
 }
