@@ -25,6 +25,11 @@ pub struct Surface {
     pub local_normal: Vec3,
     /// Footprint of the ray, for texture filtering; a point by default.
     pub footprint: Footprint,
+    /// Barycentrics of the second and third corner of a triangle, for [`MeshPoint`]; zero on other
+    /// shapes.
+    ///
+    /// [`MeshPoint`]: crate::MeshPoint
+    pub barycentrics: Vec2,
 }
 
 /// Diameters of the patch of a surface that a ray covers; 0 for a point.
@@ -65,6 +70,7 @@ impl Surface {
             local: point,
             local_normal: normal,
             footprint,
+            barycentrics: Vec2::ZERO,
         }
     }
 
@@ -87,6 +93,7 @@ impl Surface {
             local: self.local,
             local_normal: self.local_normal,
             footprint: self.footprint,
+            barycentrics: self.barycentrics,
         }
     }
 
