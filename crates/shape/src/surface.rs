@@ -54,6 +54,18 @@ pub struct Tangents {
     pub local_u: Vec3,
     /// ∂p/∂v in object space.
     pub local_v: Vec3,
+    /// Tangent that the mesh gives, for normal maps and anisotropic highlights in place of `u` and
+    /// `v`.
+    pub given: Option<GivenTangent>,
+}
+
+/// Tangent of a mesh in world space, with the side of its bitangent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenTangent {
+    /// Tangent; need not be unit, nor orthogonal to the normal.
+    pub along: Vec3,
+    /// Sign of the bitangent: 1 on the side of normal × tangent, otherwise -1.
+    pub sign: f32,
 }
 
 impl Surface {
