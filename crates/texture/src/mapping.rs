@@ -30,6 +30,11 @@ pub struct Mapping {
     /// Position of the pattern's origin, in `space`.
     #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub offset: Vec3,
+    /// Affine map of surface coordinates to the pattern, in place of `scale`, `rotate_degrees` and
+    /// `offset`: the six numbers a, b, c, d, e, f map (u, v) to (a u + b v + c, d u + e v + f). The
+    /// map must be invertible.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<[f32; 6]>,
 }
 
 /// One factor, or one for each axis, all different from 0. Negative factors mirror the pattern.
@@ -70,12 +75,45 @@ impl Mapping {
             let message = "`uv_set` chooses surface coordinates, so `space` must be `uv`";
             return Err(InvalidTexture::new("uv_set", message));
         }
+        if let Some(matrix) = self.matrix {
+            return self.check_matrix(matrix);
+        }
         let scale = self.factors().abs();
         if !(scale.min_element() >= 1e-18 && scale.max_element() <= 1e18) {
             return Err(InvalidTexture::new("scale", "`scale` must not be 0, and at most 1e18 in magnitude"));
         }
         check::vector("rotate_degrees", self.rotate_degrees.into())?;
         check::vector("offset", self.offset)
+    }
+
+    /// Checks a matrix and that it is alone.
+    fn check_matrix(&self, matrix: [f32; 6]) -> Result<(), InvalidTexture> {
+        let invalid = |message: &str| Err(InvalidTexture::new("matrix", message));
+        let others = (self.scale, self.rotate_degrees, self.offset);
+        if others != (Scale::default(), [0.0; 3], Vec3::ZERO) {
+            return invalid("`matrix` replaces `scale`, `rotate_degrees` and `offset`, which must not be given too");
+        }
+        if !matrix.iter().all(|number| number.abs() <= 1e18) {
+            return invalid("the numbers of `matrix` must be finite and at most 1e18 in magnitude");
+        }
+        let [a, b, _, d, e, _] = matrix.map(f64::from);
+        let determinant = a * e - b * d;
+        if determinant.abs() < 1e-30 { invalid("`matrix` must be invertible") } else { Ok(()) }
+    }
+
+    /// Compiled form of a matrix M, t: the point M (p + M⁻¹ t).
+    fn compile_matrix(&self, matrix: [f32; 6], default: Space) -> CompiledMapping {
+        let [a, b, c, d, e, f] = matrix.map(f64::from);
+        let determinant = a * e - b * d;
+        let offset = [b * f - e * c, d * c - a * f].map(|number| (number / determinant) as f32);
+        let [a, b, _, d, e, _] = matrix;
+        CompiledMapping {
+            space: self.space_or(default),
+            second_set: self.uv_set == 1,
+            rows: [Vec3::new(a, b, 0.0), Vec3::new(d, e, 0.0), Vec3::ZERO],
+            offset: Vec3::new(offset[0], offset[1], 0.0),
+            max_scale: (a * a + b * b + d * d + e * e).sqrt(),
+        }
     }
 
     fn factors(&self) -> Vec3 {
@@ -92,6 +130,9 @@ impl Mapping {
 
     /// Mapping for lookups; `default` is the coordinate space if the scene does not set it.
     pub(super) fn compile(&self, default: Space) -> CompiledMapping {
+        if let Some(matrix) = self.matrix {
+            return self.compile_matrix(matrix, default);
+        }
         let [x, y, z] = self.rotate_degrees.map(|degrees| portable::sin_cos_turns(degrees / 360.0));
         // Rotate about x, y and z.
         let turn = |v: Vec3| {

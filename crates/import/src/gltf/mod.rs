@@ -26,6 +26,7 @@ pub mod ktx2;
 pub mod ktx2_head;
 mod limits;
 mod location;
+mod media;
 pub mod meshopt;
 mod open;
 pub mod pose;
@@ -34,6 +35,7 @@ mod primitive;
 mod testing;
 #[cfg(test)]
 mod tests;
+mod translate;
 mod uri;
 mod warning;
 

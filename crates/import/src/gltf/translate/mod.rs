@@ -1,0 +1,3 @@
+//! Translation of a glTF file to parts of a scene.
+
+mod materials;
