@@ -71,7 +71,11 @@ impl CompiledBumpMap {
         let Some(tangents) = view.tangents.filter(|_| self.height.is_texture()) else { return view.normal };
         let at = view.lookup();
         let step = STEP.max(at.uv_footprint);
-        let height = |offset: Vec2| textures.number(&self.height, &offset_lookup(&at, tangents, offset));
+        let height = |offset: Vec2| {
+            let mesh = at.mesh.map(|point| point.moved(offset));
+            let at = TextureLookup { mesh: mesh.as_ref(), ..offset_lookup(&at, tangents, offset) };
+            textures.number(&self.height, &at)
+        };
         let derivative = |offset: Vec2| (height(offset * (0.5 * step)) - height(offset * (-0.5 * step))) / step;
         let (along_u, along_v) = (derivative(Vec2::X), derivative(Vec2::Y));
         let (normal, across_v) = (view.normal, tangents.v.cross(view.normal));
@@ -81,7 +85,7 @@ impl CompiledBumpMap {
 }
 
 /// Lookup that is moved by `offset` in surface coordinates, to first order.
-fn offset_lookup(at: &TextureLookup, tangents: &Tangents, offset: Vec2) -> TextureLookup {
+fn offset_lookup<'m>(at: &TextureLookup<'m>, tangents: &Tangents, offset: Vec2) -> TextureLookup<'m> {
     TextureLookup {
         uv: at.uv + offset,
         world: at.world + tangents.u * offset.x + tangents.v * offset.y,

@@ -1,5 +1,6 @@
 //! Materials: descriptions with textures, which are compiled once into a table without names.
 
+use juggler_shape::MeshPoint;
 use juggler_shape::surface::Surface;
 use juggler_texture::{TextureLookup, TextureTable};
 use schemars::JsonSchema;
@@ -176,8 +177,24 @@ juggler_math::closed_set! {
     }
 }
 
+/// Point of a surface where textures are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturedPoint<'a> {
+    /// Surface in world space, with the normals of its shape.
+    pub surface: &'a Surface,
+    /// Point of a mesh that has attributes or a second set of surface coordinates.
+    pub mesh: Option<&'a MeshPoint<'a>>,
+}
+
+impl<'a> From<&'a Surface> for TexturedPoint<'a> {
+    #[inline]
+    fn from(surface: &'a Surface) -> Self {
+        Self { surface, mesh: None }
+    }
+}
+
 /// Texture lookup at a point of a surface.
-fn lookup(surface: &Surface) -> TextureLookup {
+fn lookup(TexturedPoint { surface, mesh }: TexturedPoint<'_>) -> TextureLookup<'_> {
     TextureLookup {
         uv: surface.uv,
         local: surface.local,
@@ -188,5 +205,6 @@ fn lookup(surface: &Surface) -> TextureLookup {
         local_footprint: surface.footprint.local,
         uv_footprint: surface.footprint.uv,
         unfiltered: false,
+        mesh,
     }
 }

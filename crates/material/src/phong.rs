@@ -269,7 +269,11 @@ impl CompiledPhong {
 
     /// Parameters at a point.
     #[inline]
-    pub fn eval(&self, textures: &TextureTable, at: impl FnOnce() -> TextureLookup) -> Cow<'_, PhongParameters> {
+    pub fn eval<'m>(
+        &self,
+        textures: &TextureTable,
+        at: impl FnOnce() -> TextureLookup<'m>,
+    ) -> Cow<'_, PhongParameters> {
         let Some(slots) = &self.textured else { return Cow::Borrowed(&self.fixed) };
         let mut lobe = self.fixed;
         slots.fill(&mut lobe, textures, &at());
@@ -277,7 +281,7 @@ impl CompiledPhong {
     }
 
     /// Transmittance for shadow rays at a point.
-    pub fn shadow_transmittance(&self, textures: &TextureTable, at: impl FnOnce() -> TextureLookup) -> Rgb {
+    pub fn shadow_transmittance<'m>(&self, textures: &TextureTable, at: impl FnOnce() -> TextureLookup<'m>) -> Rgb {
         match &self.textured {
             Some(slots) => textures.color(&slots.transparency, &at()),
             None => self.fixed.transparency,

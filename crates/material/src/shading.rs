@@ -1,8 +1,9 @@
 //! Shading of a material at one point for one viewer: emission, opacity and BSDF.
 
-use super::lookup;
+use super::{TexturedPoint, lookup};
 use juggler_bsdf::{Bsdf, fresnel};
 use juggler_math::{Frame, Rgb, Vec3, hash};
+use juggler_shape::MeshPoint;
 use juggler_shape::surface::{Surface, Tangents};
 use juggler_texture::TextureLookup;
 
@@ -15,6 +16,8 @@ const MIN_MIRROR_COSINE: f32 = 0.01;
 pub struct ShadingView<'a> {
     /// Surface in world space, with the normals of its shape.
     pub surface: &'a Surface,
+    /// Point of a mesh that has attributes or a second set of surface coordinates.
+    pub mesh: Option<&'a MeshPoint<'a>>,
     /// Tangents of the surface along u and v, if known.
     pub tangents: Option<&'a Tangents>,
     /// Unit shading normal in world space, on the side of the shape's normals, after the normal and
@@ -31,11 +34,12 @@ pub struct ShadingView<'a> {
 impl<'a> ShadingView<'a> {
     /// View along the normal. Its random number is a hash of the point's coordinates.
     #[inline]
-    pub fn along_normal(surface: &'a Surface) -> Self {
+    pub fn along_normal(point: impl Into<TexturedPoint<'a>>) -> Self {
+        let TexturedPoint { surface, mesh } = point.into();
         let [x, y, z] = surface.point.to_array().map(f32::to_bits);
         let u_choice = hash::unit_f32(hash::combine(hash::combine(x, y), z));
         let normal = surface.shading_normal;
-        ShadingView { surface, tangents: None, normal, wo: surface.normal, outside_ior: 1.0, u_choice }
+        ShadingView { surface, mesh, tangents: None, normal, wo: surface.normal, outside_ior: 1.0, u_choice }
     }
 
     /// Whether the viewer is on the side of the geometric normal.
@@ -45,8 +49,8 @@ impl<'a> ShadingView<'a> {
     }
 
     /// Texture lookup at the point.
-    pub(super) fn lookup(&self) -> TextureLookup {
-        lookup(self.surface)
+    pub(super) fn lookup(&self) -> TextureLookup<'a> {
+        lookup(TexturedPoint { surface: self.surface, mesh: self.mesh })
     }
 }
 

@@ -1,7 +1,10 @@
 //! All materials of a world, compiled.
 
 use super::shading::facing_normal;
-use super::{CompiledMaterial, MaterialId, ScatteringMaterial, Shading, ShadingView, SurfaceEmission, lookup, tangent};
+use super::{
+    CompiledMaterial, MaterialId, ScatteringMaterial, Shading, ShadingView, SurfaceEmission, TexturedPoint, lookup,
+    tangent,
+};
 use crate::medium::{Interior, InteriorId};
 use juggler_bsdf::PhongParameters;
 use juggler_math::{Frame, Rgb};
@@ -145,10 +148,11 @@ impl MaterialTable {
     /// shape), without filtering of procedural textures. Returns `None` for a material of another
     /// kind, black for an unknown id.
     #[inline]
-    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Option<Cow<'_, PhongParameters>> {
-        match self.resolve_checkerboards(id, surface) {
+    pub fn phong<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>) -> Option<Cow<'_, PhongParameters>> {
+        let at = at.into();
+        match self.resolve_checkerboards(id, at.surface) {
             Some(CompiledMaterial::Phong(phong)) => {
-                Some(phong.eval(&self.textures, || TextureLookup { unfiltered: true, ..lookup(surface) }))
+                Some(phong.eval(&self.textures, || TextureLookup { unfiltered: true, ..lookup(at) }))
             }
             Some(_) => None,
             None => Some(Cow::Borrowed(&PhongParameters::BLACK)),
@@ -238,28 +242,29 @@ impl MaterialTable {
 
     /// Transmittance of material `id` at a point for shadow rays of the classic integrator.
     #[inline]
-    pub fn shadow_transmittance(&self, id: MaterialId, surface: &Surface) -> Rgb {
-        match self.resolve_checkerboards(id, surface) {
-            Some(CompiledMaterial::Phong(phong)) => phong.shadow_transmittance(&self.textures, || lookup(surface)),
+    pub fn shadow_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>) -> Rgb {
+        let at = at.into();
+        match self.resolve_checkerboards(id, at.surface) {
+            Some(CompiledMaterial::Phong(phong)) => phong.shadow_transmittance(&self.textures, || lookup(at)),
             Some(CompiledMaterial::Mask(mask)) => {
-                let opacity = mask.opacity(&self.textures, &ShadingView::along_normal(surface));
-                self.shadow_transmittance(mask.material, surface) * opacity + Rgb::splat(1.0 - opacity)
+                let opacity = mask.opacity(&self.textures, &ShadingView::along_normal(at));
+                self.shadow_transmittance(mask.material, at) * opacity + Rgb::splat(1.0 - opacity)
             }
             Some(CompiledMaterial::Boundary(_)) => Rgb::WHITE,
-            Some(CompiledMaterial::Emissive(emissive)) => self.shadow_transmittance(emissive.material, surface),
-            Some(CompiledMaterial::NormalMap(map)) => self.shadow_transmittance(map.material, surface),
-            Some(CompiledMaterial::BumpMap(map)) => self.shadow_transmittance(map.material, surface),
+            Some(CompiledMaterial::Emissive(emissive)) => self.shadow_transmittance(emissive.material, at),
+            Some(CompiledMaterial::NormalMap(map)) => self.shadow_transmittance(map.material, at),
+            Some(CompiledMaterial::BumpMap(map)) => self.shadow_transmittance(map.material, at),
             _ => Rgb::BLACK,
         }
     }
 
     /// Share of light that passes straight through material `id` at a point: 1 - opacity.
     #[inline]
-    pub fn straight_transmittance(&self, id: MaterialId, surface: &Surface) -> f32 {
+    pub fn straight_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>) -> f32 {
         if !self.has_opacity(id) {
             return 0.0;
         }
-        1.0 - self.opacity(id, &ShadingView::along_normal(surface))
+        1.0 - self.opacity(id, &ShadingView::along_normal(at))
     }
 
     /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.

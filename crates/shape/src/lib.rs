@@ -4,6 +4,7 @@ use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 mod arithmetic;
+pub mod attribute;
 mod check;
 #[cfg(test)]
 mod contract;
@@ -28,7 +29,7 @@ mod tube;
 
 pub use arithmetic::clamp_to_f32_range;
 pub use derivatives::SurfaceDerivatives;
-pub use mesh::{MeshData, MorphTarget};
+pub use mesh::{MeshData, MeshPoint, MorphTarget};
 pub use sphere::{intersect_sphere, longitude_latitude, sphere_interval, sphere_surface};
 
 /// Intersection of a ray with a shape: 16 bytes, all that traversal carries.

@@ -25,6 +25,11 @@ pub struct Surface {
     pub local_normal: Vec3,
     /// Footprint of the ray, for texture filtering; a point by default.
     pub footprint: Footprint,
+    /// Barycentrics of the second and third corner of a triangle, for [`MeshPoint`]; zero on other
+    /// shapes.
+    ///
+    /// [`MeshPoint`]: crate::MeshPoint
+    pub barycentrics: Vec2,
 }
 
 /// Diameters of the patch of a surface that a ray covers; 0 for a point.
@@ -49,6 +54,18 @@ pub struct Tangents {
     pub local_u: Vec3,
     /// ∂p/∂v in object space.
     pub local_v: Vec3,
+    /// Tangent that the mesh gives, for normal maps and anisotropic highlights in place of `u` and
+    /// `v`.
+    pub given: Option<GivenTangent>,
+}
+
+/// Tangent of a mesh in world space, with the side of its bitangent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenTangent {
+    /// Tangent; need not be unit, nor orthogonal to the normal.
+    pub along: Vec3,
+    /// Sign of the bitangent: 1 on the side of normal × tangent, otherwise -1.
+    pub sign: f32,
 }
 
 impl Surface {
@@ -65,6 +82,7 @@ impl Surface {
             local: point,
             local_normal: normal,
             footprint,
+            barycentrics: Vec2::ZERO,
         }
     }
 
@@ -87,6 +105,7 @@ impl Surface {
             local: self.local,
             local_normal: self.local_normal,
             footprint: self.footprint,
+            barycentrics: self.barycentrics,
         }
     }
 

@@ -56,7 +56,8 @@ impl TriangleGeometry {
         let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
         let shading_normal = self.shading_normal(normal, at);
-        Surface { shading_normal, local_normal: shading_normal, ..Surface::new(point, error, normal, uv) }
+        let plain = Surface::new(point, error, normal, uv);
+        Surface { shading_normal, local_normal: shading_normal, barycentrics: at, ..plain }
     }
 
     /// Derivatives of position by surface coordinates, constant over the triangle.

@@ -67,6 +67,7 @@ fn colors_are_finite_everywhere() {
                     local_footprint: footprint,
                     uv_footprint: footprint,
                     unfiltered: false,
+                    mesh: None,
                 };
                 assert!(color(&texture, &at).is_finite(), "{texture:?} {at:?}");
             }

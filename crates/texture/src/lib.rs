@@ -4,6 +4,7 @@
 //! compiled together into a [`TextureTable`], which replaces names by ids.
 
 use juggler_math::{Vec2, Vec3};
+use juggler_shape::MeshPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,7 @@ mod octaves;
 mod pixels;
 mod table;
 
+mod attribute;
 mod brick;
 mod checker;
 mod constant;
@@ -57,7 +59,7 @@ pub use wave::{WaveProfile, WaveShape};
 /// The footprint is the diameter of the ray's cone at the surface. Textures filter out finer
 /// detail; 0 disables the filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TextureLookup {
+pub struct TextureLookup<'m> {
     /// Surface coordinates (u, v).
     pub uv: Vec2,
     /// Point in object space.
@@ -77,6 +79,8 @@ pub struct TextureLookup {
     /// Whether procedural textures ignore the footprint, as in classic pictures. Image textures
     /// never do.
     pub unfiltered: bool,
+    /// Point of a mesh with attributes or a second set of surface coordinates.
+    pub mesh: Option<&'m MeshPoint<'m>>,
 }
 
 /// Coordinate space of a texture.
@@ -92,7 +96,7 @@ pub enum Space {
     World,
 }
 
-impl TextureLookup {
+impl TextureLookup<'_> {
     /// Point in a coordinate space.
     pub fn point(&self, space: Space) -> Vec3 {
         match space {
@@ -100,6 +104,16 @@ impl TextureLookup {
             Space::Local => self.local,
             Space::World => self.world,
         }
+    }
+
+    /// Surface coordinates of the second set with the footprint in them; those of the first set
+    /// where the surface has no second one.
+    #[cold]
+    pub fn second_uv(&self) -> (Vec2, f32) {
+        let Some((point, uv)) = self.mesh.and_then(|point| Some((point, point.uv1()?))) else {
+            return (self.uv, self.uv_footprint);
+        };
+        (uv, self.uv_footprint * point.uv1_area_ratio().map_or(0.0, f32::sqrt))
     }
 
     /// Footprint in units of a coordinate space.
@@ -140,6 +154,7 @@ juggler_math::closed_set! {
     /// Every texture. In JSON: `{"checker": {"size": 1}}`.
     pub enum AnyTexture: Texture {
         image::Image,
+        attribute::Attribute,
         constant::Constant,
         checker::Checker,
         gradient::Gradient,

@@ -15,6 +15,11 @@ pub struct Mapping {
     /// (u, v).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub space: Option<Space>,
+    /// Set of surface coordinates (u, v) of a mesh: 0 for `uvs`, 1 for `uvs1`. Surfaces without a
+    /// second set use their first. Only for patterns over surface coordinates.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0, max = 1))]
+    pub uv_set: u32,
     /// Units of the pattern per unit of `space`: 2 makes the pattern twice as fine. One number, or
     /// one for each axis of the pattern; not 0.
     pub scale: Scale,
@@ -42,6 +47,12 @@ pub enum Scale {
     Each([f32; 3]),
 }
 
+/// Whether the first set of surface coordinates is meant.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(set: &u32) -> bool {
+    *set == 0
+}
+
 impl Default for Scale {
     fn default() -> Self {
         Self::Even(1.0)
@@ -56,6 +67,14 @@ impl Mapping {
 
     /// Checks all values.
     pub(super) fn check(&self) -> Result<(), InvalidTexture> {
+        if self.uv_set > 1 {
+            let message = format!("`uv_set` must be 0 or 1, it is {}", self.uv_set);
+            return Err(InvalidTexture::new("uv_set", message));
+        }
+        if self.uv_set == 1 && self.space.is_some_and(|space| space != Space::Uv) {
+            let message = "`uv_set` chooses surface coordinates, so `space` must be `uv`";
+            return Err(InvalidTexture::new("uv_set", message));
+        }
         if let Some(matrix) = self.matrix {
             return self.check_matrix(matrix);
         }
@@ -90,6 +109,7 @@ impl Mapping {
         let [a, b, _, d, e, _] = matrix;
         CompiledMapping {
             space: self.space_or(default),
+            second_set: self.uv_set == 1,
             rows: [Vec3::new(a, b, 0.0), Vec3::new(d, e, 0.0), Vec3::ZERO],
             offset: Vec3::new(offset[0], offset[1], 0.0),
             max_scale: (a * a + b * b + d * d + e * e).sqrt(),
@@ -123,6 +143,7 @@ impl Mapping {
         let factors = self.factors();
         CompiledMapping {
             space: self.space_or(default),
+            second_set: self.uv_set == 1,
             rows: [turn(Vec3::X) * factors.x, turn(Vec3::Y) * factors.y, turn(Vec3::Z) * factors.z],
             offset: self.offset,
             max_scale: factors.abs().max_element(),
@@ -134,6 +155,8 @@ impl Mapping {
 #[derive(Clone, Copy, Debug)]
 pub struct CompiledMapping {
     pub space: Space,
+    /// Whether `uvs1` replaces the surface coordinates.
+    second_set: bool,
     rows: [Vec3; 3],
     offset: Vec3,
     /// Largest factor on lengths from `space` to the pattern.
@@ -161,7 +184,7 @@ impl CompiledMapping {
     /// Point of the pattern for a lookup, without a footprint if the lookup is unfiltered.
     pub fn pattern_point(&self, at: &TextureLookup) -> PatternPoint {
         if at.unfiltered {
-            PatternPoint { point: self.point(at.point(self.space)), width: 0.0 }
+            PatternPoint { point: self.point(self.source(at).0), width: 0.0 }
         } else {
             self.filtered_point(at)
         }
@@ -169,10 +192,21 @@ impl CompiledMapping {
 
     /// Point of the pattern for a lookup, always with its footprint.
     pub fn filtered_point(&self, at: &TextureLookup) -> PatternPoint {
-        let point = self.point(at.point(self.space));
+        let (point, footprint) = self.source(at);
+        let point = self.point(point);
         // `max` turns NaN into 0.
-        let width = (at.footprint_in(self.space) * self.max_scale).max(0.0);
+        let width = (footprint * self.max_scale).max(0.0);
         PatternPoint { point, width: if width.is_finite() { width } else { 0.0 } }
+    }
+
+    /// Point and footprint of a lookup in `space`.
+    #[inline]
+    fn source(&self, at: &TextureLookup) -> (Vec3, f32) {
+        if self.second_set && self.space == Space::Uv {
+            let (uv, footprint) = at.second_uv();
+            return (uv.extend(0.0), footprint);
+        }
+        (at.point(self.space), at.footprint_in(self.space))
     }
 
     /// Point of `space` in pattern coordinates; the origin if the result is not finite.

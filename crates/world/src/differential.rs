@@ -3,8 +3,8 @@
 
 use super::{Vertex, World, WorldHit};
 use juggler_math::Ray;
-use juggler_shape::SurfaceDerivatives;
-use juggler_shape::surface::{Footprint, Tangents};
+use juggler_shape::surface::{Footprint, GivenTangent, Tangents};
+use juggler_shape::{MeshPoint, SurfaceDerivatives};
 
 /// Minimum cosine between ray and normal that footprints assume.
 const MIN_COS: f32 = 0.01;
@@ -38,8 +38,27 @@ impl World {
     /// [`World::differential`].
     #[inline(never)]
     pub(super) fn tangents(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Tangents> {
-        let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.shape, ray.time)?;
-        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
+        let frame = self.top.tangent_frame(&vertex.surface, &hit.hit, hit.shape, ray.time);
+        let along_coordinates = self.top.derivatives(vertex.surface.local, &hit.hit, hit.shape, ray.time);
+        // Where coordinates are missing, the mesh's tangents stand in for derivatives too.
+        let [world, local] = along_coordinates.or(frame)?;
+        let given = frame.map(|[frame, _]| {
+            // A mirroring transform turns the bitangent over: it is transformed itself.
+            let side = vertex.surface.shading_normal.cross(frame.u).dot(frame.v);
+            GivenTangent { along: frame.u, sign: if side < 0.0 { -1.0 } else { 1.0 } }
+        });
+        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v, given })
+    }
+
+    /// Point of a mesh with attributes or a second set of surface coordinates, at a vertex whose
+    /// material is textured; `None` on all other surfaces.
+    #[inline]
+    pub(super) fn mesh_point(&self, vertex: &Vertex) -> Option<MeshPoint<'_>> {
+        if self.has_mesh_attributes && self.materials.is_textured(vertex.material) {
+            self.top.mesh_point(&vertex.surface, vertex.shape, vertex.primitive)
+        } else {
+            None
+        }
     }
 
     /// Whether any texture is an image.

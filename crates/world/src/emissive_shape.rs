@@ -4,7 +4,7 @@ use super::emitters::{EmitterId, EmitterSample, LightSampleContext, bsdf_sampled
 use super::world_shapes::{WorldShape, collect_shapes};
 use super::{Geometry, Vertex};
 use juggler_light::emitter::LightBounds;
-use juggler_material::{MaterialId, MaterialTable, ShadingView, Sides, SurfaceEmission};
+use juggler_material::{MaterialId, MaterialTable, ShadingView, Sides, SurfaceEmission, TexturedPoint};
 use juggler_math::{Motion, Ray, Rgb, Transform, Vec2, Vec3};
 use juggler_shape::{AnyShape, SurfacePoint};
 use std::f32::consts::PI;
@@ -101,8 +101,11 @@ impl EmissiveShape {
         }
         let transform = &self.motion.at(to.time);
         let ray = transform.ray_to_local(&Ray { time: to.time, ..Ray::new(to.point, wi) });
-        let surface = self.shape.surface(&ray, &self.shape.intersect(&ray)?).to_world(transform);
-        let view = ShadingView { wo: -wi, ..ShadingView::along_normal(&surface) };
+        let hit = self.shape.intersect(&ray)?;
+        let surface = self.shape.surface(&ray, &hit).to_world(transform);
+        let mesh = self.shape.mesh_point(hit.primitive, &surface);
+        let point = TexturedPoint { surface: &surface, mesh: mesh.as_ref() };
+        let view = ShadingView { wo: -wi, ..ShadingView::along_normal(point) };
         Some(materials.radiance(self.material, &view)).filter(|light| !light.is_black())
     }
 

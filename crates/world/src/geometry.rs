@@ -8,7 +8,8 @@ use super::{Content, Object, Vertex, WorldHit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Ray, Transform, Vec3};
-use juggler_shape::{AnyShape, Hit, SurfaceDerivatives};
+use juggler_shape::surface::Surface;
+use juggler_shape::{AnyShape, Hit, MeshPoint, SurfaceDerivatives};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -43,6 +44,8 @@ pub struct Geometry {
     pub(super) unbounded: Vec<u32>,
     bounds: Aabb,
     moves: bool,
+    /// Whether any mesh has attributes or a second set of surface coordinates.
+    pub(super) has_mesh_attributes: bool,
     totals: GeometryTotals,
 }
 
@@ -118,8 +121,24 @@ impl Geometry {
             .collect();
         let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
         let moves = objects.iter().any(Object::moves);
+        let has_mesh_attributes = objects.iter().any(|object| match &object.content {
+            Content::Shape(shape) => matches!(&**shape, AnyShape::Mesh(mesh) if mesh.has_attributes()),
+            Content::Geometry(geometry) => geometry.has_mesh_attributes,
+        });
         let objects = objects.into_iter().map(Instance::new).collect();
-        Self { objects, first_shapes, items, bvh, large_meshes, merged_meshes, unbounded, bounds, moves, totals }
+        Self {
+            objects,
+            first_shapes,
+            items,
+            bvh,
+            large_meshes,
+            merged_meshes,
+            unbounded,
+            bounds,
+            moves,
+            has_mesh_attributes,
+            totals,
+        }
     }
 
     /// Sets the SIMD instruction set of this geometry and all geometries below it.
@@ -231,6 +250,34 @@ impl Geometry {
             Content::Geometry(geometry) => geometry.derivatives(local, hit, shape_index, time)?,
         };
         Some([derivatives.transformed(&instance.motion.at(time)), object_derivatives])
+    }
+
+    /// Tangent and bitangent that a mesh gives at a surface of the shape `shape_index`, in this
+    /// geometry's space and in object space. Both are transformed as vectors, not as normals.
+    pub(super) fn tangent_frame(
+        &self,
+        surface: &Surface,
+        hit: &Hit,
+        shape_index: u32,
+        time: f32,
+    ) -> Option<[SurfaceDerivatives; 2]> {
+        let (instance, shape_index) = self.find(shape_index);
+        let [frame, object_frame] = match &instance.content {
+            Content::Shape(shape) => [shape.tangent_frame(hit.primitive, surface, time)?; 2],
+            Content::Geometry(geometry) => geometry.tangent_frame(surface, hit, shape_index, time)?,
+        };
+        Some([frame.transformed(&instance.motion.at(time)), object_frame])
+    }
+
+    /// Point of a mesh with attributes or a second set of surface coordinates, at a surface of the
+    /// shape `shape_index`.
+    #[inline(never)]
+    pub(super) fn mesh_point(&self, surface: &Surface, shape_index: u32, primitive: u32) -> Option<MeshPoint<'_>> {
+        let (instance, shape_index) = self.find(shape_index);
+        match &instance.content {
+            Content::Shape(shape) => shape.mesh_point(primitive, surface),
+            Content::Geometry(geometry) => geometry.mesh_point(surface, shape_index, primitive),
+        }
     }
 
     /// Bounding box of the shape `shape_index`, in this geometry's space; empty if it is unbounded.

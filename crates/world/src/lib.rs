@@ -5,7 +5,7 @@ use emitters::Emitters;
 use juggler_bsdf::PhongParameters;
 use juggler_light::background::AnyBackground;
 use juggler_material::medium::{Interior, InteriorId};
-use juggler_material::{MaterialId, MaterialTable, Shading, ShadingView};
+use juggler_material::{MaterialId, MaterialTable, Shading, ShadingView, TexturedPoint};
 use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use juggler_shape::Hit;
 use juggler_shape::surface::{Surface, Tangents};
@@ -115,6 +115,8 @@ pub struct World {
     has_opacity: bool,
     has_media: bool,
     has_image_textures: bool,
+    /// Whether any mesh has attributes or a second set of surface coordinates.
+    has_mesh_attributes: bool,
     moves: bool,
     labels: Labels,
     has_groups: bool,
@@ -157,6 +159,7 @@ impl World {
         let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
         lights.retain(|light| light.ambient.is_black());
+        let has_mesh_attributes = top.has_mesh_attributes;
         let has_image_textures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lights.iter().any(SceneLight::moves);
         let emitters =
@@ -174,6 +177,7 @@ impl World {
             has_opacity,
             has_media,
             has_image_textures,
+            has_mesh_attributes,
             moves,
             labels: Labels::default(),
             has_groups: false,
@@ -251,7 +255,8 @@ impl World {
     /// kind.
     #[inline]
     pub fn phong(&self, vertex: &Vertex) -> Option<Cow<'_, PhongParameters>> {
-        self.materials.phong(vertex.material, &vertex.surface)
+        let mesh = self.mesh_point(vertex);
+        self.materials.phong(vertex.material, TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() })
     }
 
     /// Evaluates the material at a vertex, viewed from `wo`. `outside_ior` is the index of
@@ -268,7 +273,9 @@ impl World {
     #[inline]
     pub fn shade_into(&self, vertex: &Vertex, wo: Vec3, outside_ior: f32, u_choice: f32, shading: &mut Shading) {
         let tangents = vertex.tangents.as_ref();
-        let view = ShadingView { wo, outside_ior, u_choice, tangents, ..ShadingView::along_normal(&vertex.surface) };
+        let mesh = self.mesh_point(vertex);
+        let point = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
+        let view = ShadingView { wo, outside_ior, u_choice, tangents, ..ShadingView::along_normal(point) };
         self.materials.shade_into(vertex.material, &view, shading);
     }
 

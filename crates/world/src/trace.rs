@@ -5,6 +5,7 @@ use super::large_mesh::RayCoherence;
 use super::{Content, Geometry, Vertex, World, WorldHit};
 use arrayvec::ArrayVec;
 use juggler_bvh::{Leaf, PACKET};
+use juggler_material::TexturedPoint;
 use juggler_material::medium::Interiors;
 use juggler_math::{Ray, Rgb};
 use std::cell::Cell;
@@ -243,7 +244,11 @@ impl World {
 
     /// Product of the transparencies of all surfaces along the ray, nearest first.
     fn classic_transmittance(&self, ray: Ray) -> Rgb {
-        let filter = |vertex: &Vertex| self.materials.shadow_transmittance(vertex.material, &vertex.surface);
+        let filter = |vertex: &Vertex| {
+            let mesh = self.mesh_point(vertex);
+            let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
+            self.materials.shadow_transmittance(vertex.material, at)
+        };
         self.transmittance_through(ray, MAX_FILTERS - 1, |_| Rgb::WHITE, filter)
     }
 
@@ -264,7 +269,9 @@ impl World {
                     return Rgb::WHITE;
                 }
             }
-            Rgb::splat(self.materials.straight_transmittance(vertex.material, &vertex.surface))
+            let mesh = self.mesh_point(vertex);
+            let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
+            Rgb::splat(self.materials.straight_transmittance(vertex.material, at))
         };
         self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), medium_transmittance, transparency)
     }

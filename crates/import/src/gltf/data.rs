@@ -3,13 +3,12 @@
 use super::document::{Buffer, CompressedView, Index};
 use super::error::{Fault, GltfError, Place};
 use super::location::Location;
+use super::media::Media;
 use super::meshopt;
 use super::open::Gltf;
 use super::uri::{self, Uri};
 use super::{FileError, Files};
-use juggler_scene::Asset;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -31,14 +30,14 @@ pub struct GltfData {
     /// The file.
     pub gltf: Gltf,
     buffers: Vec<Contents>,
-    /// Contents of the images, once they are loaded; without a content for unused ones.
-    images: Vec<Option<Asset>>,
     /// Compressed buffer views that were decoded.
     views: Vec<OnceLock<Result<Vec<u8>, Fault>>>,
     /// Number of bytes of all arrays decoded so far.
     decoded: AtomicU64,
     /// Maximum number of decoded bytes.
     decoded_limit: u64,
+    /// Pictures and light profiles, once they are read.
+    pub(super) media: Media,
 }
 
 impl GltfData {
@@ -62,43 +61,7 @@ impl GltfData {
         let bytes = sizes.fold(gltf.length, |sum, size| sum.saturating_add(size as u64));
         let views = gltf.document.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let decoded_limit = gltf.limits.decoded_bytes_of(bytes);
-        Ok(Self { gltf, buffers, images: Vec::new(), views, decoded: AtomicU64::new(0), decoded_limit })
-    }
-
-    /// Loads the images that textures use.
-    ///
-    /// # Errors
-    ///
-    /// An image is missing or too large, or its data URI is not valid. All faults are reported at
-    /// once.
-    pub fn load_images(&mut self, files: &dyn Files) -> Result<(), GltfError> {
-        let sources = self.gltf.document.textures.iter().filter_map(|texture| {
-            let webp = texture.extensions.webp.and_then(|webp| webp.source);
-            webp.or(texture.source)
-        });
-        let used: BTreeSet<Index> = sources.collect();
-        let mut images = vec![None; self.gltf.document.images.len()];
-        let mut faults = Vec::new();
-        for index in used {
-            match self.image(index, files) {
-                Ok(bytes) => {
-                    if let Some(slot) = images.get_mut(index.get()) {
-                        *slot = Some(Asset::from_bytes(bytes.into_owned()));
-                    }
-                }
-                Err(fault) => faults.push(fault),
-            }
-        }
-        if !faults.is_empty() {
-            return Err(GltfError { file: self.gltf.name.clone(), faults, omitted: 0 });
-        }
-        self.images = images;
-        Ok(())
-    }
-
-    /// Content of an image that [`GltfData::load_images`] has loaded.
-    pub fn image_asset(&self, image: usize) -> Option<Asset> {
-        self.images.get(image).cloned().flatten()
+        Ok(Self { gltf, buffers, views, decoded: AtomicU64::new(0), decoded_limit, media: Media::default() })
     }
 
     /// Error of a fault in this file.
@@ -185,6 +148,11 @@ impl GltfData {
     /// Number of bytes of all arrays decoded so far.
     pub fn decoded_bytes(&self) -> u64 {
         self.decoded.load(Ordering::Relaxed)
+    }
+
+    /// Maximum number of bytes of all decoded arrays.
+    pub(super) fn decoded_limit(&self) -> u64 {
+        self.decoded_limit
     }
 
     /// Bytes of an image file.

@@ -56,10 +56,10 @@ pub const EXTENSIONS: [Extension; 34] = [
     whole("KHR_draco_mesh_compression"),
     ignored("KHR_interactivity", "a rendered scene does not react"),
     whole("KHR_lights_punctual"),
-    whole("KHR_materials_anisotropy"),
-    whole("KHR_materials_clearcoat"),
+    approximated("KHR_materials_anisotropy", "directions in textures have no effect"),
+    approximated("KHR_materials_clearcoat", "the coat has the normals of its base"),
     whole("KHR_materials_diffuse_transmission"),
-    whole("KHR_materials_dispersion"),
+    ignored("KHR_materials_dispersion", "refracted light keeps its color"),
     whole("KHR_materials_emissive_strength"),
     whole("KHR_materials_ior"),
     whole("KHR_materials_iridescence"),
@@ -67,7 +67,7 @@ pub const EXTENSIONS: [Extension; 34] = [
     whole("KHR_materials_sheen"),
     whole("KHR_materials_specular"),
     whole("KHR_materials_transmission"),
-    whole("KHR_materials_unlit"),
+    approximated("KHR_materials_unlit", "the surface emits its color"),
     whole("KHR_materials_variants"),
     whole("KHR_materials_volume"),
     whole("KHR_mesh_quantization"),
@@ -75,7 +75,11 @@ pub const EXTENSIONS: [Extension; 34] = [
     ignored("KHR_node_hoverability", "a rendered scene does not react"),
     ignored("KHR_node_selectability", "a rendered scene does not react"),
     whole("KHR_node_visibility"),
-    whole("KHR_texture_basisu"),
+    if cfg!(feature = "ktx2") {
+        whole("KHR_texture_basisu")
+    } else {
+        ignored("KHR_texture_basisu", "the plain image of the texture is used")
+    },
     whole("KHR_texture_transform"),
     ignored("KHR_xmp_json_ld", "metadata has no effect on images"),
     ignored("KHR_xmp", "metadata has no effect on images"),

@@ -21,17 +21,16 @@ pub mod document;
 pub mod draco;
 mod error;
 pub mod extensions;
-mod format;
 mod json;
 pub mod ktx2;
 pub mod ktx2_head;
 mod limits;
 mod location;
+mod media;
 pub mod meshopt;
 mod open;
 pub mod pose;
 mod primitive;
-mod summary;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -43,7 +42,6 @@ mod warning;
 pub use container::is_binary;
 pub use data::GltfData;
 pub use error::{Fault, GltfError, Place};
-pub use format::GltfFormat;
 pub use juggler_scene::model::{FileError, Files};
 pub use limits::Limits;
 pub use open::Gltf;

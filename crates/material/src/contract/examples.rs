@@ -25,7 +25,7 @@ fn random_surface(random: &mut Random) -> (Surface, Tangents) {
     let uv = Vec2::new(random.range(-3.0, 3.0), random.range(-3.0, 3.0));
     let surface = Surface { shading_normal, ..Surface::new(random.point(2.0), 0.0, normal, uv) };
     let (u, v) = (random.unit_vector().reject_from(normal) * 3.0, random.unit_vector().reject_from(normal) * 0.2);
-    (surface, Tangents { u, v, local_u: u * 0.5, local_v: v * 0.5 })
+    (surface, Tangents { u, v, local_u: u * 0.5, local_v: v * 0.5, given: None })
 }
 
 /// Share of the light along `wo` that is scattered, estimated from samples. Checks the samples

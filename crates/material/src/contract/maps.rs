@@ -11,7 +11,7 @@ fn ground() -> Surface {
 }
 
 fn tangents(u: Vec3, v: Vec3) -> Tangents {
-    Tangents { u, v, local_u: u, local_v: v }
+    Tangents { u, v, local_u: u, local_v: v, given: None }
 }
 
 /// Mapped shading normal of the ground, seen from above.

@@ -4,6 +4,7 @@
 //! smoothed together.
 
 use super::MeshData;
+use crate::attribute::MeshAttribute;
 use crate::{InvalidShape, check};
 use juggler_math::{DVec3, portable};
 use std::collections::BTreeMap;
@@ -68,7 +69,25 @@ impl SmoothingGroups {
             triangles: self.triangles.clone(),
             normals: self.corners.iter().map(|(_, group)| normal(*group)).collect(),
             uvs: uvs.collect(),
+            uvs1: self.split(&data.uvs1),
+            tangents: self.split(&data.tangents),
+            attributes: data
+                .attributes
+                .iter()
+                .map(|(name, attribute)| (name.clone(), self.split_attribute(attribute)))
+                .collect(),
         }
+    }
+}
+
+impl SmoothingGroups {
+    /// Values of the split positions.
+    fn split<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        self.corners.iter().filter_map(|(position, _)| values.get(*position as usize).copied()).collect()
+    }
+
+    fn split_attribute(&self, attribute: &MeshAttribute) -> MeshAttribute {
+        attribute.with_positions(self.corners.iter().map(|(position, _)| *position as usize))
     }
 }
 

@@ -1,10 +1,12 @@
 //! JSON form of a mesh.
 
 use super::{Mesh, MeshData, MorphTarget};
+use crate::attribute::MeshAttribute;
 use juggler_math::{Vec2, Vec3};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A triangle mesh, from a file or from the arrays given here. The corners of a triangle run
@@ -36,6 +38,18 @@ pub struct MeshDescription {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f32; 2]>")]
     uvs: Vec<Vec2>,
+    /// Second set of surface coordinates, for textures with `uv_set` 1: none, or one per position.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<[f32; 2]>")]
+    uvs1: Vec<Vec2>,
+    /// Tangents x, y, z of any length, along which normal maps and anisotropic highlights lie, and
+    /// the sign of the bitangent, 1 or -1: none, or one per position. Without tangents they follow
+    /// the surface coordinates. A zero tangent counts as missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    tangents: Vec<[f32; 4]>,
+    /// Named attributes for the texture `attribute`, such as `color`.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    attributes: BTreeMap<String, MeshAttribute>,
     /// Largest angle between the normals of two neighboring triangles whose edge is shaded
     /// smoothly, in degrees, 0 to 180: 30 to 60 for machine parts, 180 for a wholly smooth surface.
     /// Without it, a mesh without `normals` is shaded flat. It has no effect on a mesh with
@@ -51,8 +65,10 @@ pub struct MeshDescription {
 
 impl From<MeshDescription> for Mesh {
     fn from(description: MeshDescription) -> Self {
-        let MeshDescription { file, positions, triangles, normals, uvs, crease_angle_degrees, morphs } = description;
-        let arrays = Arc::new(MeshData { positions, triangles, normals, uvs });
+        let MeshDescription { file, crease_angle_degrees, morphs, positions, triangles, normals, uvs, .. } =
+            description;
+        let MeshDescription { uvs1, tangents, attributes, .. } = description;
+        let arrays = Arc::new(MeshData { positions, triangles, normals, uvs, uvs1, tangents, attributes });
         Self { file, arrays, crease_angle_degrees, morphs, ..Self::default() }
     }
 }
@@ -85,6 +101,12 @@ struct SerializedMesh<'m> {
     normals: &'m [Vec3],
     #[serde(skip_serializing_if = "<[Vec2]>::is_empty")]
     uvs: &'m [Vec2],
+    #[serde(skip_serializing_if = "<[Vec2]>::is_empty")]
+    uvs1: &'m [Vec2],
+    #[serde(skip_serializing_if = "<[[f32; 4]]>::is_empty")]
+    tangents: &'m [[f32; 4]],
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    attributes: &'m BTreeMap<String, MeshAttribute>,
     #[serde(skip_serializing_if = "Option::is_none")]
     crease_angle_degrees: Option<f32>,
     #[serde(skip_serializing_if = "<[MorphTarget]>::is_empty")]
@@ -93,7 +115,7 @@ struct SerializedMesh<'m> {
 
 impl Serialize for Mesh {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let MeshData { positions, triangles, normals, uvs } = &*self.arrays;
+        let MeshData { positions, triangles, normals, uvs, uvs1, tangents, attributes } = &*self.arrays;
         let blended = self.prepared.is_some() && !triangles.is_empty();
         SerializedMesh {
             file: self.file.as_deref(),
@@ -101,6 +123,9 @@ impl Serialize for Mesh {
             triangles,
             normals,
             uvs,
+            uvs1,
+            tangents,
+            attributes,
             crease_angle_degrees: self.crease_angle_degrees,
             morphs: if blended { &[] } else { &self.morphs },
         }

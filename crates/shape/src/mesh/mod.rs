@@ -18,6 +18,7 @@ use super::arithmetic::clamp_to_f32_range;
 use super::solid_angle::{area_pdf, area_sample, select_by_weight};
 use super::triangle_geometry::TriangleGeometry;
 use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
+use crate::attribute::MeshAttribute;
 use crate::surface::Surface;
 use crease::SmoothingGroups;
 use description::MeshDescription;
@@ -33,10 +34,13 @@ mod data;
 mod description;
 mod morph;
 mod moving_mesh;
+mod point;
 mod prepared;
+mod rare;
 
 pub use data::MeshData;
 pub use morph::MorphTarget;
+pub use point::MeshPoint;
 
 /// A triangle mesh, from a file or from arrays. The corners of a triangle run counter-clockwise
 /// seen from the front.
@@ -118,6 +122,27 @@ impl Mesh {
         self
     }
 
+    /// Sets the second set of surface coordinates: one per position.
+    #[must_use]
+    pub fn with_uvs1(mut self, uvs1: impl Into<Vec<Vec2>>) -> Self {
+        self.arrays_mut().uvs1 = uvs1.into();
+        self
+    }
+
+    /// Sets the tangents: one per position, object space, with the sign of the bitangent.
+    #[must_use]
+    pub fn with_tangents(mut self, tangents: impl Into<Vec<[f32; 4]>>) -> Self {
+        self.arrays_mut().tangents = tangents.into();
+        self
+    }
+
+    /// Sets a named attribute.
+    #[must_use]
+    pub fn with_attribute(mut self, name: impl Into<String>, attribute: MeshAttribute) -> Self {
+        self.arrays_mut().attributes.insert(name.into(), attribute);
+        self
+    }
+
     /// Mesh whose arrays are in a file; pass them to [`Mesh::load`] before [`Shape::prepare`].
     pub fn from_file(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), ..Self::default() }
@@ -152,9 +177,9 @@ impl Mesh {
         if !self.arrays.positions.is_empty() || !self.arrays.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
         }
-        if !self.arrays.normals.is_empty() || !self.arrays.uvs.is_empty() {
-            let message = "a mesh with `file` has the normals and surface coordinates of the file, so it cannot have \
-                           `normals` or `uvs`";
+        if *self.arrays != MeshData::default() {
+            let message = "a mesh with `file` has the normals, surface coordinates, tangents and attributes of the \
+                           file, so it cannot have `normals`, `uvs`, `uvs1`, `tangents` or `attributes`";
             return Err(check::invalid("file", message));
         }
         let (file, morphs) = (self.file.take(), std::mem::take(&mut self.morphs));

@@ -5,7 +5,7 @@ use crate::triangle_geometry::TriangleGeometry;
 use crate::{InvalidShape, check::invalid};
 use juggler_bvh::{MovingTriangleBvh, Quality, SimdLevel, TriangleHit};
 use juggler_math::motion::{key_interval, lerp, without_redundant_keys};
-use juggler_math::{Aabb, Ray, Vec3};
+use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 /// Largest distance of a corner from its path where keyframes are left out, relative to the mesh's
 /// size.
@@ -67,6 +67,14 @@ impl MovingMesh {
         let lerp_corners = |from: [Vec3; 3], to: [Vec3; 3]| [0, 1, 2].map(|i: usize| lerp(from[i], to[i], fraction));
         let normals = from.normals.zip(to.normals).map(|(from, to)| lerp_corners(from, to));
         Some(TriangleGeometry { corners: lerp_corners(from.corners, to.corners), normals, uvs: from.uvs })
+    }
+
+    /// Tangent at a time, as [`MeshData::tangent`].
+    pub fn tangent(&self, triangle: usize, at: Vec2, time: f32) -> Option<(Vec3, f32)> {
+        let (key, fraction) = key_interval(self.keys.len(), time);
+        let [from, to] = [self.keys.get(key)?, self.keys.get(key + 1)?].map(|key| key.tangent(triangle, at));
+        let ((from, sign), (to, _)) = from.zip(to)?;
+        Some((lerp(from, to, fraction), sign))
     }
 
     /// Bounding box of all triangles at all times.

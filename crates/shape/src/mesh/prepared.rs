@@ -5,8 +5,9 @@ use super::moving_mesh::MovingMesh;
 use crate::triangle_geometry::TriangleGeometry;
 use crate::{InvalidShape, check::invalid};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
-use juggler_math::{Aabb, Ray};
+use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -82,7 +83,9 @@ impl PreparedMesh {
         }
         let Some(data) = keys.first().cloned() else { return Self::new(Arc::default()) };
         let measures = checked(&data)?;
-        let tree = MovingMesh::new(keys)?;
+        // Only the first keyframe gives what does not move.
+        let keys = keys.into_iter().map(|key| MeshData { uvs1: Vec::new(), attributes: BTreeMap::new(), ..key });
+        let tree = MovingMesh::new(keys.collect())?;
         let measures = MeshMeasures { bounds: tree.bounds(), ..measures };
         Ok(Self::with(Arc::new(data), Tree::Moving(tree), measures))
     }
@@ -121,6 +124,14 @@ impl PreparedMesh {
         match &self.tree {
             Tree::Still(_) => self.arrays.triangle_geometry(triangle),
             Tree::Moving(tree) => tree.triangle_geometry(triangle, time),
+        }
+    }
+
+    /// Tangent at a time, as [`MeshData::tangent`].
+    pub fn tangent(&self, triangle: usize, at: Vec2, time: f32) -> Option<(Vec3, f32)> {
+        match &self.tree {
+            Tree::Still(_) => self.arrays.tangent(triangle, at),
+            Tree::Moving(tree) => tree.tangent(triangle, at, time),
         }
     }
 
@@ -180,14 +191,9 @@ impl PreparedMesh {
             Tree::Still(_) => &[],
             Tree::Moving(tree) => tree.keys(),
         };
-        let arrays: usize = std::iter::once(&*self.arrays).chain(later).map(bytes).sum();
+        let arrays: usize = std::iter::once(&*self.arrays).chain(later).map(MeshData::bytes).sum();
         size_of::<Self>() + arrays + size_of_val(self.areas.get().map_or(&[][..], Vec::as_slice))
     }
-}
-
-fn bytes(MeshData { positions, triangles, normals, uvs }: &MeshData) -> usize {
-    let arrays = size_of_val(positions.as_slice()) + size_of_val(triangles.as_slice());
-    arrays + size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice())
 }
 
 /// Validates the arrays; some triangle must have an area.

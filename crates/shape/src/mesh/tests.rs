@@ -21,7 +21,7 @@ fn floor(normals: [Vec3; 3]) -> MeshData {
         positions: vec![Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0],
         triangles: vec![[0, 1, 2]],
         normals: normals.to_vec(),
-        uvs: Vec::new(),
+        ..MeshData::default()
     }
 }
 

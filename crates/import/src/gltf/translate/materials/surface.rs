@@ -1,0 +1,110 @@
+//! What the surface of a material shows: its sides, normals, alpha, and color without lighting.
+//!
+//! Each function stands for one setting of a material, so that a closer setting takes its place.
+
+use super::PrimitiveSurface;
+use super::convert::Base;
+use super::textures::{Reading, TextureSet};
+use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, TextureInfo};
+use crate::gltf::error::Fault;
+use juggler_material::{AnyMaterial, Emissive, Mask, MaterialRef, NormalMap, Principled, Sides};
+use juggler_math::Rgb;
+use juggler_texture::{Channel, Input};
+
+/// Highest index of refraction, and the color that makes its reflectance 1: ((10 + 1) / (10 - 1))².
+const HIGHEST_IOR: f32 = 10.0;
+const FULL_REFLECTANCE: f32 = 121.0 / 81.0;
+/// Largest strength of a normal map.
+const MAX_NORMAL_SCALE: f64 = 1000.0;
+
+/// Makes the specular color the reflectance at normal incidence.
+pub fn full_reflectance(textures: &mut TextureSet<'_>, principled: &mut Principled) {
+    principled.ior = HIGHEST_IOR;
+    let color = std::mem::replace(&mut principled.specular_color, Rgb::WHITE.into());
+    principled.specular_color = textures.product(color, Rgb::splat(FULL_REFLECTANCE).into());
+}
+
+/// Dispersion of refracted light.
+pub fn dispersion(textures: &mut TextureSet<'_>, dispersion: f64, at: &str) {
+    textures.warnings.add(at, "its dispersion has no effect", u64::from(dispersion > 0.0));
+}
+
+/// Rotation of the anisotropy in turns, with the directions of a texture.
+pub fn direction(textures: &mut TextureSet<'_>, turns: f64, texture: Option<&TextureInfo>, at: &str) -> Input<f32> {
+    let text = "the directions of its anisotropy texture have no effect; the strength has";
+    textures.warnings.add(at, text, u64::from(texture.is_some()));
+    (turns as f32).into()
+}
+
+/// Sides of the surface that are visible. The back is not there unless the material is double-sided
+/// or light passes through it.
+pub fn sides(
+    textures: &mut TextureSet<'_>,
+    _principled: &mut Principled,
+    material: &Material,
+    extensions: &MaterialExtensions,
+    at: &str,
+) {
+    let is_thick = extensions.volume.as_ref().is_some_and(|volume| volume.thickness_factor > 0.0);
+    let transmission = extensions.transmission.as_ref().map_or(0.0, |model| model.transmission_factor);
+    let diffuse = extensions.diffuse_transmission.as_ref().map_or(0.0, |model| model.diffuse_transmission_factor);
+    let is_front_only = !(material.double_sided || is_thick || transmission > 0.0 || diffuse > 0.0);
+    textures.warnings.add(at, "is one-sided; its back is visible all the same", u64::from(is_front_only));
+}
+
+/// Material with its normal maps.
+pub fn with_normals(
+    textures: &mut TextureSet<'_>,
+    principled: Principled,
+    material: &Material,
+    coat: Option<&Clearcoat>,
+    at: &str,
+) -> Result<AnyMaterial, Fault> {
+    let coat = coat.filter(|coat| coat.clearcoat_factor > 0.0);
+    let differs = coat.is_some_and(|coat| coat.clearcoat_normal_texture != material.normal_texture);
+    textures.warnings.add(at, "its clear coat has the normals of the base", u64::from(differs));
+    let Some(info) = &material.normal_texture else { return Ok(principled.into()) };
+    let Some(texture) = textures.normals(info, info.scale < 0.0)? else { return Ok(principled.into()) };
+    let strength = (info.scale.abs().min(MAX_NORMAL_SCALE) as f32).into();
+    Ok(NormalMap { texture, strength, material: MaterialRef::from(principled) }.into())
+}
+
+/// Opacity and its threshold by the alpha mode.
+pub fn opacity(
+    textures: &mut TextureSet<'_>,
+    factor: f64,
+    texture: Option<&TextureInfo>,
+    material: &Material,
+    surface: &PrimitiveSurface,
+) -> Result<(Input<f32>, Option<f32>), Fault> {
+    let is_mask = match material.alpha_mode {
+        AlphaMode::Opaque => return Ok((1.0.into(), None)),
+        AlphaMode::Mask if material.alpha_cutoff > 1.0 => return Ok((0.0.into(), None)),
+        AlphaMode::Mask => true,
+        AlphaMode::Blend => false,
+    };
+    let mut opacity = textures.number(factor, texture, Reading::alpha(is_mask))?;
+    if surface.has_color {
+        let vertices = textures.vertex_colors(Channel::A);
+        opacity = textures.number_product(opacity, vertices);
+    }
+    Ok((opacity, is_mask.then_some(material.alpha_cutoff as f32)))
+}
+
+/// Material that shows its base color without lighting.
+pub fn unlit(
+    textures: &mut TextureSet<'_>,
+    material: &Material,
+    base: &Base<'_>,
+    surface: &PrimitiveSurface,
+    at: &str,
+) -> Result<AnyMaterial, Fault> {
+    textures.warnings.add(at, "is not lit; it emits its color and lights what is around it", 1);
+    let radiance = base.color(textures, surface)?;
+    let (opacity, cutoff) = base.opacity(textures, material, surface)?;
+    let shown = Emissive { radiance, sides: Sides::Both, ..Emissive::default() };
+    if opacity == Input::Value(1.0) {
+        return Ok(shown.into());
+    }
+    Ok(Mask { opacity, cutoff, material: MaterialRef::from(shown) }.into())
+}

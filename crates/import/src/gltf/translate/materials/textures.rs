@@ -1,0 +1,260 @@
+//! Textures of materials: images with samplers and transforms, and their products. Each distinct
+//! texture is added once.
+
+use super::pictures::Pictures;
+use crate::gltf::data::GltfData;
+use crate::gltf::document::{Document, MagFilter, MinFilter, Sampler, TextureInfo, TextureTransform, Wrap};
+use crate::gltf::error::Fault;
+use crate::gltf::warning::Warnings;
+use indexmap::IndexMap;
+use juggler_math::{Rgb, portable};
+use juggler_texture::{
+    AnyTexture, Attribute, Channel, ColorSpace, Filter, Image, Input, Mapping, Mix, MixMode, Wrap as Continuation,
+};
+
+/// Name of the vertex colors among the attributes of meshes.
+const VERTEX_COLORS: &str = "color";
+/// Smallest magnitude of a scale. Smaller ones would not be invertible, and show the same texel.
+const MIN_SCALE: f64 = 1e-6;
+
+/// Textures by name, as the materials of a file use them.
+#[derive(Debug)]
+pub struct TextureSet<'a> {
+    document: &'a Document,
+    prefix: &'a str,
+    /// Textures by name.
+    pub textures: IndexMap<String, AnyTexture>,
+    /// Names of the textures by their content.
+    known: IndexMap<String, String>,
+    /// Pictures that the textures use.
+    pub pictures: Pictures<'a>,
+    /// Warnings.
+    pub warnings: Warnings,
+}
+
+/// What a texture reads of an image.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// The channels.
+    pub channel: Channel,
+    /// Encoding of the image.
+    pub space: ColorSpace,
+    /// Whether minified textures show single texels, so that thresholds keep their area.
+    pub is_sharp: bool,
+}
+
+impl Reading {
+    /// Colors.
+    pub const COLOR: Self = Self { channel: Channel::Rgb, space: ColorSpace::Srgb, is_sharp: false };
+
+    /// Numbers in a channel.
+    pub const fn number(channel: Channel) -> Self {
+        Self { channel, space: ColorSpace::Linear, is_sharp: false }
+    }
+
+    /// Alpha of colors. The encoding, which does not apply to alpha, is that of the colors, so that
+    /// both share their pixels.
+    pub const fn alpha(is_sharp: bool) -> Self {
+        Self { channel: Channel::A, space: ColorSpace::Srgb, is_sharp }
+    }
+}
+
+impl<'a> TextureSet<'a> {
+    /// No textures yet.
+    pub fn new(document: &'a Document, data: &'a GltfData, prefix: &'a str) -> Self {
+        let (textures, known, warnings) = Default::default();
+        Self { document, prefix, textures, known, pictures: Pictures::new(document, data, prefix), warnings }
+    }
+
+    /// Color of a factor and a texture: their product.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be read.
+    pub fn color(&mut self, factor: [f64; 3], info: Option<&TextureInfo>) -> Result<Input<Rgb>, Fault> {
+        let factor = factor.map(number);
+        let constant = Rgb::new(factor[0], factor[1], factor[2]);
+        let Some(info) = info.filter(|_| constant != Rgb::BLACK) else { return Ok(constant.into()) };
+        let [r, g, b] = factor;
+        let gray = if r == g && g == b { r } else { 1.0 };
+        let Some(texture) = self.image(info, Reading::COLOR, gray)? else { return Ok(constant.into()) };
+        let texture = Input::Texture(texture);
+        Ok(if r == g && g == b { texture } else { self.product(texture, constant.into()) })
+    }
+
+    /// Number of a factor and a texture: their product.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be read.
+    pub fn number(&mut self, factor: f64, info: Option<&TextureInfo>, reading: Reading) -> Result<Input<f32>, Fault> {
+        let factor = number(factor);
+        let Some(info) = info.filter(|_| factor != 0.0) else { return Ok(factor.into()) };
+        let texture = self.image(info, reading, factor)?;
+        Ok(texture.map_or(factor.into(), Input::Texture))
+    }
+
+    /// Number from `low`, where a texture is 0, to `high`, where it is 1. `None` without texture.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be read.
+    pub fn between(
+        &mut self,
+        low: f64,
+        high: f64,
+        info: Option<&TextureInfo>,
+        reading: Reading,
+    ) -> Result<Option<Input<f32>>, Fault> {
+        let Input::Texture(name) = self.number(1.0, info, reading)? else { return Ok(None) };
+        let [a, b] = [low, high].map(|bound| Rgb::splat(number(bound)).into());
+        let amount = Input::Texture(name.clone());
+        Ok(Some(Input::Texture(self.add(&format!("{name} scaled"), Mix { a, b, amount, mode: MixMode::Mix }))))
+    }
+
+    /// Normals of a texture, the tangential parts of which are multiplied by 1 or -1.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be read.
+    pub fn normals(&mut self, info: &TextureInfo, is_negated: bool) -> Result<Option<Input<Rgb>>, Fault> {
+        let reading = Reading { space: ColorSpace::Linear, ..Reading::COLOR };
+        let Some(name) = self.image(info, reading, 1.0)? else { return Ok(None) };
+        let texture = Input::Texture(name.clone());
+        if !is_negated {
+            return Ok(Some(texture));
+        }
+        // The encoded normal (1 - r, 1 - g, b) is the difference to (1, 1, 0).
+        let b = Rgb::new(1.0, 1.0, 0.0).into();
+        let negated = Mix { a: texture, b, amount: 1.0.into(), mode: MixMode::Difference };
+        Ok(Some(Input::Texture(self.add(&format!("{name} negated"), negated))))
+    }
+
+    /// Product of two colors or textures.
+    pub fn product(&mut self, a: Input<Rgb>, b: Input<Rgb>) -> Input<Rgb> {
+        match (a, b) {
+            (Input::Value(a), Input::Value(b)) => (a * b).into(),
+            (Input::Value(one), other) | (other, Input::Value(one)) if one == Rgb::WHITE => other,
+            (a, b) => {
+                let named = [&a, &b].into_iter().find_map(|input| match input {
+                    Input::Texture(name) => Some(name.clone()),
+                    Input::Value(_) => None,
+                });
+                let name = format!("{} product", named.unwrap_or_default());
+                Input::Texture(self.add(&name, Mix { a, b, amount: 1.0.into(), mode: MixMode::Multiply }))
+            }
+        }
+    }
+
+    /// Product of two numbers or textures.
+    pub fn number_product(&mut self, a: Input<f32>, b: Input<f32>) -> Input<f32> {
+        let gray = |input| match input {
+            Input::Value(number) => Input::Value(Rgb::splat(number)),
+            Input::Texture(name) => Input::Texture(name),
+        };
+        match self.product(gray(a), gray(b)) {
+            Input::Value(color) => color.r.into(),
+            Input::Texture(name) => Input::Texture(name),
+        }
+    }
+
+    /// Vertex colors, or their alpha.
+    pub fn vertex_colors<T>(&mut self, channel: Channel) -> Input<T> {
+        let name = if channel == Channel::A { "vertex alpha" } else { "vertex colors" };
+        let attribute = Attribute { name: VERTEX_COLORS.to_owned(), channel };
+        Input::Texture(self.add(&format!("{}{name}", self.prefix), attribute))
+    }
+
+    /// Name of an image texture. `None` for a texture without an image.
+    fn image(&mut self, info: &TextureInfo, reading: Reading, factor: f32) -> Result<Option<String>, Fault> {
+        let document = self.document;
+        let Some(texture) = document.textures.get(info.index.get()) else { return Ok(None) };
+        let at = format!("/textures/{}", info.index);
+        let Some(picture) = self.pictures.picture(texture, &mut self.warnings)? else {
+            self.warnings.add(at, "has no image and counts as white", 1);
+            return Ok(None);
+        };
+        let sampler = texture.sampler.and_then(|sampler| document.samplers.get(sampler.get()));
+        let sampler = sampler.cloned().unwrap_or_default();
+        let [wrap, wrap_v] = [sampler.wrap_s, sampler.wrap_t].map(continuation);
+        let image = Image {
+            color_space: reading.space,
+            channel: reading.channel,
+            factor,
+            wrap,
+            wrap_v: Some(wrap_v).filter(|wrap_v| *wrap_v != wrap),
+            filter: filter(&sampler, reading.is_sharp),
+            mapping: self.mapping(info, &at),
+            ..Image::new(picture.file)
+        };
+        let channel = match reading.channel {
+            Channel::Rgb => "",
+            Channel::R => ".r",
+            Channel::G => ".g",
+            Channel::B => ".b",
+            Channel::A => ".a",
+            Channel::Luminance => ".luminance",
+        };
+        Ok(Some(self.add(&format!("{}{}{channel}", self.prefix, picture.name), image)))
+    }
+
+    /// Set of texture coordinates and transform of a reference.
+    fn mapping(&mut self, info: &TextureInfo, at: &str) -> Mapping {
+        let set = info.set().get();
+        self.warnings.add(at, "uses texture coordinates beyond the second set; the first is used", u64::from(set > 1));
+        let matrix = info.extensions.transform.as_deref().map(matrix);
+        let matrix = matrix.filter(|matrix| *matrix != [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let matrix = matrix.map(|matrix| matrix.map(|number| number as f32));
+        Mapping { uv_set: u32::from(set == 1), matrix, ..Mapping::default() }
+    }
+
+    /// Adds a texture under a name, or under this name with a number; an equal one is used again.
+    fn add(&mut self, name: &str, texture: impl Into<AnyTexture>) -> String {
+        let texture = texture.into();
+        let content = format!("{texture:?}");
+        if let Some(known) = self.known.get(&content) {
+            return known.clone();
+        }
+        let mut unique = name.to_owned();
+        let mut number = 2u64;
+        while self.textures.contains_key(&unique) {
+            unique = format!("{name}#{number}");
+            number = number.saturating_add(1);
+        }
+        self.textures.insert(unique.clone(), texture);
+        self.known.insert(content, unique.clone());
+        unique
+    }
+}
+
+/// Factor of a document, which texture and material limit.
+fn number(factor: f64) -> f32 {
+    factor.clamp(-1e6, 1e6) as f32
+}
+
+fn continuation(wrap: Wrap) -> Continuation {
+    match wrap {
+        Wrap::ClampToEdge => Continuation::Clamp,
+        Wrap::MirroredRepeat => Continuation::Mirror,
+        Wrap::Repeat => Continuation::Repeat,
+    }
+}
+
+fn filter(sampler: &Sampler, is_sharp: bool) -> Filter {
+    match (sampler.mag_filter, sampler.min_filter) {
+        (Some(MagFilter::Nearest), _) => Filter::Nearest,
+        (_, Some(MinFilter::Nearest | MinFilter::Linear)) => Filter::Bilinear,
+        _ if is_sharp => Filter::Bilinear,
+        _ => Filter::Trilinear,
+    }
+}
+
+/// Matrix of a texture transform (offset o, rotation r, scale s, with v downwards) for texture
+/// coordinates with v upwards: [sx cos r, -sy sin r, ox + sy sin r; sx sin r, sy cos r, 1 - oy - sy
+/// cos r].
+pub(super) fn matrix(transform: &TextureTransform) -> [f64; 6] {
+    let TextureTransform { offset: [ox, oy], rotation, scale, .. } = *transform;
+    let [sx, sy] = scale.map(|scale| if scale.abs() < MIN_SCALE { MIN_SCALE } else { scale });
+    let (sin, cos) = portable::sin_cos_f64(rotation);
+    [sx * cos, -sy * sin, ox + sy * sin, sx * sin, sy * cos, 1.0 - oy - sy * cos]
+}
