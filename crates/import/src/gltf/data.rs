@@ -3,6 +3,7 @@
 use super::document::{Buffer, CompressedView, Index};
 use super::error::{Fault, GltfError, Place};
 use super::location::Location;
+use super::media::Media;
 use super::meshopt;
 use super::open::Gltf;
 use super::uri::{self, Uri};
@@ -35,6 +36,8 @@ pub struct GltfData {
     decoded: AtomicU64,
     /// Maximum number of decoded bytes.
     decoded_limit: u64,
+    /// Pictures and light profiles, once they are read.
+    pub(super) media: Media,
 }
 
 impl GltfData {
@@ -58,7 +61,7 @@ impl GltfData {
         let bytes = sizes.fold(gltf.length, |sum, size| sum.saturating_add(size as u64));
         let views = gltf.document.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let decoded_limit = gltf.limits.decoded_bytes_of(bytes);
-        Ok(Self { gltf, buffers, views, decoded: AtomicU64::new(0), decoded_limit })
+        Ok(Self { gltf, buffers, views, decoded: AtomicU64::new(0), decoded_limit, media: Media::default() })
     }
 
     /// Error of a fault in this file.
@@ -145,6 +148,11 @@ impl GltfData {
     /// Number of bytes of all arrays decoded so far.
     pub fn decoded_bytes(&self) -> u64 {
         self.decoded.load(Ordering::Relaxed)
+    }
+
+    /// Maximum number of bytes of all decoded arrays.
+    pub(super) fn decoded_limit(&self) -> u64 {
+        self.decoded_limit
     }
 
     /// Bytes of an image file.

@@ -1,0 +1,100 @@
+//! Pictures and light profiles of a file, which are read when it is opened.
+
+use super::Files;
+use super::data::GltfData;
+use super::document::{Document, Index};
+use super::error::{Fault, GltfError};
+use juggler_scene::Asset;
+
+/// Contents of pictures and light profiles by index; `None` where nothing uses them.
+#[derive(Debug, Default)]
+pub struct Media {
+    images: Vec<Option<Asset>>,
+    profiles: Vec<Option<Asset>>,
+}
+
+/// How the pictures of a file are used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Use {
+    /// A texture or a light uses the picture.
+    is_used: bool,
+    /// Each texture that uses the picture has another one in its place.
+    is_replaceable: bool,
+}
+
+impl GltfData {
+    /// Reads the pictures that textures and lights use, and the light profiles.
+    ///
+    /// # Errors
+    ///
+    /// A file is missing or too large, or a data URI is not valid. A picture may be missing if all
+    /// its textures have one in another format. All faults are reported at once.
+    pub fn load_media(&mut self, files: &dyn Files) -> Result<(), GltfError> {
+        let mut faults = Vec::new();
+        let mut keep = |result: Result<Asset, Fault>, is_replaceable: bool| match result {
+            Ok(asset) => Some(asset),
+            Err(fault) => {
+                if !is_replaceable {
+                    faults.push(fault);
+                }
+                None
+            }
+        };
+        let document = &self.gltf.document;
+        let uses = uses(document).into_iter().enumerate();
+        let images = uses.map(|(index, Use { is_used, is_replaceable })| {
+            let index = Index::from(u32::try_from(index).ok()?);
+            let read = || self.image(index, files).map(|bytes| Asset::from_bytes(bytes.into_owned()));
+            is_used.then(|| keep(read(), is_replaceable)).flatten()
+        });
+        let images = images.collect();
+        let profiles = document.extensions.lights_ies.iter().flat_map(|lights| &lights.lights).enumerate();
+        let profiles = profiles.map(|(index, profile)| {
+            let at = format!("/extensions/EXT_lights_ies/lights/{index}");
+            let bytes = self.data(&at, profile.uri.as_deref(), profile.buffer_view, files);
+            keep(bytes.map(|bytes| Asset::from_bytes(bytes.into_owned())), false)
+        });
+        let profiles = profiles.collect();
+        if !faults.is_empty() {
+            let omitted = faults.len().saturating_sub(self.gltf.limits.faults);
+            faults.truncate(self.gltf.limits.faults.max(1));
+            return Err(GltfError { file: self.gltf.name.clone(), faults, omitted });
+        }
+        self.media = Media { images, profiles };
+        Ok(())
+    }
+
+    /// Content of a picture that [`GltfData::load_media`] has read.
+    pub fn image_asset(&self, image: usize) -> Option<Asset> {
+        self.media.images.get(image).cloned().flatten()
+    }
+
+    /// Content of a light profile that [`GltfData::load_media`] has read.
+    pub fn profile_asset(&self, profile: usize) -> Option<Asset> {
+        self.media.profiles.get(profile).cloned().flatten()
+    }
+}
+
+/// Use of each picture.
+fn uses(document: &Document) -> Vec<Use> {
+    let mut uses = vec![Use { is_used: false, is_replaceable: true }; document.images.len()];
+    let mut add = |image: Option<Index>, is_replaceable: bool| {
+        if let Some(found) = image.and_then(|image| uses.get_mut(image.get())) {
+            found.is_used = true;
+            found.is_replaceable &= is_replaceable;
+        }
+    };
+    for texture in &document.textures {
+        let sources = [
+            texture.extensions.basisu.and_then(|texture| texture.source),
+            texture.extensions.webp.and_then(|texture| texture.source),
+            texture.source,
+        ];
+        // The first source in this order is the one that is shown.
+        let mut others = sources.iter().flatten().copied();
+        let first = others.next();
+        add(first, false);
+        others.for_each(|other| add(Some(other), true));
+    }
+    uses
+}
