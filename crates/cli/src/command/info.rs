@@ -2,7 +2,7 @@
 
 mod mesh;
 mod motion;
-mod part;
+mod partial_render;
 
 use crate::console;
 use crate::failure::Failure;
@@ -49,7 +49,7 @@ impl Info {
             return self.picture(format);
         }
         if film::is_partial_render(&start) {
-            return part::text(path, self.json);
+            return partial_render::text(path, self.json);
         }
         let scene = source::load(&self.scene, None)?;
         let compiled = scene.compile()?;
