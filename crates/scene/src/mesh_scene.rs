@@ -72,7 +72,7 @@ fn sun() -> Directional {
 }
 
 /// An overcast sky over gray ground.
-pub(crate) fn sky() -> Gradient {
+fn sky() -> Gradient {
     Gradient {
         horizon: Rgb::new(0.62, 0.66, 0.7),
         zenith: Rgb::new(0.3, 0.36, 0.45),

@@ -51,12 +51,14 @@ fn any_camera(camera: &Camera, world: &DAffine3) -> AnyCamera {
         (CameraType::Orthographic, projection) => {
             let height = projection.map(|projection| (2.0 * projection.ymag.abs()) as f32);
             let height = height.filter(|height| height.is_finite() && *height > 0.0);
-            Orthographic { eye, direction: Some(direction), up, height, ..Orthographic::default() }.into()
+            let fit_aspect = aspect(camera);
+            Orthographic { eye, direction: Some(direction), up, height, fit_aspect, ..Orthographic::default() }.into()
         }
         (CameraType::Perspective, _) => {
             let degrees = camera.perspective.map(|projection| projection.yfov.to_degrees().clamp(0.01, 179.9) as f32);
             let (direction, vertical_fov_degrees) = (Some(direction), degrees);
-            Perspective { eye, direction, up, vertical_fov_degrees, ..Perspective::default() }.into()
+            let fit_aspect = aspect(camera);
+            Perspective { eye, direction, up, vertical_fov_degrees, fit_aspect, ..Perspective::default() }.into()
         }
     }
 }

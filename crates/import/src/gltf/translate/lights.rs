@@ -4,10 +4,9 @@
 use super::cameras::{forward, position};
 use super::objects::View;
 use crate::gltf::document::{Document, IesReference, LightType, PunctualLight, SpotCone};
-use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
-use juggler_light::{AnyLight, Directional, Ies, Point, Spot};
+use juggler_light::{AnyLight, Directional, Ies, Point, Spot, SpotFalloff};
 use juggler_math::Rgb;
 use juggler_scene::Asset;
 
@@ -26,7 +25,7 @@ pub struct Lights {
 }
 
 /// Lights of the nodes of a scene. Lights of hidden nodes have the intensity 0.
-pub fn lights(view: &View<'_>, document: &Document, photometric: bool, warnings: &mut Warnings) -> Lights {
+pub fn lights(view: &View<'_>, document: &Document, photometric: bool) -> Lights {
     let mut found = Lights::default();
     let known = document.extensions.lights_punctual.as_ref().map(|lights| lights.lights.as_slice());
     for node in view.nodes {
@@ -39,9 +38,6 @@ pub fn lights(view: &View<'_>, document: &Document, photometric: bool, warnings:
         let punctual = extensions.light_punctual.and_then(|light| known?.get(light.light.get()));
         if let Some(light) = punctual {
             found.lights.push((name(), any_light(light, &world, scale)));
-            let has_range = light.range.is_some() && light.light_type != LightType::Directional;
-            let at = format_args!("/nodes/{}", node.index);
-            warnings.add(at, "the range of a light has no effect", u64::from(has_range && !HAS_RANGE));
         }
         if let Some(reference) = extensions.light_ies {
             let profile = reference.light.get();
@@ -54,9 +50,6 @@ pub fn lights(view: &View<'_>, document: &Document, photometric: bool, warnings:
     found
 }
 
-/// Whether point and spot lights have a range.
-const HAS_RANGE: bool = false;
-
 /// Light of a node.
 fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> AnyLight {
     let (color, intensity) = (rgb(light.color), intensity(light.intensity * scale));
@@ -64,8 +57,7 @@ fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> AnyLight {
     match light.light_type {
         LightType::Directional => Directional { direction, color, intensity, ..Directional::default() }.into(),
         LightType::Point => {
-            let point = Point { position, color, intensity: Some(intensity), ..Point::default() };
-            ranged_point(point, light.range).into()
+            Point { position, color, intensity: Some(intensity), range: range(light), ..Point::default() }.into()
         }
         LightType::Spot => {
             let SpotCone { inner_cone_angle, outer_cone_angle } = light.spot.unwrap_or_default();
@@ -73,20 +65,14 @@ fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> AnyLight {
             let beam_degrees = (inner_cone_angle.to_degrees() as f32).clamp(0.0, cutoff_degrees);
             let (intensity, beam_exponent) = (Some(intensity), 0.0);
             let spot = Spot { position, direction, color, intensity, beam_degrees, cutoff_degrees, ..Spot::default() };
-            ranged_spot(Spot { beam_exponent, ..spot }, light.range).into()
+            Spot { beam_exponent, falloff: SpotFalloff::SquaredCosine, range: range(light), ..spot }.into()
         }
     }
 }
 
-/// A point light that ends at a range, as far as point lights have one.
-fn ranged_point(point: Point, _range: Option<f64>) -> Point {
-    point
-}
-
-/// A spot light with the falloff of glTF, the square of the linear one in the cosine, that ends at a
-/// range; as far as spot lights have both.
-fn ranged_spot(spot: Spot, _range: Option<f64>) -> Spot {
-    spot
+/// Range of a light, if it has one.
+fn range(light: &PunctualLight) -> Option<f32> {
+    light.range.map(|range| range as f32).filter(|range| range.is_finite() && *range > 0.0)
 }
 
 /// Light with the distribution of a profile. Vertical angle 0 is the direction -z of the node.

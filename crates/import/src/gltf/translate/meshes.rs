@@ -1,15 +1,16 @@
 //! Meshes of primitives. Each distinct primitive is decoded once for all nodes and times, so meshes
 //! that nothing deforms share their arrays.
 
+use super::materials::{add_tangents, tangent_uv_set};
 use crate::gltf::data::GltfData;
-use crate::gltf::document::{Document, Semantic};
+use crate::gltf::document::{Document, Primitive, Semantic};
 use crate::gltf::draco::{self, DracoAttribute};
 use crate::gltf::error::Fault;
 use crate::gltf::pose::Vertices;
 use crate::gltf::primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
 use juggler_math::Aabb;
-use juggler_shape::{Mesh, MeshData};
+use juggler_shape::{AttributeData, AttributeDomain, Mesh, MeshAttribute, MeshData};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -50,6 +51,8 @@ pub struct Meshes {
 struct Entry {
     mesh: usize,
     part: usize,
+    /// Set of texture coordinates along which the material needs tangents.
+    tangent_set: Option<u32>,
     decoded: OnceLock<Result<(Option<Geometry>, Warnings), Fault>>,
 }
 
@@ -61,8 +64,9 @@ impl Meshes {
         for (mesh, found) in document.meshes.iter().enumerate() {
             let entries = &mut meshes.entries;
             let slots = found.primitives.iter().enumerate().map(|(part, primitive)| {
-                *known.entry(GeometryKey::new(primitive)).or_insert_with(|| {
-                    entries.push(Entry { mesh, part, decoded: OnceLock::new() });
+                let tangent_set = tangent_set(document, primitive);
+                *known.entry((GeometryKey::new(primitive), tangent_set)).or_insert_with(|| {
+                    entries.push(Entry { mesh, part, tangent_set, decoded: OnceLock::new() });
                     entries.len() - 1
                 })
             });
@@ -88,7 +92,7 @@ impl Meshes {
     /// An array of the primitive is not valid.
     pub fn get(&self, data: &GltfData, slot: usize) -> Result<(Option<&Geometry>, Option<&Warnings>), Fault> {
         let Some(entry) = self.entries.get(slot) else { return Ok((None, None)) };
-        match entry.decoded.get_or_init(|| decode(data, entry.mesh, entry.part)) {
+        match entry.decoded.get_or_init(|| decode(data, entry)) {
             Ok((geometry, warnings)) => Ok((geometry.as_ref(), Some(warnings))),
             Err(fault) => Err(fault.clone()),
         }
@@ -96,7 +100,8 @@ impl Meshes {
 }
 
 /// Decodes a primitive.
-fn decode(data: &GltfData, mesh: usize, part: usize) -> Result<(Option<Geometry>, Warnings), Fault> {
+fn decode(data: &GltfData, entry: &Entry) -> Result<(Option<Geometry>, Warnings), Fault> {
+    let Entry { mesh, part, tangent_set, .. } = *entry;
     let assembly = match data.assemble(mesh, part)? {
         Assembly::Draco(stream) => data.assemble_draco(mesh, part, &decompress(data, mesh, part, &stream)?)?,
         assembly => assembly,
@@ -104,11 +109,21 @@ fn decode(data: &GltfData, mesh: usize, part: usize) -> Result<(Option<Geometry>
     match assembly {
         Assembly::Arrays(mut arrays) => {
             let warnings = std::mem::take(&mut arrays.warnings);
+            if let Some(set) = tangent_set {
+                add_tangents(&mut arrays, set);
+            }
             Ok((Some(geometry(arrays)), warnings))
         }
         Assembly::LeftOut(warnings) => Ok((None, warnings)),
         Assembly::Draco(_) => Err(Fault::at(pointer(mesh, part), "the compressed data cannot be read")),
     }
+}
+
+/// Set of texture coordinates along which a material of a primitive, in any variant, needs tangents.
+fn tangent_set(document: &Document, primitive: &Primitive) -> Option<u32> {
+    let mappings = primitive.extensions.variants.iter().flat_map(|variants| &variants.mappings);
+    let materials = primitive.material.into_iter().chain(mappings.map(|mapping| mapping.material));
+    materials.into_iter().find_map(|material| tangent_uv_set(document, material.get()))
 }
 
 /// JSON pointer of a primitive.
@@ -140,9 +155,14 @@ pub fn mesh(vertices: Vertices, triangles: Vec<[u32; 3]>) -> Mesh {
 
 /// Arrays of a mesh. The only place where attributes of vertices become those of a mesh.
 fn mesh_data(vertices: Vertices, triangles: Vec<[u32; 3]>) -> MeshData {
-    let Vertices { positions, normals, texcoords, .. } = vertices;
-    let uvs = texcoords.into_iter().next().unwrap_or_default();
-    MeshData { positions, triangles, normals, uvs }
+    let Vertices { positions, normals, tangents, texcoords, colors } = vertices;
+    let mut sets = texcoords.into_iter();
+    let (uvs, uvs1) = (sets.next().unwrap_or_default(), sets.next().unwrap_or_default());
+    let attributes = (!colors.is_empty()).then(|| {
+        let data = AttributeData::F32(colors.into_flattened());
+        ("color".to_owned(), MeshAttribute { domain: AttributeDomain::Vertex, channels: 4, data })
+    });
+    MeshData { positions, triangles, normals, uvs, uvs1, tangents, attributes: attributes.into_iter().collect() }
 }
 
 /// Decodes the Draco stream of a primitive.

@@ -140,7 +140,7 @@ impl Content {
         let document = pointers::animated(&self.data.gltf.document, &posed.pose, &mut findings.warnings);
         let mut objects = Objects::new(view, MaterialSet::new(&document, &self.data, prefix));
         objects.add_all(&mut findings);
-        let lights = lights::lights(&view, &document, choice.photometric, &mut findings.warnings);
+        let lights = lights::lights(&view, &document, choice.photometric);
         let Objects { materials, groups, objects, .. } = objects;
         let materials = materials.finish();
         findings.warnings.append(materials.warnings);
