@@ -193,6 +193,7 @@ impl Sample {
         let lists = self.positions * 12 + self.uvs * 8 + self.normals * 12;
         let polygons = if self.corners > self.triangles * 3 { self.triangles * 16 } else { 0 };
         Counts {
+            face_bytes: 0,
             vertices,
             triangles: self.triangles,
             vertex_bytes: 12 + attribute_bytes,
