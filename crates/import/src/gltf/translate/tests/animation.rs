@@ -39,7 +39,7 @@ fn times_change_values_only_and_share_arrays() {
     let names = |parts: &ModelParts| parts.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&early), names(&late));
     assert!(early.groups.keys().eq(late.groups.keys()) && early.materials.keys().eq(late.materials.keys()));
-    let [first, second] = [&early, &late].map(|parts| mesh(&parts.groups["mesh 0"][0]).arrays());
+    let [first, second] = [&early, &late].map(|parts| mesh(&parts.groups["mesh mesh 0"][0]).arrays());
     assert!(Arc::ptr_eq(first, second));
 }
 
