@@ -52,5 +52,7 @@ pub fn frames_of(seconds: f64) -> u32 {
 /// A studio around a model without lights, which the camera sees as light gray. A model with lights
 /// has a black background, or the image-based light of its file.
 fn background() -> BackgroundInput {
-    BackgroundInput::Kind(Studio { visible_as: Some(Rgb::splat(0.9)), ..Studio::default() }.into())
+    let mut studio = Studio::default();
+    studio.visible_as = Some(Rgb::splat(0.9));
+    BackgroundInput::Kind(studio.into())
 }

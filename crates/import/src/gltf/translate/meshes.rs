@@ -10,7 +10,8 @@ use crate::gltf::pose::Vertices;
 use crate::gltf::primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
 use juggler_math::Aabb;
-use juggler_shape::{AttributeData, AttributeDomain, Mesh, MeshAttribute, MeshData};
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
+use juggler_shape::{Mesh, MeshData};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
