@@ -92,7 +92,7 @@ impl ModelFile for Toy {
         let mut fur = Principled::default();
         fur.medium.distance = 1.0;
         if choice.variant.is_some() {
-            fur.metallic = juggler_material::Input::Value(1.0);
+            fur.metallic = 1.0.into();
         }
         let named = |name: &str| Some(MaterialRef::Name(format!("{prefix}{name}")));
         let ball = Object { material: named("Fur"), ..Object::new(Sphere { radius: 1.0 }) };
@@ -323,7 +323,9 @@ fn a_model_file_is_a_scene_and_is_read_again_when_its_files_change() {
     let inner = folder.path().join("inner");
     fs::create_dir(&inner).unwrap();
     let saved = inner.join("a.json");
-    fs::write(&saved, scene.to_json_in(&inner)).unwrap();
+    let beside = folder.path().join("scene.json");
+    fs::write(&beside, r#"{"version": 1, "objects": [{"model": {"file": "a.toy"}}]}"#).unwrap();
+    fs::write(&saved, LOADER.load(&beside).unwrap().to_json_in(&inner)).unwrap();
     assert!(fs::read_to_string(&saved).unwrap().contains("\"../a.toy\""));
     assert_eq!(LOADER.load(&saved).unwrap().compile().unwrap().bounds, scene.compile().unwrap().bounds);
     fs::write(&path, "toy\nlit\n").unwrap();
