@@ -1,7 +1,7 @@
 """Furniture of the room; every function adds nodes to a document and returns nothing."""
 import math
 
-from gltf import rounded, srgb
+from gltf import rounded
 from mesh import Mesh, curve, grid, joined
 from noise import between, hashed
 from shapes import bent, box, cylinder, lathe, smooth_profile, tube, turned
@@ -66,17 +66,17 @@ def armchair(document, look, at, degrees):
     put(document, "Armchair legs", joined(*legs), look["walnut"], node)
 
 
-def lamp(document, look, at):
-    """Add a floor lamp: brass, an emissive linen shade and a point light inside."""
-    node = document.node("Floor lamp", translation=rounded(at))
+def floor_light(document, look, at):
+    """Add a floor light: brass, an emissive linen shade and a point light inside."""
+    node = document.node("Floor light", translation=rounded(at))
     foot = turned([(0, 0, 0), (0.14, 0, 0.006), (0.135, 0.022, 0.012), (0.02, 0.032, 0.008), (0.011, 0.06, 0),
                    (0.011, 1.42, 0.004), (0, 1.42, 0)], 48)
-    put(document, "Lamp stand", foot, look["brass"], node)
+    put(document, "Light stand", foot, look["brass"], node)
     shade = lathe([(0.2, 1.24, (0.96, 0.28)), (0.13, 1.5, (0.96, 0.28))], 64)
-    put(document, "Lamp shade", shade, look["shade"], node)
+    put(document, "Light shade", shade, look["shade"], node)
     rims = [tube([(r * math.sin(a), y, r * math.cos(a)) for a in [2 * math.pi * i / 64 for i in range(49)]],
                  0.004, 6, caps=False) for r, y in ((0.2, 1.24), (0.13, 1.5))]
-    put(document, "Lamp rims", joined(*rims), look["brass"], node)
+    put(document, "Light rims", joined(*rims), look["brass"], node)
     light = document.light(type="point", name="Bulb", color=[1, 0.72, 0.42], intensity=0.9)
     document.node("Bulb", node, translation=[0, 1.38, 0], extensions=light)
 

@@ -143,13 +143,13 @@ def materials(document):
         return document.material(name, srgb(code), 0.38, 0.0, {
             "KHR_materials_clearcoat": {"clearcoatFactor": 1.0, "clearcoatRoughnessFactor": 0.03}})
 
-    def glow(name, code, strength):
+    def emitter(name, code, strength):
         return document.material(name, (0.02, 0.02, 0.02), 0.4, emissiveFactor=srgb(code), extensions={
             "KHR_materials_emissive_strength": {"emissiveStrength": strength}})
 
     return {
         "paint": (paint("Tangerine paint", "ee6c1f"), paint("Lagoon paint", "0f8f93")),
-        "glow": (glow("Ice light", "7fe9ff", 2.2), glow("Amber light", "ffc26a", 2.2)),
+        "emitter": (emitter("Ice light", "7fe9ff", 2.2), emitter("Amber light", "ffc26a", 2.2)),
         "white": document.material("Porcelain paint", srgb("ece7dc"), 0.3, 0.0, {
             "KHR_materials_clearcoat": {"clearcoatFactor": 0.8, "clearcoatRoughnessFactor": 0.06}}),
         "rubber": document.material("Rubber", srgb("2b2d31"), 0.62),
@@ -229,8 +229,8 @@ def make():
     robot = document.mesh(
         "Robot", varied(joined(shell, shoes), "paint"), plain(joined(cap, hands), "white"),
         plain(joined(trunk, ears, joints), "metal"), plain(rubber, "rubber"), plain(visor, "visor"),
-        varied(joined(badge, bulb), "glow"))
-    mesh = document.mesh("Face", varied(face(rig), "glow"), weights=[0, 1],
+        varied(joined(badge, bulb), "emitter"))
+    mesh = document.mesh("Face", varied(face(rig), "emitter"), weights=[0, 1],
                          extras={"targetNames": ["Blink", "Smile"]})
     document.node("Robot", mesh=robot, skin=skin)
     face_node = document.node("Face", mesh=mesh, skin=skin)

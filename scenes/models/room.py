@@ -1,7 +1,7 @@
-"""A sunlit room: textures, a sun through a window, a lamp, instances of books and leaves."""
+"""A sunlit room: textures, a sun through a window, a floor light, instances of books and leaves."""
 import png
 import textures
-from furniture import armchair, chair, curtain, flat, lamp, picture, plant, put, shelf, table, vase
+from furniture import armchair, chair, curtain, flat, floor_light, picture, plant, put, shelf, table, vase
 from gltf import Document, rounded, srgb, transformed
 from mesh import joined
 from shapes import box, superellipsoid, tube
@@ -45,7 +45,7 @@ def fabrics(document, look):
         extensions={"KHR_materials_diffuse_transmission": {
             "diffuseTransmissionFactor": 0.55, "diffuseTransmissionColorFactor": srgb("f6ecd8")}})
     look["shade"] = document.material(
-        "Lamp shade", srgb("f3e3c3"), 0.9, doubleSided=True, emissiveFactor=srgb("ffc98a"),
+        "Light shade", srgb("f3e3c3"), 0.9, doubleSided=True, emissiveFactor=srgb("ffc98a"),
         extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 1.6}})
 
 
@@ -136,13 +136,13 @@ def make():
     lemons = [superellipsoid((0.034, 0.03, 0.03), 1, 24, 14).moved((0.08 * i, 0.03, 0.05 * (i % 2))) for i in range(3)]
     put(document, "Lemons", joined(*lemons), look["fruit"], None, (-0.5, 0.75, -1.4))
     shelf(document, look, (1.58, 0, BACK + 0.16))
-    lamp(document, look, (0.62, 0, -1.78))
+    floor_light(document, look, (0.62, 0, -1.78))
     armchair(document, look, (1.5, 0, -0.75), -48)
     plant(document, look, (-1.98, 0, -1.35))
-    picture(document, look, "Large picture", (-WIDTH / 2, 1.55, -0.35), 1.0, 0.75, 90)
+    picture(document, look, "Large picture", (-WIDTH / 2, 1.62, -1.0), 0.8, 0.6, 90)
     picture(document, look, "Small picture", (0.64, 1.92, BACK), 0.36, 0.27, 0)
     sun = document.light(type="directional", name="Sun", color=[1, 0.9, 0.76], intensity=15)
     document.node("Sun", rotation=rounded(look_at((0, 0, 0), (0.36, -0.62, 1))), extensions=sun)
-    eye, target = (0.45, 1.35, 2.8), (-0.05, 1.05, -1.5)
-    document.camera("View", eye, target, 44, look_at(eye, target))
+    eye, target = (0.5, 1.4, 2.85), (-0.08, 0.93, -1.5)
+    document.camera("View", eye, target, 45, look_at(eye, target))
     return document.glb()
