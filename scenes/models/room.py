@@ -34,7 +34,7 @@ def wood(document, look):
 def fabrics(document, look):
     weave = document.texture(png.normals(textures.weave(), 2.0, 24), "Weave normals")
     look["velvet"] = document.material(
-        "Ochre velvet", srgb("b5792a"), 0.85, normalTexture=transformed(weave, (4, 4)) | {"scale": 0.4},
+        "Ocher velvet", srgb("b5792a"), 0.85, normalTexture=transformed(weave, (4, 4)) | {"scale": 0.4},
         extensions={"KHR_materials_sheen": {"sheenColorFactor": srgb("e0b070"), "sheenRoughnessFactor": 0.4}})
     look["rug"] = document.material(
         "Rug", (1, 1, 1), 0.95, texture={"index": document.texture(png.indexed(*textures.rug()), "Rug")},

@@ -1,4 +1,4 @@
-"""Solids as meshes: bevelled boxes, turned profiles, tubes, superellipsoids, a gem."""
+"""Solids as meshes: beveled boxes, turned profiles, tubes, superellipsoids, a gem."""
 import math
 
 from mesh import Mesh, curve, grid, smoothed, turn

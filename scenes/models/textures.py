@@ -43,7 +43,7 @@ OAK = [(0.0, (38, 24, 15)), (0.25, (96, 62, 38)), (0.5, (150, 104, 66)), (0.75, 
 
 
 def plaster(size=256):
-    """Return rows of the height of trowelled plaster."""
+    """Return rows of the height of troweled plaster."""
     low = fractal(size, size, 4, 4, 41, 3)
     return [[0.5 + 0.5 * math.sin(9 * v) for v in row] for row in low]
 

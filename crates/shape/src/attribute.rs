@@ -22,6 +22,7 @@ pub enum AttributeDomain {
 /// largest one stands for 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "AttributeArray")]
 pub enum AttributeData {
     /// Integers from 0 to 255, which stand for 0 to 1.
     U8(Vec<u8>),

@@ -104,7 +104,7 @@ impl ModelFile for Toy {
             materials: IndexMap::from([(format!("{prefix}Fur"), fur.into())]),
             groups: IndexMap::from([(format!("{prefix}mesh Foot"), vec![ball])]),
             cameras: IndexMap::from([(format!("{prefix}Eye"), camera.into())]),
-            lights: if self.is_lit { vec![("Root/Lamp".into(), point.into())] } else { Vec::new() },
+            lights: if self.is_lit { vec![("Root/Bulb".into(), point.into())] } else { Vec::new() },
             objects: vec![head, foot],
             warnings: vec!["the toy is approximated".into()],
             ..ModelParts::default()

@@ -56,8 +56,8 @@ fn attributes_reach_materials_of_instances() {
     assert!(close3(Vec3::from(color.to_array()), Vec3::new(0.25, 0.25, 0.5), 1e-5), "{color:?}");
     let emission = found.shade(&vertex, Vec3::Y, 1.0, 0.5).emission;
     assert_eq!(emission, Rgb::BLACK);
-    let glow = world(triangle(1.0), transform, r#"{"attribute": {}}"#, r#"{"emissive": {"radiance": "t"}}"#);
-    let emission = glow.shade(&vertex, vertex.surface.normal, 1.0, 0.5).emission;
+    let emitter = world(triangle(1.0), transform, r#"{"attribute": {}}"#, r#"{"emissive": {"radiance": "t"}}"#);
+    let emission = emitter.shade(&vertex, vertex.surface.normal, 1.0, 0.5).emission;
     assert!(close3(Vec3::from(emission.to_array()), Vec3::new(0.25, 0.25, 0.5), 1e-5), "{emission:?}");
 }
 
