@@ -57,7 +57,7 @@ impl CompiledTexture for CompiledAttribute {
         let Self(Attribute { name, channel }) = self;
         let Some(value) = at.mesh.and_then(|point| point.attribute(name)) else { return Rgb::WHITE };
         // `max` turns NaN into 0.
-        let [r, g, b, a] = if name == COLOR { value.map(|number| number.max(0.0).min(1.0)) } else { value };
+        let [r, g, b, a] = if name == COLOR { value.map(|number| number.max(0.0).clamp(0.0, 1.0)) } else { value };
         match channel {
             Channel::Rgb => Rgb::new(r, g, b),
             Channel::R => Rgb::splat(r),
