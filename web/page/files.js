@@ -3,6 +3,9 @@
 /** Maximum total size of the files, in bytes. */
 const MOST = 1 << 30;
 
+/** Endings of the names of files that can be opened, the most likely one first. */
+const OPENED = [".json", ".gltf", ".glb", ".obj", ".ply", ".stl"];
+
 /** All files of a drop, folders included, as { name, file }; names include the dropped folders. */
 export async function dropped(transfer) {
   const files = [];
@@ -32,11 +35,13 @@ async function walk(entry, files) {
 
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
 
-/** Finds the scene, which is in the fewest folders, and reads the bytes of all files. */
+/** Finds the scene, or else the model or mesh, in the fewest folders, and reads the bytes of all files. */
 export async function scene(files) {
   const depth = ({ name }) => name.split("/").length;
-  const scenes = files.filter(({ name }) => name.toLowerCase().endsWith(".json")).sort((a, b) => depth(a) - depth(b));
-  if (scenes.length === 0) throw new Error("there is no scene among the files: its name ends in .json");
+  const ending = ({ name }) => OPENED.findIndex((ending) => name.toLowerCase().endsWith(ending));
+  const scenes = files.filter((file) => ending(file) >= 0);
+  scenes.sort((a, b) => ending(a) - ending(b) || depth(a) - depth(b));
+  if (scenes.length === 0) throw new Error(`there is no scene among the files: its name ends in ${OPENED.join(", ")}`);
   const sum = files.reduce((bytes, { file }) => bytes + file.size, 0);
   if (sum > MOST) throw new Error(`the files have ${Math.round(sum / 2 ** 20)} MiB; the page takes up to 1024`);
   const bytes = await Promise.all(files.map(({ file }) => file.arrayBuffer()));

@@ -111,7 +111,7 @@ function progress() {
 
 function save() {
   const blob = new Blob([view.compositor.png()], { type: "image/png" });
-  const name = source.name.split("/").at(-1).replace(/\.json$/i, "");
+  const name = source.name.split("/").at(-1).replace(/\.(json|gltf|glb|obj|ply|stl)$/i, "");
   const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: `${name}.png` });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);

@@ -239,11 +239,11 @@ pub struct RenderArgs {
     ///
     /// If the render is interrupted, the same command resumes from the checkpoint. A finished
     /// picture can be resumed with more samples.
-    #[arg(long, value_name = "FILE", help_heading = "Parts")]
+    #[arg(long, value_name = "FILE", help_heading = "Partial renders")]
     pub checkpoint: Option<String>,
 
     /// Time between checkpoints
-    #[arg(long, value_name = "SECONDS", value_parser = value::interval, default_value = "60", requires = "checkpoint", help_heading = "Parts", hide_short_help = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = value::interval, default_value = "60", requires = "checkpoint", help_heading = "Partial renders", hide_short_help = true)]
     pub checkpoint_every: f64,
 
     /// Render part I of N, to be joined by `juggler merge`
@@ -252,11 +252,11 @@ pub struct RenderArgs {
     /// JOB_COMPLETION_INDEX or HQ_TASK_ID. For a picture, the part is a partial render (.jfilm).
     /// For a movie or numbered pictures, it is every N-th frame; for a movie, the same command
     /// without --shard then encodes all frames.
-    #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
+    #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Partial renders")]
     pub shard: Option<Shard>,
 
     /// Samples A to B-1 of each pixel, as a partial render; multiples of 16
-    #[arg(long, value_name = "A..B", value_parser = value::samples, conflicts_with_all = ["noise", "time", "shard", "samples_from"], help_heading = "Parts", hide_short_help = true)]
+    #[arg(long, value_name = "A..B", value_parser = value::samples, conflicts_with_all = ["noise", "time", "shard", "samples_from"], help_heading = "Partial renders", hide_short_help = true)]
     pub sample_range: Option<std::ops::Range<u32>>,
 
     /// Number of threads [default: one per core]

@@ -105,6 +105,7 @@ impl From<SceneError> for Failure {
             | SceneError::AssetName(_)
             | SceneError::Foreign { .. }
             | SceneError::Mesh(_)
+            | SceneError::Model { .. }
             | SceneError::UnknownBuiltIn { .. } => Self::Invalid(error.to_string()),
         }
     }

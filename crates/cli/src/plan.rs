@@ -9,7 +9,7 @@ mod view;
 
 pub use effect::Target;
 pub use movie::Movie;
-pub use output_kind::{Encoding, OutputKind, PART_ENDING};
+pub use output_kind::{Encoding, OutputKind, PARTIAL_RENDER_EXTENSION};
 pub use parts::{Checkpoint, Cut, Shard};
 pub use view::end_warning;
 
@@ -160,13 +160,13 @@ impl Plan {
     pub fn options(&self) -> Options {
         match self.output_kind {
             OutputKind::Picture(encoding) => encoding.options,
-            OutputKind::Part => Options::default(),
+            OutputKind::PartialRender => Options::default(),
         }
     }
 
     /// Whether the picture needs a film in memory instead of being written row by row.
     pub fn needs_film(&self, frame_output: &FrameOutput) -> bool {
-        let is_kept = self.output_kind == OutputKind::Part
+        let is_kept = self.output_kind == OutputKind::PartialRender
             || frame_output.checkpoint.is_some()
             || self.settings.limit != Limit::Samples;
         is_kept || !self.settings.aovs.is_empty() || self.settings.denoiser.is_some()
@@ -236,7 +236,7 @@ impl Plan {
             shard,
         };
         let Shard { index, count } = self.shard;
-        if self.output_kind != OutputKind::Part {
+        if self.output_kind != OutputKind::PartialRender {
             // Distribute whole pictures over the shards in turns.
             let own = frames.skip(index as usize).step_by(count as usize);
             return own.map(|frame| frame_output(frame, Shard::WHOLE)).collect();
@@ -255,7 +255,7 @@ fn settings(args: &RenderArgs, output_kind: OutputKind) -> Settings {
             (_, None, None) => Limit::Samples,
             (None, time, _) => Limit::Time { seconds: time.map_or(0.0, |time| time.as_secs_f64()) },
         },
-        crop: if output_kind == OutputKind::Part { None } else { args.crop },
+        crop: if output_kind == OutputKind::PartialRender { None } else { args.crop },
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
         aovs: Vec::new(),

@@ -49,7 +49,7 @@ pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Sc
 #[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {
     let path = Path::new(name);
-    let is_foreign = matches!(Content::detect(path), Content::Unsupported(_));
+    let is_foreign = matches!(Content::detect(path), Content::Unsupported(_)) && !juggler::loader().is_model(path);
     if path.exists() && !path.is_dir() && !is_foreign {
         return Ok(());
     }

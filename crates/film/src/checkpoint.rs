@@ -23,8 +23,8 @@ pub struct Checkpoint {
 #[derive(Debug, Default)]
 pub struct OpenedCheckpoint {
     /// The checkpoint to resume from; `None` if no file exists.
-    pub part: Option<PartialRender>,
-    /// Why the newest checkpoint is unusable, if `part` is the previous one.
+    pub partial_render: Option<PartialRender>,
+    /// Why the newest checkpoint is unusable, if `partial_render` is the previous one.
     pub damage: Option<PartialRenderError>,
 }
 
@@ -71,15 +71,17 @@ impl Checkpoint {
         let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
         name.push(".previous");
         let previous = path.with_file_name(name);
-        let part = open_verified(path);
-        let is_good = matches!(part, Ok(Some(_)));
+        let partial_render = open_verified(path);
+        let is_good = matches!(partial_render, Ok(Some(_)));
         let checkpoint = Self { path: path.to_owned(), previous, is_good };
-        let found = match part {
-            Ok(Some(part)) => OpenedCheckpoint { part: Some(part), damage: None },
+        let found = match partial_render {
+            Ok(Some(partial_render)) => OpenedCheckpoint { partial_render: Some(partial_render), damage: None },
             // The process was killed while replacing the file, or nothing was saved yet.
-            Ok(None) => OpenedCheckpoint { part: open_verified(&checkpoint.previous)?, damage: None },
+            Ok(None) => OpenedCheckpoint { partial_render: open_verified(&checkpoint.previous)?, damage: None },
             Err(damage) => match open_verified(&checkpoint.previous) {
-                Ok(Some(part)) => OpenedCheckpoint { part: Some(part), damage: Some(damage) },
+                Ok(Some(partial_render)) => {
+                    OpenedCheckpoint { partial_render: Some(partial_render), damage: Some(damage) }
+                }
                 _ => return Err(damage),
             },
         };
@@ -111,19 +113,19 @@ fn open_verified(path: &Path) -> Result<Option<PartialRender>, PartialRenderErro
     match PartialRender::open(path) {
         Err(PartialRenderError::Read { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error),
-        Ok(part) => part.verify().map(|()| Some(part)),
+        Ok(partial_render) => partial_render.verify().map(|()| Some(partial_render)),
     }
 }
 
-/// Adds all tiles of `part` to `film`, whose render `goal` describes.
+/// Adds all tiles of `partial_render` to `film`, whose render `goal` describes.
 ///
 /// # Errors
 ///
 /// The partial render belongs to another image, its stop rule is incompatible, or it holds samples
 /// that `film` does not expect.
-pub fn resume(part: &PartialRender, goal: &RenderDescription, film: &Film) -> Result<(), ResumeError> {
-    let file = || part.path().display().to_string();
-    let found = part.description();
+pub fn resume(partial_render: &PartialRender, goal: &RenderDescription, film: &Film) -> Result<(), ResumeError> {
+    let file = || partial_render.path().display().to_string();
+    let found = partial_render.description();
     let differences = goal.mismatches(found);
     let differences: Vec<String> = differences
         .iter()
@@ -141,8 +143,8 @@ pub fn resume(part: &PartialRender, goal: &RenderDescription, film: &Film) -> Re
     }
     let incompatible = |what: String| ResumeError::Incompatible { file: file(), what };
     check_stop(found.stop, goal.stop).map_err(&incompatible)?;
-    let mut reader = part.reader()?;
-    for number in part.tiles() {
+    let mut reader = partial_render.reader()?;
+    for number in partial_render.tiles() {
         let tile = reader.tile(number)?;
         check_tile(&tile, number, film).map_err(&incompatible)?;
         film.add(number, tile).map_err(|error| ResumeError::Tile { file: file(), error })?;
@@ -208,15 +210,15 @@ mod tests {
     fn a_render_resumes_from_its_checkpoint() {
         let (_folder, path) = place("a.jfilm");
         let (mut kept, nothing) = found(&path);
-        assert!(nothing.part.is_none() && nothing.damage.is_none());
+        assert!(nothing.partial_render.is_none() && nothing.damage.is_none());
         kept.save(&description(REGION, 64), &film_with(20, 64)).unwrap();
-        let part = found(&path).1.part.unwrap();
+        let partial_render = found(&path).1.partial_render.unwrap();
         for goal in [64, 100] {
             let film = film(goal);
-            resume(&part, &description(REGION, goal), &film).unwrap();
+            resume(&partial_render, &description(REGION, goal), &film).unwrap();
             assert_eq!(film.tiles().collect::<Vec<_>>(), film_with(20, 64).tiles().collect::<Vec<_>>());
         }
-        let refused = resume(&part, &description(REGION, 16), &film(16)).unwrap_err().to_string();
+        let refused = resume(&partial_render, &description(REGION, 16), &film(16)).unwrap_err().to_string();
         assert!(refused.contains("up to 20") && refused.contains("beyond 16"), "{refused}");
     }
 
@@ -224,17 +226,17 @@ mod tests {
     fn another_picture_is_rejected_with_its_differences() {
         let (_folder, path) = place("a.jfilm");
         found(&path).0.save(&description(REGION, 64), &film_with(16, 64)).unwrap();
-        let part = found(&path).1.part.unwrap();
+        let partial_render = found(&path).1.partial_render.unwrap();
         let mut other = description(REGION, 64);
         other.fingerprint.insert("seed".into(), "8".into());
         other.frame = 3.0;
-        let refused = resume(&part, &other, &film(64)).unwrap_err().to_string();
+        let refused = resume(&partial_render, &other, &film(64)).unwrap_err().to_string();
         assert!(refused.contains("seed: 7 instead of 8") && refused.contains("frame: 2.4"), "{refused}");
         other.scene = "juggler".into();
-        let refused = resume(&part, &other, &film(64)).unwrap_err().to_string();
+        let refused = resume(&partial_render, &other, &film(64)).unwrap_err().to_string();
         assert!(refused.contains("of the scene `") && refused.contains("not `juggler`"), "{refused}");
         let small = Film::from_tiles(Tiling::new(REGION), [(0, 0..64)]);
-        let refused = resume(&part, &description(REGION, 64), &small).unwrap_err().to_string();
+        let refused = resume(&partial_render, &description(REGION, 64), &small).unwrap_err().to_string();
         assert!(refused.contains("tile 1"), "{refused}");
     }
 
@@ -265,7 +267,9 @@ mod tests {
         kept.save(&description(REGION, 64), &film_with(16, 64)).unwrap();
         kept.save(&description(REGION, 64), &film_with(32, 64)).unwrap();
         let good = fs::read(&path).unwrap();
-        let held = |found: &OpenedCheckpoint| found.part.as_ref().map(|part| part.tile(0).unwrap().gapless_samples());
+        let held = |found: &OpenedCheckpoint| {
+            found.partial_render.as_ref().map(|partial_render| partial_render.tile(0).unwrap().gapless_samples())
+        };
         for bytes in [good.len() / 2, good.len() - 1, 4, 0] {
             fs::write(&path, &good[..bytes]).unwrap();
             let (mut kept, found) = found(&path);
@@ -279,7 +283,7 @@ mod tests {
         // Killed between removing the old file and renaming the new one.
         fs::remove_file(&path).unwrap();
         assert_eq!(held(&found(&path).1), Some(16));
-        fs::write(path.with_file_name("a.jfilm.previous"), "no part").unwrap();
+        fs::write(path.with_file_name("a.jfilm.previous"), "no partial_render").unwrap();
         fs::write(&path, &good[..good.len() - 1]).unwrap();
         assert!(matches!(Checkpoint::open(&path), Err(PartialRenderError::Truncated { .. })), "nothing good is left");
     }
@@ -310,7 +314,7 @@ mod tests {
         assert_eq!(some.add(0, tile(Tiling::new(REGION).tile(0).unwrap(), 0..32)), Ok(true));
         found(&path).0.save(&description(REGION, 64), &some).unwrap();
         let again = expected();
-        resume(&found(&path).1.part.unwrap(), &description(REGION, 64), &again).unwrap();
+        resume(&found(&path).1.partial_render.unwrap(), &description(REGION, 64), &again).unwrap();
         assert_eq!(again.samples(), 32 * 256);
     }
 }

@@ -78,10 +78,10 @@ pub fn from_text(text: &str, tiles: u64) -> Option<Vec<u32>> {
 }
 
 /// Samples per pixel of each tile of a partial render, in tile order; 0 for tiles that it lacks.
-pub fn from_partial_render(part: &PartialRender) -> Result<Vec<u32>, PartialRenderError> {
-    let mut counts = vec![0; usize::try_from(part.description().tiling().tile_count()).unwrap_or(0)];
-    let mut reader = part.reader()?;
-    for number in part.tiles() {
+pub fn from_partial_render(partial_render: &PartialRender) -> Result<Vec<u32>, PartialRenderError> {
+    let mut counts = vec![0; usize::try_from(partial_render.description().tiling().tile_count()).unwrap_or(0)];
+    let mut reader = partial_render.reader()?;
+    for number in partial_render.tiles() {
         let tile = reader.tile(number)?;
         if let Some(count) = usize::try_from(number).ok().and_then(|number| counts.get_mut(number)) {
             *count = tile.gapless_samples();

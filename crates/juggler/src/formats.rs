@@ -5,7 +5,7 @@ use juggler_scene::Loader;
 use juggler_scene::model::ModelFormat;
 
 /// All formats of model files.
-pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat];
+pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }];
 
 /// Loader of scenes that knows all formats of model files.
 ///

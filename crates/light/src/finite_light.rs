@@ -129,7 +129,7 @@ pub(super) fn range_factor(range: Option<f32>, center: Vec3, from: Vec3) -> f32 
 
 /// Factor from the intensity to the power per steradian that counts for light selection. A light
 /// without inverse-square falloff counts at `world_radius`, or at its range if that is nearer, so
-/// the estimate stays above 0 wherever the light shines.
+/// the estimate stays above 0 wherever the light emits to.
 pub(super) fn power_per_intensity(attenuation: &Attenuation, range: Option<f32>, world_radius: f32) -> f32 {
     let radius = range.map_or(world_radius, |range| world_radius.min(range));
     attenuation.at(radius) * radius * radius

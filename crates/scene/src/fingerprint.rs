@@ -63,9 +63,7 @@ impl Fingerprint {
         parts.insert_section("groups", groups, groups.is_empty());
         parts.insert_section("lights", lights, lights.is_empty());
         parts.insert_section("objects", objects, objects.is_empty());
-        if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
-            parts.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
-        }
+        parts.insert_motion(tracks);
         if !models.is_empty() {
             parts.insert("models", &digest_of(&models));
         }
@@ -90,6 +88,13 @@ impl Fingerprint {
     fn insert_some(&mut self, name: &str, part: Option<&impl Serialize>) {
         if let Some(part) = part {
             self.insert(name, &digest_of(part));
+        }
+    }
+
+    /// Adds the hash of the motion while the shutter is open, unless nothing moves.
+    fn insert_motion(&mut self, tracks: &Tracks) {
+        if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
+            self.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
         }
     }
 

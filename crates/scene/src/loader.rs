@@ -37,6 +37,11 @@ impl Loader {
         Scene::parse(text.into(), name, self.cache(Store::default()))
     }
 
+    /// Whether a file is in a model format that the loader knows, by its first bytes or its name.
+    pub fn is_model(self, path: &Path) -> bool {
+        self.cache(Store::default()).is_model(path)
+    }
+
     fn cache(self, store: Store) -> AssetCache {
         AssetCache::new(store).with_formats(self.formats)
     }

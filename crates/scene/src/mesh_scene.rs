@@ -9,9 +9,10 @@ use juggler_camera::{AnyCamera, Perspective};
 use juggler_integrator::Path as PathIntegrator;
 use juggler_light::background::Gradient;
 use juggler_light::{AnyLight, Directional};
-use juggler_material::{AnyMaterial, Diffuse, Plastic};
+use juggler_material::{AnyMaterial, Diffuse, Principled};
 use juggler_math::{Aabb, DVec3, Rgb, Vec3, portable};
 use juggler_shape::{Mesh, Plane};
+use juggler_texture::{AnyTexture, Attribute, Input};
 use std::path::Path;
 
 /// Direction from the center of the model to the camera: in front, slightly right and above.
@@ -31,8 +32,8 @@ const FLOOR_DEPTH: f64 = 1e-4;
 const MAX_COORDINATE: f64 = 1e15;
 
 /// Describes a scene around the mesh in `file` with the given bounds. With `z_up`, the mesh is
-/// rotated so that its z axis points up.
-pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool) -> Description {
+/// rotated so that its z axis points up. With `has_colors`, it shows its attribute `color`.
+pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool, has_colors: bool) -> Description {
     let title = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
     let mut model = Object::new(Mesh::from_file(file)).named(title.as_str());
     if z_up {
@@ -52,8 +53,12 @@ pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool) -> Description
         lights: [AnyLight::from(sun()).into()].into_iter().collect(),
         ..Description::default()
     };
-    let clay = Plastic { reflectance: Rgb::new(0.5, 0.34, 0.24).into(), roughness: 0.5.into(), ..Plastic::default() };
-    scene.materials.insert("model".into(), AnyMaterial::from(clay).into());
+    let mut surface = Principled { base_color: Rgb::splat(0.8).into(), roughness: 0.5.into(), ..Principled::default() };
+    if has_colors {
+        scene.textures.insert("color".into(), AnyTexture::from(Attribute::default()).into());
+        surface.base_color = Input::Texture("color".into());
+    }
+    scene.materials.insert("model".into(), AnyMaterial::from(surface).into());
     scene.objects.push(model.material_named("model").into());
     if let Some(bounds) = ModelBounds::from_bounds(bounds, z_up) {
         let floor = Diffuse { reflectance: Rgb::splat(0.42).into(), ..Diffuse::default() };
@@ -72,7 +77,7 @@ fn sun() -> Directional {
 }
 
 /// An overcast sky over gray ground.
-pub(crate) fn sky() -> Gradient {
+fn sky() -> Gradient {
     Gradient {
         horizon: Rgb::new(0.62, 0.66, 0.7),
         zenith: Rgb::new(0.3, 0.36, 0.45),
@@ -172,7 +177,7 @@ mod tests {
     #[test]
     fn mesh_scenes_use_round_numbers() {
         assert_eq!([0.5, 1.0, 7.0, 10.0, 12345.0].map(power_of_ten), [0.1, 1.0, 1.0, 10.0, 10000.0]);
-        let scene = describe_mesh_scene("models/cow.obj", &bounds([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]), false);
+        let scene = describe_mesh_scene("models/cow.obj", &bounds([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]), false, false);
         let json = serde_json::to_value(&scene).unwrap();
         assert_eq!(json["title"], "cow");
         assert_eq!(json["objects"][0]["shape"]["mesh"]["file"], "models/cow.obj");
@@ -189,7 +194,7 @@ mod tests {
             ([0.0, 0.0, 0.0], [1e-3, 1e-3, 7e-3], true),
             ([0.0, 0.0, 0.0], [3e4, 2e4, 0.0], true),
         ] {
-            let scene = describe_mesh_scene("a.stl", &bounds(min, max), z_up);
+            let scene = describe_mesh_scene("a.stl", &bounds(min, max), z_up, true);
             let bounds = ModelBounds::from_bounds(&bounds(min, max), z_up).unwrap();
             let projection = scene.camera.unwrap().projection(UVec2::new(800, 600)).unwrap();
             let world_to_film = WorldToFilm::new(&projection).unwrap();
@@ -212,7 +217,7 @@ mod tests {
     #[test]
     fn empty_huge_and_tiny_bounds_give_no_camera() {
         for bounds in [Aabb::EMPTY, bounds([0.0; 3], [1e30; 3]), bounds([0.0; 3], [1e-30; 3])] {
-            let scene = describe_mesh_scene("a.obj", &bounds, false);
+            let scene = describe_mesh_scene("a.obj", &bounds, false, false);
             assert!(scene.camera.is_none() && scene.objects.len() == 1);
         }
     }

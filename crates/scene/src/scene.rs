@@ -92,7 +92,9 @@ impl Scene {
             Content::Scene => {}
             Content::Mesh { z_up } => {
                 let bounds = asset_cache.bounds(path).map_err(SceneError::Mesh)?;
-                let description = mesh_scene::describe_mesh_scene(&path.to_string_lossy(), &bounds, z_up);
+                let has_colors = asset_cache.has_colors(path);
+                let name = path.to_string_lossy();
+                let description = mesh_scene::describe_mesh_scene(&name, &bounds, z_up, has_colors);
                 return Ok(Self::around(description, asset_cache));
             }
             Content::Unsupported(format) => return Err(SceneError::Foreign { path: path.into(), format }),

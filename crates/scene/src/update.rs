@@ -13,17 +13,20 @@ impl Scene {
     /// in memory are never prepared twice. The result equals the result of [`Scene::compile`], bit
     /// for bit.
     pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
-        if self.expanded().is_some() || before.expanded().is_some() {
-            return self.compile();
-        }
-        let (tracks, wrong) = self.tracks();
+        let (mut tracks, wrong) = self.tracks();
         let change = self.change_since(before);
+        let expansion = self.expanded();
         let found = if self.has_world(before, &change) {
-            let (cameras, camera_keys, findings) = compile::cameras_of(&self.description, &tracks, &earlier.bounds);
+            let mut description = &self.description;
+            if let Some(expansion) = &expansion {
+                (description, tracks) = (&expansion.description, Arc::clone(&expansion.tracks));
+            }
+            let (cameras, camera_keys, mut findings) = compile::cameras_of(description, &tracks, &earlier.bounds);
+            findings.extend(expansion.iter().flat_map(|expansion| expansion.findings.clone()));
             let settings = (*self.description.render).clone();
             let integrator = self.integrator_choice();
             Some((Compiled { cameras, camera_keys, settings, integrator, ..earlier.clone() }, findings))
-        } else if self.has_objects(before, &change) {
+        } else if expansion.is_none() && before.expanded().is_none() && self.has_objects(before, &change) {
             compile::with_shading(&self.description, &tracks, self.files(), earlier)
         } else {
             None
@@ -42,7 +45,8 @@ impl Scene {
     fn has_world(&self, other: &Self, change: &Change) -> bool {
         use Changed::{Animation, Asset, Camera, Settings, Title, Tone};
         let same_motion = || {
-            let (a, b) = (self.tracks().0, other.tracks().0);
+            let tracks = |scene: &Self| scene.expanded().map_or_else(|| scene.tracks().0, |it| Arc::clone(&it.tracks));
+            let (a, b) = (tracks(self), tracks(other));
             Arc::ptr_eq(&a, &b) || (&a.objects, &a.groups, &a.lights) == (&b.objects, &b.groups, &b.lights)
         };
         let follows_paths = |scene: &Self| scene.integrator_choice().follows_paths();

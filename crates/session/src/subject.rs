@@ -162,7 +162,7 @@ impl Subject {
     /// no file holds the scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
         let path = Path::new(&self.name);
-        if Content::detect(path).is_mesh() {
+        if Content::detect(path).is_mesh() || self.file.is_around_model() {
             return None;
         }
         let text = read_text(path).ok()?;

@@ -22,6 +22,7 @@ pub enum AttributeDomain {
 /// largest one stands for 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "AttributeArray")]
 pub enum AttributeData {
     /// Integers from 0 to 255, which stand for 0 to 1.
     U8(Vec<u8>),
@@ -105,7 +106,8 @@ impl MeshAttribute {
     pub(crate) fn check(&self, name: &str, positions: usize, triangles: usize) -> Result<(), InvalidShape> {
         let field = |part: &str| format!("attributes.{name}.{part}");
         if !(1..=4).contains(&self.channels) {
-            let message = format!("`channels` of the attribute `{name}` must be 1 to 4, it is {}", self.channels);
+            let message =
+                format!("`channels` of the attribute `{name}` in `attributes` must be 1 to 4, it is {}", self.channels);
             return Err(invalid(field("channels"), message));
         }
         let (values, what) = match self.domain {
@@ -115,7 +117,7 @@ impl MeshAttribute {
         let (found, channels) = (self.data.len(), self.channels);
         if values.checked_mul(channels as usize) != Some(found) {
             let message = format!(
-                "the attribute `{name}` must have {channels} numbers for each of the {values} {what}, it has {found}"
+                "the attribute `{name}` in `attributes` must have {channels} numbers for each of the {values} {what}, it has {found}"
             );
             return Err(invalid(field("data"), message));
         }
@@ -123,7 +125,10 @@ impl MeshAttribute {
         match numbers.iter().position(|number| !(number.abs() <= check::MAX_LENGTH)) {
             Some(at) => Err(invalid(
                 format!("attributes.{name}.data.f32[{at}]"),
-                format!("numbers of the attribute `{name}` must be finite, and at most {:e}", check::MAX_LENGTH),
+                format!(
+                    "numbers of the attribute `{name}` in `attributes` must be finite, and at most {:e}",
+                    check::MAX_LENGTH
+                ),
             )),
             None => Ok(()),
         }

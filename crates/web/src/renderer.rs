@@ -6,7 +6,7 @@ use crate::share::WorkerShare;
 use crate::worker_film::{WorkerFilm, coarse};
 use juggler::Picture;
 use juggler::imaging::Options;
-use juggler::scene::{Bundle, Scene};
+use juggler::scene::Bundle;
 use juggler_session::{BuildRequest, Edit, EditEffect, Subject, error_text};
 use serde::Serialize;
 use std::sync::Arc;

@@ -10,6 +10,7 @@ use juggler_shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
 use juggler_texture::TextureTable;
 use std::sync::Arc;
 
+mod attributes;
 mod moving;
 
 const NO_LIGHTS: [SceneLight; 0] = [];

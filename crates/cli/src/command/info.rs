@@ -3,7 +3,7 @@
 mod mesh;
 mod model;
 mod motion;
-mod part;
+mod partial_render;
 
 use crate::console;
 use crate::failure::Failure;
@@ -53,7 +53,7 @@ impl Info {
             return self.picture(format);
         }
         if film::is_partial_render(&start) {
-            return part::text(path, self.json);
+            return partial_render::text(path, self.json);
         }
         let scene = source::load_model(&self.scene, &self.model, None)?;
         let compiled = scene.compile()?;

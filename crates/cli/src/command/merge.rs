@@ -9,7 +9,7 @@ use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::aovs::{self, AovOutput};
 use crate::plan::effect::{self, FlagUse};
-use crate::plan::{Encoding, PART_ENDING, Target};
+use crate::plan::{Encoding, PARTIAL_RENDER_EXTENSION, Target};
 use crate::progress::{Goal, Reporter, Watch, with_progress};
 use crate::reproduce::SAMPLES;
 use crate::stats::{self, ClampStats};
@@ -32,7 +32,7 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub struct Merge {
     /// Partial renders of one picture (.jfilm), in any order
-    #[arg(required = true, value_name = "PART")]
+    #[arg(required = true, value_name = "FILE")]
     partial_renders: Vec<String>,
     /// Output file; its extension selects the format
     ///
@@ -120,10 +120,11 @@ impl Merge {
         let start = Instant::now();
         output::at_most_one_stream(&self.output, self.stats.as_deref())?;
         output::check_stream(&self.output)?;
-        let is_partial_render =
-            Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
+        let is_partial_render = Path::new(&self.output)
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case(PARTIAL_RENDER_EXTENSION));
         let (merge, merged) = if is_partial_render {
-            effect::check(Target::Part, &self.flags())?;
+            effect::check(Target::PartialRender, &self.flags())?;
             let merge = film::Merge::open(&self.partial_renders, MergeGoal::PartialRender)?;
             if self.max_memory.is_some() {
                 memory::check(&merge, &AovSet::from_description(&merge.description().aovs)?, None, self.max_memory)?;

@@ -16,7 +16,8 @@ const FIRST_SCENE: &str = "juggler";
 /// Flags of `juggler serve`.
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// Scene file or mesh (PLY, OBJ, STL) to watch, or built-in scene [default: juggler]
+    /// Scene file, model (glTF) or mesh (PLY, OBJ, STL) to watch, or built-in scene [default:
+    /// juggler]
     scene: Option<String>,
 
     /// Address to listen on; port 0 selects a free port

@@ -12,8 +12,8 @@ const FIRST: &str = "juggler";
 /// Flags of `juggler view`.
 #[derive(Debug, Args)]
 pub struct View {
-    /// Scene file or mesh (PLY, OBJ, STL) to watch, or built-in scene [default: juggler, with a
-    /// menu of scenes]
+    /// Scene file, model (glTF) or mesh (PLY, OBJ, STL) to watch, or built-in scene [default:
+    /// juggler, with a menu of scenes]
     scene: Option<String>,
     /// Width and height of the picture in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = value::size)]

@@ -15,7 +15,7 @@ pub enum Target {
     /// A picture.
     Picture(Encoding),
     /// A partial render.
-    Part,
+    PartialRender,
     /// A movie.
     Movie(AnimationFormat),
 }
@@ -26,7 +26,7 @@ impl Target {
         match (output_kind, movie) {
             (_, Some(movie)) => Self::Movie(movie.format),
             (OutputKind::Picture(encoding), None) => Self::Picture(encoding),
-            (OutputKind::Part, None) => Self::Part,
+            (OutputKind::PartialRender, None) => Self::PartialRender,
         }
     }
 }
@@ -70,7 +70,7 @@ pub fn check(target: Target, given: &[FlagUse]) -> Result<(), Failure> {
 fn unsupported(flag: &str, target: Target) -> Option<String> {
     match target {
         Target::Picture(encoding) => unsupported_by_picture(flag, encoding),
-        Target::Part => unsupported_by_part(flag),
+        Target::PartialRender => unsupported_by_partial_render(flag),
         Target::Movie(format) => unsupported_by_movie(flag, format),
     }
 }
@@ -91,17 +91,17 @@ fn unsupported_by_picture(flag: &str, Encoding { format, options }: Encoding) ->
             format!("{flag} is for 8-bit pictures without a display look; this {format} file is never dithered")
         }
         "--fps" | "--plays" => format!("{flag} is for movies: {}", AnimationFormat::extensions()),
-        "--shard" => format!("{}; with --frames, it selects frames", makes_part(flag)),
-        "--sample-range" => makes_part(flag),
+        "--shard" => format!("{}; with --frames, it selects frames", makes_partial_render(flag)),
+        "--sample-range" => makes_partial_render(flag),
         _ => return None,
     })
 }
 
-fn makes_part(flag: &str) -> String {
+fn makes_partial_render(flag: &str) -> String {
     format!("{flag} makes a partial render, for `juggler merge`: give an output with the extension .jfilm")
 }
 
-fn unsupported_by_part(flag: &str) -> Option<String> {
+fn unsupported_by_partial_render(flag: &str) -> Option<String> {
     Some(match flag {
         "--bits" | "--look" => format!("{flag} is for pictures; a partial render stores sums of samples"),
         "--quality" => "--quality is for JPEG and MP4 files; a partial render has none".into(),
@@ -123,7 +123,7 @@ fn unsupported_by_movie(flag: &str, format: AnimationFormat) -> Option<String> {
         "--plays" if !format.stores_play_count() => {
             format!("--plays is for .webp, .apng and .gif; the player decides how often an {format} plays")
         }
-        "--sample-range" => makes_part(flag),
+        "--sample-range" => makes_partial_render(flag),
         _ => return None,
     })
 }

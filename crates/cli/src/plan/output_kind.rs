@@ -7,7 +7,7 @@ use juggler::imaging::{AnimationFormat, DisplayLook, ImageFormat, Options, Sampl
 use std::path::Path;
 
 /// Extension of partial renders.
-pub const PART_ENDING: &str = "jfilm";
+pub const PARTIAL_RENDER_EXTENSION: &str = "jfilm";
 
 /// Kind of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum OutputKind {
     /// A picture.
     Picture(Encoding),
     /// A partial render.
-    Part,
+    PartialRender,
 }
 
 /// File format and its options.
@@ -30,22 +30,24 @@ pub struct Encoding {
 impl OutputKind {
     /// Output kind from the output's extension and the flags.
     pub fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
-        let is_part = match &args.format {
-            Some(name) => name == PART_ENDING,
-            None => Path::new(output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING)),
+        let is_partial_render = match &args.format {
+            Some(name) => name == PARTIAL_RENDER_EXTENSION,
+            None => Path::new(output)
+                .extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case(PARTIAL_RENDER_EXTENSION)),
         };
         match output {
-            _ if !is_part && args.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
-                Err(Failure::Invalid(unknown_ending(output)))
+            _ if !is_partial_render && args.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
+                Err(Failure::Invalid(unknown_extension(output)))
             }
-            _ if !is_part => {
+            _ if !is_partial_render => {
                 let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
                 Ok(Self::Picture(encoding.with_look(args.look)))
             }
             STANDARD_OUTPUT => {
                 Err(Failure::Invalid("a partial render needs a file: it cannot be written to standard output".into()))
             }
-            _ => Ok(Self::Part),
+            _ => Ok(Self::PartialRender),
         }
     }
 }
@@ -55,7 +57,7 @@ fn is_picture(output: &str) -> bool {
 }
 
 /// Error message for an unknown extension, with all supported ones.
-fn unknown_ending(output: &str) -> String {
+fn unknown_extension(output: &str) -> String {
     let ending = Path::new(output).extension().map(|ending| ending.to_string_lossy());
     let wrong = match ending {
         Some(ending) => format!("unknown extension `.{ending}`"),
@@ -64,7 +66,7 @@ fn unknown_ending(output: &str) -> String {
     let (pictures, movies) = (ImageFormat::extensions(), AnimationFormat::extensions());
     format!(
         "`{output}`: {wrong}; supported: pictures {pictures}, movies {movies}, partial renders \
-         .{PART_ENDING} (or give --format)"
+         .{PARTIAL_RENDER_EXTENSION} (or give --format)"
     )
 }
 

@@ -94,7 +94,7 @@ pub fn variable(name: &str) -> Option<String> {
 impl Cut {
     /// Cut given by flags. The crop of a picture is no cut, but the picture's region.
     pub fn new(args: &RenderArgs, output_kind: OutputKind) -> Self {
-        let crop = args.crop.filter(|_| output_kind == OutputKind::Part);
+        let crop = args.crop.filter(|_| output_kind == OutputKind::PartialRender);
         Self { crop, samples: args.sample_range.clone() }
     }
 }

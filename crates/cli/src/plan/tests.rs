@@ -11,7 +11,7 @@ fn plan(line: &str) -> Result<Plan, Failure> {
 fn encoding(line: &str) -> Encoding {
     match plan(line).unwrap().output_kind {
         OutputKind::Picture(encoding) => encoding,
-        OutputKind::Part => panic!("{line}: a part"),
+        OutputKind::PartialRender => panic!("{line}: a partial render"),
     }
 }
 
@@ -85,8 +85,8 @@ fn shards_get_frames_in_turn() {
 
 #[test]
 fn partial_renders_are_known_by_their_ending_and_keep_a_film() {
-    assert_eq!(plan("a -o b.jfilm").unwrap().output_kind, OutputKind::Part);
-    assert_eq!(plan("a -o b --format jfilm").unwrap().output_kind, OutputKind::Part);
+    assert_eq!(plan("a -o b.jfilm").unwrap().output_kind, OutputKind::PartialRender);
+    assert_eq!(plan("a -o b --format jfilm").unwrap().output_kind, OutputKind::PartialRender);
     for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"] {
         let plan = plan(line).unwrap();
         assert!(plan.needs_film(&plan.frame_outputs(1, 1.0).unwrap()[0]), "{line}");

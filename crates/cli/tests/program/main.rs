@@ -10,6 +10,7 @@ mod inputs;
 mod memory;
 mod merging;
 mod meshes;
+mod models;
 mod movies;
 mod parts;
 mod pictures;

@@ -105,7 +105,7 @@ fn wrong_sets_of_partial_renders_are_named() {
     assert!(message.contains(expected), "{message}");
     assert!(folder.bad("merge 0.jfilm -o a.jfilm --bits 8", 2).contains("--bits"));
     assert!(folder.bad("merge 0.jfilm -o a.tga", 2).contains(".png"));
-    assert!(folder.bad("merge -o a.png", 2).contains("PART"));
+    assert!(folder.bad("merge -o a.png", 2).contains("<FILE>"));
     assert!(!folder.path("a.png").exists() && !folder.path("a.jfilm").exists());
 }
 
@@ -133,7 +133,7 @@ fn info_describes_partial_renders() {
     shards(&folder, 3);
     let words = folder.good("info 1.jfilm").stdout;
     for expected in [
-        "part         shard 1/3, finished",
+        "shard        1/3, finished",
         "picture      70x40, until the noise is 0.1, at most 40 samples",
         "scene        ball, frame 1.5",
         "tiles        5 of 15",

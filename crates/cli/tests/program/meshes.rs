@@ -102,12 +102,12 @@ fn mesh_is_rendered_like_a_scene() {
 #[test]
 fn files_of_other_programs_are_named() {
     let folder = Folder::new();
-    fs::write(folder.path("car.glb"), b"glTF\x02\0\0\0").unwrap();
+    fs::write(folder.path("car.fbx"), b"Kaydara FBX Binary  \0").unwrap();
     fs::write(folder.path("room.pov"), "sphere { 0, 1 }").unwrap();
     for command in ["render", "check", "info", "convert"] {
         let output = if command == "convert" { " a.json" } else { "" };
-        let message = folder.bad(&format!("{command} car.glb{output}"), 2);
-        assert_eq!(message, "error: `car.glb`: glTF is not supported; supported mesh formats: OBJ, PLY and STL\n");
+        let message = folder.bad(&format!("{command} car.fbx{output}"), 2);
+        assert_eq!(message, "error: `car.fbx`: FBX is not supported; supported mesh formats: OBJ, PLY and STL\n");
         assert!(
             folder.bad(&format!("{command} room.pov{output}"), 2).contains("POV-Ray's scene language is not supported")
         );

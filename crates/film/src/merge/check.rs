@@ -19,7 +19,7 @@ struct Span {
     tile: u64,
     start: u32,
     end: u32,
-    part: u32,
+    partial_render: u32,
 }
 
 /// Opens and verifies all files. Returns the compatible partial renders and the description of the
@@ -36,48 +36,52 @@ pub(super) fn check<P: AsRef<Path>>(
     if files.is_empty() {
         problems.push(MergeProblem::None);
     }
-    let mut parts = Vec::new();
+    let mut partial_renders = Vec::new();
     for file in files {
         match PartialRender::open(file.as_ref()) {
-            Ok(part) => parts.push(part),
+            Ok(partial_render) => partial_renders.push(partial_render),
             Err(error) => problems.push(MergeProblem::Unreadable(error)),
         }
     }
-    let parts = without_foreign(parts, &mut problems);
-    let (parts, mut spans) = verified(parts, &mut problems);
+    let partial_renders = without_foreign(partial_renders, &mut problems);
+    let (partial_renders, mut spans) = verified(partial_renders, &mut problems);
     spans.sort_unstable();
-    problems.extend(duplicates(&parts, &spans));
-    let Some(first) = parts.iter().min_by_key(|part| (part.description().shard.index, part.path())) else {
+    problems.extend(duplicates(&partial_renders, &spans));
+    let Some(first) = partial_renders
+        .iter()
+        .min_by_key(|partial_render| (partial_render.description().shard.index, partial_render.path()))
+    else {
         return refused(problems);
     };
     let samples = first.description().samples;
-    let coverage = Coverage::new(first.description(), &parts, &spans);
+    let coverage = Coverage::new(first.description(), &partial_renders, &spans);
     let finished = coverage.is_whole();
     let description =
         RenderDescription { shard: ShardDescription::whole(samples), finished, ..first.description().clone() };
     if goal == MergeGoal::Whole && !finished {
-        let unfinished = parts.iter().filter(|part| !part.description().finished).map(name);
+        let unfinished =
+            partial_renders.iter().filter(|partial_render| !partial_render.description().finished).map(name);
         problems.extend(unfinished.map(|file| MergeProblem::Unfinished { file }));
-        problems.push(MergeProblem::Missing(coverage.remaining_work(&parts)));
+        problems.push(MergeProblem::Missing(coverage.remaining_work(&partial_renders)));
     }
-    if problems.is_empty() { Ok((parts, description)) } else { refused(problems) }
+    if problems.is_empty() { Ok((partial_renders, description)) } else { refused(problems) }
 }
 
-fn name(part: &PartialRender) -> String {
-    part.path().display().to_string()
+fn name(partial_render: &PartialRender) -> String {
+    partial_render.path().display().to_string()
 }
 
 /// Keeps the largest group of partial renders with equal settings and reports every other one as
 /// belonging to another image.
-fn without_foreign(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> Vec<PartialRender> {
+fn without_foreign(partial_renders: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> Vec<PartialRender> {
     let mut groups: Vec<Vec<PartialRender>> = Vec::new();
-    for part in parts {
+    for partial_render in partial_renders {
         let same = |group: &&mut Vec<PartialRender>| {
-            group.first().is_some_and(|first| first.description().mismatches(part.description()).is_empty())
+            group.first().is_some_and(|first| first.description().mismatches(partial_render.description()).is_empty())
         };
         match groups.iter_mut().find(same) {
-            Some(group) => group.push(part),
-            None => groups.push(vec![part]),
+            Some(group) => group.push(partial_render),
+            None => groups.push(vec![partial_render]),
         }
     }
     // Among groups of equal size, the first one wins.
@@ -87,23 +91,23 @@ fn without_foreign(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) 
     }
     let chosen = groups.swap_remove(largest);
     let Some(first) = chosen.first() else { return chosen };
-    for part in groups.iter().flatten() {
-        let mismatches = first.description().mismatches(part.description());
-        problems.push(MergeProblem::OtherImage { file: name(part), other: name(first), mismatches });
+    for partial_render in groups.iter().flatten() {
+        let mismatches = first.description().mismatches(partial_render.description());
+        problems.push(MergeProblem::OtherImage { file: name(partial_render), other: name(first), mismatches });
     }
     chosen
 }
 
 /// Reads every tile of every partial render and returns the valid partial renders with their sample
 /// ranges.
-fn verified(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> (Vec<PartialRender>, Vec<Span>) {
+fn verified(partial_renders: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> (Vec<PartialRender>, Vec<Span>) {
     let mut whole = Vec::new();
     let mut spans = Vec::new();
-    for part in parts {
-        match own_spans(&part, whole.len() as u32) {
+    for partial_render in partial_renders {
+        match own_spans(&partial_render, whole.len() as u32) {
             Ok(own) => {
                 spans.extend(own);
-                whole.push(part);
+                whole.push(partial_render);
             }
             Err(error) => problems.push(MergeProblem::Unreadable(error)),
         }
@@ -111,12 +115,12 @@ fn verified(parts: Vec<PartialRender>, problems: &mut Vec<MergeProblem>) -> (Vec
     (whole, spans)
 }
 
-fn own_spans(part: &PartialRender, number: u32) -> Result<Vec<Span>, PartialRenderError> {
-    let mut reader = part.reader()?;
+fn own_spans(partial_render: &PartialRender, number: u32) -> Result<Vec<Span>, PartialRenderError> {
+    let mut reader = partial_render.reader()?;
     let mut spans = Vec::new();
-    for tile in part.tiles() {
+    for tile in partial_render.tiles() {
         let samples = reader.tile(tile)?;
-        spans.extend(ranges(&samples).map(|Range { start, end }| Span { tile, start, end, part: number }));
+        spans.extend(ranges(&samples).map(|Range { start, end }| Span { tile, start, end, partial_render: number }));
     }
     Ok(spans)
 }
@@ -128,14 +132,17 @@ fn ranges(tile: &Tile) -> impl Iterator<Item = Range<u32>> {
 }
 
 /// Pairs of partial renders that hold the same samples, with the number of tiles affected.
-fn duplicates(parts: &[PartialRender], spans: &[Span]) -> Vec<MergeProblem> {
+fn duplicates(partial_renders: &[PartialRender], spans: &[Span]) -> Vec<MergeProblem> {
     let mut tiles: BTreeMap<[u32; 2], u64> = BTreeMap::new();
     for tile in spans.chunk_by(|a, b| a.tile == b.tile) {
         let mut pairs = BTreeSet::new();
         let mut farthest: Option<&Span> = None;
         for span in tile {
             if let Some(other) = farthest.filter(|other| other.end > span.start) {
-                pairs.insert([other.part.min(span.part), other.part.max(span.part)]);
+                pairs.insert([
+                    other.partial_render.min(span.partial_render),
+                    other.partial_render.max(span.partial_render),
+                ]);
             }
             if farthest.is_none_or(|other| other.end < span.end) {
                 farthest = Some(span);
@@ -143,7 +150,7 @@ fn duplicates(parts: &[PartialRender], spans: &[Span]) -> Vec<MergeProblem> {
         }
         pairs.into_iter().for_each(|pair| *tiles.entry(pair).or_default() += 1);
     }
-    let file = |number: u32| parts.get(number as usize).map(name).unwrap_or_default();
+    let file = |number: u32| partial_renders.get(number as usize).map(name).unwrap_or_default();
     tiles.into_iter().map(|(pair, tiles)| MergeProblem::Duplicate { files: pair.map(file), tiles }).collect()
 }
 
@@ -161,10 +168,10 @@ struct MissingRun {
 }
 
 impl<'a> Coverage<'a> {
-    fn new(picture: &'a RenderDescription, parts: &[PartialRender], spans: &[Span]) -> Self {
+    fn new(picture: &'a RenderDescription, partial_renders: &[PartialRender], spans: &[Span]) -> Self {
         let mut missing_runs: Vec<MissingRun> = Vec::new();
         let mut add = |tiles: Range<u64>, spans: &[Span]| {
-            let samples = missing(picture, parts, spans);
+            let samples = missing(picture, partial_renders, spans);
             if !tiles.is_empty() && !samples.is_empty() {
                 missing_runs.push(MissingRun { tiles, samples });
             }
@@ -186,16 +193,16 @@ impl<'a> Coverage<'a> {
 
     /// Shards that cover the missing samples, or the missing sample ranges if the partial renders
     /// are not shards.
-    fn remaining_work(&self, parts: &[PartialRender]) -> RemainingWork {
+    fn remaining_work(&self, partial_renders: &[PartialRender]) -> RemainingWork {
         let whole = ShardDescription::whole(self.picture.samples);
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
-        for shard in parts.iter().map(|part| &part.description().shard) {
+        for shard in partial_renders.iter().map(|partial_render| &partial_render.description().shard) {
             if shard.count > 1 && shard.samples == whole.samples && shard.crop.is_none() {
                 *counts.entry(shard.count).or_default() += 1;
             }
         }
         let can_be_assigned = self.picture.tiling().tile_count() <= MAX_ASSIGNED_TILES;
-        let most = counts.into_iter().filter(|_| can_be_assigned).max_by_key(|(_, parts)| *parts);
+        let most = counts.into_iter().filter(|_| can_be_assigned).max_by_key(|(_, partial_renders)| *partial_renders);
         let Some((count, _)) = most else { return self.samples() };
         let open = |tile: u64, samples: &Range<u32>| {
             let run = self.missing_runs.get(self.missing_runs.partition_point(|run| run.tiles.end <= tile));
@@ -223,7 +230,7 @@ impl<'a> Coverage<'a> {
 }
 
 /// Missing sample ranges of one tile, of which `spans` are present.
-fn missing(picture: &RenderDescription, parts: &[PartialRender], spans: &[Span]) -> Vec<Range<u32>> {
+fn missing(picture: &RenderDescription, partial_renders: &[PartialRender], spans: &[Span]) -> Vec<Range<u32>> {
     let mut missing = Vec::new();
     let mut end = 0;
     for span in spans {
@@ -232,7 +239,11 @@ fn missing(picture: &RenderDescription, parts: &[PartialRender], spans: &[Span])
         }
         end = end.max(span.end);
     }
-    let is_finished = |span: &Span| parts.get(span.part as usize).is_some_and(|part| part.description().finished);
+    let is_finished = |span: &Span| {
+        partial_renders
+            .get(span.partial_render as usize)
+            .is_some_and(|partial_render| partial_render.description().finished)
+    };
     // With a noise or time limit the number of samples varies between tiles, so a finished partial
     // render decides how many its tiles need.
     let ended = picture.stop != Stop::Samples && !spans.is_empty() && spans.iter().all(is_finished);

@@ -35,15 +35,15 @@ pub enum MergeGoal {
 /// Validated partial renders of one image.
 #[derive(Clone, Debug)]
 pub struct Merge {
-    parts: Vec<PartialRender>,
+    partial_renders: Vec<PartialRender>,
     description: RenderDescription,
 }
 
 impl Merge {
     /// Opens and validates the partial renders in `files`; their order does not matter.
     pub fn open<P: AsRef<Path>>(files: &[P], goal: MergeGoal) -> Result<Self, MergeError> {
-        let (parts, description) = check::check(files, goal)?;
-        Ok(Self { parts, description })
+        let (partial_renders, description) = check::check(files, goal)?;
+        Ok(Self { partial_renders, description })
     }
 
     /// Description of the merged partial render.
@@ -53,7 +53,7 @@ impl Merge {
 
     /// Total number of tiles in all partial renders.
     pub fn tiles(&self) -> u64 {
-        self.parts.iter().map(|part| part.tiles().len() as u64).sum()
+        self.partial_renders.iter().map(|partial_render| partial_render.tiles().len() as u64).sum()
     }
 
     /// Streams the image to `rows` from top to bottom, some complete pixel rows at a time. Pixels
@@ -87,8 +87,8 @@ impl Merge {
     /// Samples per pixel of each tile over all partial renders, in tile order.
     pub fn counts(&self) -> Result<Vec<u32>, PartialRenderError> {
         let mut counts = vec![0_u32; usize::try_from(self.description.tiling().tile_count()).unwrap_or(0)];
-        for part in &self.parts {
-            let own = counts::from_partial_render(part)?;
+        for partial_render in &self.partial_renders {
+            let own = counts::from_partial_render(partial_render)?;
             counts.iter_mut().zip(own).for_each(|(count, own)| *count = count.saturating_add(own));
         }
         Ok(counts)
@@ -116,21 +116,23 @@ impl Merge {
     }
 
     fn holds_any(&self, band: &Range<u64>) -> bool {
-        self.parts.iter().any(|part| part.tiles_in(band.start, band.end).len() > 0)
+        self.partial_renders.iter().any(|partial_render| partial_render.tiles_in(band.start, band.end).len() > 0)
     }
 
     /// Merges the tiles of a band from all partial renders.
     fn gather(&self, tiling: &Tiling, band: &Range<u64>) -> Result<Vec<Tile>, PartialRenderError> {
         let Range { start: first, end } = *band;
         let mut tiles: Vec<Tile> = (first..end).filter_map(|number| Some(Tile::new(tiling.tile(number)?))).collect();
-        for part in self.parts.iter().filter(|part| part.tiles_in(first, end).len() > 0) {
-            let mut reader = part.reader()?;
-            for number in part.tiles_in(first, end) {
+        for partial_render in
+            self.partial_renders.iter().filter(|partial_render| partial_render.tiles_in(first, end).len() > 0)
+        {
+            let mut reader = partial_render.reader()?;
+            for number in partial_render.tiles_in(first, end) {
                 let more = reader.tile(number)?;
                 if let Some(tile) = tiles.get_mut((number - first) as usize) {
                     // The samples were checked for overlap on opening, so the file has changed
                     // since.
-                    tile.merge(more).map_err(|error| part.changed(&error.to_string()))?;
+                    tile.merge(more).map_err(|error| partial_render.changed(&error.to_string()))?;
                 }
             }
         }

@@ -23,7 +23,7 @@ impl Folder {
     }
 
     /// Writes a partial render that holds the given sample ranges of the given tiles.
-    fn part(&self, name: &str, description: &RenderDescription, units: &[(u64, Range<u32>)]) -> PathBuf {
+    fn partial_render(&self, name: &str, description: &RenderDescription, units: &[(u64, Range<u32>)]) -> PathBuf {
         let tiling = description.tiling();
         let tiles =
             units.iter().map(|(number, samples)| (*number, tile(tiling.tile(*number).unwrap(), samples.clone())));
@@ -42,7 +42,7 @@ impl Folder {
         let description = RenderDescription { shard, ..description(REGION, SAMPLES) };
         let units = Work::from_description(&description).shard(index, count);
         let units: Vec<_> = units.into_iter().map(|unit| (unit.tile, unit.samples)).collect();
-        self.part(&format!("{index}.jfilm"), &description, &units)
+        self.partial_render(&format!("{index}.jfilm"), &description, &units)
     }
 
     fn problems(&self, files: &[PathBuf]) -> String {
@@ -61,7 +61,8 @@ fn a_large_image_without_tiles_is_reported_at_once() {
         ShardDescription { index: 7, count: u32::MAX, ..ShardDescription::whole(SAMPLES) },
     ];
     for shard in shards {
-        let file = folder.part("large.jfilm", &RenderDescription { shard, ..description(region, SAMPLES) }, &[]);
+        let file =
+            folder.partial_render("large.jfilm", &RenderDescription { shard, ..description(region, SAMPLES) }, &[]);
         let start = std::time::Instant::now();
         let problems = folder.problems(&[file]);
         assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
@@ -75,7 +76,7 @@ fn differences_are_reported_in_a_few_printable_words() {
     let folder = Folder::new();
     let mut other = description(REGION, SAMPLES);
     other.fingerprint.insert("seed".into(), format!("\u{1b}[31m{}", "x".repeat(1_000_000)));
-    let files = [folder.shard(0, 1), folder.part("b.jfilm", &other, &[])];
+    let files = [folder.shard(0, 1), folder.partial_render("b.jfilm", &other, &[])];
     let problems = folder.problems(&files);
     assert!(problems.len() < 1000 && problems.contains("x…x") && !problems.contains('\u{1b}'), "{problems}");
 }
@@ -132,14 +133,14 @@ fn clamped_energy_is_summed_over_all_partial_renders() {
     assert!(expected > 0.0);
     for cut in [16, 48] {
         let folder = Folder::new();
-        let part = |name: &str, samples: Range<u32>| {
+        let partial_render = |name: &str, samples: Range<u32>| {
             let shard = ShardDescription { samples: samples.clone(), ..ShardDescription::whole(SAMPLES) };
             let path = folder.path(name);
             let description = RenderDescription { shard, clamped: true, ..description(REGION, SAMPLES) };
             write(&path, &description, clamped_tiles(REGION, samples)).unwrap();
             path
         };
-        let mut files = vec![part("b.jfilm", cut..SAMPLES), part("a.jfilm", 0..cut)];
+        let mut files = vec![partial_render("b.jfilm", cut..SAMPLES), partial_render("a.jfilm", 0..cut)];
         assert_eq!(merged(&files).1.clamped, expected);
         let joined = folder.path("joined.jfilm");
         Merge::open(&files, MergeGoal::PartialRender)
@@ -170,8 +171,9 @@ fn any_partition_and_merge_order_gives_the_whole_film() {
             }
         }
         let description = description(REGION, SAMPLES);
-        let part = |(i, units): (usize, &Vec<_>)| folder.part(&format!("{i}.jfilm"), &description, units);
-        let mut files: Vec<PathBuf> = parts.iter().enumerate().map(part).collect();
+        let partial_render =
+            |(i, units): (usize, &Vec<_>)| folder.partial_render(&format!("{i}.jfilm"), &description, units);
+        let mut files: Vec<PathBuf> = parts.iter().enumerate().map(partial_render).collect();
         shuffle(&mut files, &mut random);
         assert_eq!(merged(&files), expected);
         // Merge one half into one file, then merge that file with the others.
@@ -216,7 +218,7 @@ fn all_problems_are_reported_at_once() {
     let mut other = PartialRender::open(&files[13]).unwrap().description().clone();
     other.fingerprint.insert("scene".into(), "other".into());
     other.frame = 3.0;
-    files[13] = folder.part("13.jfilm", &other, &[]);
+    files[13] = folder.partial_render("13.jfilm", &other, &[]);
     std::fs::copy(&files[14], folder.path("14b.jfilm")).unwrap();
     files.insert(15, folder.path("14b.jfilm"));
     files.drain(7..10);
@@ -249,14 +251,17 @@ fn missing_samples_of_partial_renders_without_shards_are_named() {
     let folder = Folder::new();
     let description = description(REGION, SAMPLES);
     let units: Vec<_> = (0..14).map(|tile| (tile, 0..48)).collect();
-    let files = [folder.part("a.jfilm", &description, &units), folder.part("b.jfilm", &description, &[(1, 48..64)])];
+    let files = [
+        folder.partial_render("a.jfilm", &description, &units),
+        folder.partial_render("b.jfilm", &description, &[(1, 48..64)]),
+    ];
     let expected = "the partial renders `a.jfilm` and 1 more cannot be merged:
   still to do: samples 0..100 of 1 tile (the first at 64,32), samples 48..100 of 13 tiles (the first at 5,3), \
         samples 64..100 of 1 tile (the first at 16,3)";
     assert_eq!(folder.problems(&files), expected);
     assert!(!Merge::open(&files, MergeGoal::Whole).unwrap_err().has_file_errors());
-    let part = Merge::open(&files, MergeGoal::PartialRender).unwrap();
-    assert!(!part.description().finished);
+    let partial_render = Merge::open(&files, MergeGoal::PartialRender).unwrap();
+    assert!(!partial_render.description().finished);
 }
 
 #[test]
@@ -299,10 +304,11 @@ fn partial_renders_with_a_noise_target_have_as_many_samples_as_they_needed() {
             .map(|unit| (unit.tile, 0..16 + 16 * (unit.tile as u32 % 3)))
     };
     let units = |index| units(index).collect::<Vec<_>>();
-    let files = [folder.part("0.jfilm", &half(0), &units(0)), folder.part("1.jfilm", &half(1), &units(1))];
+    let files =
+        [folder.partial_render("0.jfilm", &half(0), &units(0)), folder.partial_render("1.jfilm", &half(1), &units(1))];
     assert!(Merge::open(&files, MergeGoal::Whole).unwrap().description().finished);
     let unfinished = RenderDescription { finished: false, ..half(1) };
-    folder.part("1.jfilm", &unfinished, &units(1));
+    folder.partial_render("1.jfilm", &unfinished, &units(1));
     let expected = "the partial renders `0.jfilm` and 1 more cannot be merged:
   `1.jfilm` is not finished; run its command again to continue
   still to do: shard 1 of 2 (--shard 1/2)";
@@ -318,7 +324,11 @@ fn crops_are_partial_renders_too() {
         let description = RenderDescription { shard, ..description(REGION, SAMPLES) };
         let units = Work::from_description(&description).shard(0, 1);
         assert!(!units.is_empty() && units.len() < tiling.tile_count() as usize);
-        folder.part(name, &description, &units.into_iter().map(|unit| (unit.tile, unit.samples)).collect::<Vec<_>>())
+        folder.partial_render(
+            name,
+            &description,
+            &units.into_iter().map(|unit| (unit.tile, unit.samples)).collect::<Vec<_>>(),
+        )
     };
     let files = [half("a.jfilm", Rect { width: 27, ..REGION }), half("b.jfilm", Rect { x: 32, width: 43, ..REGION })];
     assert_eq!(merged(&files), whole());

@@ -93,7 +93,8 @@ pub(super) struct Header {
     /// Layers that a chunk stores for each run of samples, in this order.
     pub layers: Vec<Layer>,
     /// Description of the partial render.
-    pub part: RenderDescription,
+    #[serde(rename = "part")]
+    pub partial_render: RenderDescription,
 }
 
 /// A named group of per-pixel channels.

@@ -80,7 +80,7 @@ impl PartialRender {
     pub fn reader(&self) -> Result<TileReader<'_>, PartialRenderError> {
         let name = self.path.display().to_string();
         match regular::open(&self.path) {
-            Ok(file) => Ok(TileReader { part: self, file, name, bytes: Vec::new() }),
+            Ok(file) => Ok(TileReader { partial_render: self, file, name, bytes: Vec::new() }),
             Err(source) => Err(PartialRenderError::Read { file: name, source }),
         }
     }
@@ -103,7 +103,7 @@ impl PartialRender {
 /// Reads tiles of a partial render.
 #[derive(Debug)]
 pub struct TileReader<'p> {
-    part: &'p PartialRender,
+    partial_render: &'p PartialRender,
     file: File,
     name: String,
     bytes: Vec<u8>,
@@ -112,7 +112,7 @@ pub struct TileReader<'p> {
 impl TileReader<'_> {
     /// Reads and verifies one tile; it is empty if the partial render does not store it.
     pub fn tile(&mut self, number: u64) -> Result<Tile, PartialRenderError> {
-        let PartialRender { tiling, locations, description, .. } = self.part;
+        let PartialRender { tiling, locations, description, .. } = self.partial_render;
         let Some(pixels) = tiling.tile(number) else {
             return Err(self.damaged(format!("its region has no tile {number}")));
         };
@@ -245,16 +245,16 @@ impl Source {
     }
 
     fn description(&self, header: &[u8]) -> Result<RenderDescription, PartialRenderError> {
-        let Header { layers: found, part } = serde_json::from_slice(header)
+        let Header { layers: found, partial_render } = serde_json::from_slice(header)
             .map_err(|error| self.damaged(format!("its header is malformed: {error}")))?;
-        let known = layers(&part);
+        let known = layers(&partial_render);
         if found != known {
             let (layers, known) = (describe(&found), describe(&known));
             return Err(PartialRenderError::Layers { file: self.name.clone(), layers, known });
         }
-        match part.problem() {
+        match partial_render.problem() {
             Some(problem) => Err(self.damaged(problem)),
-            None => Ok(part),
+            None => Ok(partial_render),
         }
     }
 

@@ -109,7 +109,7 @@ fn encode_header(name: &str, description: &RenderDescription) -> Result<Vec<u8>,
     if let Some(problem) = description.problem() {
         return Err(invalid(problem.to_owned()));
     }
-    let header = Header { layers: layers(description), part: description.clone() };
+    let header = Header { layers: layers(description), partial_render: description.clone() };
     let mut bytes = serde_json::to_vec_pretty(&header).map_err(|error| invalid(error.to_string()))?;
     bytes.push(b'\n');
     if bytes.len() > MAX_HEADER as usize {

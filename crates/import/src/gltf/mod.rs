@@ -1,6 +1,6 @@
 //! The format glTF 2.0 (Khronos Group, ISO/IEC 12113): documents, decoded arrays and poses.
 //!
-//! The modules know the format, not scenes. A file passes through them in this order:
+//! The modules know the format, not scenes, except the last step. A file passes through them in this order:
 //!
 //! | step | result |
 //! |---|---|
@@ -9,6 +9,7 @@
 //! | [`GltfData::vec3`] and similar methods | arrays of accessors |
 //! | [`GltfData::assemble`] | vertices and faces of a primitive |
 //! | [`pose`] | transforms, morphed and skinned vertices at a time |
+//! | [`GltfFormat`] | parts of a scene at a time |
 //!
 //! All bytes may be hostile. [`Limits`] bound what a file may demand, and a [`Fault`] names the
 //! place of an error.
@@ -21,6 +22,8 @@ pub mod document;
 pub mod draco;
 mod error;
 pub mod extensions;
+mod format;
+mod image_size;
 mod json;
 pub mod ktx2;
 pub mod ktx2_head;
@@ -31,6 +34,7 @@ pub mod meshopt;
 mod open;
 pub mod pose;
 mod primitive;
+mod summary;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -42,6 +46,7 @@ mod warning;
 pub use container::is_binary;
 pub use data::GltfData;
 pub use error::{Fault, GltfError, Place};
+pub use format::GltfFormat;
 pub use juggler_scene::model::{FileError, Files};
 pub use limits::Limits;
 pub use open::Gltf;

@@ -81,14 +81,14 @@ fn panorama_with_a_hot_spot_matches_quadrature() {
     traced(Scene::floor().before(panorama()), &at_origin(), 256).is(expected);
 }
 
-/// Camera rays see `visible_as`, through holes too; floors and mirrors see the studio itself.
+/// Camera rays see `visible_as`, through masks too; floors and mirrors see the studio itself.
 #[test]
 fn what_is_visible_instead_of_the_background_is_seen_by_camera_rays_only() {
     let studio = |visible: &str| prepared(read(&format!(r#"{{"studio": {{{visible}}}}}"#)));
     let [seen, plain] = [r#""visible_as": [0.25, 0.25, 0.25]"#, ""].map(studio);
-    let hole = || {
-        let mask = r#"{"mask": {"opacity": 0, "material": {"diffuse": {}}}}"#;
-        Scene::new().with(r#"{"plane": {}}"#, Vec3::ZERO, mask)
+    let mask = || {
+        let masked = r#"{"mask": {"opacity": 0, "material": {"diffuse": {}}}}"#;
+        Scene::new().with(r#"{"plane": {}}"#, Vec3::ZERO, masked)
     };
     let mirror = || Scene::new().with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"conductor": {"reflectance": 0.9}}"#);
     for integrator in [r#"{"path": {}}"#, r#"{"direct": {}}"#, r#"{"classic": {}}"#] {
@@ -96,7 +96,7 @@ fn what_is_visible_instead_of_the_background_is_seen_by_camera_rays_only() {
         let color = |scene: Scene, background: &AnyBackground| {
             measure(&scene.before(background.clone()).world(), &at_origin(), &*integrator, 64).mean
         };
-        for scene in [Scene::new, hole] {
+        for scene in [Scene::new, mask] {
             assert!((color(scene(), &seen) - 0.25).abs() < 1e-6, "{integrator:?}");
             assert!(color(scene(), &plain) < 0.2, "{integrator:?}");
         }

@@ -108,6 +108,12 @@ impl AssetCache {
         self.get(path).mesh.as_ref().map(|(mesh, _)| mesh.bounds()).map_err(Clone::clone)
     }
 
+    /// Whether a file's mesh has the attribute `color`; false if it cannot be read.
+    pub fn has_colors(&self, path: &std::path::Path) -> bool {
+        let entry = self.get(path);
+        entry.mesh.as_ref().is_ok_and(|(mesh, _)| mesh.arrays().attributes.contains_key("color"))
+    }
+
     /// Loads a file without holding the lock, since threads of one pool must not wait for each
     /// other in the middle of their work. If two threads load the same file, both get the mesh of
     /// the first.

@@ -1,4 +1,5 @@
-//! Objects: a shape, a group, a list of objects, a chain, a limb or a model, with transform and material.
+//! Objects: a shape, a group, a list of objects, a chain, a limb or a model, with transform and
+//! material.
 //!
 //! ```json
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}

@@ -5,6 +5,7 @@ use super::error::ImportErrorKind;
 use super::faces::Faces;
 use juggler_math::{Vec2, Vec3};
 use juggler_shape::MeshData;
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 
 /// Data of a mesh as a reader collects them. Indices of `faces` are in range.
 #[derive(Default)]
@@ -15,10 +16,36 @@ pub(super) struct MeshParts {
     pub normals: Vec<Vec3>,
     /// Texture coordinates: empty, or one per position.
     pub uvs: Vec<Vec2>,
+    /// Colors of the positions.
+    pub vertex_colors: Colors,
+    /// Colors of the triangles.
+    pub face_colors: Colors,
     /// The faces.
     pub faces: Faces,
     /// Warnings about ignored content.
     pub warnings: Vec<String>,
+}
+
+/// Linear colors of vertices or triangles.
+#[derive(Default)]
+pub(super) struct Colors {
+    /// Number of channels: 0 without colors, 3, or 4 with alpha.
+    pub channels: usize,
+    /// All channels of the first color first.
+    pub values: Vec<f32>,
+}
+
+impl Colors {
+    /// Appends the colors of the next piece of the file.
+    pub fn extend(&mut self, piece: Self) {
+        self.channels = piece.channels;
+        self.values.extend(piece.values);
+    }
+
+    fn into_attribute(self, domain: AttributeDomain) -> Option<MeshAttribute> {
+        let channels = u32::try_from(self.channels).ok().filter(|channels| *channels > 0)?;
+        Some(MeshAttribute { domain, channels, data: AttributeData::F32(self.values) })
+    }
 }
 
 impl MeshParts {
@@ -31,7 +58,21 @@ impl MeshParts {
             return Err(ImportErrorKind::NoTriangles { note });
         }
         let normals = clean_normals(self.normals, &mut warnings);
-        let mesh = MeshData { positions: self.positions, triangles, normals, uvs: self.uvs };
+        let vertex_colors = self.vertex_colors.into_attribute(AttributeDomain::Vertex);
+        let face_colors = self.face_colors.into_attribute(AttributeDomain::Face);
+        // A mesh that has both keeps the colors of its faces under another name.
+        let face_name = if vertex_colors.is_some() { "face_color" } else { "color" };
+        let attributes = vertex_colors.map(|colors| ("color", colors));
+        let attributes = attributes.into_iter().chain(face_colors.map(|colors| (face_name, colors)));
+        let attributes = attributes.map(|(name, colors)| (name.to_owned(), colors)).collect();
+        let mesh = MeshData {
+            positions: self.positions,
+            triangles,
+            normals,
+            uvs: self.uvs,
+            attributes,
+            ..MeshData::default()
+        };
         Ok(Imported { mesh, warnings })
     }
 }

@@ -41,6 +41,8 @@ pub(super) struct Counts {
     pub triangles: u64,
     /// Bytes of a vertex_bytes: position, normal, texture coordinates.
     pub vertex_bytes: u64,
+    /// Bytes of a triangle beside its indices: color.
+    pub face_bytes: u64,
     /// Temporary memory while reading, beside the file and the mesh, in bytes.
     pub temporary_bytes: u64,
 }
@@ -53,13 +55,15 @@ impl Counts {
             vertices: corners,
             triangles: facets,
             vertex_bytes: 12,
+            face_bytes: 0,
             temporary_bytes: corners.saturating_mul(CORNER - 12),
         }
     }
 
     fn estimate(&self, file: u64) -> Estimate {
         let product = u64::saturating_mul;
-        let mesh = product(self.vertices, self.vertex_bytes).saturating_add(product(self.triangles, FACE));
+        let mesh =
+            product(self.vertices, self.vertex_bytes).saturating_add(product(self.triangles, FACE + self.face_bytes));
         let reading = file.saturating_add(mesh).saturating_add(self.temporary_bytes);
         let building = mesh.saturating_add(product(self.triangles, BUILDING));
         let resident_bytes = mesh.saturating_add(product(self.triangles, BUILT));
@@ -189,6 +193,7 @@ impl Sample {
         let lists = self.positions * 12 + self.uvs * 8 + self.normals * 12;
         let polygons = if self.corners > self.triangles * 3 { self.triangles * 16 } else { 0 };
         Counts {
+            face_bytes: 0,
             vertices,
             triangles: self.triangles,
             vertex_bytes: 12 + attribute_bytes,

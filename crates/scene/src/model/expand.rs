@@ -109,12 +109,12 @@ pub fn expand(files: Files<'_>, tracks: &Tracks, time: SceneTime) -> Expansion {
 }
 
 /// A light or camera of a model: its value at the frame, and at each sampled time if it moves.
-pub(super) struct Placed<T> {
+pub(super) struct InModel<T> {
     pub value: T,
     pub keys: Vec<T>,
 }
 
-impl<T: PartialEq> Placed<T> {
+impl<T: PartialEq> InModel<T> {
     /// The values at the sampled times; `None` if the value is the same at all times.
     fn moving(&self) -> Option<&[T]> {
         let moves = self.keys.len() == SHUTTER_SAMPLES && self.keys.iter().any(|key| *key != self.value);
@@ -134,9 +134,9 @@ pub(super) struct Expander<'s> {
     pub findings: Vec<Finding>,
     pub identities: Vec<([u8; 32], Vec<f64>)>,
     /// Lights of models, by the path of the model and their index there.
-    pub lights: IndexMap<(String, usize), Placed<AnyLight>>,
+    pub lights: IndexMap<(String, usize), InModel<AnyLight>>,
     /// Cameras of models, by the path of the model and their index there, with their names.
-    pub cameras: IndexMap<(String, usize), (String, Placed<AnyCamera>)>,
+    pub cameras: IndexMap<(String, usize), (String, InModel<AnyCamera>)>,
 }
 
 impl Expander<'_> {

@@ -23,8 +23,8 @@ pub enum FileError {
 
 /// Source of the files that a model file names.
 pub trait Files {
-    /// Reads a file. `name` is relative to the folder of the model file, with the separators `/`, and
-    /// does not leave that folder.
+    /// Reads a file. `name` is relative to the folder of the model file, with the separators `/`,
+    /// and does not leave that folder.
     ///
     /// # Errors
     ///

@@ -1,7 +1,7 @@
 //! A model of a scene: its objects with the model's settings, and its other parts under names of
 //! their own.
 
-use super::expand::{Expander, Placed};
+use super::expand::{Expander, InModel};
 use super::placed::{placed_camera, placed_light, scaled_media, set_light_group};
 use super::{ModelChoice, ModelParts, OpenedModel};
 use crate::description::{BackgroundInput, Model, Object};
@@ -191,7 +191,7 @@ impl Expander<'_> {
             match self.lights.get_mut(&key(i)) {
                 Some(light) => light.keys.push(value),
                 None if place.is_moment => {}
-                None => drop(self.lights.insert(key(i), Placed { value, keys: Vec::new() })),
+                None => drop(self.lights.insert(key(i), InModel { value, keys: Vec::new() })),
             }
         }
         // A scene has either one camera or named cameras.
@@ -202,7 +202,7 @@ impl Expander<'_> {
                 None if place.is_moment => {}
                 None => {
                     let name = self.camera_name(name);
-                    self.cameras.insert(key(i), (name, Placed { value, keys: Vec::new() }));
+                    self.cameras.insert(key(i), (name, InModel { value, keys: Vec::new() }));
                 }
             }
         }

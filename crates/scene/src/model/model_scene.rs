@@ -4,6 +4,8 @@ use super::{ModelChoice, ModelFile};
 use crate::description::{Animation, BackgroundInput, Description, Model, Object, Render};
 use juggler_imaging::{AnyCurve, Tone};
 use juggler_integrator::Path as PathIntegrator;
+use juggler_light::background::Studio;
+use juggler_math::Rgb;
 use std::path::Path;
 
 /// Frames per second of a model's movie.
@@ -47,8 +49,10 @@ pub fn frames_of(seconds: f64) -> u32 {
     (seconds * FRAMES_PER_SECOND).round().clamp(1.0, 1e6) as u32
 }
 
-/// An overcast sky around a model without lights. A model with lights has a black background, or
-/// the image-based light of its file.
+/// A studio around a model without lights, which the camera sees as light gray. A model with lights
+/// has a black background, or the image-based light of its file.
 fn background() -> BackgroundInput {
-    BackgroundInput::Kind(crate::mesh_scene::sky().into())
+    let mut studio = Studio::default();
+    studio.visible_as = Some(Rgb::splat(0.9));
+    BackgroundInput::Kind(studio.into())
 }

@@ -36,11 +36,14 @@ pub fn set_light_group(light: &mut AnyLight, group: Option<&str>) {
 /// A camera of a model after the transform of its object.
 pub fn placed_camera(camera: &AnyCamera, transform: &Transform) -> AnyCamera {
     let mut camera = camera.clone();
-    let (eye, view, up) = match &mut camera {
-        AnyCamera::Perspective(c) => (&mut c.eye, &mut c.direction, &mut c.up),
-        AnyCamera::Orthographic(c) => (&mut c.eye, &mut c.direction, &mut c.up),
-        _ => return camera,
+    let (eye, target, view, up) = match &mut camera {
+        AnyCamera::Perspective(c) => (&mut c.eye, &mut c.look_at, &mut c.direction, &mut c.up),
+        AnyCamera::ThinLens(c) => (&mut c.eye, &mut c.look_at, &mut c.direction, &mut c.up),
+        AnyCamera::Orthographic(c) => (&mut c.eye, &mut c.look_at, &mut c.direction, &mut c.up),
     };
+    if view.is_none() {
+        *target = Some(transform.point(target.unwrap_or(Vec3::ZERO)));
+    }
     *eye = transform.point(*eye);
     *view = view.map(|view| direction(transform, view));
     *up = direction(transform, *up);

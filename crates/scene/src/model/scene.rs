@@ -27,16 +27,17 @@ impl Scene {
         if !has_models(&self.description) {
             return None;
         }
-        let mut known = self.expansion.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = known.as_ref().filter(|known| known.frame == self.frame && known.scene == self.description)
-        {
+        let memo = || self.expansion.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = memo().as_ref().filter(|k| k.frame == self.frame && k.scene == self.description) {
             return Some(Arc::clone(&known.expansion));
         }
+        // The lock is not held meanwhile: a thread that waits for parallel work may start other
+        // work that needs it.
         let (tracks, _) = self.tracks();
         let frames_per_second = self.description.animation.frames_per_second;
         let time = SceneTime { frame: self.frame, shutter: self.description.render.shutter, frames_per_second };
         let expansion = Arc::new(expand(self.files(), &tracks, time));
-        *known = Some(KnownExpansion {
+        *memo() = Some(KnownExpansion {
             scene: self.description.clone(),
             frame: self.frame,
             expansion: Arc::clone(&expansion),

@@ -42,7 +42,7 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
     assert_eq!(compiled.world.geometry_stats().triangles, 4);
     assert_eq!(scene.paths(), std::slice::from_ref(&path), "the mesh is watched");
     // Edits and other frames work as for scene files.
-    let edited = scene.with_value("/materials/model/plastic/roughness", 0.1.into()).unwrap();
+    let edited = scene.with_value("/materials/model/principled/roughness", 0.1.into()).unwrap();
     assert!(edited.compile().is_ok() && !edited.has_world_of(&scene));
     fs::write(&path, TETRAHEDRON.replace("v 0 2 0", "v 0 5.5 0")).unwrap();
     let again = scene.reload(&path).unwrap();

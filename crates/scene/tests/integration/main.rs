@@ -21,6 +21,7 @@ mod inline_textures;
 mod juggler;
 mod lighting;
 mod limits;
+mod models;
 mod mutations;
 mod units;
 mod values;

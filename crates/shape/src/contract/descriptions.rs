@@ -91,6 +91,16 @@ fn meshes_say_which_index_is_at_fault() {
     let whole = data(&[[0, 1, 2]]);
     refused(Mesh::from(MeshData { normals: vec![Vec3::X; 3], ..whole.clone() }), "normals");
     refused(Mesh::from(MeshData { uvs: vec![juggler_math::Vec2::NAN; 4], ..whole.clone() }), "uvs[0][0]");
+    refused(Mesh::from(MeshData { uvs1: vec![juggler_math::Vec2::X; 3], ..whole.clone() }), "uvs1");
+    refused(Mesh::from(MeshData { tangents: vec![[1.0, 0.0, 0.0, 0.5]; 4], ..whole.clone() }), "tangents[0][3]");
+    let attribute = |channels, numbers: &[f32]| {
+        let data = crate::attribute::AttributeData::F32(numbers.to_vec());
+        let attribute = crate::attribute::MeshAttribute { channels, data, ..Default::default() };
+        Mesh::from(whole.clone()).with_attribute("heat", attribute)
+    };
+    refused(attribute(5, &[0.0; 20]), "attributes.heat.channels");
+    refused(attribute(2, &[0.0; 9]), "attributes.heat.data");
+    refused(attribute(1, &[0.0, 1.0, f32::NAN, 0.0]), "attributes.heat.data.f32[2]");
     let mut broken = whole.clone();
     broken.positions[2].y = f32::NAN;
     refused(Mesh::from(broken), "positions[2][1]");
@@ -100,7 +110,7 @@ fn meshes_say_which_index_is_at_fault() {
     let file = Mesh::from_file("cow.ply");
     for mut both in [file.clone().with_normals([Vec3::X; 4]), file.with_uvs([juggler_math::Vec2::ZERO; 4])] {
         let error = both.load(whole.clone()).unwrap_err();
-        assert!(error.field == "file" && error.message.contains("`normals` or `uvs`"), "{error}");
+        assert!(error.field == "file" && error.message.contains("`normals`, `uvs`"), "{error}");
     }
 }
 

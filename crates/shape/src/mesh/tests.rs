@@ -4,6 +4,8 @@ use super::*;
 use examples::globe;
 use juggler_math::portable;
 
+mod rare;
+
 fn prepared(data: MeshData) -> Mesh {
     let mut mesh = Mesh::from(data);
     mesh.prepare().unwrap();

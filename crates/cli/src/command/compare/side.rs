@@ -29,10 +29,10 @@ impl ComparedPicture {
     /// Reads a picture, or a `.jfilm` file that holds a complete one.
     pub fn read(name: &str) -> Result<Self, Failure> {
         let path = Path::new(name);
-        if is_partial_render(path) { Self::of_part(path) } else { Self::of_picture(path) }
+        if is_partial_render(path) { Self::from_partial_render(path) } else { Self::from_picture(path) }
     }
 
-    fn of_part(path: &Path) -> Result<Self, Failure> {
+    fn from_partial_render(path: &Path) -> Result<Self, Failure> {
         let merge = Merge::open(&[path], MergeGoal::Whole)?;
         let RenderDescription { region, metadata, .. } = merge.description();
         let region = *region;
@@ -51,7 +51,7 @@ impl ComparedPicture {
         Ok(Self { image, estimate: Some(estimate), is_tone_mapped: false, is_denoised: false, metadata })
     }
 
-    fn of_picture(path: &Path) -> Result<Self, Failure> {
+    fn from_picture(path: &Path) -> Result<Self, Failure> {
         let image = imaging::read(path)?;
         let ImageInfo { format, metadata, .. } = imaging::inspect(path)?;
         let estimate = if format == ImageFormat::Exr { variances(path, &image, &metadata)? } else { None };

@@ -94,10 +94,10 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
     let (path, tiles) = (Path::new(file), picture.tiling().tile_count());
     let other = || Failure::Invalid(format!("`{file}` belongs to another picture or to other settings"));
     match PartialRender::open(path) {
-        Ok(part) => {
-            let RenderDescription { fingerprint, region, .. } = part.description();
+        Ok(partial_render) => {
+            let RenderDescription { fingerprint, region, .. } = partial_render.description();
             let same = fingerprint == picture.fingerprint().parts() && *region == picture.region();
-            return if same { Ok(counts::from_partial_render(&part)?) } else { Err(other()) };
+            return if same { Ok(counts::from_partial_render(&partial_render)?) } else { Err(other()) };
         }
         Err(PartialRenderError::NotAPartialRender { .. }) => {}
         Err(error) => return Err(error.into()),
@@ -166,7 +166,8 @@ impl FilmRender<'_> {
             saved
         };
         let denoise = Instant::now();
-        let pixels = if self.command.plan.output_kind == OutputKind::Part { None } else { self.pixels(&control)? };
+        let pixels =
+            if self.command.plan.output_kind == OutputKind::PartialRender { None } else { self.pixels(&control)? };
         let (denoise, write) = (denoise.elapsed(), Instant::now());
         // Write the finished picture before reporting that its checkpoint could not be saved.
         let (film, layers) = self.write(pixels.as_deref())?;
@@ -204,8 +205,8 @@ impl FilmRender<'_> {
         if let Some(damage) = found.damage {
             console::print_message(&format!("warning: {damage}; resuming from the previous checkpoint"));
         }
-        if let Some(part) = found.part {
-            checkpoint::resume(&part, &self.description, &self.film)?;
+        if let Some(partial_render) = found.partial_render {
+            checkpoint::resume(&partial_render, &self.description, &self.film)?;
             self.report_resumed(file);
         }
         Ok(checkpoint)
@@ -317,7 +318,7 @@ impl FilmRender<'_> {
     fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<(FilmSummary, Result<(), Failure>), Failure> {
         let (picture, output) = (self.frame.picture, &self.frame.frame_output.output);
         match self.command.plan.output_kind {
-            OutputKind::Part => {
+            OutputKind::PartialRender => {
                 // If the checkpoint is the output, the last save wrote the partial render.
                 if self.frame.frame_output.checkpoint.as_ref() != Some(output) {
                     write(Path::new(output), &self.description, self.film.tiles())?;

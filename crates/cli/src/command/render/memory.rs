@@ -90,7 +90,7 @@ fn help(plan: &Plan, largest: &MemoryPart, needed: u64, most: u64) -> String {
              smaller `--size`"
                 .into()
         }
-        "the film" if plan.output_kind == OutputKind::Part => {
+        "the film" if plan.output_kind == OutputKind::PartialRender => {
             format!("more and smaller shards need less, such as `--shard 0/{shards}`; so does a smaller `--size`")
         }
         "the film" => format!(

@@ -35,9 +35,9 @@ fn file_format_matches_the_golden_file() {
     }
     let (_folder, path) = place("golden.jfilm");
     std::fs::write(&path, GOLDEN).unwrap();
-    let part = PartialRender::open(&path).unwrap();
-    assert_eq!(part.description(), &description(TINY, 21));
-    assert_eq!(part.tile(0).unwrap(), tile(TINY, 0..21));
+    let partial_render = PartialRender::open(&path).unwrap();
+    assert_eq!(partial_render.description(), &description(TINY, 21));
+    assert_eq!(partial_render.tile(0).unwrap(), tile(TINY, 0..21));
     // Other versions of the compressor may produce other bytes; old files must stay readable.
     assert_eq!(bytes, GOLDEN, "other bytes are written");
 }
@@ -136,7 +136,7 @@ struct Forged {
 
 impl Forged {
     fn new() -> Self {
-        let header = Header { layers: layers(&description(TINY, 21)), part: description(TINY, 21) };
+        let header = Header { layers: layers(&description(TINY, 21)), partial_render: description(TINY, 21) };
         let chunk = Chunk::encode(&tile(TINY, 0..21), false).bytes;
         let header = serde_json::to_vec(&header).unwrap();
         let chunks = vec![(0, chunk)];
@@ -226,14 +226,14 @@ fn malformed_headers_are_rejected() {
     assert!(header(b"").contains("its header is malformed") && header(b"\xff").contains("its header is malformed"));
     assert!(header("[".repeat(100_000).as_bytes()).contains("its header is malformed"));
     let with = |change: &dyn Fn(&mut Header)| {
-        let mut header = Header { layers: layers(&description(TINY, 21)), part: description(TINY, 21) };
+        let mut header = Header { layers: layers(&description(TINY, 21)), partial_render: description(TINY, 21) };
         change(&mut header);
         forged_header(&header)
     };
     let depth = Layer { name: "depth".into(), channels: vec!["Z".into()] };
     let error = with(&|header| header.layers.push(depth.clone()));
     assert!(error.contains("radiance (R, G, B), depth (Z); this program supports radiance (R, G, B)"), "{error}");
-    assert!(with(&|header| header.part.size = [3, 3]).contains("region is not inside"));
+    assert!(with(&|header| header.partial_render.size = [3, 3]).contains("region is not inside"));
     let error = Forged { version: 2, ..Forged::new() }.refused();
     assert!(error.contains("version 2") && error.contains("versions up to 1"), "{error}");
 }
@@ -241,24 +241,30 @@ fn malformed_headers_are_rejected() {
 #[test]
 fn headers_beyond_the_limits_of_a_render_are_rejected_by_field() {
     let refused = |change: &dyn Fn(&mut RenderDescription)| {
-        let mut part = description(TINY, 21);
+        let mut partial_render = description(TINY, 21);
         // Without any AOVs the header omits `layers`.
-        part.aovs.masks = true;
-        change(&mut part);
-        forged_header(&Header { layers: layers(&part), part })
+        partial_render.aovs.masks = true;
+        change(&mut partial_render);
+        forged_header(&Header { layers: layers(&partial_render), partial_render })
     };
-    let whole = |part: &mut RenderDescription| {
-        part.size = [65_536; 2];
-        part.region = Rect { x: 0, y: 0, width: 65_536, height: 65_536 };
+    let whole = |partial_render: &mut RenderDescription| {
+        partial_render.size = [65_536; 2];
+        partial_render.region = Rect { x: 0, y: 0, width: 65_536, height: 65_536 };
     };
     assert!(refused(&whole).contains("larger than any that can be rendered"));
-    assert!(refused(&|part| part.aovs.entries = u32::MAX).contains("more objects (`entries`) than a scene can have"));
-    assert!(refused(&|part| part.aovs.planes = u32::MAX).contains("more AOVs (`planes`) than a picture can hold"));
-    let groups = |part: &mut RenderDescription| part.aovs.light_groups = vec!["a".into(); 200_000];
+    assert!(
+        refused(&|partial_render| partial_render.aovs.entries = u32::MAX)
+            .contains("more objects (`entries`) than a scene can have")
+    );
+    assert!(
+        refused(&|partial_render| partial_render.aovs.planes = u32::MAX)
+            .contains("more AOVs (`planes`) than a picture can hold")
+    );
+    let groups = |partial_render: &mut RenderDescription| partial_render.aovs.light_groups = vec!["a".into(); 200_000];
     assert!(refused(&groups).contains("more light groups (`light_groups`) than a scene can have"));
     // A valid number of planes is still rejected before allocation if the chunk is too short for
     // it.
-    assert!(refused(&|part| part.aovs.planes = 4096).contains("packed AOVs cannot be unpacked"));
+    assert!(refused(&|partial_render| partial_render.aovs.planes = 4096).contains("packed AOVs cannot be unpacked"));
 }
 
 fn forged_header(header: &Header) -> String {

@@ -23,17 +23,17 @@ fn a_partial_render_is_read_back() {
     let tiles = tiles(REGION, 0..100);
     let bytes = write(&path, &description, tiles.clone()).unwrap();
     assert_eq!(bytes, std::fs::metadata(&path).unwrap().len());
-    let part = PartialRender::open(&path).unwrap();
-    assert_eq!((part.bytes(), part.path()), (bytes, path.as_path()));
-    assert_eq!(part.description(), &description);
-    assert_eq!(part.tiles().collect::<Vec<_>>(), (0..6).collect::<Vec<_>>());
-    assert_eq!(part.tiles_in(2, 5).collect::<Vec<_>>(), [2, 3, 4]);
-    assert_eq!(part.tiles_in(5, 3).len(), 0);
-    part.verify().unwrap();
+    let partial_render = PartialRender::open(&path).unwrap();
+    assert_eq!((partial_render.bytes(), partial_render.path()), (bytes, path.as_path()));
+    assert_eq!(partial_render.description(), &description);
+    assert_eq!(partial_render.tiles().collect::<Vec<_>>(), (0..6).collect::<Vec<_>>());
+    assert_eq!(partial_render.tiles_in(2, 5).collect::<Vec<_>>(), [2, 3, 4]);
+    assert_eq!(partial_render.tiles_in(5, 3).len(), 0);
+    partial_render.verify().unwrap();
     for (number, tile) in tiles {
-        assert_eq!(part.tile(number).unwrap(), tile);
+        assert_eq!(partial_render.tile(number).unwrap(), tile);
     }
-    assert!(matches!(part.tile(6), Err(PartialRenderError::Damaged { .. })), "no such tile");
+    assert!(matches!(partial_render.tile(6), Err(PartialRenderError::Damaged { .. })), "no such tile");
 }
 
 #[test]
@@ -42,12 +42,12 @@ fn tiles_may_be_in_any_order_or_missing() {
     let tiling = Tiling::new(REGION);
     let some = [5, 1, 4].map(|number| (number, tile(tiling.tile(number).unwrap(), 0..16)));
     write(&path, &description(REGION, 100), some.clone()).unwrap();
-    let part = PartialRender::open(&path).unwrap();
-    assert_eq!(part.tiles().collect::<Vec<_>>(), [1, 4, 5]);
+    let partial_render = PartialRender::open(&path).unwrap();
+    assert_eq!(partial_render.tiles().collect::<Vec<_>>(), [1, 4, 5]);
     for (number, tile) in some {
-        assert_eq!(part.tile(number).unwrap(), tile);
+        assert_eq!(partial_render.tile(number).unwrap(), tile);
     }
-    assert_eq!(part.tile(3).unwrap(), Tile::new(tiling.tile(3).unwrap()));
+    assert_eq!(partial_render.tile(3).unwrap(), Tile::new(tiling.tile(3).unwrap()));
 }
 
 #[test]
@@ -150,10 +150,10 @@ proptest! {
         let samples = start * 16..(start + blocks) * 16 + open;
         let tiles: Vec<_> = tiles(region, samples).into_iter().filter(|(number, _)| kept >> number & 1 == 1).collect();
         write(&path, &description(region, 1000), tiles.clone()).unwrap();
-        let part = PartialRender::open(&path).unwrap();
-        prop_assert_eq!(part.tiles().collect::<Vec<_>>(), tiles.iter().map(|(number, _)| *number).collect::<Vec<_>>());
+        let partial_render = PartialRender::open(&path).unwrap();
+        prop_assert_eq!(partial_render.tiles().collect::<Vec<_>>(), tiles.iter().map(|(number, _)| *number).collect::<Vec<_>>());
         for (number, tile) in tiles {
-            prop_assert_eq!(part.tile(number).unwrap(), tile);
+            prop_assert_eq!(partial_render.tile(number).unwrap(), tile);
         }
     }
 }
@@ -165,10 +165,10 @@ fn clamped_radiance_round_trips() {
     let made = clamped_tiles(REGION, 0..100);
     assert!(made.iter().all(|(_, tile)| tile.clamped().total() > 0.0));
     write(&path, &clamped, made.clone()).unwrap();
-    let part = PartialRender::open(&path).unwrap();
-    assert!(part.description().clamped);
+    let partial_render = PartialRender::open(&path).unwrap();
+    assert!(partial_render.description().clamped);
     for (number, tile) in made {
-        assert_eq!(part.tile(number).unwrap(), tile);
+        assert_eq!(partial_render.tile(number).unwrap(), tile);
         let mut writer = PartialRenderWriter::create(&path, &clamped).unwrap();
         let refused = writer.add(number, &Chunk::encode(&tile, false)).unwrap_err().to_string();
         assert!(refused.contains("clamped"), "{refused}");

@@ -1,3 +1,170 @@
 //! Translation of a glTF file to parts of a scene.
+//!
+//! | module | translates |
+//! |---|---|
+//! | `names` | names of parts, which are unique |
+//! | `select` | the choice of scene, clip and variant |
+//! | `clips`, `pointers` | animations to a pose, and to a document with animated numbers |
+//! | `tree` | nodes to transforms and paths |
+//! | `meshes`, `thin` | primitives to meshes, each decoded once; points and lines to solids |
+//! | `deformed` | skins and morph targets in a pose |
+//! | `objects`, `instances` | nodes to objects and groups |
+//! | `materials` | materials with their textures |
+//! | `cameras`, `lights` | cameras and lights of nodes |
 
+mod cameras;
+mod clips;
+mod deformed;
+mod faults;
+mod instances;
+mod lights;
 mod materials;
+mod matrix;
+mod meshes;
+mod names;
+mod objects;
+mod pointers;
+mod select;
+#[cfg(test)]
+mod tests;
+mod thin;
+mod tree;
+
+pub(super) use cameras::camera_aspects;
+pub(super) use names::Names;
+pub(super) use objects::View;
+pub(super) use select::Selection;
+
+use super::data::GltfData;
+use super::error::GltfError;
+use super::pose::{Clip, Pose};
+use super::warning::Warnings;
+use deformed::Skins;
+use faults::Faults;
+use glam::DAffine3;
+use instances::Instances;
+use juggler_scene::model::{ModelChoice, ModelParts};
+use materials::MaterialSet;
+use meshes::Meshes;
+use objects::{Findings, Objects};
+use tree::{NodeTree, SceneNode};
+
+/// A file with what translations share: names, clips, and arrays that are decoded at their first
+/// use.
+#[derive(Debug)]
+pub(super) struct Content {
+    /// The file with its buffers and images.
+    pub data: GltfData,
+    /// Names of the parts.
+    pub names: Names,
+    /// Animation clips.
+    pub clips: Vec<Clip>,
+    /// Warnings about the file that hold for all choices.
+    pub warnings: Warnings,
+    /// Primitives.
+    pub meshes: Meshes,
+    tree: NodeTree,
+    skins: Skins,
+    instances: Instances,
+}
+
+/// A scene of a file in a pose.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Posed {
+    /// What the choice selects.
+    pub selection: Selection,
+    /// Nodes of the scene, depth first.
+    pub nodes: Vec<SceneNode>,
+    pose: Pose,
+    worlds: Vec<DAffine3>,
+    visible: Vec<bool>,
+}
+
+impl Content {
+    /// Reads names, clips and nodes of a file.
+    ///
+    /// # Errors
+    ///
+    /// An animation or the transform of a node is not valid. All faults are reported at once.
+    pub fn new(data: GltfData) -> Result<Self, GltfError> {
+        let document = &data.gltf.document;
+        let (mut warnings, mut faults) = (data.gltf.warnings.clone(), Faults::new(data.gltf.limits.faults));
+        let names = Names::new(document);
+        let clips = clips::read_clips(&data, &names.clips, &mut warnings, &mut faults);
+        let tree = NodeTree::new(document, &mut warnings, &mut faults);
+        if !faults.is_empty() {
+            return Err(faults.into_error(&data.gltf.name));
+        }
+        let (meshes, skins, instances) = (Meshes::new(document), Skins::new(document), Instances::new(document));
+        Ok(Self { names, clips, warnings, meshes, tree, skins, instances, data })
+    }
+
+    /// The scene, in the pose of a choice.
+    ///
+    /// # Errors
+    ///
+    /// The choice names something that the file does not have.
+    pub fn posed(&self, choice: &ModelChoice) -> Result<Posed, GltfError> {
+        let selection = Selection::new(self, choice).map_err(|list| {
+            let mut faults = Faults::new(self.data.gltf.limits.faults);
+            list.into_iter().for_each(|fault| faults.add(fault));
+            faults.into_error(&self.data.gltf.name)
+        })?;
+        let pose = clips::pose_of(selection.clip.and_then(|clip| self.clips.get(clip)), choice);
+        let nodes = self.tree.scene(&self.data.gltf.document, &self.names, selection.scene);
+        let (worlds, visible) = (self.tree.world_transforms(&pose), self.tree.visibility(&pose));
+        Ok(Posed { selection, nodes, pose, worlds, visible })
+    }
+
+    /// View of a scene in a pose.
+    pub fn view<'a>(&'a self, posed: &'a Posed, prefix: &'a str) -> View<'a> {
+        let Posed { selection, nodes, pose, worlds, visible } = posed;
+        View { content: self, pose, worlds, visible, nodes, selection: *selection, prefix }
+    }
+
+    /// Translates the chosen scene. The names of all parts begin with `prefix`.
+    ///
+    /// # Errors
+    ///
+    /// An array is not valid, or the choice names something that the file does not have. All faults
+    /// are reported at once.
+    pub fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, GltfError> {
+        let posed = self.posed(choice)?;
+        let view = self.view(&posed, prefix);
+        let mut findings =
+            Findings { warnings: self.warnings.clone(), faults: Faults::new(self.data.gltf.limits.faults) };
+        let scenes_missing = posed.selection.scene.is_none() && !self.data.gltf.document.nodes.is_empty();
+        findings.warnings.add("", "there are no scenes; all nodes are shown", u64::from(scenes_missing));
+        let ignored = self.tree.ignored_poses(&posed.pose);
+        findings.warnings.add("/nodes", "nodes with a matrix are not animated", ignored as u64);
+        let document = pointers::animated(&self.data.gltf.document, &posed.pose, &mut findings.warnings);
+        let mut objects = Objects::new(view, MaterialSet::new(&document, &self.data, prefix));
+        objects.add_all(&mut findings);
+        let lights = lights::lights(&view, &document, choice.photometric);
+        let Objects { materials, groups, objects, .. } = objects;
+        let materials = materials.finish();
+        findings.warnings.append(materials.warnings);
+        if !findings.faults.is_empty() {
+            return Err(findings.faults.into_error(&self.data.gltf.name));
+        }
+        let mut assets = materials.assets;
+        assets.extend(lights.assets);
+        Ok(ModelParts {
+            assets,
+            textures: materials.textures,
+            materials: materials.materials,
+            groups: groups.into_iter().filter(|(_, parts)| !parts.is_empty()).collect(),
+            cameras: cameras::cameras(&view, &document),
+            lights: lights.lights,
+            objects,
+            background: None,
+            warnings: texts(&findings.warnings),
+        })
+    }
+}
+
+/// Warnings as texts.
+fn texts(warnings: &Warnings) -> Vec<String> {
+    let further = (warnings.omitted() > 0).then(|| format!("{} further warnings", warnings.omitted()));
+    warnings.list().iter().map(ToString::to_string).chain(further).collect()
+}

@@ -264,7 +264,7 @@ impl ObjData {
         if !uvs.is_empty() && without > 0 {
             warnings.push(format!("{without} vertices have no texture coordinates and get 0 0"));
         }
-        MeshParts { positions, normals, uvs, faces, warnings }.assemble()
+        MeshParts { positions, normals, uvs, faces, warnings, ..MeshParts::default() }.assemble()
     }
 }
 

@@ -1,10 +1,12 @@
 //! The rows after the header of a PLY, in any encoding.
 
-use super::super::assemble::MeshParts;
+use super::super::assemble::{Colors, MeshParts};
 use super::super::error::{FilePosition, ImportErrorKind, quote};
 use super::super::faces::Faces;
 use super::super::pieces::read_pieces;
+use super::super::text::finite;
 use super::super::{Imported, Limits};
+use super::colors::ColorColumns;
 use super::header::{Element, Header, Property, Scalar};
 use super::vertices::read_vertices;
 
@@ -115,7 +117,10 @@ impl<'h> Body<'h> {
         if element.properties.get(column).is_none_or(|property| property.length.is_none()) {
             return Err(element.place.error("expected the property 'vertex_indices' to be a list"));
         }
-        note_ignored(element, |index| index == column, &mut parts.warnings);
+        let color = ColorColumns::of(element);
+        let color = color.as_ref();
+        let is_color = |index: usize| color.is_some_and(|color| color.channel(index).is_some());
+        note_ignored(element, |index| index == column || is_color(index), &mut parts.warnings);
         let vertices = self.header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
         self.limits.check_vertices(vertices)?;
         // All rows are known to fit into the file, and most faces are one triangle.
@@ -124,8 +129,11 @@ impl<'h> Body<'h> {
         self.read_rows(
             element,
             values,
-            |rows| read_piece(element, column, rows, vertices, self.limits),
-            |piece| faces.append(&piece, 0, self.limits),
+            |rows| read_piece(element, (column, color), rows, vertices, self.limits),
+            |(piece, colors)| {
+                parts.face_colors.extend(colors);
+                faces.append(&piece, 0, self.limits)
+            },
         )?;
         parts.faces = faces;
         Ok(())
@@ -153,15 +161,19 @@ fn row_size(element: &Element, values: &impl Values) -> u64 {
     element.properties.iter().map(|property| values.min_size(property.length.unwrap_or(property.item))).sum()
 }
 
-/// Reads rows as faces whose corners are the list in this column.
+/// Reads rows as faces whose corners are the list in this column, and the colors of their
+/// triangles.
 fn read_piece(
     element: &Element,
-    column: usize,
+    (column, color): (usize, Option<&ColorColumns>),
     mut rows: Rows<impl Values>,
     vertices: u64,
     limits: &Limits,
-) -> Result<Faces, ImportErrorKind> {
+) -> Result<(Faces, Colors), ImportErrorKind> {
     let values = &mut rows.values;
+    let channels = color.map_or(0, ColorColumns::channels);
+    let mut colors = Colors { channels, values: Vec::new() };
+    let mut face_color = [0.0; 4];
     let mut faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
     let mut corners = Vec::new();
     for _ in 0..rows.count {
@@ -169,13 +181,27 @@ fn read_piece(
         for (index, property) in element.properties.iter().enumerate() {
             match property.length {
                 Some(length) if index == column => read_corners(values, length, property.item, vertices, &mut corners)?,
-                _ => skip(property, values)?,
+                _ => match color.and_then(|color| Some((color, color.channel(index)?))) {
+                    Some((color, channel)) => {
+                        let place = values.place();
+                        let number = values.real(property.item, &property.name)?;
+                        finite(number, place, &property.name)?;
+                        if let Some(entry) = face_color.get_mut(channel) {
+                            *entry = color.linear(channel, number);
+                        }
+                    }
+                    None => skip(property, values)?,
+                },
             }
         }
         values.end_row()?;
         faces.push(&corners, limits)?;
+        // A polygon of n corners becomes n - 2 triangles, all of its color.
+        for _ in 2..corners.len() {
+            colors.values.extend(face_color.iter().take(channels));
+        }
     }
-    Ok(faces)
+    Ok((faces, colors))
 }
 
 fn read_corners(

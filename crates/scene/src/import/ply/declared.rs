@@ -1,6 +1,7 @@
 //! Counts that the header of a PLY declares, for estimates made without reading the rest.
 
 use super::super::text::Scanner;
+use super::colors::ColorColumns;
 use super::header::{Element, Encoding, Header};
 use super::vertices::bytes_of_vertex;
 
@@ -10,6 +11,8 @@ pub(in super::super) struct DeclaredCounts {
     pub vertices: u64,
     /// Bytes of a vertex in the mesh.
     pub vertex_bytes: u64,
+    /// Bytes of the color of a triangle in the mesh.
+    pub face_bytes: u64,
     /// Number of rows of the element `face`.
     pub faces: u64,
     /// Upper bound of the number of corners of all faces, from the length of a binary file; `None`
@@ -37,7 +40,9 @@ pub(in super::super) fn declared(head: &[u8], size: u64) -> Option<DeclaredCount
             Some(size.saturating_sub(rows) / index)
         }
     };
-    Some(DeclaredCounts { vertices: vertex.count, vertex_bytes: bytes_of_vertex(vertex), faces: face.count, corners })
+    let face_bytes = ColorColumns::of(face).map_or(0, |color| color.bytes());
+    let vertex_bytes = bytes_of_vertex(vertex);
+    Some(DeclaredCounts { vertices: vertex.count, vertex_bytes, face_bytes, faces: face.count, corners })
 }
 
 /// Bytes of all rows of an element in a binary file if its lists were empty.

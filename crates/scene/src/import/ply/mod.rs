@@ -3,14 +3,16 @@
 //!
 //! The reader uses the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
 //! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
-//! `vertex_index`), in any order and of any number type. It ignores everything else with a warning
-//! that names it, including lines of the header that are neither declarations nor comments, such as
+//! `vertex_index`), in any order and of any number type. Colors `red green blue` of vertices or
+//! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
+//! are linear. It ignores everything else with a warning that names it, including lines of the header that are neither declarations nor comments, such as
 //! `Created by Blender3D`. In a text, each line is one row of an element, as the header describes
 //! it.
 
 mod ascii;
 mod binary;
 mod body;
+mod colors;
 mod declared;
 mod header;
 #[cfg(test)]
@@ -68,7 +70,8 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
 /// Estimates the counts of a PLY. The header gives the number of vertices and faces. The number of
 /// triangles follows from the length of a binary file, or from the last rows of a text.
 fn polygons(file: &mut FileSampler) -> io::Result<Counts> {
-    let Some(DeclaredCounts { vertices, vertex_bytes, faces, corners }) = declared(&file.head, file.size) else {
+    let Some(DeclaredCounts { vertices, vertex_bytes, face_bytes, faces, corners }) = declared(&file.head, file.size)
+    else {
         return Ok(Counts::default());
     };
     let triangles = match corners {
@@ -85,5 +88,5 @@ fn polygons(file: &mut FileSampler) -> io::Result<Counts> {
     // Polygons are kept as runs of triangles. Arrays that turn out too small are copied into larger
     // ones.
     let temporary_bytes = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
-    Ok(Counts { vertices, triangles, vertex_bytes, temporary_bytes })
+    Ok(Counts { vertices, triangles, vertex_bytes, face_bytes, temporary_bytes })
 }

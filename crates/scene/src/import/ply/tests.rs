@@ -263,3 +263,25 @@ fn limits_are_kept_and_named() {
     let error = super::read(no_faces.as_bytes(), &Limits::default(), PIECE).unwrap_err();
     assert_eq!(error.to_string(), "contains no triangles");
 }
+
+/// Colors of vertices and faces; a polygon gives its color to each of its triangles.
+#[test]
+fn colors_become_attributes() {
+    use juggler_shape::attribute::{AttributeData, AttributeDomain};
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n\
+                element face 1\nproperty list uchar int vertex_indices\nproperty float red\nproperty float green\n\
+                property float blue\nend_header\n\
+                0 0 0 255 0 188 51\n1 0 0 0 0 0 0\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3 0.25 0.5 2\n";
+    let Imported { mesh, warnings } = read(text);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (vertex, face) = (&mesh.attributes["color"], &mesh.attributes["face_color"]);
+    assert_eq!((vertex.domain, vertex.channels), (AttributeDomain::Vertex, 4));
+    assert_eq!((face.domain, face.channels), (AttributeDomain::Face, 3));
+    assert_eq!(face.data, AttributeData::F32(vec![0.25, 0.5, 2.0, 0.25, 0.5, 2.0]));
+    let AttributeData::F32(colors) = &vertex.data else { panic!("{vertex:?}") };
+    assert_eq!((colors.len(), colors[0], colors[1], colors[3]), (16, 1.0, 0.0, 0.2));
+    assert!((colors[2] - 0.502_886).abs() < 1e-5, "sRGB 188 is half: {}", colors[2]);
+    let only_faces = read(text.replace("uchar red", "char red"));
+    assert!(only_faces.mesh.attributes["color"].domain == AttributeDomain::Face, "signed colors are ignored");
+}

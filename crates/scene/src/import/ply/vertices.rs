@@ -4,20 +4,24 @@ use super::super::assemble::MeshParts;
 use super::super::error::ImportErrorKind;
 use super::super::text::finite;
 use super::body::{Body, Rows, Values, note_ignored, skip};
+use super::colors::ColorColumns;
 use super::header::Element;
 use juggler_math::{vec2, vec3};
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 const SURFACE: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
-/// Number of values of a row: position, normal, texture coordinates.
-const SLOTS: usize = 8;
+/// Number of values of a row: position, normal, texture coordinates, color.
+const SLOTS: usize = 12;
+/// First value of the color.
+const COLOR: usize = 8;
 
 /// Slot of each column's value in a row; `None` if the column is ignored.
 struct Columns {
     slots: Vec<Option<usize>>,
     normals: bool,
     uvs: bool,
+    color: Option<ColorColumns>,
 }
 
 impl Columns {
@@ -28,7 +32,11 @@ impl Columns {
         }
         let normals = assign(&mut slots, element, &NORMAL, 3);
         let uvs = SURFACE.iter().any(|names| assign(&mut slots, element, names, 6));
-        Ok(Self { slots, normals, uvs })
+        let color = ColorColumns::of(element);
+        for (column, slot) in slots.iter_mut().enumerate().filter(|(_, slot)| slot.is_none()) {
+            *slot = color.as_ref().and_then(|color| color.channel(column)).map(|channel| COLOR + channel);
+        }
+        Ok(Self { slots, normals, uvs, color })
     }
 }
 
@@ -50,8 +58,10 @@ fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first:
 
 /// Bytes of a vertex in the mesh.
 pub(super) fn bytes_of_vertex(element: &Element) -> u64 {
-    Columns::of(element)
-        .map_or(12, |columns| 12 + if columns.normals { 12 } else { 0 } + if columns.uvs { 8 } else { 0 })
+    Columns::of(element).map_or(12, |columns| {
+        let color = columns.color.map_or(0, |color| color.bytes());
+        12 + if columns.normals { 12 } else { 0 } + if columns.uvs { 8 } else { 0 } + color
+    })
 }
 
 /// Reads all rows. The caller has checked that the file is long enough for them.
@@ -73,6 +83,7 @@ pub(super) fn read_vertices(
             parts.positions.extend(piece.positions);
             parts.normals.extend(piece.normals);
             parts.uvs.extend(piece.uvs);
+            parts.vertex_colors.extend(piece.vertex_colors);
             Ok(())
         },
     )
@@ -83,19 +94,26 @@ fn reserve(parts: &mut MeshParts, columns: &Columns, count: u64) {
     parts.positions.reserve_exact(count);
     parts.normals.reserve_exact(if columns.normals { count } else { 0 });
     parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
+    let channels = columns.color.as_ref().map_or(0, ColorColumns::channels);
+    parts.vertex_colors.channels = channels;
+    parts.vertex_colors.values.reserve_exact(count.saturating_mul(channels));
 }
 
 fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<MeshParts, ImportErrorKind> {
     let mut parts = MeshParts::default();
     reserve(&mut parts, columns, rows.count);
     for _ in 0..rows.count {
-        let [x, y, z, nx, ny, nz, u, v] = read_row(element, columns, &mut rows.values)?;
+        let [x, y, z, nx, ny, nz, u, v, color @ ..] = read_row(element, columns, &mut rows.values)?;
         parts.positions.push(vec3(x, y, z));
         if columns.normals {
             parts.normals.push(vec3(nx, ny, nz));
         }
         if columns.uvs {
             parts.uvs.push(vec2(u, v));
+        }
+        if let Some(columns) = &columns.color {
+            let color = color.into_iter().take(columns.channels()).enumerate();
+            parts.vertex_colors.values.extend(color.map(|(channel, number)| columns.linear(channel, number)));
         }
     }
     Ok(parts)

@@ -11,7 +11,7 @@
 mod convert;
 mod pictures;
 mod surface;
-pub(super) mod tangents;
+mod tangents;
 #[cfg(test)]
 mod tests;
 mod textures;
@@ -24,6 +24,7 @@ use indexmap::{IndexMap, IndexSet};
 use juggler_material::AnyMaterial;
 use juggler_scene::Asset;
 use juggler_texture::AnyTexture;
+pub use tangents::add_tangents;
 use textures::TextureSet;
 
 /// What the material of a primitive depends on.
@@ -88,28 +89,28 @@ impl<'a> MaterialSet<'a> {
         Ok(name)
     }
 
-    /// Set of texture coordinates whose tangents a material needs: that of the normal map, else that
-    /// of the clearcoat's normal map, else that of the anisotropy.
-    pub fn tangent_uv_set(&self, index: Option<usize>) -> Option<u32> {
-        let material = self.document.materials.get(index?)?;
-        let extensions = material.extensions.as_deref();
-        if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
-            return None;
-        }
-        let coat = extensions.and_then(|extensions| extensions.clearcoat.as_ref());
-        let anisotropy = extensions.and_then(|extensions| extensions.anisotropy.as_ref());
-        let anisotropy = anisotropy.filter(|anisotropy| anisotropy.anisotropy_strength > 0.0);
-        let set = |info: &TextureInfo| u32::try_from(info.set().get()).unwrap_or_default();
-        let normals = material.normal_texture.as_ref();
-        let normals = normals.or_else(|| coat?.clearcoat_normal_texture.as_ref()).map(set);
-        normals.or_else(|| anisotropy.map(|anisotropy| anisotropy.anisotropy_texture.as_ref().map_or(0, set)))
-    }
-
     /// All materials so far.
     pub fn finish(self) -> MaterialParts {
         let TextureSet { textures, pictures, warnings, .. } = self.textures;
         MaterialParts { textures, materials: self.materials, assets: pictures.assets, warnings }
     }
+}
+
+/// Set of texture coordinates whose tangents a material needs: that of the normal map, else that of
+/// the clearcoat's normal map, else that of the anisotropy.
+pub fn tangent_uv_set(document: &Document, index: usize) -> Option<u32> {
+    let material = document.materials.get(index)?;
+    let extensions = material.extensions.as_deref();
+    if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
+        return None;
+    }
+    let coat = extensions.and_then(|extensions| extensions.clearcoat.as_ref());
+    let anisotropy = extensions.and_then(|extensions| extensions.anisotropy.as_ref());
+    let anisotropy = anisotropy.filter(|anisotropy| anisotropy.anisotropy_strength > 0.0);
+    let set = |info: &TextureInfo| u32::try_from(info.set().get()).unwrap_or_default();
+    let normals = material.normal_texture.as_ref();
+    let normals = normals.or_else(|| coat?.clearcoat_normal_texture.as_ref()).map(set);
+    normals.or_else(|| anisotropy.map(|anisotropy| anisotropy.anisotropy_texture.as_ref().map_or(0, set)))
 }
 
 /// Unique names: as in the file, `kind 3` for the fourth if it has none, `Name#2` for the second of

@@ -3,6 +3,8 @@
 //!
 //! The surface coordinates have v upwards. The sign of the bitangent then is that of glTF.
 
+use crate::gltf::pose::Vertices;
+use crate::gltf::primitive::{Faces, PrimitiveArrays};
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use indexmap::IndexMap;
 use juggler_math::{Vec2, Vec3, portable};
@@ -23,6 +25,36 @@ impl Tangents {
     pub fn of_sources<T: Clone>(&self, values: &[T]) -> Vec<T> {
         self.sources.iter().filter_map(|source| values.get(*source as usize).cloned()).collect()
     }
+}
+
+/// Adds tangents to a primitive of triangles that has normals and none, along a set of texture
+/// coordinates. Vertices with several tangents are divided.
+pub fn add_tangents(arrays: &mut PrimitiveArrays, set: u32) {
+    let Vertices { positions, normals, tangents: known, texcoords, .. } = &arrays.vertices;
+    let (Faces::Triangles(triangles), Some(uvs), true) =
+        (&arrays.faces, texcoords.get(set as usize), known.is_empty() && !normals.is_empty())
+    else {
+        return;
+    };
+    let Some(made) = tangents(positions, normals, uvs, triangles) else { return };
+    let vertices = &arrays.vertices;
+    arrays.vertices = Vertices {
+        positions: made.of_sources(&vertices.positions),
+        normals: made.of_sources(&vertices.normals),
+        texcoords: vertices.texcoords.iter().map(|set| made.of_sources(set)).collect(),
+        colors: made.of_sources(&vertices.colors),
+        tangents: made.tangents.clone(),
+    };
+    for set in &mut arrays.joints {
+        (set.joints, set.weights) = (made.of_sources(&set.joints), made.of_sources(&set.weights));
+    }
+    for target in &mut arrays.targets {
+        target.positions = made.of_sources(&target.positions);
+        target.normals = made.of_sources(&target.normals);
+        target.colors = made.of_sources(&target.colors);
+        target.texcoords.iter_mut().for_each(|set| *set = made.of_sources(set));
+    }
+    arrays.faces = Faces::Triangles(made.triangles);
 }
 
 /// Computes tangents. `None` if the numbers of normals or coordinates differ from that of positions,

@@ -163,7 +163,7 @@ fn texture_transforms_become_matrices_with_v_upwards() {
     for u in [[0.0, 0.0], [1.0, 0.0], [0.3, 0.7]] {
         let [a, b, c, d, e, f] = found.map(f64::from);
         let up = [a * u[0] + b * (1.0 - u[1]) + c, d * u[0] + e * (1.0 - u[1]) + f];
-        let down = [0.1 + 3.0 * u[1], 0.2 - 2.0 * u[0]];
+        let down: [f64; 2] = [0.1 + 3.0 * u[1], 0.2 - 2.0 * u[0]];
         assert!((up[0] - down[0]).abs() < 1e-6 && (1.0 - up[1] - down[1]).abs() < 1e-6, "{u:?} {up:?} {down:?}");
     }
 }
@@ -322,7 +322,7 @@ fn unlit_surfaces_show_their_base_color() {
 fn tangents_are_needed_for_normal_maps_and_anisotropy() {
     let set = |material: &str| {
         let data = file(material);
-        MaterialSet::new(&data.gltf.document, &data, "").tangent_uv_set(Some(0))
+        tangent_uv_set(&data.gltf.document, 0)
     };
     assert_eq!(set("{}"), None);
     assert_eq!(set(r#"{"normalTexture": {"index": 0, "texCoord": 1}}"#), Some(1));

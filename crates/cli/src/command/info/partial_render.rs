@@ -21,49 +21,49 @@ struct Contents {
 
 /// Report as text or as one JSON object.
 pub fn text(path: &Path, json: bool) -> Result<String, Failure> {
-    let part = PartialRender::open(path)?;
-    let contents = contents(&part)?;
-    Ok(if json { to_json(&part, &contents) } else { to_words(&part, &contents) })
+    let partial_render = PartialRender::open(path)?;
+    let contents = contents(&partial_render)?;
+    Ok(if json { to_json(&partial_render, &contents) } else { to_words(&partial_render, &contents) })
 }
 
-fn contents(part: &PartialRender) -> Result<Contents, Failure> {
-    let mut reader = part.reader()?;
+fn contents(partial_render: &PartialRender) -> Result<Contents, Failure> {
+    let mut reader = partial_render.reader()?;
     let mut samples = [u32::MAX, 0];
-    for number in part.tiles() {
+    for number in partial_render.tiles() {
         let tile = reader.tile(number)?;
         let own = tile.runs().iter().map(|run| run.samples.end - run.samples.start).sum();
         samples = [samples[0].min(own), samples[1].max(own)];
     }
-    Ok(Contents { tiles: part.tiles().len(), samples: [samples[0].min(samples[1]), samples[1]] })
+    Ok(Contents { tiles: partial_render.tiles().len(), samples: [samples[0].min(samples[1]), samples[1]] })
 }
 
-fn to_words(part: &PartialRender, contents: &Contents) -> String {
-    let RenderDescription { size: [width, height], region, samples, stop, shard, .. } = part.description();
+fn to_words(partial_render: &PartialRender, contents: &Contents) -> String {
+    let RenderDescription { size: [width, height], region, samples, stop, shard, .. } = partial_render.description();
     let [fewest, most] = contents.samples;
-    let of = part.description().tiling().tile_count();
-    let mut lines = vec![part.path().display().to_string()];
+    let of = partial_render.description().tiling().tile_count();
+    let mut lines = vec![partial_render.path().display().to_string()];
     let mut say = |key: &str, value: String| lines.push(row(key, &value));
-    let finished = if part.description().finished { "finished" } else { "not finished" };
-    say("part", format!("{}, {finished}", describe_shard(shard, *samples)));
+    let finished = if partial_render.description().finished { "finished" } else { "not finished" };
+    say("shard", format!("{}, {finished}", describe_shard(shard, *samples)));
     say("picture", format!("{width}x{height}{}, {}", crop_text(region, *width, *height), goal(*stop, *samples)));
-    say("scene", format!("{}, frame {}", part.description().scene, part.description().frame));
+    say("scene", format!("{}, frame {}", partial_render.description().scene, partial_render.description().frame));
     say("tiles", format!("{} of {of}", contents.tiles));
     say("samples", if fewest == most { most.to_string() } else { format!("{fewest} to {most} per pixel") });
-    say("file", bytes(part.bytes()));
-    say("command", part.description().command.clone());
-    for (key, text) in &part.description().metadata {
+    say("file", bytes(partial_render.bytes()));
+    say("command", partial_render.description().command.clone());
+    for (key, text) in &partial_render.description().metadata {
         say(key, text.clone());
     }
-    for (name, value) in &part.description().fingerprint {
+    for (name, value) in &partial_render.description().fingerprint {
         say("fingerprint", format!("{name} {value}"));
     }
     lines.join("\n")
 }
 
-/// `shard 3/40` or `whole`, and the crop and sample range if there are any.
+/// `3/40` or `whole`, and the crop and sample range if there are any.
 fn describe_shard(shard: &ShardDescription, all: u32) -> String {
     let ShardDescription { index, count, samples, crop } = shard;
-    let mut text = if *count > 1 { format!("shard {index}/{count}") } else { "whole".to_owned() };
+    let mut text = if *count > 1 { format!("{index}/{count}") } else { "whole".to_owned() };
     if *samples != (0..all) {
         text += &format!(" of samples {}..{}", samples.start, samples.end);
     }
@@ -87,14 +87,14 @@ fn goal(stop: Stop, samples: u32) -> String {
     }
 }
 
-fn to_json(part: &PartialRender, contents: &Contents) -> String {
+fn to_json(partial_render: &PartialRender, contents: &Contents) -> String {
     json!({
         "version": 1,
-        "file": part.path().display().to_string(),
-        "bytes": part.bytes(),
+        "file": partial_render.path().display().to_string(),
+        "bytes": partial_render.bytes(),
         "tiles": contents.tiles,
         "samples": contents.samples,
-        "part": part.description(),
+        "part": partial_render.description(),
     })
     .to_string()
 }

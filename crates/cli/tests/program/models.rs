@@ -1,0 +1,81 @@
+//! Model files as scenes, and the flags that select what they show.
+
+use crate::harness::Folder;
+use serde_json::Value;
+use std::fs;
+
+/// A triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) with a clip that raises it, and two materials of which
+/// a variant selects the second.
+const TRIANGLE: &str = r#"{"asset": {"version": "2.0", "generator": "by hand"},
+    "extensionsUsed": ["KHR_materials_variants"],
+    "extensions": {"KHR_materials_variants": {"variants": [{"name": "shiny"}]}},
+    "scene": 0, "scenes": [{"name": "first", "nodes": [0]}], "nodes": [{"name": "Top", "mesh": 0}],
+    "meshes": [{"name": "Triangle", "primitives": [{"attributes": {"POSITION": 0}, "material": 0,
+        "extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}}]}],
+    "materials": [{"name": "Dull"}, {"name": "Shiny", "pbrMetallicRoughness": {"roughnessFactor": 0.1}}],
+    "animations": [{"name": "Rise", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        "samplers": [{"input": 1, "output": 2}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+        {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+        {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+        {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+    "buffers": [{"uri": "triangle.bin", "byteLength": 68}]}"#;
+
+fn with_triangle() -> Folder {
+    let folder = Folder::new();
+    let numbers = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0];
+    fs::write(folder.path("triangle.bin"), numbers.map(f32::to_le_bytes).concat()).unwrap();
+    fs::write(folder.path("triangle.gltf"), TRIANGLE).unwrap();
+    folder
+}
+
+#[test]
+fn a_model_file_is_a_scene_for_all_commands() {
+    let folder = with_triangle();
+    assert!(folder.good("check triangle.gltf").stdout.starts_with("triangle.gltf: no mistakes; "));
+    let words = folder.good("info triangle.gltf").stdout;
+    for said in ["by hand", "Rise, 1.000 s, shown", "KHR_materials_variants: whole", "shiny"] {
+        assert!(words.contains(said), "{said}: {words}");
+    }
+    let json: Value = serde_json::from_str(&folder.good("info triangle.gltf --json").stdout).unwrap();
+    assert_eq!((&json["models"][0]["triangles"], &json["models"][0]["clips"][0]["name"]), (&1.into(), &"Rise".into()));
+    fs::create_dir(folder.path("scenes")).unwrap();
+    folder.good("convert triangle.gltf scenes/a.json");
+    assert!(fs::read_to_string(folder.path("scenes/a.json")).unwrap().contains("\"../triangle.gltf\""));
+    let hash = |scene: &str| folder.hash(&format!("{scene} --size 24x18 --samples 2 -o a.png"));
+    assert_eq!(hash("scenes/a.json"), hash("triangle.gltf"));
+}
+
+#[test]
+fn flags_select_variant_clip_and_scene_of_a_model() {
+    let folder = with_triangle();
+    let hash =
+        |flags: &str| folder.hash(&format!("triangle.gltf {flags} --frame 15 --size 24x18 --samples 2 -o a.png"));
+    assert_eq!(hash("--animation Rise"), hash(""));
+    assert_eq!(hash("--animation 0 --model-scene first"), hash(""));
+    assert_ne!(hash("--variant shiny"), hash(""));
+    folder.good("convert triangle.gltf a.json --animation none");
+    let scene: Value = serde_json::from_str(&fs::read_to_string(folder.path("a.json")).unwrap()).unwrap();
+    assert_eq!(scene["objects"][0]["model"]["animation"], "none");
+    for flags in ["--variant shyny", "--animation Fall", "--model-scene 7"] {
+        let message = folder.bad(&format!("check triangle.gltf {flags}"), 2);
+        assert!(message.contains(flags.split(' ').nth(1).unwrap()), "{message}");
+    }
+    let message = folder.bad("check juggler --variant shiny", 2);
+    assert!(message.contains("--variant is for model files"), "{message}");
+}
+
+#[test]
+fn broken_models_are_refused_with_file_and_place() {
+    let folder = with_triangle();
+    fs::write(folder.path("cut.glb"), b"glTF\x02\0\0\0").unwrap();
+    for command in ["render", "check", "info", "convert"] {
+        let output = if command == "convert" { " a.json" } else { "" };
+        let message = folder.bad(&format!("{command} cut.glb{output}"), 2);
+        assert!(message.contains("cut.glb"), "{message}");
+    }
+    fs::remove_file(folder.path("triangle.bin")).unwrap();
+    let message = folder.bad("check triangle.gltf", 2);
+    assert!(message.contains("/buffers/0") && message.contains("no such file"), "{message}");
+}

@@ -1,0 +1,110 @@
+//! glTF as a format of model files.
+
+use super::document::Document;
+use super::error::{Fault, GltfError};
+use super::limits::Limits;
+use super::open::Gltf;
+use super::translate::Content;
+use super::{is_binary, summary};
+use juggler_scene::model::{
+    FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// The format glTF 2.0: `.gltf` and `.glb`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GltfFormat {
+    /// Limits of the files; [`Limits::default`] if `None`.
+    pub limits: Option<Limits>,
+}
+
+impl ModelFormat for GltfFormat {
+    fn name(&self) -> &'static str {
+        "glTF"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["gltf", "glb"]
+    }
+
+    fn is_content(&self, head: &[u8]) -> bool {
+        is_binary(head)
+    }
+
+    fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
+        let files = Recorder { files, read: RefCell::default() };
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&bytes);
+        let limits = self.limits.unwrap_or_default();
+        let content = Gltf::open(name, bytes, &limits).and_then(|gltf| {
+            let mut data = gltf.load(&files)?;
+            data.load_media(&files)?;
+            Content::new(data)
+        });
+        let content = content.map_err(|error| model_error(&error))?;
+        let read = files.read.into_inner();
+        for (name, digest) in &read {
+            // The length keeps names apart from what follows them.
+            hasher.update(&(name.len() as u64).to_le_bytes()).update(name.as_bytes()).update(digest);
+        }
+        let files = read.into_iter().map(|(name, _)| name).collect();
+        Ok(Arc::new(GltfModel { content, files, digest: hasher.finalize().into() }))
+    }
+}
+
+/// An opened file.
+#[derive(Debug)]
+pub(super) struct GltfModel {
+    /// The file with its decoded arrays.
+    pub content: Content,
+    files: Vec<String>,
+    digest: [u8; 32],
+}
+
+impl GltfModel {
+    /// The document of the file.
+    pub fn document(&self) -> &Document {
+        &self.content.data.gltf.document
+    }
+}
+
+impl ModelFile for GltfModel {
+    fn digest(&self) -> [u8; 32] {
+        self.digest
+    }
+
+    fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
+        self.content.parts(choice, prefix).map_err(|error| model_error(&error))
+    }
+
+    fn summary(&self, choice: &ModelChoice) -> Result<ModelSummary, ModelError> {
+        summary::summary(self, choice).map_err(|error| model_error(&error))
+    }
+}
+
+/// Error of a model file: one text for each fault.
+fn model_error(error: &GltfError) -> ModelError {
+    let one = |fault: &Fault| GltfError::new(&error.file, fault.clone()).to_string();
+    let further = (error.omitted > 0).then(|| format!("{} further errors", error.omitted));
+    ModelError { faults: error.faults.iter().map(one).chain(further).collect() }
+}
+
+/// Files that remember what was read.
+struct Recorder<'f> {
+    files: &'f dyn Files,
+    /// Names and BLAKE3 hashes of the files, in the order of reading.
+    read: RefCell<Vec<(String, [u8; 32])>>,
+}
+
+impl Files for Recorder<'_> {
+    fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
+        let bytes = self.files.read(name, limit)?;
+        self.read.borrow_mut().push((name.to_owned(), blake3::hash(&bytes).into()));
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,71 @@
+//! Instances of a mesh (EXT_mesh_gpu_instancing).
+
+use crate::gltf::data::GltfData;
+use crate::gltf::document::{Document, Semantic};
+use crate::gltf::error::Fault;
+use glam::{DAffine3, DQuat, DVec3};
+use juggler_math::quaternion;
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Transforms of one node's instances.
+type Decoded = Result<Vec<DAffine3>, Fault>;
+
+/// Transforms of the instances of each node that has some, decoded at their first use.
+#[derive(Debug, Default)]
+pub struct Instances(BTreeMap<usize, OnceLock<Decoded>>);
+
+impl Instances {
+    /// Instances of a document, none of them decoded.
+    pub fn new(document: &Document) -> Self {
+        let nodes = document.nodes.iter().enumerate();
+        let has_some = |extensions: &crate::gltf::document::NodeExtensions| extensions.instancing.is_some();
+        let some = nodes.filter(|(_, node)| node.extensions.as_deref().is_some_and(has_some));
+        Self(some.map(|(index, _)| (index, OnceLock::new())).collect())
+    }
+
+    /// Whether a node has instances.
+    pub fn has(&self, node: usize) -> bool {
+        self.0.contains_key(&node)
+    }
+
+    /// Transforms of the instances to the space of the node: scale, then rotation, then translation.
+    /// `None` if the node has no instances.
+    ///
+    /// # Errors
+    ///
+    /// An array is not valid.
+    pub fn transforms(&self, data: &GltfData, node: usize) -> Result<Option<&[DAffine3]>, Fault> {
+        let Some(cell) = self.0.get(&node) else { return Ok(None) };
+        cell.get_or_init(|| decode(data, node)).as_deref().map(Some).map_err(Clone::clone)
+    }
+}
+
+fn decode(data: &GltfData, node: usize) -> Decoded {
+    let at = format!("/nodes/{node}/extensions/EXT_mesh_gpu_instancing");
+    let extensions = data.gltf.document.nodes.get(node).and_then(|node| node.extensions.as_deref());
+    let Some(instancing) = extensions.and_then(|extensions| extensions.instancing.as_ref()) else {
+        return Ok(Vec::new());
+    };
+    let find = |name: &str| instancing.attributes.find(&Semantic::Other(name.to_owned()));
+    let translations = find("TRANSLATION").map(|accessor| data.vec3(accessor)).transpose()?;
+    let rotations = find("ROTATION").map(|accessor| data.vec4(accessor)).transpose()?;
+    let scales = find("SCALE").map(|accessor| data.vec3(accessor)).transpose()?;
+    // The check of the structure has found all lengths equal.
+    let lengths =
+        [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let count = lengths.into_iter().flatten().min().unwrap_or_default();
+    data.reserve(&at, (count as u64).saturating_mul(size_of::<DAffine3>() as u64))?;
+    let vector = |list: &Option<Vec<juggler_math::Vec3>>, i: usize, default| {
+        list.as_ref().and_then(|list| list.get(i)).map_or(default, |vector| vector.as_dvec3())
+    };
+    let transform = |i: usize| {
+        let rotation = rotations.as_ref().and_then(|list| list.get(i)).map(|rotation| rotation.map(f64::from));
+        let rotation = rotation.map_or(Some(DQuat::IDENTITY), quaternion::normalized);
+        let rotation =
+            rotation.ok_or_else(|| Fault::at(&at, format_args!("the rotation of instance {i} is 0 0 0 0")))?;
+        let (scale, translation) = (vector(&scales, i, DVec3::ONE), vector(&translations, i, DVec3::ZERO));
+        Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
+    };
+    (0..count).map(transform).collect()
+}

@@ -1,0 +1,193 @@
+//! Meshes of primitives. Each distinct primitive is decoded once for all nodes and times, so meshes
+//! that nothing deforms share their arrays.
+
+use super::materials::{add_tangents, tangent_uv_set};
+use crate::gltf::data::GltfData;
+use crate::gltf::document::{Document, Primitive, Semantic};
+use crate::gltf::draco::{self, DracoAttribute};
+use crate::gltf::error::Fault;
+use crate::gltf::pose::Vertices;
+use crate::gltf::primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays};
+use crate::gltf::warning::Warnings;
+use juggler_math::Aabb;
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
+use juggler_shape::{Mesh, MeshData};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// A decoded primitive.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// Surface, points or lines without deformation.
+    pub form: Form,
+    /// Whether the vertices have colors.
+    pub has_color: bool,
+    /// Whether the vertices have normals.
+    pub has_normals: bool,
+    /// Bounding box of the positions.
+    pub bounds: Aabb,
+    /// The arrays of a primitive that morph targets or joints may deform.
+    pub deformable: Option<Box<PrimitiveArrays>>,
+}
+
+/// Form of a primitive.
+#[derive(Clone, Debug)]
+pub enum Form {
+    /// Triangles. Clones share the arrays.
+    Surface(Mesh),
+    /// Points and lines; the vertices are those of `deformable`.
+    Thin,
+}
+
+/// Decoded primitives of a file.
+#[derive(Debug, Default)]
+pub struct Meshes {
+    /// Slot of each primitive of each mesh. Primitives with equal arrays share a slot.
+    slots: Vec<Vec<usize>>,
+    entries: Vec<Entry>,
+}
+
+/// A distinct primitive, decoded at its first use.
+#[derive(Debug)]
+struct Entry {
+    mesh: usize,
+    part: usize,
+    /// Set of texture coordinates along which the material needs tangents.
+    tangent_set: Option<u32>,
+    decoded: OnceLock<Result<(Option<Geometry>, Warnings), Fault>>,
+}
+
+impl Meshes {
+    /// Primitives of a document, none of them decoded.
+    pub fn new(document: &Document) -> Self {
+        let mut known = BTreeMap::new();
+        let mut meshes = Self::default();
+        for (mesh, found) in document.meshes.iter().enumerate() {
+            let entries = &mut meshes.entries;
+            let slots = found.primitives.iter().enumerate().map(|(part, primitive)| {
+                let tangent_set = tangent_set(document, primitive);
+                *known.entry((GeometryKey::new(primitive), tangent_set)).or_insert_with(|| {
+                    entries.push(Entry { mesh, part, tangent_set, decoded: OnceLock::new() });
+                    entries.len() - 1
+                })
+            });
+            meshes.slots.push(slots.collect());
+        }
+        meshes
+    }
+
+    /// Number of distinct primitives.
+    pub fn distinct(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Slot of a primitive: equal for primitives with equal arrays.
+    pub fn slot(&self, mesh: usize, part: usize) -> Option<usize> {
+        self.slots.get(mesh)?.get(part).copied()
+    }
+
+    /// A decoded primitive with the warnings about it; `None` if it is left out.
+    ///
+    /// # Errors
+    ///
+    /// An array of the primitive is not valid.
+    pub fn get(&self, data: &GltfData, slot: usize) -> Result<(Option<&Geometry>, Option<&Warnings>), Fault> {
+        let Some(entry) = self.entries.get(slot) else { return Ok((None, None)) };
+        match entry.decoded.get_or_init(|| decode(data, entry)) {
+            Ok((geometry, warnings)) => Ok((geometry.as_ref(), Some(warnings))),
+            Err(fault) => Err(fault.clone()),
+        }
+    }
+}
+
+/// Decodes a primitive.
+fn decode(data: &GltfData, entry: &Entry) -> Result<(Option<Geometry>, Warnings), Fault> {
+    let Entry { mesh, part, tangent_set, .. } = *entry;
+    let assembly = match data.assemble(mesh, part)? {
+        Assembly::Draco(stream) => data.assemble_draco(mesh, part, &decompress(data, mesh, part, &stream)?)?,
+        assembly => assembly,
+    };
+    match assembly {
+        Assembly::Arrays(mut arrays) => {
+            let warnings = std::mem::take(&mut arrays.warnings);
+            if let Some(set) = tangent_set {
+                add_tangents(&mut arrays, set);
+            }
+            Ok((Some(geometry(arrays)), warnings))
+        }
+        Assembly::LeftOut(warnings) => Ok((None, warnings)),
+        Assembly::Draco(_) => Err(Fault::at(pointer(mesh, part), "the compressed data cannot be read")),
+    }
+}
+
+/// Set of texture coordinates along which a material of a primitive, in any variant, needs tangents.
+fn tangent_set(document: &Document, primitive: &Primitive) -> Option<u32> {
+    let mappings = primitive.extensions.variants.iter().flat_map(|variants| &variants.mappings);
+    let materials = primitive.material.into_iter().chain(mappings.map(|mapping| mapping.material));
+    materials.into_iter().find_map(|material| tangent_uv_set(document, material.get()))
+}
+
+/// JSON pointer of a primitive.
+pub fn pointer(mesh: usize, part: usize) -> String {
+    format!("/meshes/{mesh}/primitives/{part}")
+}
+
+/// Geometry of the arrays of a primitive, which are kept only where a deformation needs them.
+fn geometry(arrays: Box<PrimitiveArrays>) -> Geometry {
+    let has_color = !arrays.vertices.colors.is_empty();
+    let has_normals = !arrays.vertices.normals.is_empty();
+    let bounds = Aabb::from_points(arrays.vertices.positions.iter().copied());
+    let may_deform = !arrays.targets.is_empty() || !arrays.joints.is_empty();
+    let (form, deformable) = match (arrays.faces, may_deform) {
+        (Faces::Triangles(triangles), false) => (Form::Surface(mesh(arrays.vertices, triangles)), None),
+        (Faces::Triangles(triangles), true) => {
+            let form = Form::Surface(mesh(arrays.vertices.clone(), triangles.clone()));
+            (form, Some(Box::new(PrimitiveArrays { faces: Faces::Triangles(triangles), ..*arrays })))
+        }
+        (faces, _) => (Form::Thin, Some(Box::new(PrimitiveArrays { faces, ..*arrays }))),
+    };
+    Geometry { form, has_color, has_normals, bounds, deformable }
+}
+
+/// Mesh of vertices and triangles, without copies.
+pub fn mesh(vertices: Vertices, triangles: Vec<[u32; 3]>) -> Mesh {
+    mesh_data(vertices, triangles).into()
+}
+
+/// Arrays of a mesh. The only place where attributes of vertices become those of a mesh.
+fn mesh_data(vertices: Vertices, triangles: Vec<[u32; 3]>) -> MeshData {
+    let Vertices { positions, normals, tangents, texcoords, colors } = vertices;
+    let mut sets = texcoords.into_iter();
+    let (uvs, uvs1) = (sets.next().unwrap_or_default(), sets.next().unwrap_or_default());
+    let attributes = (!colors.is_empty()).then(|| {
+        let data = AttributeData::F32(colors.into_flattened());
+        ("color".to_owned(), MeshAttribute { domain: AttributeDomain::Vertex, channels: 4, data })
+    });
+    MeshData { positions, triangles, normals, uvs, uvs1, tangents, attributes: attributes.into_iter().collect() }
+}
+
+/// Decodes the Draco stream of a primitive.
+fn decompress(data: &GltfData, mesh: usize, part: usize, stream: &DracoStream<'_>) -> Result<DracoArrays, Fault> {
+    let document = &data.gltf.document;
+    let primitive = document.meshes.get(mesh).and_then(|mesh| mesh.primitives.get(part));
+    let at = format!("{}/extensions/KHR_draco_mesh_compression", pointer(mesh, part));
+    let accessor = |semantic: &Semantic| {
+        let accessor = primitive?.attributes.find(semantic)?;
+        document.accessors.get(accessor.get())
+    };
+    let wanted: Vec<_> =
+        stream.attributes.iter().filter_map(|(semantic, id)| Some((semantic, id, accessor(semantic)?))).collect();
+    let names: Vec<String> = wanted.iter().map(|(semantic, ..)| semantic.to_string()).collect();
+    let attributes = wanted.iter().zip(&names).map(|((_, id, accessor), name)| DracoAttribute {
+        name,
+        unique_id: u32::try_from(id.get()).unwrap_or(u32::MAX),
+        component: accessor.component_type,
+        components: accessor.element_type.components(),
+    });
+    let attributes: Vec<DracoAttribute<'_>> = attributes.collect();
+    let limit = data.gltf.limits.decoded_bytes_of(stream.data.len() as u64);
+    let decoded = draco::decode(stream.data, &attributes, limit).map_err(|error| Fault::at(&at, error))?;
+    data.reserve(&at, decoded.attributes.iter().map(|bytes| bytes.len() as u64).sum())?;
+    let semantics = wanted.iter().map(|(semantic, ..)| (*semantic).clone());
+    Ok(DracoArrays { attributes: semantics.zip(decoded.attributes).collect(), indices: decoded.indices })
+}

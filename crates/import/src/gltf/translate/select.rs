@@ -1,0 +1,59 @@
+//! The scene, the clip and the variant that a choice selects.
+
+use super::Content;
+use crate::gltf::error::Fault;
+use juggler_math::suggest::did_you_mean_or_list;
+use juggler_scene::model::{AnimationChoice, ModelChoice, NameOrIndex};
+
+/// Indices of what a choice selects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Scene; all root nodes of a file without scenes if `None`.
+    pub scene: Option<usize>,
+    /// Animation clip.
+    pub clip: Option<usize>,
+    /// Variant of materials.
+    pub variant: Option<usize>,
+}
+
+impl Selection {
+    /// Finds what a choice selects.
+    ///
+    /// # Errors
+    ///
+    /// The file lacks the scene, the clip or the variant. All faults are reported at once.
+    pub fn new(content: &Content, choice: &ModelChoice) -> Result<Self, Vec<Fault>> {
+        let (names, document) = (&content.names, &content.data.gltf.document);
+        let scene = match &choice.scene {
+            Some(wanted) => find("scene", "/scenes", &names.scenes, wanted).map(Some),
+            None if document.scenes.is_empty() => Ok(None),
+            None => Ok(Some(document.scene.map_or(0, |scene| scene.get()))),
+        };
+        let clip = match &choice.animation {
+            AnimationChoice::First => Ok((!names.clips.is_empty()).then_some(0)),
+            AnimationChoice::None => Ok(None),
+            AnimationChoice::Clip(wanted) => find("animation", "/animations", &names.clips, wanted).map(Some),
+        };
+        let variants = "/extensions/KHR_materials_variants/variants";
+        let variant = choice.variant.as_ref().map(|wanted| find("variant", variants, &names.variants, wanted));
+        match (scene, clip, variant.transpose()) {
+            (Ok(scene), Ok(clip), Ok(variant)) => Ok(Self { scene, clip, variant }),
+            (scene, clip, variant) => Err([scene.err(), clip.err(), variant.err()].into_iter().flatten().collect()),
+        }
+    }
+}
+
+/// Index of a part by its name or index.
+fn find(kind: &str, pointer: &str, names: &[String], wanted: &NameOrIndex) -> Result<usize, Fault> {
+    let known = names.iter().map(String::as_str);
+    match wanted {
+        NameOrIndex::Index(index) if (*index as usize) < names.len() => Ok(*index as usize),
+        NameOrIndex::Index(index) => {
+            Err(Fault::at(pointer, format!("there is no {kind} {index}, there are {}", names.len())))
+        }
+        NameOrIndex::Name(name) => names.iter().position(|known| known == name).ok_or_else(|| {
+            let help = did_you_mean_or_list(name, known).map_or_else(|| "there are none".to_owned(), |help| help);
+            Fault::at(pointer, format!("there is no {kind} `{name}`; {help}"))
+        }),
+    }
+}

@@ -1,0 +1,107 @@
+use super::*;
+
+#[test]
+fn objects_are_flat_with_the_product_of_the_matrices() {
+    let mut builder = triangle();
+    builder.member(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]"#);
+    builder.member(
+        r#""scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
+            {"name": "Root", "children": [1, 2], "translation": [1, 2, 3]},
+            {"name": "Body", "children": [3], "scale": [-2, 2, 2]}, {"name": "Empty"},
+            {"mesh": 0, "translation": [1, 0, 0]}]"#,
+    );
+    let found = open(&builder).parts(&ModelChoice::default(), "a/").unwrap();
+    let [object] = found.objects.as_slice() else { panic!("{found:?}") };
+    assert_eq!(object.name.as_deref(), Some("a/Root/Body/node 3"));
+    // The reflection stays: the inverse transpose keeps the outside outside.
+    assert_eq!(rows(object), [-2.0, 0.0, 0.0, -1.0, 0.0, 2.0, 0.0, 2.0, 0.0, 0.0, 2.0, 3.0]);
+    assert_eq!(mesh(object).arrays().triangles, [[0, 1, 2]]);
+    assert!(mesh(object).arrays().normals.is_empty(), "flat normals");
+    assert!(found.materials.keys().all(|name| name.starts_with("a/")) && found.groups.is_empty());
+}
+
+#[test]
+fn meshes_of_several_uses_or_primitives_are_groups() {
+    let mut builder = triangle();
+    builder.member(
+        r#""meshes": [{"name": "M", "primitives": [{"attributes": {"POSITION": 0}}]},
+            {"name": "M", "primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}, "mode": 5}]}]"#,
+    );
+    builder.member(r#""nodes": [{"mesh": 0}, {"mesh": 1}, {"mesh": 0, "translation": [0, 1, 0]}]"#);
+    let found = open(&builder).parts(&ModelChoice::default(), "p/").unwrap();
+    assert_eq!(found.groups.keys().collect::<Vec<_>>(), ["p/mesh M", "p/mesh M#2"]);
+    let groups: Vec<&str> = found.objects.iter().map(|object| object.group.as_ref().unwrap().0.as_str()).collect();
+    assert_eq!(groups, ["p/mesh M", "p/mesh M#2", "p/mesh M"]);
+    assert_eq!(found.groups["p/mesh M#2"].len(), 2);
+    let [first, second] = ["p/mesh M", "p/mesh M#2"].map(|name| mesh(&found.groups[name][0]).arrays());
+    assert!(Arc::ptr_eq(first, second), "equal primitives share their arrays");
+    assert!(found.warnings.iter().any(|warning| warning.contains("no scenes")), "{:?}", found.warnings);
+}
+
+#[test]
+fn hidden_and_singular_nodes_are_there_but_not_visible() {
+    let mut builder = triangle();
+    builder
+        .member(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "scenes": [{"nodes": [0, 2, 3]}]"#);
+    builder.member(
+        r#""nodes": [{"children": [1], "extensions": {"KHR_node_visibility": {"visible": false}}}, {"mesh": 0},
+            {"mesh": 0, "scale": [1, 0, 1]}, {"mesh": 0}], "extensionsUsed": ["KHR_node_visibility"]"#,
+    );
+    let found = parts(&builder);
+    let visible: Vec<bool> = found.objects.iter().map(Object::is_visible).collect();
+    assert_eq!(visible, [false, false, true]);
+    assert!(
+        found.warnings.iter().any(|warning| warning.starts_with("/nodes/2: has a scale of 0")),
+        "{:?}",
+        found.warnings
+    );
+}
+
+#[test]
+fn instances_are_placed_in_the_space_of_their_node() {
+    let mut builder = triangle();
+    builder.floats("VEC3", 3, &[1.0, 0.0, 0.0, 0.0, 5.0, 0.0]);
+    builder.floats("VEC3", 3, &[1.0, 1.0, 1.0, 3.0, 3.0, 3.0]);
+    builder.member(r#""meshes": [{"name": "Leaf", "primitives": [{"attributes": {"POSITION": 0}}]}]"#);
+    builder.member(
+        r#""extensionsUsed": ["EXT_mesh_gpu_instancing"], "scenes": [{"nodes": [0]}], "nodes": [{"name": "Tree",
+            "mesh": 0, "translation": [10, 0, 0], "extensions": {"EXT_mesh_gpu_instancing":
+            {"attributes": {"TRANSLATION": 1, "SCALE": 2}}}}]"#,
+    );
+    let found = parts(&builder);
+    assert_eq!(found.objects.len(), 2);
+    assert!(found.objects.iter().all(|object| object.name.as_deref() == Some("Tree") && object.group.is_some()));
+    assert_eq!(rows(&found.objects[0]), [1.0, 0.0, 0.0, 11.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!(rows(&found.objects[1]), [3.0, 0.0, 0.0, 10.0, 0.0, 3.0, 0.0, 5.0, 0.0, 0.0, 3.0, 0.0]);
+    let summary = open(&builder).summary(&ModelChoice::default()).unwrap();
+    assert_eq!((summary.distinct_triangles, summary.drawn_triangles, summary.nodes), (1, 2, 1));
+}
+
+#[test]
+fn points_and_lines_are_solids_of_a_thousandth_of_the_diagonal() {
+    let mut builder = Builder::default();
+    builder.floats("VEC3", 3, &[0.0, 0.0, 0.0, 3.0, 4.0, 0.0, 3.0, 4.0, 0.0]);
+    builder.member(
+        r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}]},
+            {"primitives": [{"attributes": {"POSITION": 0}, "mode": 3}]}],
+            "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1}]"#,
+    );
+    let found = parts(&builder);
+    let counts: Vec<usize> = found.objects.iter().map(|object| object.inner().len()).collect();
+    // Three points; three ends and one line, because the other has no length.
+    assert_eq!(counts, [3, 4]);
+    let Some(AnyShape::Sphere(sphere)) = &found.objects[0].inner()[0].shape else { panic!("{found:?}") };
+    assert!((sphere.radius - 0.005).abs() < 1e-8, "{sphere:?}");
+}
+
+#[test]
+fn too_many_instances_are_a_fault() {
+    let mut builder = triangle();
+    builder.member(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "scenes": [{"nodes": [0, 1]}]"#);
+    let node = r#"{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}}"#;
+    builder.member(format!(r#""extensionsUsed": ["EXT_mesh_gpu_instancing"], "nodes": [{node}, {node}]"#));
+    let limits = Some(crate::gltf::Limits { instances: 5, ..crate::gltf::Limits::default() });
+    let model = GltfFormat { limits }.open("a.glb", builder.glb(), &BTreeMap::new()).unwrap();
+    let error = model.parts(&ModelChoice::default(), "").unwrap_err().to_string();
+    assert_eq!(error, "a.glb: /nodes/1: the scene has more than 5 instances, the limit");
+}

@@ -1,0 +1,104 @@
+//! Attributes, second surface coordinates and tangents of meshes, through instances.
+
+use super::*;
+use juggler_math::testing::{close, close3};
+use juggler_math::{Rgb, Vec2};
+use juggler_shape::attribute::{AttributeData, MeshAttribute};
+use juggler_texture::AnyTexture;
+use std::collections::BTreeMap;
+
+/// One triangle over (0, 0), (1, 0), (0, 1) of x and -z, front up, whose tangents lie along z and
+/// not along u.
+fn triangle(sign: f32) -> Mesh {
+    let color = MeshAttribute {
+        channels: 3,
+        data: AttributeData::U16([65535, 0, 0, 0, 65535, 0, 0, 0, 65535].into()),
+        ..Default::default()
+    };
+    Mesh::from_triangles([Vec3::ZERO, Vec3::X, Vec3::NEG_Z], [[0, 1, 2]])
+        .with_normals([Vec3::Y; 3])
+        .with_uvs([Vec2::ZERO, Vec2::X, Vec2::Y])
+        .with_uvs1([Vec2::splat(0.5), Vec2::new(0.75, 0.5), Vec2::new(0.5, 0.75)])
+        .with_tangents([[0.0, 0.0, -5.0, sign]; 3])
+        .with_attribute("color", color)
+}
+
+/// World of the mesh in an instance, with this material and the texture `t`.
+fn world(mesh: Mesh, transform: Transform, texture: &str, material: &str) -> World {
+    let mut mesh = AnyShape::from(mesh);
+    mesh.prepare().unwrap();
+    let textures: BTreeMap<String, AnyTexture> = serde_json::from_str(&format!(r#"{{"t": {texture}}}"#)).unwrap();
+    let mut compiler = MaterialCompiler::new(TextureTable::new(textures), []);
+    let material = compiler.compile(&serde_json::from_str(material).unwrap()).unwrap();
+    let half = Transform::scale(Vec3::splat(0.5)).unwrap();
+    let geometry =
+        Geometry::new(vec![Object { content: Content::Shape(Arc::new(mesh)), motion: half.into(), material: None }]);
+    let object =
+        Object { content: Content::Geometry(Arc::new(geometry)), motion: transform.into(), material: Some(material) };
+    World::new(vec![object], compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+}
+
+/// Vertex at barycentrics (0.25, 0.5), seen along its normal.
+fn vertex(world: &World, transform: &Transform) -> Vertex {
+    let (at, normal) = (transform.point(Vec3::new(0.125, 0.0, -0.25)), transform.normal(Vec3::Y));
+    let mut ray = Ray::new(at + normal, -normal);
+    let hit = world.closest(&mut ray);
+    assert!(hit.is_some());
+    world.vertex(&ray, &hit)
+}
+
+#[test]
+fn attributes_reach_materials_of_instances() {
+    let transform = Transform::scale(Vec3::new(-3.0, 2.0, 1.0)).unwrap();
+    let found = world(triangle(1.0), transform, r#"{"attribute": {}}"#, r#"{"phong": {"diffuse": "t"}}"#);
+    let vertex = vertex(&found, &transform);
+    let color = found.phong(&vertex).unwrap().diffuse;
+    assert!(close3(Vec3::from(color.to_array()), Vec3::new(0.25, 0.25, 0.5), 1e-5), "{color:?}");
+    let emission = found.shade(&vertex, Vec3::Y, 1.0, 0.5).emission;
+    assert_eq!(emission, Rgb::BLACK);
+    let emitter = world(triangle(1.0), transform, r#"{"attribute": {}}"#, r#"{"emissive": {"radiance": "t"}}"#);
+    let emission = emitter.shade(&vertex, vertex.surface.normal, 1.0, 0.5).emission;
+    assert!(close3(Vec3::from(emission.to_array()), Vec3::new(0.25, 0.25, 0.5), 1e-5), "{emission:?}");
+}
+
+#[test]
+fn textures_use_the_second_set_with_its_footprint() {
+    let transform = Transform::scale(Vec3::new(1.0, 1.0, 1.0)).unwrap();
+    let found = world(triangle(1.0), transform, r#"{"uv": {"uv_set": 1}}"#, r#"{"phong": {"diffuse": "t"}}"#);
+    let mut vertex = vertex(&found, &transform);
+    let color = found.phong(&vertex).unwrap().diffuse;
+    assert!(close3(Vec3::from(color.to_array()), Vec3::new(0.5625, 0.625, 0.0), 1e-5), "{color:?}");
+    vertex.surface.footprint.uv = 0.2;
+    let point = found.mesh_point(&vertex).unwrap();
+    let at = juggler_texture::TextureLookup { uv_footprint: 0.2, mesh: Some(&point), ..Default::default() };
+    assert!(close(at.second_uv().1, 0.05, 1e-6));
+}
+
+/// The pattern of a normal map sticks to the mesh: its directions are those of the tangent and of
+/// w (N × T) in object space, transformed as vectors, also where the transform mirrors.
+#[test]
+fn normal_maps_follow_the_tangents_of_a_mesh() {
+    let map = |x: f32, y: f32| {
+        let material = r#"{"normal_map": {"texture": [X, Y, 0.9], "material": {"diffuse": {}}}}"#;
+        material.replace('X', &(0.5 + 0.15 * x).to_string()).replace('Y', &(0.5 + 0.15 * y).to_string())
+    };
+    for sign in [1.0, -1.0] {
+        // N × T for N = y and T = -z is -x.
+        let (tangent, bitangent) = (Vec3::NEG_Z, Vec3::NEG_X * sign);
+        for scale in [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [3.0, 0.5, -2.0], [-2.0, -1.0, -0.5]] {
+            let turn = Transform::rotation(Vec3::new(1.0, 2.0, 3.0), 0.7).unwrap();
+            let transform = Transform::scale(scale.into()).unwrap().then(&turn);
+            for (x, y, expected) in [(1.0, 0.0, tangent), (0.0, 1.0, bitangent)] {
+                let world = world(triangle(sign), transform, r#"{"constant": {}}"#, &map(x, y));
+                let vertex = vertex(&world, &transform);
+                let given = vertex.tangents.unwrap();
+                assert!(given.given.is_some());
+                let frame = world.shade(&vertex, vertex.surface.normal, 1.0, 0.5).frame;
+                let expected = transform.vector(expected).normalize();
+                // The mapped normal leans along the expected direction.
+                let flat = frame.normal.reject_from_normalized(vertex.surface.normal).normalize();
+                assert!(close3(flat, expected, 1e-4), "{sign} {scale:?} {flat} {expected}");
+            }
+        }
+    }
+}
