@@ -145,8 +145,9 @@ impl Walk {
         if let Some(name) = node.get("$ref").and_then(Value::as_str).and_then(|name| name.strip_prefix("#/$defs/")) {
             let seen = within.contains(&name) || within.len() > MAX_DEPTH;
             // Every number may be an expression or an animation: skip expressions, and walk
-            // animations of one field only.
-            let elsewhere = name == "Expression" || name == "ValueForm" && !path.ends_with(ANIMATED_PATH);
+            // animations of one field only. A model needs a file, which tests of `scene` have.
+            let elsewhere =
+                matches!(name, "Expression" | "Model") || name == "ValueForm" && !path.ends_with(ANIMATED_PATH);
             let Some(definition) = self.definitions.get(name).filter(|_| !seen && !elsewhere) else {
                 return Vec::new();
             };

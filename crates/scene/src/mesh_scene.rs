@@ -33,6 +33,7 @@ const MAX_COORDINATE: f64 = 1e15;
 
 /// Describes a scene around the mesh in `file` with the given bounds. With `z_up`, the mesh is
 /// rotated so that its z axis points up. With `has_colors`, it shows its attribute `color`.
+#[expect(clippy::fn_params_excessive_bools, reason = "both are properties of the file")]
 pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool, has_colors: bool) -> Description {
     let title = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
     let mut model = Object::new(Mesh::from_file(file)).named(title.as_str());

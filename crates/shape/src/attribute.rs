@@ -122,7 +122,7 @@ impl MeshAttribute {
             return Err(invalid(field("data"), message));
         }
         let AttributeData::F32(numbers) = &self.data else { return Ok(()) };
-        match numbers.iter().position(|number| !(number.abs() <= check::MAX_LENGTH)) {
+        match numbers.iter().position(|number| number.is_nan() || number.abs() > check::MAX_LENGTH) {
             Some(at) => Err(invalid(
                 format!("attributes.{name}.data.f32[{at}]"),
                 format!(

@@ -57,7 +57,7 @@ pub struct CompiledAttribute(Attribute);
 pub fn value(name: &str, at: &TextureLookup) -> [f32; 4] {
     let Some(value) = at.mesh.and_then(|point| point.attribute(name)) else { return [1.0; 4] };
     // `max` turns NaN into 0.
-    if name == COLOR { value.map(|number| number.max(0.0).min(1.0)) } else { value }
+    if name == COLOR { value.map(|number| number.max(0.0).clamp(0.0, 1.0)) } else { value }
 }
 
 impl CompiledTexture for CompiledAttribute {

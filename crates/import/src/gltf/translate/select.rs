@@ -52,7 +52,7 @@ fn find(kind: &str, pointer: &str, names: &[String], wanted: &NameOrIndex) -> Re
             Err(Fault::at(pointer, format!("there is no {kind} {index}, there are {}", names.len())))
         }
         NameOrIndex::Name(name) => names.iter().position(|known| known == name).ok_or_else(|| {
-            let help = did_you_mean_or_list(name, known).map_or_else(|| "there are none".to_owned(), |help| help);
+            let help = did_you_mean_or_list(name, known).unwrap_or_else(|| "there are none".to_owned());
             Fault::at(pointer, format!("there is no {kind} `{name}`; {help}"))
         }),
     }

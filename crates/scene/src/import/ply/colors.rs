@@ -38,7 +38,7 @@ impl ColorColumns {
                 Scalar::F32 | Scalar::F64 => 1.0,
                 _ => return None,
             };
-            let levels = if kind == Scalar::U8 { 0..=255_u8 } else { 1..=0 };
+            let levels = (0..=255_u8).filter(|_| kind == Scalar::U8);
             let levels = levels.map(|level| srgb_decode(f32::from(level) / 255.0)).collect();
             Some(Self { columns, levels, largest })
         })
