@@ -112,7 +112,7 @@ mod tests {
 
     impl Images for Leaves {
         fn image(&self, _: &str, _: &Image) -> Result<Arc<MipMap>, String> {
-            let texel = |i: u32| [0, 0, 0, if i % 2 == 0 && i / 64 % 2 == 0 { 255 } else { 0 }];
+            let texel = |i: u32| [0, 0, 0, if i.is_multiple_of(2) && (i / 64).is_multiple_of(2) { 255 } else { 0 }];
             let bytes = (0..64 * 64).flat_map(texel).collect();
             MipMap::from_bytes([64, 64], 4, bytes, |level| level).map(Arc::new).ok_or_else(String::new)
         }
