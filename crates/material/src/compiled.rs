@@ -6,6 +6,7 @@ use super::emissive::CompiledEmissive;
 use super::mask::CompiledMask;
 use super::mix::CompiledMix;
 use super::normal_map::CompiledNormalMap;
+use super::one_sided::CompiledOneSided;
 use super::phong::CompiledPhong;
 use super::{MaterialId, ShadingView};
 use crate::medium::Interior;
@@ -27,6 +28,8 @@ pub enum CompiledMaterial {
     Mix(CompiledMix),
     /// Another material with an opacity.
     Mask(CompiledMask),
+    /// Another material, on the front only.
+    OneSided(CompiledOneSided),
     /// Another material with normals from a texture.
     NormalMap(CompiledNormalMap),
     /// Another material with a bump map.
@@ -91,7 +94,7 @@ impl CompiledMaterial {
             Self::Checkerboard(_) | Self::Mix(_) => true,
             Self::Mask(mask) => mask.is_textured(),
             Self::Emissive(emissive) => emissive.is_textured(),
-            Self::Boundary(_) => false,
+            Self::Boundary(_) | Self::OneSided(_) => false,
         }
     }
 
@@ -111,6 +114,7 @@ impl CompiledMaterial {
             Self::Checkerboard(board) => board.choices().to_vec(),
             Self::Mix(mix) => mix.choices().to_vec(),
             Self::Mask(mask) => vec![mask.material],
+            Self::OneSided(one_sided) => vec![one_sided.material],
             Self::NormalMap(map) => vec![map.material],
             Self::BumpMap(map) => vec![map.material],
             Self::Emissive(emissive) => vec![emissive.material],

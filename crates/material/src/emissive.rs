@@ -126,6 +126,12 @@ impl SurfaceEmission {
         Self { radiance: self.radiance.filter(|_| self.radiance == other.radiance), sides }
     }
 
+    /// The same emission on the front only.
+    #[must_use]
+    pub fn on_front(self) -> Self {
+        Self { sides: Sides::Front, ..self }
+    }
+
     /// The same emission with a radiance that varies over the surface.
     #[must_use]
     pub fn with_varying_radiance(self) -> Self {

@@ -15,7 +15,10 @@ use super::input::{
 };
 use super::mask::CompiledMask;
 use super::roughness::{rotation_slot, rotation_turns};
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView,
+    SurfaceSides,
+};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Principled as PrincipledLobes};
 use juggler_math::{MAX_LIGHT, Rgb};
@@ -98,6 +101,10 @@ pub struct Principled {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub alpha_cutoff: Option<f32>,
+    /// Sides of the surface on which the material is present and emits: `both`, `front` (absent from
+    /// behind) or `black_behind`. Has no effect with `transmission` or `diffuse_transmission`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
     /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017). Set
     /// it to `false` to match renderers with single scattering only, where rough metal and glass
     /// are darker.
@@ -133,6 +140,7 @@ impl Default for Principled {
             emissive_strength: 1.0,
             opacity: 1.0.into(),
             alpha_cutoff: None,
+            sides: SurfaceSides::Both,
             energy_compensation: true,
         }
     }
@@ -184,7 +192,13 @@ impl Material for Principled {
             let inner = resolver.add_nested(compiled);
             compiled = CompiledMaterial::Mask(CompiledMask::new(opacity, self.alpha_cutoff, inner));
         }
-        Ok(compiled)
+        let sides = if self.transmission_field().is_some() { SurfaceSides::Both } else { self.sides };
+        Ok(sides.restrict(compiled, resolver))
+    }
+
+    fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
+        let replaced_by = self.transmission_field().filter(|_| self.sides != SurfaceSides::Both);
+        replaced_by.into_iter().map(|replaced_by| IneffectiveSetting { field: "sides", replaced_by }).collect()
     }
 
     fn is_area_light(&self) -> bool {
@@ -233,6 +247,12 @@ impl Principled {
             ("transmission", &self.transmission),
             ("diffuse_transmission", &self.diffuse_transmission),
         ]
+    }
+
+    /// Field by which light passes through the surface, if any.
+    fn transmission_field(&self) -> Option<&'static str> {
+        let fields = [("transmission", &self.transmission), ("diffuse_transmission", &self.diffuse_transmission)];
+        fields.into_iter().find(|(_, input)| may_be_nonzero(input)).map(|(field, _)| field)
     }
 
     /// Whether light can enter the solid: by refraction, or by diffuse transmission into a medium.
@@ -369,6 +389,11 @@ impl Principled {
             ..Self::default()
         };
         let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
-        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter]
+        let [front, black_behind] = [SurfaceSides::Front, SurfaceSides::BlackBehind].map(|sides| Self {
+            sides,
+            opacity: 0.7.into(),
+            ..emitter.clone()
+        });
+        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter, front, black_behind]
     }
 }

@@ -23,15 +23,17 @@ pub struct ShadingPoint<'a> {
     pub visible_casters: Option<&'a VisibleCasters>,
 }
 
-/// Continues the path straight through the surface.
+/// Continues the path straight through the surface. Shadow rays through specular spheres pass only
+/// surfaces that are absent for them, so only those keep the state of the path through a sphere.
 pub fn pass_through(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
     if path.history.pass_throughs < MAX_PASS_THROUGHS {
         let interiors = interiors_after(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
         output.record_pass_through(ray);
+        let is_absent = world.is_absent(vertex, -ray.direction);
         let history = PathHistory {
             pass_throughs: path.history.pass_throughs + 1,
             interiors,
-            caustic: CausticState::NONE,
+            caustic: if is_absent { path.history.caustic } else { CausticState::NONE },
             ..path.history
         };
         output.continue_path(vertex.surface.spawn_ray(ray.direction, ray.time), Rgb::WHITE, history, 0);
