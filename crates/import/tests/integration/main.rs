@@ -9,4 +9,5 @@
 )]
 
 mod assets;
+mod parts;
 mod speed;
