@@ -139,8 +139,9 @@ fn inputs_are_numbers_colors_or_names() {
     assert_eq!(phong(r##"{"diffuse": "#ffffff"}"##).diffuse, Input::Value(Rgb::WHITE));
     assert_eq!(phong(r#"{"diffuse": "wood"}"#).diffuse, Input::Texture("wood".into()));
     assert_eq!(phong(r#"{"specular": "wood"}"#).specular, Input::Texture("wood".into()));
-    let error = serde_json::from_str::<Phong>(r#"{"diffuse": {}}"#).unwrap_err().to_string();
-    assert!(error.contains("a number, a color or the name of a texture"), "{error}");
+    assert_eq!(phong(r#"{"specular": {"texture": "wood", "factor": 2}}"#).specular, Input::product("wood", 2.0));
+    let error = serde_json::from_str::<Phong>(r#"{"diffuse": {"wood": {}}}"#).unwrap_err().to_string();
+    assert!(error.contains("a number, a color, the name of a texture or a product"), "{error}");
     let error = serde_json::from_str::<AnyMaterial>(r#"{"checkerboard": {"even": {"phong": {"ior": "x"}}}}"#);
     assert!(error.unwrap_err().to_string().contains("f32"));
 }

@@ -49,8 +49,8 @@ impl Material for Diffuse {
 
 impl ScatteringMaterial for CompiledDiffuse {
     fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
-        if let (Slot::Value(albedo), Slot::Value(0.0)) = (self.reflectance, self.roughness) {
-            bsdf.push(Lambert { albedo });
+        if let (Slot::Value(albedo), Slot::Value(0.0)) = (&self.reflectance, &self.roughness) {
+            bsdf.push(Lambert { albedo: *albedo });
             return;
         }
         let at = view.lookup();

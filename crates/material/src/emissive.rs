@@ -96,9 +96,9 @@ impl CompiledEmissive {
 
     /// Emission of the whole surface.
     pub fn surface_emission(&self) -> SurfaceEmission {
-        let radiance = match self.radiance {
-            Slot::Value(radiance) => Some(radiance * self.scale),
-            Slot::Texture(_) => None,
+        let radiance = match &self.radiance {
+            Slot::Value(radiance) => Some(*radiance * self.scale),
+            Slot::Texture(_) | Slot::Product(_) => None,
         };
         SurfaceEmission { radiance, sides: self.sides }
     }

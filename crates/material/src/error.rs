@@ -1,14 +1,14 @@
 //! Errors in materials, with the path of the field at fault.
 
 use juggler_math::range;
-use juggler_texture::UnknownTexture;
+use juggler_texture::{InputError, UnknownTexture};
 
 /// Error in a material's description.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
     /// The scene has no texture of this name.
     #[error(transparent)]
-    UnknownTexture(#[from] UnknownTexture),
+    UnknownTexture(UnknownTexture),
     /// The scene has no material of this name.
     #[error("no material is called `{name}`")]
     UnknownMaterial {
@@ -44,6 +44,15 @@ pub enum MaterialError {
         /// Error in the field.
         error: Box<MaterialError>,
     },
+}
+
+impl From<InputError> for MaterialError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Unknown(unknown) => Self::UnknownTexture(unknown),
+            InputError::Incomplete { field, message } => Self::Invalid { field, message },
+        }
+    }
 }
 
 impl MaterialError {

@@ -18,7 +18,9 @@ use serde::{Deserialize, Serialize};
 pub struct Mask {
     /// Opacity, 0 (absent) to 1 (present).
     pub opacity: Input<f32>,
-    /// Threshold that makes opacity binary: smaller opacities count as 0, all others as 1.
+    /// Threshold that makes opacity binary: smaller opacities count as 0, all others as 1. Set the
+    /// `filter` of an image to `bilinear`, since the means of distant texels would shrink or fill
+    /// leaves.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub cutoff: Option<f32>,
@@ -94,5 +96,52 @@ impl Mask {
     pub fn examples() -> Vec<Self> {
         let leaf = Self { opacity: Input::Texture("tiles".into()), ..Self::default() };
         vec![Self::default(), Self { cutoff: Some(0.3), ..leaf.clone() }, leaf]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::{Vec2, Vec3};
+    use juggler_shape::surface::Surface;
+    use juggler_texture::{AnyTexture, Image, Images, MipMap};
+    use std::sync::Arc;
+
+    /// An image of 64 × 64 texels with alpha 1 in a quarter of them, one in each 2 × 2.
+    struct Leaves;
+
+    impl Images for Leaves {
+        fn image(&self, _: &str, _: &Image) -> Result<Arc<MipMap>, String> {
+            let texel = |i: u32| [0, 0, 0, if i.is_multiple_of(2) && (i / 64).is_multiple_of(2) { 255 } else { 0 }];
+            let bytes = (0..64 * 64).flat_map(texel).collect();
+            MipMap::from_bytes([64, 64], 4, bytes, |level| level).map(Arc::new).ok_or_else(String::new)
+        }
+    }
+
+    /// Share of the surface that is opaque at this distance, in texels that a footprint covers.
+    fn coverage(filter: &str, texels: f32) -> f64 {
+        let json = format!(r#"{{"image": {{"file": "leaves", "channel": "a", "filter": "{filter}"}}}}"#);
+        let leaves: AnyTexture = serde_json::from_str(&json).unwrap();
+        let (textures, errors) = TextureTable::compile([("leaves".to_owned(), leaves)], &Leaves);
+        assert!(errors.is_empty(), "{errors:?}");
+        let opacity = textures.resolve("opacity", &Input::product("leaves", 1.0)).unwrap();
+        let mask = CompiledMask::new(opacity, Some(0.5), MaterialId::NONE);
+        let opaque = (0..40_000).filter(|i| {
+            let uv = Vec2::new((i % 200) as f32 + 0.5, (i / 200) as f32 + 0.5) / 200.0;
+            let mut surface = Surface::new(Vec3::ZERO, 0.0, Vec3::Z, uv);
+            surface.footprint.uv = texels / 64.0;
+            mask.opacity(&textures, &ShadingView::along_normal(&surface)) == 1.0
+        });
+        opaque.count() as f64 / 40_000.0
+    }
+
+    #[test]
+    fn leaves_keep_their_area_at_a_distance_without_mip_levels() {
+        let near = coverage("bilinear", 0.0);
+        assert!(near > 0.1 && near < 0.4, "{near}");
+        for texels in [1.0, 4.0, 50.0] {
+            assert_eq!(coverage("bilinear", texels), near, "{texels}");
+        }
+        assert_eq!(coverage("trilinear", 8.0), 0.0, "the mean is below the threshold");
     }
 }

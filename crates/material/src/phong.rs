@@ -184,7 +184,7 @@ impl Material for Phong {
     }
 
     fn has_emission(&self) -> bool {
-        !matches!(&self.emission, Input::Value(color) if color.is_black())
+        self.emission.constant() != Some(Rgb::BLACK)
     }
 
     fn is_classic(&self) -> bool {
@@ -206,7 +206,7 @@ impl Phong {
         in_range("glossy.rays", self.glossy.rays as f32, 1.0, 10_000.0)?;
         in_range("blurry.half_angle_degrees", self.blurry.half_angle_degrees, 0.0, 90.0)?;
         in_range("blurry.rays", self.blurry.rays as f32, 1.0, 10_000.0)?;
-        if let Input::Value(specular) = self.specular {
+        if let Some(specular) = self.specular.constant_factor() {
             in_range("specular", specular, 0.0, MAX_LIGHT)?;
         }
         let colors = [
@@ -218,7 +218,7 @@ impl Phong {
             ("transparency", &self.transparency),
         ];
         for (field, input) in colors {
-            if let Input::Value(color) = input {
+            if let Some(color) = input.constant_factor() {
                 color.to_array().iter().try_for_each(|v| in_range(field, *v, 0.0, MAX_LIGHT))?;
             }
         }
@@ -291,7 +291,7 @@ impl CompiledPhong {
     /// Emission of the surface, on both sides; `None` if it is black.
     pub fn surface_emission(&self) -> Option<SurfaceEmission> {
         let radiance = match self.textured.as_ref().map(|slots| &slots.emission) {
-            Some(Slot::Texture(_)) => None,
+            Some(Slot::Texture(_) | Slot::Product(_)) => None,
             _ if self.fixed.emission.is_black() => return None,
             _ => Some(self.fixed.emission),
         };

@@ -140,7 +140,7 @@ impl Default for Principled {
 
 /// Whether an input differs from 0 anywhere.
 fn may_be_nonzero(input: &Input<f32>) -> bool {
-    *input != Input::Value(0.0)
+    input.constant() != Some(0.0)
 }
 
 /// Largest thickness of the thin film, in nanometers.
@@ -188,7 +188,7 @@ impl Material for Principled {
     }
 
     fn is_area_light(&self) -> bool {
-        self.emissive_strength > 0.0 && !matches!(&self.emissive, Input::Value(color) if color.is_black())
+        self.emissive_strength > 0.0 && self.emissive.constant() != Some(Rgb::BLACK)
     }
 }
 
@@ -265,9 +265,9 @@ impl Principled {
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {
         let mut slots = Slots {
-            colors: [Slot::Value(Rgb::BLACK); 3],
+            colors: [const { Slot::Value(Rgb::BLACK) }; 3],
             specular_color: textures.resolve("specular_color", &self.specular_color)?,
-            numbers: [Slot::Value(0.0); 10],
+            numbers: [const { Slot::Value(0.0) }; 10],
             iridescence_thickness: textures.resolve("iridescence_thickness", &self.iridescence_thickness)?,
         };
         for (slot, (field, input)) in slots.colors.iter_mut().zip(self.colors()) {
@@ -287,9 +287,9 @@ impl Slots {
     }
 
     fn fill(&self, lobes: &mut PrincipledLobes, textures: &TextureTable, at: &TextureLookup) {
-        let number = |slot: Slot<f32>| unit_number(textures, &slot, at);
-        let color = |slot: Slot<Rgb>| unit_color(textures, &slot, at);
-        [lobes.base_color, lobes.sheen_color, lobes.diffuse_transmission_color] = self.colors.map(color);
+        let number = |slot: &Slot<f32>| unit_number(textures, slot, at);
+        let color = |slot: &Slot<Rgb>| unit_color(textures, slot, at);
+        [lobes.base_color, lobes.sheen_color, lobes.diffuse_transmission_color] = self.colors.each_ref().map(color);
         lobes.specular_color = emitted_color(textures, &self.specular_color, at);
         [
             lobes.metallic,
@@ -302,7 +302,7 @@ impl Slots {
             lobes.iridescence,
             lobes.transmission,
             lobes.diffuse_transmission,
-        ] = self.numbers.map(number);
+        ] = self.numbers.each_ref().map(number);
         lobes.iridescence_thickness_nm =
             textures.number(&self.iridescence_thickness, at).clamp(0.0, MAX_FILM_THICKNESS_NM);
     }
@@ -320,12 +320,12 @@ impl ScatteringMaterial for CompiledPrincipled {
     }
 
     fn is_transmissive(&self) -> bool {
-        let [.., transmission, diffuse_transmission] = self.slots.numbers;
+        let [.., transmission, diffuse_transmission] = &self.slots.numbers;
         [transmission, diffuse_transmission].iter().any(|slot| !matches!(slot, Slot::Value(0.0)))
     }
 
     fn is_anisotropic(&self) -> bool {
-        let [_, _, _, anisotropy, ..] = self.slots.numbers;
+        let [_, _, _, anisotropy, ..] = &self.slots.numbers;
         !matches!(anisotropy, Slot::Value(0.0))
     }
 
@@ -369,6 +369,14 @@ impl Principled {
             ..Self::default()
         };
         let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
-        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter]
+        let products = Self {
+            base_color: Input::product("wild", Rgb::new(1.0, 0.5, 0.0)),
+            roughness: Input::product("wild", 0.5),
+            transmission: Input::product("tiles", 0.0),
+            emissive: Input::product("tiles", Rgb::splat(2.0)),
+            opacity: Input::product("wild", 0.75),
+            ..Self::default()
+        };
+        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter, products]
     }
 }

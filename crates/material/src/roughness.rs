@@ -6,7 +6,7 @@ use juggler_math::Vec2;
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 
 /// Roughness, anisotropy and its rotation, with names resolved.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Roughness {
     roughness: Slot<f32>,
     anisotropy: Slot<f32>,

@@ -41,8 +41,8 @@ impl Material for Translucent {
     fn compile(&self, resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         check_unit_color("reflectance", &self.reflectance)?;
         check_unit_color("transmittance", &self.transmittance)?;
-        if let (Input::Value(back), Input::Value(through)) = (&self.reflectance, &self.transmittance) {
-            let most = (*back + *through).max_channel();
+        if let (Some(back), Some(through)) = (self.reflectance.constant(), self.transmittance.constant()) {
+            let most = (back + through).max_channel();
             // Rounding may lift the sum of numbers such as 0.7 and 0.3 slightly above 1.
             if most > 1.0 + 1e-6 {
                 let message = format!("`reflectance` and `transmittance` together must be 1 or less, they are {most}");

@@ -52,12 +52,18 @@ impl Texture for Attribute {
 #[derive(Clone, Debug)]
 pub struct CompiledAttribute(Attribute);
 
+/// Red, green, blue and alpha of an attribute at a point; white where the surface has none of this
+/// name.
+pub fn value(name: &str, at: &TextureLookup) -> [f32; 4] {
+    let Some(value) = at.mesh.and_then(|point| point.attribute(name)) else { return [1.0; 4] };
+    // `max` turns NaN into 0.
+    if name == COLOR { value.map(|number| number.max(0.0).clamp(0.0, 1.0)) } else { value }
+}
+
 impl CompiledTexture for CompiledAttribute {
     fn eval(&self, _textures: &TextureTable, at: &TextureLookup) -> Rgb {
         let Self(Attribute { name, channel }) = self;
-        let Some(value) = at.mesh.and_then(|point| point.attribute(name)) else { return Rgb::WHITE };
-        // `max` turns NaN into 0.
-        let [r, g, b, a] = if name == COLOR { value.map(|number| number.max(0.0).clamp(0.0, 1.0)) } else { value };
+        let [r, g, b, a] = value(name, at);
         match channel {
             Channel::Rgb => Rgb::new(r, g, b),
             Channel::R => Rgb::splat(r),

@@ -12,10 +12,11 @@ pub fn in_range(field: &str, value: f32, low: f32, high: f32) -> Result<(), Inva
     wrong.map_or(Ok(()), |message| Err(InvalidTexture::new(field, message)))
 }
 
-/// Rejects a constant color that is too large to interpolate. Textures are checked on their own.
+/// Rejects a constant color or factor that is too large to interpolate. Textures are checked on
+/// their own.
 pub fn color(field: impl Into<String>, input: &Input<Rgb>) -> Result<(), InvalidTexture> {
-    match input {
-        Input::Value(color) if !color.to_array().iter().all(|v| v.abs() <= MAX_CHANNEL) => {
+    match input.constant_factor() {
+        Some(color) if !color.to_array().iter().all(|v| v.abs() <= MAX_CHANNEL) => {
             let field = field.into();
             let message = format!("`{field}` must be finite and below {MAX_CHANNEL:e}");
             Err(InvalidTexture::new(field, message))

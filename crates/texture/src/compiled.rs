@@ -26,7 +26,7 @@ pub fn black() -> SharedTexture {
 }
 
 /// Two colors to blend. Colors of weight 0 are not evaluated.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct ColorBlend {
     /// Color at weight 0.
     pub low: Slot<Rgb>,

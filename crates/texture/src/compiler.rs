@@ -1,7 +1,10 @@
 //! Compiles texture descriptions into a [`TextureTable`].
 
 use super::check;
-use super::{AnyTexture, Image, Input, InvalidTexture, MipMap, SharedTexture, Slot, TextureId, TextureTable, compiled};
+use super::{
+    AnyTexture, Image, Input, InputValue, InvalidTexture, MipMap, SharedTexture, Slot, TextureId, TextureTable,
+    compiled,
+};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -158,16 +161,26 @@ impl TextureResolver<'_> {
     }
 
     /// Resolves an input that each lookup evaluates `times` times.
-    pub fn slot<T: Clone>(&mut self, field: &str, input: &Input<T>, times: u32) -> Result<Slot<T>, TextureError> {
+    pub fn slot<T: InputValue>(&mut self, field: &str, input: &Input<T>, times: u32) -> Result<Slot<T>, TextureError> {
         match input {
-            Input::Value(value) => Ok(Slot::Value(value.clone())),
-            Input::Texture(name) => {
-                let id = self.by_name(field, name)?;
-                let other = self.textures.get(id.0 as usize).map_or(LookupCost::SINGLE, |(_, cost)| *cost);
-                self.cost = self.cost.with_uses(other, times);
-                Ok(Slot::Texture(id))
+            Input::Value(value) => Ok(Slot::Value(*value)),
+            Input::Texture(name) => Ok(Slot::Texture(self.nested(field, name, times)?)),
+            Input::Product(product) => {
+                if let Some(message) = product.error(field) {
+                    return Err(InvalidTexture::new(field, message).into());
+                }
+                let texture = product.texture_name().map(|name| self.nested(field, name, times)).transpose()?;
+                Ok(Slot::product(product, texture))
             }
         }
+    }
+
+    /// Id of a texture that each lookup evaluates `times` times.
+    fn nested(&mut self, field: &str, name: &str, times: u32) -> Result<TextureId, TextureError> {
+        let id = self.by_name(field, name)?;
+        let other = self.textures.get(id.0 as usize).map_or(LookupCost::SINGLE, |(_, cost)| *cost);
+        self.cost = self.cost.with_uses(other, times);
+        Ok(id)
     }
 
     /// Pixels of an image texture.

@@ -124,8 +124,9 @@ fn tables_look_names_up() {
     let slot = table.resolve::<f32>("specular", &Input::Texture("t3".into())).unwrap();
     assert!((table.number(&slot, &at) - 0.25).abs() < 1e-6);
     assert_eq!(table.resolve("x", &Input::Value(3.0)).unwrap(), Slot::Value(3.0));
-    let error = table.resolve::<Rgb>("diffuse", &Input::Texture("t9".into())).unwrap_err();
-    assert_eq!((error.field, error.name.as_str()), ("diffuse", "t9"));
+    let unknown = InputError::Unknown(UnknownTexture { field: "diffuse", name: "t9".into() });
+    assert_eq!(table.resolve::<Rgb>("diffuse", &Input::Texture("t9".into())), Err(unknown.clone()));
+    assert_eq!(table.resolve("diffuse", &Input::product("t9", Rgb::WHITE)), Err(unknown));
 }
 
 #[test]

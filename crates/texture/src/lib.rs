@@ -11,16 +11,19 @@ use serde::{Deserialize, Serialize};
 mod check;
 mod compiled;
 mod compiler;
+mod input;
 mod lattice;
 mod mapping;
 mod octaves;
 mod pixels;
+mod product;
 mod table;
 
 mod attribute;
 mod brick;
 mod checker;
 mod constant;
+mod direction;
 mod dots;
 mod fbm;
 mod gradient;
@@ -45,12 +48,14 @@ pub use compiled::{CompiledTexture, SharedTexture};
 pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, TextureError, TextureResolver};
 pub use gradient::{GradientShape, Stop};
 pub use image::{Channel, ColorSpace};
+pub use input::{Input, InputProduct, InputValue, TextureRef};
 pub use mapping::{Mapping, Scale};
 pub use mix::MixMode;
 pub use octaves::Octaves;
 pub use pixels::{Filter, MipMap, Texel, Wrap};
+pub use product::CompiledProduct;
 pub use ramp::Steps;
-pub use table::{Slot, TextureId, TextureTable, UnknownTexture};
+pub use table::{InputError, Slot, TextureId, TextureTable, UnknownTexture};
 pub use voronoi::{Feature, Metric};
 pub use wave::{WaveProfile, WaveShape};
 
@@ -156,6 +161,7 @@ juggler_math::closed_set! {
         image::Image,
         attribute::Attribute,
         constant::Constant,
+        direction::Direction,
         checker::Checker,
         gradient::Gradient,
         ramp::Ramp,
@@ -171,21 +177,5 @@ juggler_math::closed_set! {
         wave::Wave,
         triplanar::Triplanar,
         uv::Uv,
-    }
-}
-
-/// Constant number or color, or a texture that gives it at every point, inline or by name.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a number, a color or the name of a texture")]
-pub enum Input<T> {
-    /// Constant value.
-    Value(T),
-    /// Name of a texture of the scene.
-    Texture(String),
-}
-
-impl<T> From<T> for Input<T> {
-    fn from(value: T) -> Self {
-        Self::Value(value)
     }
 }

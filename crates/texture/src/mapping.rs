@@ -31,8 +31,9 @@ pub struct Mapping {
     #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub offset: Vec3,
     /// Affine map of surface coordinates to the pattern, in place of `scale`, `rotate_degrees` and
-    /// `offset`: the six numbers a, b, c, d, e, f map (u, v) to (a u + b v + c, d u + e v + f). The
-    /// map must be invertible.
+    /// `offset`: with the six numbers [a, b, c, d, e, f], the point (u, v) shows the pattern at
+    /// (a u + b v + c, d u + e v + f). Unlike the other settings, it can shear the pattern and
+    /// rotate it after an uneven scale. `space` is then `uv`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matrix: Option<[f32; 6]>,
 }
@@ -75,7 +76,7 @@ impl Mapping {
             let message = "`uv_set` chooses surface coordinates, so `space` must be `uv`";
             return Err(InvalidTexture::new("uv_set", message));
         }
-        if let Some(matrix) = self.matrix {
+        if let Some(matrix) = &self.matrix {
             return self.check_matrix(matrix);
         }
         let scale = self.factors().abs();
@@ -86,34 +87,20 @@ impl Mapping {
         check::vector("offset", self.offset)
     }
 
-    /// Checks a matrix and that it is alone.
-    fn check_matrix(&self, matrix: [f32; 6]) -> Result<(), InvalidTexture> {
+    /// Checks a matrix, and that no setting is given that it replaces.
+    fn check_matrix(&self, matrix: &[f32; 6]) -> Result<(), InvalidTexture> {
         let invalid = |message: &str| Err(InvalidTexture::new("matrix", message));
-        let others = (self.scale, self.rotate_degrees, self.offset);
-        if others != (Scale::default(), [0.0; 3], Vec3::ZERO) {
-            return invalid("`matrix` replaces `scale`, `rotate_degrees` and `offset`, which must not be given too");
+        let replaced = (self.scale, self.rotate_degrees, self.offset);
+        if replaced != (Scale::default(), [0.0; 3], Vec3::ZERO) {
+            return invalid("`matrix` replaces `scale`, `rotate_degrees` and `offset`; remove these or `matrix`");
+        }
+        if self.space.is_some_and(|space| space != Space::Uv) {
+            return invalid("`matrix` maps surface coordinates, so `space` must be `uv`");
         }
         if !matrix.iter().all(|number| number.abs() <= 1e18) {
             return invalid("the numbers of `matrix` must be finite and at most 1e18 in magnitude");
         }
-        let [a, b, _, d, e, _] = matrix.map(f64::from);
-        let determinant = a * e - b * d;
-        if determinant.abs() < 1e-30 { invalid("`matrix` must be invertible") } else { Ok(()) }
-    }
-
-    /// Compiled form of a matrix M, t: the point M (p + M⁻¹ t).
-    fn compile_matrix(&self, matrix: [f32; 6], default: Space) -> CompiledMapping {
-        let [a, b, c, d, e, f] = matrix.map(f64::from);
-        let determinant = a * e - b * d;
-        let offset = [b * f - e * c, d * c - a * f].map(|number| (number / determinant) as f32);
-        let [a, b, _, d, e, _] = matrix;
-        CompiledMapping {
-            space: self.space_or(default),
-            second_set: self.uv_set == 1,
-            rows: [Vec3::new(a, b, 0.0), Vec3::new(d, e, 0.0), Vec3::ZERO],
-            offset: Vec3::new(offset[0], offset[1], 0.0),
-            max_scale: (a * a + b * b + d * d + e * e).sqrt(),
-        }
+        Ok(())
     }
 
     fn factors(&self) -> Vec3 {
@@ -123,15 +110,16 @@ impl Mapping {
         }
     }
 
-    /// Coordinate space of the pattern; `default` if the scene does not set it.
+    /// Coordinate space of the pattern; `default` if the scene does not set it. A matrix implies
+    /// surface coordinates.
     pub(super) fn space_or(&self, default: Space) -> Space {
-        self.space.unwrap_or(default)
+        if self.matrix.is_some() { Space::Uv } else { self.space.unwrap_or(default) }
     }
 
     /// Mapping for lookups; `default` is the coordinate space if the scene does not set it.
     pub(super) fn compile(&self, default: Space) -> CompiledMapping {
         if let Some(matrix) = self.matrix {
-            return self.compile_matrix(matrix, default);
+            return CompiledMapping::from_matrix(matrix, self.uv_set == 1);
         }
         let [x, y, z] = self.rotate_degrees.map(|degrees| portable::sin_cos_turns(degrees / 360.0));
         // Rotate about x, y and z.
@@ -181,6 +169,14 @@ impl PatternPoint {
 }
 
 impl CompiledMapping {
+    /// Affine map of surface coordinates (u, v), which are the points (u, v, 0).
+    fn from_matrix([a, b, c, d, e, f]: [f32; 6], second_set: bool) -> Self {
+        // The offset moves all points to z = 1, so that c and f translate, whether or not the map
+        // is invertible.
+        let (rows, offset) = ([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::ZERO], Vec3::new(0.0, 0.0, -1.0));
+        Self { space: Space::Uv, second_set, rows, offset, max_scale: largest_singular_value([a, b, d, e]) }
+    }
+
     /// Point of the pattern for a lookup, without a footprint if the lookup is unfiltered.
     pub fn pattern_point(&self, at: &TextureLookup) -> PatternPoint {
         if at.unfiltered {
@@ -223,11 +219,20 @@ impl CompiledMapping {
     }
 }
 
+/// Largest singular value of the matrix [a b; d e]: the largest factor on lengths. The map is the
+/// sum of a rotation and a reflection, each times a factor (Blinn, Consider the Lowly 2 x 2 Matrix,
+/// 1996); the result is the sum of both factors.
+fn largest_singular_value(matrix: [f32; 4]) -> f32 {
+    let [a, b, d, e] = matrix.map(f64::from);
+    let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+    (0.5 * (length(a + e, d - b) + length(a - e, d + b))) as f32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use juggler_math::Vec2;
-    use juggler_math::testing::close3;
+    use juggler_math::testing::{Random, close3};
 
     fn map(json: &str) -> CompiledMapping {
         let mapping: Mapping = serde_json::from_str(json).unwrap();
@@ -268,6 +273,67 @@ mod tests {
         assert_eq!(pattern(Space::Local), PatternPoint::default());
     }
 
+    /// The transform of `KHR_texture_transform` (offset, rotation, scale; v points down) as the
+    /// matrix of a pattern whose v points up.
+    #[test]
+    fn matrix_agrees_with_the_texture_transform_of_gltf() {
+        let mut random = Random::new(2025);
+        for case in 0..1000 {
+            let mut draw = |limit: f32| f64::from(random.range(-limit, limit));
+            let ([ox, oy], r, [mut sx, sy]) = ([draw(3.0), draw(3.0)], draw(7.0), [draw(5.0), draw(5.0)]);
+            if case % 10 == 0 {
+                sx = 0.0;
+            }
+            let (sin, cos) = r.sin_cos();
+            let matrix = [sx * cos, -sy * sin, ox + sy * sin, sx * sin, sy * cos, 1.0 - oy - sy * cos];
+            let mapping = Mapping { matrix: Some(matrix.map(|number| number as f32)), ..Mapping::default() };
+            mapping.check().unwrap();
+            let compiled = mapping.compile(Space::Local);
+            let (u, v) = (draw(2.0), draw(2.0));
+            let uv = Vec2::new(u as f32, v as f32);
+            let found = compiled.pattern_point(&TextureLookup { uv, uv_footprint: 0.25, ..TextureLookup::default() });
+            // T · R · S of the extension's README in coordinates whose v points down.
+            let (u, down) = (sx * u, sy * (1.0 - v));
+            let expected = [ox + cos * u + sin * down, 1.0 - (oy - sin * u + cos * down)];
+            let off = [f64::from(found.point.x) - expected[0], f64::from(found.point.y) - expected[1]];
+            assert!(
+                off.iter().all(|off| off.abs() < 2e-5) && found.point.z == 0.0,
+                "{mapping:?} {found:?} {expected:?}"
+            );
+            // A rotation keeps lengths, so the larger scale is the largest factor on them.
+            let width = 0.25 * sx.abs().max(sy.abs());
+            assert!((f64::from(found.width) - width).abs() < 1e-5, "{mapping:?}: {} {width}", found.width);
+        }
+    }
+
+    #[test]
+    fn footprints_under_a_matrix_are_as_wide_as_the_longest_image_of_a_unit_vector() {
+        let mut random = Random::new(2026);
+        for _ in 0..200 {
+            let matrix: [f32; 6] = std::array::from_fn(|_| random.range(-4.0, 4.0));
+            let compiled = Mapping { matrix: Some(matrix), ..Mapping::default() }.compile(Space::Uv);
+            let origin = compiled.point(Vec3::ZERO);
+            let lengths = (0..20_000).map(|step| {
+                let (sin, cos) = portable::sin_cos_turns(step as f32 / 20_000.0);
+                (compiled.point(Vec3::new(cos, sin, 0.0)) - origin).length()
+            });
+            let longest = lengths.fold(0.0, f32::max);
+            assert!((longest - compiled.max_scale).abs() < 1e-5 * compiled.max_scale, "{matrix:?}: {longest}");
+        }
+    }
+
+    #[test]
+    fn matrix_may_be_singular_and_huge() {
+        let flat = map(r#"{"matrix": [0, 0, 0.25, 2, 4, 0.5]}"#);
+        assert_eq!(flat.point(Vec3::new(1.0, 2.0, 0.0)), Vec3::new(0.25, 10.5, 0.0));
+        assert_eq!(map(r#"{"matrix": [0, 0, 0, 0, 0, 0]}"#).max_scale, 0.0);
+        let huge = map(r#"{"matrix": [1e18, 1e18, 1e18, 1e18, 1e18, 1e18]}"#);
+        let at = TextureLookup { uv: Vec2::splat(1e30), uv_footprint: 1e30, ..TextureLookup::default() };
+        assert_eq!(huge.pattern_point(&at), PatternPoint::default());
+        // Solid patterns with a matrix lie over surface coordinates, too.
+        assert_eq!(Mapping { matrix: Some([1.0; 6]), ..Mapping::default() }.space_or(Space::Local), Space::Uv);
+    }
+
     #[test]
     fn invalid_fields_are_named() {
         for (json, field) in [
@@ -275,6 +341,11 @@ mod tests {
             (r#"{"scale": [1, 0, 1]}"#, "scale"),
             (r#"{"rotate_degrees": [0, 1e39, 0]}"#, "rotate_degrees"),
             (r#"{"offset": [0, 1e39, 0]}"#, "offset"),
+            (r#"{"matrix": [1, 0, 0, 0, 1, 0], "scale": 2}"#, "matrix"),
+            (r#"{"matrix": [1, 0, 0, 0, 1, 0], "rotate_degrees": [0, 0, 90]}"#, "matrix"),
+            (r#"{"matrix": [1, 0, 0, 0, 1, 0], "offset": [1, 0, 0]}"#, "matrix"),
+            (r#"{"matrix": [1, 0, 0, 0, 1, 0], "space": "world"}"#, "matrix"),
+            (r#"{"matrix": [1, 0, 0, 0, 1, 1e39]}"#, "matrix"),
         ] {
             assert_eq!(serde_json::from_str::<Mapping>(json).unwrap().check().unwrap_err().field, field);
         }

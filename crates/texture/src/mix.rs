@@ -79,9 +79,9 @@ impl Texture for Mix {
     fn check(&self) -> Result<(), InvalidTexture> {
         check::color("a", &self.a)?;
         check::color("b", &self.b)?;
-        match self.amount {
-            Input::Value(amount) => check::in_range("amount", amount, 0.0, 1.0),
-            Input::Texture(_) => Ok(()),
+        match self.amount.constant_factor() {
+            Some(amount) => check::in_range("amount", amount, 0.0, 1.0),
+            None => Ok(()),
         }
     }
 

@@ -54,7 +54,7 @@ impl Default for Ramp {
 
 impl Texture for Ramp {
     fn check(&self) -> Result<(), InvalidTexture> {
-        if let Input::Value(value) = self.input {
+        if let Some(value) = self.input.constant_factor() {
             check::in_range("input", value, f32::MIN, f32::MAX)?;
         }
         check_stops(&self.stops)

@@ -1,7 +1,7 @@
 //! All textures of a scene, by name and by id.
 
 use super::compiler::{self, NoImages};
-use super::{AnyTexture, Input, SharedTexture, TextureError, TextureLookup};
+use super::{AnyTexture, CompiledProduct, Input, InputProduct, InputValue, SharedTexture, TextureError, TextureLookup};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,19 +11,47 @@ use std::sync::Arc;
 pub struct TextureId(pub(super) u32);
 
 /// An [`Input`] whose name has been resolved, so that it cannot dangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Slot<T> {
     /// Constant value.
     Value(T),
     /// Texture that each lookup evaluates.
     Texture(TextureId),
+    /// Product that each lookup evaluates. Clones share it.
+    Product(Arc<CompiledProduct<T>>),
 }
 
 impl<T> Slot<T> {
-    /// Whether a texture gives the value.
+    /// Whether a texture or an attribute of the mesh gives the value.
     pub fn is_texture(&self) -> bool {
-        matches!(self, Self::Texture(_))
+        !matches!(self, Self::Value(_))
     }
+}
+
+impl<T: InputValue> Slot<T> {
+    /// Product with its parts resolved. The factor 0 makes it a constant.
+    pub(super) fn product(product: &InputProduct<T>, texture: Option<TextureId>) -> Self {
+        if product.factor == Some(T::ZERO) {
+            return Self::Value(T::ZERO);
+        }
+        Self::Product(Arc::new(CompiledProduct::new(product, texture)))
+    }
+}
+
+/// Error in an input of a material.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum InputError {
+    /// The scene has no texture of this name.
+    #[error(transparent)]
+    Unknown(#[from] UnknownTexture),
+    /// A product lacks a part.
+    #[error("{message}")]
+    Incomplete {
+        /// Field of the product.
+        field: &'static str,
+        /// Message about the missing part.
+        message: String,
+    },
 }
 
 /// Error: a material names a texture that the scene lacks.
@@ -65,13 +93,18 @@ impl TextureTable {
         self.names.keys().map(String::as_str)
     }
 
-    /// Resolves the name in a material's `field`. An unknown name is an error.
-    pub fn resolve<T: Clone>(&self, field: &'static str, input: &Input<T>) -> Result<Slot<T>, UnknownTexture> {
+    /// Resolves the name in a material's `field`. Unknown names and incomplete products are errors.
+    pub fn resolve<T: InputValue>(&self, field: &'static str, input: &Input<T>) -> Result<Slot<T>, InputError> {
+        let id = |name: &str| {
+            let unknown = || UnknownTexture { field, name: name.to_owned() };
+            self.names.get(name).copied().ok_or_else(unknown)
+        };
         match input {
-            Input::Value(value) => Ok(Slot::Value(value.clone())),
-            Input::Texture(name) => match self.names.get(name) {
-                Some(id) => Ok(Slot::Texture(*id)),
-                None => Err(UnknownTexture { field, name: name.clone() }),
+            Input::Value(value) => Ok(Slot::Value(*value)),
+            Input::Texture(name) => Ok(Slot::Texture(id(name)?)),
+            Input::Product(product) => match product.error(field) {
+                Some(message) => Err(InputError::Incomplete { field, message }),
+                None => Ok(Slot::product(product, product.texture_name().map(id).transpose()?)),
             },
         }
     }
@@ -97,8 +130,15 @@ impl TextureTable {
     pub fn color(&self, slot: &Slot<Rgb>, at: &TextureLookup) -> Rgb {
         match slot {
             Slot::Value(value) => *value,
-            Slot::Texture(id) => self.textures.get(id.0 as usize).map_or(Rgb::BLACK, |t| t.eval(self, at)),
+            Slot::Texture(id) => self.texture_color(*id, at),
+            Slot::Product(product) => product.color(self, at),
         }
+    }
+
+    /// Color of a texture at a point.
+    #[inline]
+    pub(super) fn texture_color(&self, id: TextureId, at: &TextureLookup) -> Rgb {
+        self.textures.get(id.0 as usize).map_or(Rgb::BLACK, |texture| texture.eval(self, at))
     }
 
     /// Number of a slot at a point; of a texture, the luminance.
@@ -106,6 +146,7 @@ impl TextureTable {
         match slot {
             Slot::Value(value) => *value,
             Slot::Texture(id) => self.textures.get(id.0 as usize).map_or(0.0, |t| t.eval(self, at).luminance()),
+            Slot::Product(product) => product.number(self, at),
         }
     }
 }

@@ -46,6 +46,10 @@ impl Texture for Triplanar {
     fn check(&self) -> Result<(), InvalidTexture> {
         check::color("texture", &self.texture)?;
         check::in_range("sharpness", self.sharpness, 0.1, 1000.0)?;
+        if self.mapping.matrix.is_some() {
+            let message = "`triplanar` uses no surface coordinates, which `matrix` maps; use `scale` and the like";
+            return Err(InvalidTexture::new("matrix", message));
+        }
         self.mapping.check()
     }
 

@@ -56,7 +56,7 @@ pub const EXTENSIONS: [Extension; 34] = [
     whole("KHR_draco_mesh_compression"),
     ignored("KHR_interactivity", "a rendered scene does not react"),
     whole("KHR_lights_punctual"),
-    approximated("KHR_materials_anisotropy", "directions in textures have no effect"),
+    whole("KHR_materials_anisotropy"),
     approximated("KHR_materials_clearcoat", "the coat has the normals of its base"),
     whole("KHR_materials_diffuse_transmission"),
     ignored("KHR_materials_dispersion", "refracted light keeps its color"),

@@ -116,7 +116,7 @@ fn allow_textures(root: &mut Value) {
     let definitions = root.get_mut("$defs").and_then(Value::as_object_mut);
     for (name, definition) in definitions.into_iter().flatten() {
         let branches = definition.get_mut("anyOf").and_then(Value::as_array_mut);
-        if let Some(branches) = branches.filter(|_| crate::validate::definition_family(name) == "Input") {
+        if let Some(branches) = branches.filter(|_| crate::validate::names_textures(name)) {
             branches.push(json!({"$ref": "#/$defs/AnyTexture", "description": "Inline texture."}));
         }
     }

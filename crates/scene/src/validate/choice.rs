@@ -12,7 +12,7 @@ impl Validator<'_> {
     pub(super) fn choice(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule) -> Option<Plain> {
         let alternative = match &node.value {
             NodeValue::String(text) => alternative_of_text(text, &rule.alternatives),
-            _ => rule.alternatives.iter().find(|alternative| fits(node, &alternative.rule)),
+            _ => rule.alternatives.iter().find(|form| fits(node, &form.rule) && inline::suits(node, form)),
         };
         let Some(alternative) = alternative else {
             return self.mismatch(node, at, &wording::allowed(self.schema, rule));
@@ -23,8 +23,10 @@ impl Validator<'_> {
                 return self.report(node, at, Finding::error(message));
             }
             NodeValue::Array(channels) if alternative.owner == Some("Color") => self.check_range(node, at, channels),
-            NodeValue::String(text) if alternative.rule.types.string => match alternative.owner.map(wording::family) {
-                Some("Input") => self.check_reference(NamedFamily::Texture, node, text, at),
+            NodeValue::String(text) if alternative.rule.types.string => match alternative.owner {
+                Some(owner) if wording::names_textures(owner) => {
+                    self.check_reference(NamedFamily::Texture, node, text, at);
+                }
                 Some("MaterialRef") => self.check_reference(NamedFamily::Material, node, text, at),
                 _ => {}
             },

@@ -3,7 +3,7 @@
 
 use super::rule::Alternative;
 use super::{Plain, Validator, wording};
-use crate::document::Node;
+use crate::document::{Node, Value as NodeValue};
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use std::borrow::Cow;
@@ -11,7 +11,20 @@ use std::collections::HashSet;
 
 /// Whether a form of a value is an inline texture.
 pub fn is_texture(alternative: &Alternative) -> bool {
-    alternative.rule.name == Some("AnyTexture") && alternative.owner.map(wording::family) == Some("Input")
+    alternative.rule.name == Some("AnyTexture") && alternative.owner.is_some_and(wording::names_textures)
+}
+
+/// Whether an object has to be a form. A product and an inline texture are both objects: a product
+/// has a part, and `attribute` is the name of one there, but also the kind of a texture, which has
+/// settings.
+pub fn suits(node: &Node, alternative: &Alternative) -> bool {
+    let NodeValue::Object(members) = &node.value else { return true };
+    let is_part = |key: &str| match key {
+        "attribute" => members.get(key).is_some_and(|member| !matches!(member.node.value, NodeValue::Object(_))),
+        key => members.get(key).is_some(),
+    };
+    !alternative.rule.name.is_some_and(wording::is_product)
+        || ["texture", "factor", "attribute"].into_iter().any(is_part)
 }
 
 impl Validator<'_> {

@@ -29,7 +29,7 @@ pub(crate) use names::NameScope;
 pub use names::NamedFamily;
 pub use other_programs::page as names_page;
 pub(crate) use plain::Plain;
-pub(crate) use wording::{family as definition_family, list, noun as family_noun, plural};
+pub(crate) use wording::{is_product, list, names_textures, noun as family_noun, plural};
 
 /// Maximum number of warnings.
 const MAX_WARNINGS: usize = 20;

@@ -62,9 +62,12 @@ fn alternatives(all: &Schema, branches: &[Value], owner: Option<&str>) -> String
     let mut words: Vec<String> = Vec::new();
     for branch in branches.iter().filter(|branch| !allows(branch, "null")) {
         let text = branch.get("type").is_some_and(|t| t == "string");
-        words.push(match (text, owner.map(family)) {
-            (true, Some("Input")) => "the name of a texture".into(),
-            (false, Some("Input")) if all.follow(branch).0 == Some("AnyTexture") => "a texture {...}".into(),
+        let textures = owner.is_some_and(names_textures);
+        words.push(match all.follow(branch).0 {
+            _ if text && textures => "the name of a texture".into(),
+            Some("AnyTexture") if textures => "a texture {...}".into(),
+            // Messages name the usual forms; the reference explains products.
+            Some(name) if is_product(name) => continue,
             _ => expected(all, branch),
         });
     }
@@ -98,6 +101,16 @@ pub fn fixed(family: &Value) -> impl Iterator<Item = &str> {
 /// Name of a definition without the number that distinguishes it from others of the same name.
 pub fn family(name: &str) -> &str {
     name.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// Whether strings of a definition are names of textures.
+pub fn names_textures(name: &str) -> bool {
+    matches!(family(name), "Input" | "TextureRef")
+}
+
+/// Whether a definition is the product of a texture, a factor and an attribute.
+pub fn is_product(name: &str) -> bool {
+    family(name) == "InputProduct"
 }
 
 /// Name of a definition as a noun: `AnyShape` becomes "shape", `TransformStep` "transform step".

@@ -77,3 +77,40 @@ fn errors_are_reported_at_their_place() {
         "{problems}"
     );
 }
+
+#[test]
+fn products_have_textures_inline_or_by_name() {
+    for (diffuse, textures) in [
+        (r#"{"texture": "tiles", "factor": [1, 0.5, 0.25]}"#, 1),
+        (r##"{"texture": {"dots": {}}, "factor": "#ffffff", "attribute": "color"}"##, 2),
+        (r#"{"texture": {"mix": {"a": {"texture": "tiles"}, "b": {"attribute": {}}}}}"#, 3),
+        (r#"{"attribute": "color"}"#, 1),
+        (r#"{"attribute": {"name": "color"}}"#, 2),
+    ] {
+        let text = scene(diffuse, r#", "textures": {"tiles": {"checker": {}}}"#);
+        let scene = Scene::from_json(text, "inline.json").unwrap_or_else(|error| panic!("{diffuse}: {error}"));
+        assert_eq!(scene.description.textures.len(), textures, "{diffuse}");
+        assert_eq!(scene.compile().unwrap().warnings.list(), [], "{diffuse}");
+        let again = Scene::from_json(scene.to_json(), "again.json").unwrap();
+        assert_eq!(again.description, scene.description, "{diffuse}");
+    }
+}
+
+#[test]
+fn errors_in_products_are_reported_at_their_place() {
+    for (diffuse, path, message) in [
+        (r#"{"texture": "nobody", "factor": 0.5}"#, "diffuse.texture", "no texture is called `nobody`"),
+        (r#"{"texture": {"noise": {"scale": 0}}}"#, "diffuse.texture.noise.scale", "must not be 0"),
+        (r#"{"texture": {"noise": {}}, "factor": -1}"#, "diffuse", "`diffuse` must be"),
+        (r#"{"factor": 0.5}"#, "diffuse", "needs a `texture` or an `attribute`"),
+        (r#"{"texture": {"noise": {}}, "fakctor": 1}"#, "diffuse.fakctor", "did you mean `factor`"),
+        (r#"{"texture": {"noise": {}}, "factor": true}"#, "diffuse.factor", "a color"),
+        (r#"{"texture": 3}"#, "diffuse.texture", "the name of a texture"),
+        (r#"{"attribute": ""}"#, "diffuse", "must not be empty"),
+    ] {
+        let problems = problems(scene(diffuse, ""));
+        let [problem] = problems.list() else { panic!("{diffuse}: {problems}") };
+        let path = format!("materials.wall.phong.{path}");
+        assert!(problem.path == path && problems.to_string().contains(message), "{diffuse}: {problems}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{description, one_line};
 use crate::schema::{Schema, Unit, variants};
-use crate::validate::{family_noun, plural};
+use crate::validate::{family_noun, is_product, plural};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -76,9 +76,12 @@ impl Cells<'_> {
     fn alternatives(&self, branches: &[Value], many: bool) -> String {
         let is = |branch: &Value, t: &str| branch.get("type").is_some_and(|found| found == t);
         let named = |branch: &Value| matches!(self.schema.follow(branch).0, Some("AnyMaterial" | "AnyTexture"));
+        let product = |branch: &Value| self.schema.follow(branch).0.is_some_and(is_product);
         let is_named = branches.iter().any(named);
-        let (texts, others): (Vec<&Value>, Vec<&Value>) =
-            branches.iter().filter(|branch| !is(branch, "null")).partition(|branch| is(branch, "string"));
+        let (texts, others): (Vec<&Value>, Vec<&Value>) = branches
+            .iter()
+            .filter(|branch| !is(branch, "null") && !product(branch))
+            .partition(|branch| is(branch, "string"));
         let mut words: Vec<String> = others.into_iter().map(|branch| self.words(branch, many)).collect();
         if !texts.is_empty() {
             words.push(if is_named { "its name".into() } else { "string".into() });

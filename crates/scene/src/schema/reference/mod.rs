@@ -3,7 +3,7 @@
 
 use super::{Schema, UNITS, variants};
 use crate::compile::{MAX_EDGE, MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
-use crate::validate::{family_noun, plural};
+use crate::validate::{family_noun, is_product, plural};
 use crate::{animate, compile, document};
 use juggler_expression::FUNCTIONS;
 use serde_json::Value;
@@ -151,6 +151,10 @@ impl<'s> Plan<'s> {
     /// Adds a definition that only this section uses as its subsection; families are deferred to
     /// sections of their own.
     fn part(&mut self, noun: &str, name: &'s str, target: &'s Value, sections: &mut Vec<(&'s str, &'s Value)>) {
+        // The introduction explains products of inputs.
+        if is_product(name) {
+            return;
+        }
         if is_family(self.schema, target) {
             sections.push((name, target));
         } else if (is_table(target) || is_words(target)) && self.seen.insert(name) {

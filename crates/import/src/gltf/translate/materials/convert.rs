@@ -2,7 +2,7 @@
 
 use super::PrimitiveSurface;
 use super::surface;
-use super::textures::{Reading, TextureSet};
+use super::textures::{Reading, TextureSet, with_vertex_colors};
 use crate::gltf::document::{
     Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, MaterialExtensions, MetallicRoughness, Sheen,
     Specular, SpecularGlossiness, Transmission, Volume,
@@ -74,11 +74,7 @@ impl<'m> Base<'m> {
     ) -> Result<juggler_texture::Input<Rgb>, Fault> {
         let [r, g, b, _] = self.factor;
         let color = textures.color([r, g, b], self.texture)?;
-        if !surface.has_color {
-            return Ok(color);
-        }
-        let vertices = textures.vertex_colors(Channel::Rgb);
-        Ok(textures.product(color, vertices))
+        Ok(if surface.has_color { with_vertex_colors(color) } else { color })
     }
 
     /// Opacity and its threshold.
@@ -111,7 +107,7 @@ fn from_glossiness(textures: &mut TextureSet<'_>, model: &SpecularGlossiness) ->
         specular_color: textures.color(model.specular_factor, texture)?,
         ..Principled::default()
     };
-    surface::full_reflectance(textures, &mut principled);
+    surface::full_reflectance(&mut principled);
     Ok(principled)
 }
 
@@ -127,7 +123,7 @@ fn layers(
     }
     if let Some(ior) = extensions.ior.as_ref().filter(|_| extensions.specular_glossiness.is_none()) {
         if ior.ior == 0.0 {
-            surface::full_reflectance(textures, principled);
+            surface::full_reflectance(principled);
         } else {
             principled.ior = index(ior.ior);
         }
@@ -142,7 +138,7 @@ fn layers(
         iridescence(textures, principled, model)?;
     }
     if let Some(model) = &extensions.anisotropy {
-        anisotropy(textures, principled, model, at)?;
+        anisotropy(textures, principled, model)?;
     }
     if let Some(model) = &extensions.dispersion {
         surface::dispersion(textures, model.dispersion, at);
@@ -190,16 +186,11 @@ fn iridescence(textures: &mut TextureSet<'_>, principled: &mut Principled, model
     Ok(())
 }
 
-fn anisotropy(
-    textures: &mut TextureSet<'_>,
-    principled: &mut Principled,
-    model: &Anisotropy,
-    at: &str,
-) -> Result<(), Fault> {
+fn anisotropy(textures: &mut TextureSet<'_>, principled: &mut Principled, model: &Anisotropy) -> Result<(), Fault> {
     let texture = model.anisotropy_texture.as_ref();
     principled.anisotropy = textures.number(model.anisotropy_strength, texture, Reading::number(Channel::B))?;
     let turns = (model.anisotropy_rotation / TAU) % 1.0;
-    principled.anisotropy_rotation = surface::direction(textures, turns, texture, at);
+    principled.anisotropy_rotation = surface::direction(textures, turns, texture)?;
     Ok(())
 }
 

@@ -4,12 +4,12 @@
 
 use super::PrimitiveSurface;
 use super::convert::Base;
-use super::textures::{Reading, TextureSet};
+use super::textures::{Reading, TextureSet, scaled, with_vertex_colors};
 use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, TextureInfo};
 use crate::gltf::error::Fault;
 use juggler_material::{AnyMaterial, Emissive, Mask, MaterialRef, NormalMap, Principled, Sides};
 use juggler_math::Rgb;
-use juggler_texture::{Channel, Input};
+use juggler_texture::Input;
 
 /// Highest index of refraction, and the color that makes its reflectance 1: ((10 + 1) / (10 - 1))².
 const HIGHEST_IOR: f32 = 10.0;
@@ -18,10 +18,10 @@ const FULL_REFLECTANCE: f32 = 121.0 / 81.0;
 const MAX_NORMAL_SCALE: f64 = 1000.0;
 
 /// Makes the specular color the reflectance at normal incidence.
-pub fn full_reflectance(textures: &mut TextureSet<'_>, principled: &mut Principled) {
+pub fn full_reflectance(principled: &mut Principled) {
     principled.ior = HIGHEST_IOR;
     let color = std::mem::replace(&mut principled.specular_color, Rgb::WHITE.into());
-    principled.specular_color = textures.product(color, Rgb::splat(FULL_REFLECTANCE).into());
+    principled.specular_color = scaled(color, Rgb::splat(FULL_REFLECTANCE));
 }
 
 /// Dispersion of refracted light.
@@ -30,10 +30,18 @@ pub fn dispersion(textures: &mut TextureSet<'_>, dispersion: f64, at: &str) {
 }
 
 /// Rotation of the anisotropy in turns, with the directions of a texture.
-pub fn direction(textures: &mut TextureSet<'_>, turns: f64, texture: Option<&TextureInfo>, at: &str) -> Input<f32> {
-    let text = "the directions of its anisotropy texture have no effect; the strength has";
-    textures.warnings.add(at, text, u64::from(texture.is_some()));
-    (turns as f32).into()
+///
+/// # Errors
+///
+/// The picture cannot be read.
+pub fn direction(
+    textures: &mut TextureSet<'_>,
+    turns: f64,
+    texture: Option<&TextureInfo>,
+) -> Result<Input<f32>, Fault> {
+    let turns = turns as f32;
+    let Some(info) = texture else { return Ok(turns.into()) };
+    Ok(textures.directions(info, turns)?.unwrap_or_else(|| turns.into()))
 }
 
 /// Sides of the surface that are visible. The back is not there unless the material is double-sided
@@ -85,8 +93,7 @@ pub fn opacity(
     };
     let mut opacity = textures.number(factor, texture, Reading::alpha(is_mask))?;
     if surface.has_color {
-        let vertices = textures.vertex_colors(Channel::A);
-        opacity = textures.number_product(opacity, vertices);
+        opacity = with_vertex_colors(opacity);
     }
     Ok((opacity, is_mask.then_some(material.alpha_cutoff as f32)))
 }

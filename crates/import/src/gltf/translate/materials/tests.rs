@@ -55,7 +55,7 @@ fn extended(extensions: &str) -> MaterialParts {
 fn image(parts: &MaterialParts, input: &Input<f32>) -> Image {
     match input {
         Input::Texture(name) => image_named(parts, name),
-        Input::Value(value) => panic!("{value}"),
+        other => panic!("{other:?}"),
     }
 }
 
@@ -69,7 +69,7 @@ fn image_named(parts: &MaterialParts, name: &str) -> Image {
 fn color_name(input: &Input<Rgb>) -> &str {
     match input {
         Input::Texture(name) => name,
-        Input::Value(value) => panic!("{value:?}"),
+        other => panic!("{other:?}"),
     }
 }
 
@@ -119,9 +119,9 @@ fn factors_multiply_textures_of_their_channels() {
         &LIT,
     );
     let material = principled(&parts);
-    let product = mix(&parts, color_name(&material.base_color));
-    assert_eq!((product.mode, &product.b), (MixMode::Multiply, &Rgb::new(1.0, 0.5, 0.25).into()));
-    let base = image_named(&parts, color_name(&product.a));
+    let Input::Product(product) = &material.base_color else { panic!("{:?}", material.base_color) };
+    assert_eq!((product.factor, &product.attribute), (Some(Rgb::new(1.0, 0.5, 0.25)), &None));
+    let base = image_named(&parts, product.texture_name().unwrap());
     assert_eq!((base.color_space, base.channel, base.factor), (ColorSpace::Srgb, Channel::Rgb, 1.0));
     assert_eq!((base.file.as_str(), base.wrap, base.filter), ("m/images/0", Wrap::Repeat, Filter::Trilinear));
     let metallic = image(&parts, &material.metallic);
@@ -192,13 +192,11 @@ fn vertex_colors_multiply_color_and_alpha() {
     let parts =
         parts(r#"{"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}}"#, &COLORED);
     let material = principled(&parts);
-    assert_eq!(material.base_color, Input::Texture("m/vertex colors".into()));
-    let Input::Texture(opacity) = &material.opacity else { panic!("{:?}", material.opacity) };
-    let product = mix(&parts, opacity);
-    assert_eq!(
-        (product.mode, product.a, product.b),
-        (MixMode::Multiply, Rgb::splat(0.5).into(), Input::Texture("m/vertex alpha".into()),)
-    );
+    let color = serde_json::to_value(&material.base_color).unwrap();
+    assert_eq!(color, serde_json::json!({"attribute": "color"}));
+    let opacity = serde_json::to_value(&material.opacity).unwrap();
+    assert_eq!(opacity, serde_json::json!({"factor": 0.5, "attribute": "color"}));
+    assert!(parts.textures.is_empty());
 }
 
 #[test]
@@ -227,6 +225,22 @@ fn layers_take_the_values_of_their_extensions() {
     assert_eq!(material.sheen_color, Rgb::new(0.1, 0.2, 0.3).into());
     assert_eq!(channel(&material.sheen_roughness), (Channel::A, 0.6, ColorSpace::Linear));
     assert_eq!((material.anisotropy, material.anisotropy_rotation), (0.9.into(), 0.25.into()));
+}
+
+#[test]
+fn directions_of_anisotropy_come_from_its_texture() {
+    let parts = extended(
+        r#""KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyTexture": {"index": 0},
+            "anisotropyRotation": 1.5707963267948966}"#,
+    );
+    let material = principled(&parts);
+    assert_eq!(image(&parts, &material.anisotropy).channel, Channel::B);
+    let Input::Texture(name) = &material.anisotropy_rotation else { panic!("{:?}", material.anisotropy_rotation) };
+    let AnyTexture::Direction(direction) = &parts.textures[name] else { panic!("{:?}", parts.textures[name]) };
+    assert_eq!(direction.turns, 0.25);
+    let image = image_named(&parts, color_name(&direction.of));
+    assert_eq!((image.channel, image.color_space), (Channel::Rgb, ColorSpace::Linear));
+    assert!(texts(&parts).is_empty(), "{:?}", texts(&parts));
 }
 
 #[test]

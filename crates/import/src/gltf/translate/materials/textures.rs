@@ -9,13 +9,12 @@ use crate::gltf::warning::Warnings;
 use indexmap::IndexMap;
 use juggler_math::{Rgb, portable};
 use juggler_texture::{
-    AnyTexture, Attribute, Channel, ColorSpace, Filter, Image, Input, Mapping, Mix, MixMode, Wrap as Continuation,
+    AnyTexture, Channel, ColorSpace, Direction, Filter, Image, Input, InputProduct, InputValue, Mapping, Mix, MixMode,
+    TextureRef, Wrap as Continuation,
 };
 
 /// Name of the vertex colors among the attributes of meshes.
 const VERTEX_COLORS: &str = "color";
-/// Smallest magnitude of a scale. Smaller ones would not be invertible, and show the same texel.
-const MIN_SCALE: f64 = 1e-6;
 
 /// Textures by name, as the materials of a file use them.
 #[derive(Debug)]
@@ -78,8 +77,7 @@ impl<'a> TextureSet<'a> {
         let [r, g, b] = factor;
         let gray = if r == g && g == b { r } else { 1.0 };
         let Some(texture) = self.image(info, Reading::COLOR, gray)? else { return Ok(constant.into()) };
-        let texture = Input::Texture(texture);
-        Ok(if r == g && g == b { texture } else { self.product(texture, constant.into()) })
+        Ok(if r == g && g == b { Input::Texture(texture) } else { Input::product(texture, constant) })
     }
 
     /// Number of a factor and a texture: their product.
@@ -130,39 +128,16 @@ impl<'a> TextureSet<'a> {
         Ok(Some(Input::Texture(self.add(&format!("{name} negated"), negated))))
     }
 
-    /// Product of two colors or textures.
-    pub fn product(&mut self, a: Input<Rgb>, b: Input<Rgb>) -> Input<Rgb> {
-        match (a, b) {
-            (Input::Value(a), Input::Value(b)) => (a * b).into(),
-            (Input::Value(one), other) | (other, Input::Value(one)) if one == Rgb::WHITE => other,
-            (a, b) => {
-                let named = [&a, &b].into_iter().find_map(|input| match input {
-                    Input::Texture(name) => Some(name.clone()),
-                    Input::Value(_) => None,
-                });
-                let name = format!("{} product", named.unwrap_or_default());
-                Input::Texture(self.add(&name, Mix { a, b, amount: 1.0.into(), mode: MixMode::Multiply }))
-            }
-        }
-    }
-
-    /// Product of two numbers or textures.
-    pub fn number_product(&mut self, a: Input<f32>, b: Input<f32>) -> Input<f32> {
-        let gray = |input| match input {
-            Input::Value(number) => Input::Value(Rgb::splat(number)),
-            Input::Texture(name) => Input::Texture(name),
-        };
-        match self.product(gray(a), gray(b)) {
-            Input::Value(color) => color.r.into(),
-            Input::Texture(name) => Input::Texture(name),
-        }
-    }
-
-    /// Vertex colors, or their alpha.
-    pub fn vertex_colors<T>(&mut self, channel: Channel) -> Input<T> {
-        let name = if channel == Channel::A { "vertex alpha" } else { "vertex colors" };
-        let attribute = Attribute { name: VERTEX_COLORS.to_owned(), channel };
-        Input::Texture(self.add(&format!("{}{name}", self.prefix), attribute))
+    /// Angles of the directions in a texture plus a constant, in turns.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be read.
+    pub fn directions(&mut self, info: &TextureInfo, turns: f32) -> Result<Option<Input<f32>>, Fault> {
+        let reading = Reading { space: ColorSpace::Linear, ..Reading::COLOR };
+        let Some(name) = self.image(info, reading, 1.0)? else { return Ok(None) };
+        let direction = Direction { of: Input::Texture(name.clone()), turns };
+        Ok(Some(Input::Texture(self.add(&format!("{name} directions"), direction))))
     }
 
     /// Name of an image texture. `None` for a texture without an image.
@@ -227,6 +202,32 @@ impl<'a> TextureSet<'a> {
     }
 }
 
+/// Color times a constant.
+pub fn scaled(color: Input<Rgb>, factor: Rgb) -> Input<Rgb> {
+    match color {
+        Input::Value(color) => (color * factor).into(),
+        Input::Texture(name) => Input::product(name, factor),
+        Input::Product(mut product) => {
+            product.factor = Some(product.factor.map_or(factor, |own| own * factor));
+            Input::Product(product)
+        }
+    }
+}
+
+/// Input times the colors of vertices, or times their alpha.
+pub fn with_vertex_colors<T: InputValue>(input: Input<T>) -> Input<T> {
+    let attribute = Some(VERTEX_COLORS.to_owned());
+    let product = match input {
+        Input::Value(value) if value == T::ZERO => return value.into(),
+        Input::Value(value) => {
+            InputProduct { texture: None, factor: Some(value).filter(|value| *value != T::ONE), attribute }
+        }
+        Input::Texture(name) => InputProduct { texture: Some(TextureRef::Name(name)), factor: None, attribute },
+        Input::Product(product) => InputProduct { attribute, ..*product },
+    };
+    Input::Product(Box::new(product))
+}
+
 /// Factor of a document, which texture and material limit.
 fn number(factor: f64) -> f32 {
     factor.clamp(-1e6, 1e6) as f32
@@ -253,8 +254,7 @@ fn filter(sampler: &Sampler, is_sharp: bool) -> Filter {
 /// coordinates with v upwards: [sx cos r, -sy sin r, ox + sy sin r; sx sin r, sy cos r, 1 - oy - sy
 /// cos r].
 pub(super) fn matrix(transform: &TextureTransform) -> [f64; 6] {
-    let TextureTransform { offset: [ox, oy], rotation, scale, .. } = *transform;
-    let [sx, sy] = scale.map(|scale| if scale.abs() < MIN_SCALE { MIN_SCALE } else { scale });
+    let TextureTransform { offset: [ox, oy], rotation, scale: [sx, sy], .. } = *transform;
     let (sin, cos) = portable::sin_cos_f64(rotation);
     [sx * cos, -sy * sin, ox + sy * sin, sx * sin, sy * cos, 1.0 - oy - sy * cos]
 }
