@@ -1,0 +1,223 @@
+"""Checks of the glTF importer against other programs and against itself. See docs/gltf.md.
+
+    python3 -m venv checks && checks/bin/pip install -r tests/gltf/requirements.txt
+    npm install --prefix tests/gltf
+    checks/bin/python tests/gltf/agree.py PROGRAM MODELS [PART...]
+
+PROGRAM is the `juggler` program, MODELS a folder of models (the names of the Khronos sample assets
+are used where a part needs one), and each PART one of
+
+models     every model: `check`, `info` and a small render; pictures on 1, 2 and 4 threads
+           are equal in every byte
+encodings  rewrites by gltf-transform: the same numbers give pictures equal in every byte, lossy
+           ones nearly the same picture (FLIP, which needs `juggler compare`)
+numbers    triangles and bounds against trimesh, poses at seven times against three.js
+movie      a movie that is killed and resumed, or rendered in shards, is the same file
+malformed  500 defective files: no panic, status 2, and the place of the defect in the message
+speed      times of large models
+
+Without a PART all run. The exit status is 1 if a check fails.
+"""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+FAILURES = []
+
+
+def run(program, *args, check=True):
+    """Runs a program and returns the finished process."""
+    done = subprocess.run(list(map(str, (program, *args))), capture_output=True, text=True)
+    if check and done.returncode != 0:
+        raise SystemExit(f"{args}: status {done.returncode}\n{done.stderr}")
+    return done
+
+
+def report(what, holds, value=""):
+    """Prints one result."""
+    print(f"{'ok  ' if holds else 'FAIL'} {what} {value}", flush=True)
+    if not holds:
+        FAILURES.append(what)
+
+
+def models_of(folder):
+    """All models below a folder."""
+    return sorted(path for kind in ("*.glb", "*.gltf") for path in folder.rglob(kind))
+
+
+def picture(program, scene, folder, *args):
+    """Bytes of a small picture."""
+    path = Path(folder) / "picture.pfm"
+    run(program, "render", scene, "-o", path, "--size", "64x64", "--samples", 1, *args)
+    return path.read_bytes()
+
+
+def check_models(program, models, folder):
+    """A1."""
+    for model in models_of(models):
+        name = model.relative_to(models)
+        for command in ("check", "info"):
+            done = run(program, command, model, check=False)
+            report(f"{command} {name}", done.returncode == 0, done.stderr.strip()[:200])
+        one = picture(program, model, folder, "--threads", 1)
+        others = [picture(program, model, folder, "--threads", threads) for threads in (2, 4)]
+        report(f"render {name}", all(other == one for other in others))
+
+
+ENCODED = ["Fox/glTF-Binary/Fox.glb", "Box/glTF-Binary/Box.glb", "BoxInterleaved/glTF-Binary/BoxInterleaved.glb",
+           "BoxVertexColors/glTF-Binary/BoxVertexColors.glb", "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
+           "OrientationTest/glTF-Binary/OrientationTest.glb", "SimpleSkin/glTF/SimpleSkin.gltf",
+           "ClearCoatCarPaint/glTF-Binary/ClearCoatCarPaint.glb", "GlassVaseFlowers/glTF-Binary/GlassVaseFlowers.glb",
+           "TextureTransformTest/glTF/TextureTransformTest.gltf"]
+
+
+def check_encodings(program, models, folder):
+    """A2 and A3."""
+    twins = [models / "Box" / name for name in ("glTF-Binary/Box.glb", "glTF-Embedded/Box.gltf")]
+    report("Box.glb and Box.gltf", len({picture(program, twin, folder) for twin in twins}) == 1)
+    for model in ENCODED:
+        target = Path(folder) / Path(model).stem
+        names = json.loads(run("node", HERE / "rewrites.mjs", models / model, target).stdout.splitlines()[-1])
+        original = picture(program, models / model, folder)
+        for name in names["plain"]:
+            report(f"{model} as {name}", picture(program, target / name, folder) == original)
+        check_lossy(program, models / model, [target / name for name in names["lossy"]], folder)
+
+
+def check_lossy(program, model, encodings, folder):
+    """FLIP of encodings that round numbers, in pictures without much noise."""
+    def render(scene, path):
+        run(program, "render", scene, "-o", path, "--size", "256x256", "--samples", 64)
+        return path
+    original = render(model, Path(folder) / "original.exr")
+    for encoding in encodings:
+        other = render(encoding, Path(folder) / "encoded.exr")
+        flip = json.loads(run(program, "compare", other, original, "--stats", "-", check=False).stdout)["flip"]["mean"]
+        report(f"{model.stem} as {encoding.name}: FLIP", flip <= 0.01, f"{flip:.4f}")
+
+
+def bounds_of(program, scene):
+    """Bounds and number of triangles that `info` reports."""
+    info = json.loads(run(program, "info", scene, "--json").stdout)
+    return info["bounds"], info["geometry"]["triangles"]
+
+
+POSES = {"Fox/glTF-Binary/Fox.glb": "Run", "BoxAnimated/glTF-Binary/BoxAnimated.glb": "0",
+         "SimpleSkin/glTF/SimpleSkin.gltf": "0"}
+
+
+def check_numbers(program, models, folder):
+    """A6."""
+    import numpy as np
+    import trimesh
+    for model in models_of(models):
+        name = model.relative_to(models)
+        scene = Path(folder) / "rest.json"
+        scene.write_text(json.dumps({"version": 1, "objects": [{"model": {"file": str(model), "animation": "none"}}]}))
+        ours, triangles = bounds_of(program, scene)
+        theirs = trimesh.load_scene(model)
+        drawn = sum(len(theirs.geometry[theirs.graph[node][1]].faces) for node in theirs.graph.nodes_geometry
+                    if hasattr(theirs.geometry[theirs.graph[node][1]], "faces"))
+        report(f"triangles of {name}", triangles == drawn, f"{triangles} {drawn}")
+        error = np.abs(np.array(ours) - theirs.bounds).max() / np.linalg.norm(theirs.extents)
+        report(f"bounds of {name}", error < 1e-5, f"{error:.1e}")
+    for model, clip in POSES.items():
+        check_poses(program, models / model, clip, folder)
+
+
+def check_poses(program, model, clip, folder):
+    """Bounds of posed vertices at seven times."""
+    import numpy as np
+    duration = json.loads(run("node", HERE / "poses.mjs", model, clip, 0).stdout)["duration"]
+    times = [duration * share for share in (0, 0.1, 0.25, 0.4, 0.6, 0.85, 1)]
+    expected = json.loads(run("node", HERE / "poses.mjs", model, clip, *times).stdout)["bounds"]
+    worst = 0
+    for at, theirs in zip(times, expected):
+        scene = Path(folder) / "pose.json"
+        clip_name = clip if not clip.isdigit() else int(clip)
+        instance = {"file": str(model), "animation": clip_name, "at": at}
+        scene.write_text(json.dumps({"version": 1, "objects": [{"model": instance}]}))
+        ours, theirs = np.array(bounds_of(program, scene)[0]), np.array(theirs)
+        worst = max(worst, np.abs(ours - theirs).max() / np.linalg.norm(theirs[1] - theirs[0]))
+    report(f"poses of {model.name}", worst < 1e-5, f"{worst:.1e} of the diagonal")
+
+
+def check_movie(program, models, folder):
+    """A12."""
+    model = models / "Fox/glTF-Binary/Fox.glb"
+    options = ["--animation", "Run", "--size", "96x72", "--samples", 4]
+    whole, resumed = (Path(folder) / name for name in ("whole.mp4", "resumed.mp4"))
+    run(program, "render", model, "-o", whole, *options)
+    command = list(map(str, [program, "render", model, "-o", resumed, *options]))
+    for seconds in (1, 2):
+        started = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(seconds)
+        report("the movie was not complete when it was killed", started.poll() is None)
+        started.send_signal(signal.SIGKILL)
+        started.wait()
+    run(program, "render", model, "-o", resumed, *options)
+    report("killed and resumed movie", resumed.read_bytes() == whole.read_bytes())
+    shards = Path(folder) / "shards.mp4"
+    for shard in (["--shard", "1/2"], ["--shard", "0/2"], []):
+        run(program, "render", model, "-o", shards, *options, *shard)
+    report("movie in shards", shards.read_bytes() == whole.read_bytes())
+
+
+def check_malformed(program, models, folder):
+    """A13."""
+    from malformed import defects
+    sources = ["Fox/glTF-Binary/Fox.glb", "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
+               "OrientationTest/glTF-Binary/OrientationTest.glb", "BoxAnimated/glTF-Binary/BoxAnimated.glb"]
+    files = [defect for seed, model in enumerate(sources) for defect in defects((models / model).read_bytes(), 125, seed)]
+    files += [(path.name, path.read_bytes()) for path in sorted((models.parent / "malformed").glob("*.gl*"))]
+    unnamed, accepted = [], []
+    for what, data in files:
+        path = Path(folder) / "defective.glb"
+        path.write_bytes(data)
+        done = run(program, "check", path, check=False)
+        if "panicked" in done.stderr or done.returncode not in (0, 2):
+            report(f"{what}: status {done.returncode}", False, done.stderr[:200])
+        elif done.returncode == 0:
+            accepted.append(what)
+        elif not re.search(r"/\w+/\d|/\w+|byte \d+", done.stderr.replace(str(path), "")):
+            unnamed.append(what)
+    report(f"places of {len(files)} defects", len(unnamed) <= 0.05 * len(files), f"{len(unnamed)} without: {unnamed}")
+    report("defective files are refused", not accepted, f"{len(accepted)} accepted: {accepted}")
+
+
+def check_speed(program, models, folder):
+    """A10 and A11: `check` reads the whole file and builds the scene, without tracing."""
+    for name, path in json.loads(run(sys.executable, HERE / "large.py", folder).stdout).items():
+        seconds = []
+        for _ in range(5):
+            start = time.perf_counter()
+            run(program, "info", path)
+            seconds.append(time.perf_counter() - start)
+        print(f"     {name}: {min(seconds):.2f} s, median {sorted(seconds)[2]:.2f} s")
+
+
+PARTS = {"models": check_models, "encodings": check_encodings, "numbers": check_numbers, "movie": check_movie,
+         "malformed": check_malformed, "speed": check_speed}
+
+
+def main():
+    """Runs the parts that the command line names."""
+    if len(sys.argv) < 3 or any(part not in PARTS for part in sys.argv[3:]):
+        raise SystemExit(__doc__)
+    program, models = (Path(argument).resolve() for argument in sys.argv[1:3])
+    for part in sys.argv[3:] or PARTS:
+        with tempfile.TemporaryDirectory() as folder:
+            PARTS[part](program, models, folder)
+    raise SystemExit(f"{len(FAILURES)} failed: {FAILURES}" if FAILURES else 0)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(HERE))
+    main()
