@@ -34,7 +34,8 @@ pub struct Principled {
     pub specular: f32,
     /// Color of plastic's specular reflection at normal incidence.
     pub specular_color: Rgb,
-    /// Index of refraction of plastic, and of thin-walled glass, in air.
+    /// Index of refraction of plastic, and of thin-walled glass, in air. 0 gives plastic a
+    /// reflectance of `specular_color` at normal incidence, and glass no refraction.
     pub ior: f32,
     /// Weight of glass in the nonmetallic part.
     pub transmission: f32,
@@ -170,7 +171,8 @@ impl Principled {
         let thin_film = self.thin_film(self.dielectric_f0());
         if self.thin_walled {
             let new = if self.single_scattering { ThinDielectric::new } else { ThinDielectric::compensated };
-            let mut pane = new(self.ior, self.alpha()).tinted(reflection, self.base_color);
+            let ior = if self.ior == 0.0 { 1.0 } else { self.ior };
+            let mut pane = new(ior, self.alpha()).tinted(reflection, self.base_color);
             pane.thin_film = thin_film;
             bsdf.push_scaled(pane, weight);
         } else {

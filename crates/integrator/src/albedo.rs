@@ -18,7 +18,10 @@ pub struct Albedo {}
 
 impl Integrator for Albedo {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        output.record_unlit(world, ray, vertex);
+        if output.pass_cut_out(world, ray, vertex) {
+            return;
+        }
+        output.record_surface(world, ray, vertex);
         let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
         let albedo = diffuse.unwrap_or_else(|| {
             let shading = world.shade(vertex, -ray.direction, 1.0, path.sampler.skipped(0).next_1d());

@@ -24,7 +24,10 @@ pub struct AmbientOcclusion {
 
 impl Integrator for AmbientOcclusion {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        output.record_unlit(world, ray, vertex);
+        if output.pass_cut_out(world, ray, vertex) {
+            return;
+        }
+        output.record_surface(world, ray, vertex);
         let surface = &vertex.surface;
         let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });

@@ -207,7 +207,7 @@ impl VertexOutput<'_> {
 
     /// Records that the path passes straight through a surface.
     pub fn record_pass_through(&mut self, ray: &Ray) {
-        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.depth == 0) {
+        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.is_camera_ray()) {
             record.pass_distance[self.path.slot as usize] += ray.t_max;
         }
     }
@@ -215,7 +215,7 @@ impl VertexOutput<'_> {
     /// Records that the ray left the world.
     pub fn record_miss(&mut self, ray: &Ray) {
         let slot = self.path.slot as usize;
-        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.depth == 0) {
+        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.is_camera_ray()) {
             record.record_miss(slot, ray);
         }
     }
@@ -231,7 +231,7 @@ impl VertexOutput<'_> {
     }
 
     /// Records the surface that a camera ray hit, for integrators that do not trace light.
-    pub fn record_unlit(&mut self, world: &World, ray: &Ray, vertex: &Vertex) {
+    pub fn record_surface(&mut self, world: &World, ray: &Ray, vertex: &Vertex) {
         if self.is_recording() {
             let choice = if world.is_simple(vertex) { 0.0 } else { self.path.sampler.skipped(0).next_1d() };
             self.record_shading(world, ray, vertex, &world.shade(vertex, -ray.direction, 1.0, choice));
@@ -245,7 +245,7 @@ impl VertexOutput<'_> {
         if let Some(log) = &mut record.log {
             log.record_hit(slot, hit);
         }
-        if self.path.depth == 0 {
+        if self.path.is_camera_ray() {
             record.record_hit(slot, hit);
         }
         if history.events.is_only_specular() && !hit.is_specular {

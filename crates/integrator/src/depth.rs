@@ -1,4 +1,4 @@
-//! Distance from the camera to the first surface along the ray.
+//! Distance from the camera to the first surface along the ray. Cut-out surfaces do not count.
 //!
 //! ```json
 //! {"depth": {"far": 10}}
@@ -23,9 +23,14 @@ pub struct Depth {
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        output.record_unlit(world, ray, vertex);
-        output.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        if output.pass_cut_out(world, ray, vertex) {
+            return;
+        }
+        output.record_surface(world, ray, vertex);
+        let is_first = path.history.pass_throughs == 0;
+        let distance = if is_first { ray.t_max } else { (vertex.surface.point - path.history.from).length() };
+        output.add(Rgb::splat(distance / self.far.unwrap_or(1.0)), LightGroup::REST);
     }
 
     fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {

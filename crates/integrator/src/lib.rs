@@ -14,6 +14,7 @@ mod aov_record;
 mod clamp;
 mod classic;
 mod cone;
+mod cut_out;
 mod depth;
 mod direct;
 mod normals;

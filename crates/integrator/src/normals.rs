@@ -18,7 +18,10 @@ pub struct Normals {}
 
 impl Integrator for Normals {
     fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        output.record_unlit(world, ray, vertex);
+        if output.pass_cut_out(world, ray, vertex) {
+            return;
+        }
+        output.record_surface(world, ray, vertex);
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
         output.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
     }

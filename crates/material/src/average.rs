@@ -45,8 +45,16 @@ impl MaterialTable {
                 MeanShading { radiance: phong.eval(self.textures(), || view.lookup()).emission, ..MeanShading::DARK }
             }
             Some(CompiledMaterial::Scattering(_)) | None => MeanShading::DARK,
-            Some(CompiledMaterial::Boundary(_)) => MeanShading { opacity: 0.0, ..MeanShading::DARK },
+            // An unlit surface is absent for shadow rays, and no light.
+            Some(CompiledMaterial::Boundary(_) | CompiledMaterial::Unlit(_)) => {
+                MeanShading { opacity: 0.0, ..MeanShading::DARK }
+            }
             Some(CompiledMaterial::Checkerboard(board)) => mean(board.pick(view.surface)),
+            Some(CompiledMaterial::OneSided(one_sided)) => match (view.is_outside(), one_sided.is_absent_behind) {
+                (true, _) => mean(one_sided.material),
+                (false, true) => MeanShading { opacity: 0.0, ..MeanShading::DARK },
+                (false, false) => MeanShading::DARK,
+            },
             Some(CompiledMaterial::NormalMap(map)) => mean(map.material),
             Some(CompiledMaterial::BumpMap(map)) => mean(map.material),
             Some(CompiledMaterial::Mix(mix)) if mixes == 0 => mean(mix.pick(self.textures(), view).0),

@@ -6,7 +6,9 @@ use super::emissive::CompiledEmissive;
 use super::mask::CompiledMask;
 use super::mix::CompiledMix;
 use super::normal_map::CompiledNormalMap;
+use super::one_sided::CompiledOneSided;
 use super::phong::CompiledPhong;
+use super::unlit::CompiledUnlit;
 use super::{MaterialId, ShadingView};
 use crate::medium::Interior;
 use juggler_bsdf::Bsdf;
@@ -27,12 +29,16 @@ pub enum CompiledMaterial {
     Mix(CompiledMix),
     /// Another material with an opacity.
     Mask(CompiledMask),
+    /// Another material, on the front only.
+    OneSided(CompiledOneSided),
     /// Another material with normals from a texture.
     NormalMap(CompiledNormalMap),
     /// Another material with a bump map.
     BumpMap(CompiledBumpMap),
     /// Emission over another material.
     Emissive(CompiledEmissive),
+    /// Color without lighting.
+    Unlit(CompiledUnlit),
     /// Interface without a BSDF.
     Boundary(Interior),
 }
@@ -91,7 +97,17 @@ impl CompiledMaterial {
             Self::Checkerboard(_) | Self::Mix(_) => true,
             Self::Mask(mask) => mask.is_textured(),
             Self::Emissive(emissive) => emissive.is_textured(),
-            Self::Boundary(_) => false,
+            Self::Unlit(unlit) => unlit.is_textured(),
+            Self::Boundary(_) | Self::OneSided(_) => false,
+        }
+    }
+
+    /// Whether the surface is absent for some shadow rays, nested materials not counted.
+    pub fn has_absence(&self) -> bool {
+        match self {
+            Self::Unlit(_) => true,
+            Self::OneSided(one_sided) => one_sided.is_absent_behind,
+            _ => false,
         }
     }
 
@@ -107,10 +123,11 @@ impl CompiledMaterial {
     /// Nested materials.
     pub fn nested_materials(&self) -> Vec<MaterialId> {
         match self {
-            Self::Phong(_) | Self::Scattering(_) | Self::Boundary(_) => Vec::new(),
+            Self::Phong(_) | Self::Scattering(_) | Self::Unlit(_) | Self::Boundary(_) => Vec::new(),
             Self::Checkerboard(board) => board.choices().to_vec(),
             Self::Mix(mix) => mix.choices().to_vec(),
             Self::Mask(mask) => vec![mask.material],
+            Self::OneSided(one_sided) => vec![one_sided.material],
             Self::NormalMap(map) => vec![map.material],
             Self::BumpMap(map) => vec![map.material],
             Self::Emissive(emissive) => vec![emissive.material],

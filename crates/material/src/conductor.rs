@@ -12,6 +12,7 @@ use super::input::{check_unit_color, unit_color};
 use super::roughness::Roughness;
 use super::{
     CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView,
+    SurfaceSides,
 };
 use juggler_bsdf::metals::Metal;
 use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
@@ -20,8 +21,8 @@ use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
 
-/// Metal, smooth or rough (GGX microfacets), the same from both sides. `metal` takes precedence
-/// over `eta` and `k`, and these over `reflectance`.
+/// Metal, smooth or rough (GGX microfacets). `metal` takes precedence over `eta` and `k`, and these
+/// over `reflectance`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Conductor {
@@ -57,6 +58,10 @@ pub struct Conductor {
     /// rough white metal stays white. Set it to `false` to match renderers with single scattering
     /// only, where rough metal is darker.
     pub energy_compensation: bool,
+    /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
+    /// `black_behind`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
 }
 
 /// A metal by name. Its index of refraction per channel is derived from a measured table. Each
@@ -119,6 +124,7 @@ impl Default for Conductor {
             anisotropy: 0.0.into(),
             anisotropy_rotation: 0.0.into(),
             energy_compensation: true,
+            sides: SurfaceSides::Both,
         }
     }
 }
@@ -157,7 +163,7 @@ impl Material for Conductor {
         if !compiled.is_textured() {
             compiled.constant_lobe = Some(compiled.at(textures, &TextureLookup::default()));
         }
-        Ok(CompiledMaterial::scattering(compiled))
+        Ok(self.sides.restrict(CompiledMaterial::scattering(compiled), resolver))
     }
 
     fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
@@ -279,7 +285,8 @@ impl Conductor {
             ..Self::default()
         };
         let brushed = Self { anisotropy: 0.8.into(), roughness: Input::Texture("tiles".into()), ..Self::default() };
-        vec![Self::default(), gold, indices, brushed]
+        let front = Self { sides: SurfaceSides::Front, ..gold.clone() };
+        vec![Self::default(), gold, indices, brushed, front]
     }
 }
 

@@ -10,6 +10,7 @@ use std::f32::consts::FRAC_1_PI;
 
 mod examples;
 mod maps;
+mod one_sided;
 
 fn textures() -> TextureTable {
     let json = r#"{"tiles": {"checker": {"size": 1, "even": [0.2, 0.4, 0.6], "odd": [0, 0, 0]}},
@@ -76,7 +77,7 @@ fn textures_are_evaluated_at_each_point() {
     assert_eq!(even.specular, Rgb::splat(tile.luminance()));
     assert!(odd.diffuse.is_black() && odd.ambient.is_black() && odd.specular.is_black());
     assert_eq!(
-        (table.shadow_transmittance(id, &at(0.5)), table.shadow_transmittance(id, &at(1.5))),
+        (table.shadow_transmittance(id, &at(0.5), Vec3::Y), table.shadow_transmittance(id, &at(1.5), Vec3::Y)),
         (tile, Rgb::BLACK)
     );
     assert!(table.is_transparent(id));
@@ -93,7 +94,7 @@ fn transparency_is_found_through_checkerboards() {
     let (table, id) = board(r#"{"transparency": [0, 0, 0.1]}"#);
     assert!(table.is_transparent(id));
     // This point lies in an even cell of both checkerboards, which is opaque.
-    assert_eq!(table.shadow_transmittance(id, &at(0.0)), Rgb::BLACK);
+    assert_eq!(table.shadow_transmittance(id, &at(0.0), Vec3::Y), Rgb::BLACK);
 }
 
 #[test]
@@ -101,7 +102,7 @@ fn unknown_material_ids_are_black() {
     let (table, id) = compile(r#"{"phong": {}}"#).unwrap();
     let missing = MaterialId(id.0 + 1);
     assert_eq!(*table.phong(missing, &at(0.0)).unwrap(), PhongParameters::BLACK);
-    assert!(table.shadow_transmittance(missing, &at(0.0)).is_black() && !table.is_transparent(missing));
+    assert!(table.shadow_transmittance(missing, &at(0.0), Vec3::Y).is_black() && !table.is_transparent(missing));
     assert_eq!(*MaterialTable::default().phong(id, &at(0.0)).unwrap(), PhongParameters::BLACK);
 }
 

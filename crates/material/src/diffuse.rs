@@ -5,14 +5,16 @@
 //! ```
 
 use super::input::{check_number, check_unit_color, unit_color, unit_number};
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
+};
 use juggler_bsdf::{Bsdf, Lambert};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Diffuse surface, the same from both sides.
+/// Diffuse surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Diffuse {
@@ -21,11 +23,15 @@ pub struct Diffuse {
     /// Roughness, 0 (Lambert's law) to 1 (energy-preserving Oren-Nayar model). Larger values
     /// flatten the shading, as on dust and plaster.
     pub roughness: Input<f32>,
+    /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
+    /// `black_behind`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
 }
 
 impl Default for Diffuse {
     fn default() -> Self {
-        Self { reflectance: Rgb::splat(0.8).into(), roughness: 0.0.into() }
+        Self { reflectance: Rgb::splat(0.8).into(), roughness: 0.0.into(), sides: SurfaceSides::Both }
     }
 }
 
@@ -43,7 +49,8 @@ impl Material for Diffuse {
         let textures = resolver.textures();
         let reflectance = textures.resolve("reflectance", &self.reflectance)?;
         let roughness = textures.resolve("roughness", &self.roughness)?;
-        Ok(CompiledMaterial::scattering(CompiledDiffuse { reflectance, roughness }))
+        let compiled = CompiledMaterial::scattering(CompiledDiffuse { reflectance, roughness });
+        Ok(self.sides.restrict(compiled, resolver))
     }
 }
 
@@ -70,7 +77,10 @@ impl ScatteringMaterial for CompiledDiffuse {
 impl Diffuse {
     /// Examples for the contract tests.
     pub fn examples() -> Vec<Self> {
-        let rough = Self { roughness: 0.7.into(), reflectance: Input::Texture("tiles".into()) };
-        vec![Self::default(), rough]
+        let rough =
+            Self { roughness: 0.7.into(), reflectance: Input::Texture("tiles".into()), sides: SurfaceSides::Both };
+        let front = Self { sides: SurfaceSides::Front, ..Self::default() };
+        let black_behind = Self { sides: SurfaceSides::BlackBehind, ..rough.clone() };
+        vec![Self::default(), rough, front, black_behind]
     }
 }

@@ -4,8 +4,9 @@
 //! {"emissive": {"radiance": [17, 12, 4], "sides": "front"}}
 //! ```
 
-use super::input::{check_emission, emitted_color};
+use super::input::{check_emission, emitted_color, unit_number};
 use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialRef, MaterialResolver, ShadingView};
+use juggler_bsdf::fresnel::dielectric_reflectance;
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
@@ -52,8 +53,27 @@ pub struct CompiledEmissive {
     radiance: Slot<Rgb>,
     scale: f32,
     sides: Sides,
+    coat: Option<EmissionCoat>,
     /// Material that scatters light.
     pub material: MaterialId,
+}
+
+/// Clear coat over an emissive surface, which reflects some of the emission back.
+#[derive(Clone, Debug)]
+pub struct EmissionCoat {
+    /// Coverage by the coat, 0 to 1.
+    pub coverage: Slot<f32>,
+    /// Index of refraction of the coat.
+    pub ior: f32,
+}
+
+impl EmissionCoat {
+    /// Fraction of the emission that leaves through the coat towards the viewer:
+    /// 1 - coverage · Fresnel reflectance (`KHR_materials_clearcoat`, "Emission").
+    fn transmittance(&self, textures: &TextureTable, view: &ShadingView) -> f32 {
+        let cos = view.surface.shading_normal.dot(view.wo).abs();
+        1.0 - unit_number(textures, &self.coverage, &view.lookup()) * dielectric_reflectance(cos, self.ior)
+    }
 }
 
 impl Material for Emissive {
@@ -79,7 +99,13 @@ impl Material for Emissive {
 impl CompiledEmissive {
     /// Emission of checked values over a material.
     pub fn new(radiance: Slot<Rgb>, scale: f32, sides: Sides, material: MaterialId) -> Self {
-        Self { radiance, scale, sides, material }
+        Self { radiance, scale, sides, coat: None, material }
+    }
+
+    /// The same emission under a clear coat.
+    #[must_use]
+    pub fn under_coat(self, coat: EmissionCoat) -> Self {
+        Self { coat: Some(coat), ..self }
     }
 
     /// Radiance emitted towards the viewer.
@@ -91,13 +117,14 @@ impl CompiledEmissive {
             Slot::Value(radiance) => *radiance,
             slot => emitted_color(textures, slot, &view.lookup()),
         };
-        (radiance * self.scale).map(|channel| channel.min(MAX_LIGHT))
+        let scale = self.coat.as_ref().map_or(self.scale, |coat| self.scale * coat.transmittance(textures, view));
+        (radiance * scale).map(|channel| channel.min(MAX_LIGHT))
     }
 
     /// Emission of the whole surface.
     pub fn surface_emission(&self) -> SurfaceEmission {
         let radiance = match &self.radiance {
-            Slot::Value(radiance) => Some(*radiance * self.scale),
+            Slot::Value(radiance) => Some(*radiance * self.scale).filter(|_| self.coat.is_none()),
             Slot::Texture(_) | Slot::Product(_) => None,
         };
         SurfaceEmission { radiance, sides: self.sides }
@@ -105,7 +132,7 @@ impl CompiledEmissive {
 
     /// Whether emission varies over the surface.
     pub fn is_textured(&self) -> bool {
-        self.radiance.is_texture()
+        self.radiance.is_texture() || self.coat.as_ref().is_some_and(|coat| coat.coverage.is_texture())
     }
 }
 
@@ -124,6 +151,12 @@ impl SurfaceEmission {
     pub fn union(self, other: Self) -> Self {
         let sides = if self.sides == other.sides { self.sides } else { Sides::Both };
         Self { radiance: self.radiance.filter(|_| self.radiance == other.radiance), sides }
+    }
+
+    /// The same emission on the front only.
+    #[must_use]
+    pub fn on_front(self) -> Self {
+        Self { sides: Sides::Front, ..self }
     }
 
     /// The same emission with a radiance that varies over the surface.

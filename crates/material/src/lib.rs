@@ -23,6 +23,7 @@ mod mask;
 pub mod medium;
 mod mix;
 mod normal_map;
+mod one_sided;
 mod phong;
 mod plastic;
 mod principled;
@@ -31,6 +32,7 @@ mod shading;
 mod table;
 mod tangent;
 mod translucent;
+mod unlit;
 mod velvet;
 
 #[cfg(test)]
@@ -40,6 +42,7 @@ pub use compiled::{CompiledMaterial, ScatteringMaterial};
 pub use compiler::{MAX_NESTING, MaterialCompiler};
 pub use emissive::{Sides, SurfaceEmission};
 pub use error::MaterialError;
+pub use one_sided::SurfaceSides;
 pub use phong::{DiffuseNormalization, Spread};
 pub use shading::{Shading, ShadingView};
 pub use table::MaterialTable;
@@ -168,6 +171,7 @@ juggler_math::closed_set! {
         translucent::Translucent,
         principled::Principled,
         emissive::Emissive,
+        unlit::Unlit,
         checkerboard::Checkerboard,
         mask::Mask,
         mix::Mix,

@@ -7,15 +7,17 @@
 use super::error::in_range;
 use super::input::{check_number, check_unit_color, unit_color, unit_number};
 use super::roughness::Roughness;
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
+};
 use juggler_bsdf::{Bsdf, Plastic as PlasticLobes};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Diffuse base under a smooth or rough dielectric coating, the same from both sides. Use it for
-/// plastic, varnished wood and glazed tiles.
+/// Diffuse base under a smooth or rough dielectric coating. Use it for plastic, varnished wood and
+/// glazed tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Plastic {
@@ -39,6 +41,10 @@ pub struct Plastic {
     /// Simulates multiple reflections between base and coating, which make colors darker and more
     /// saturated. `false` keeps the colors as they are written or painted.
     pub nonlinear: bool,
+    /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
+    /// `black_behind`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
 }
 
 impl Default for Plastic {
@@ -52,6 +58,7 @@ impl Default for Plastic {
             anisotropy_rotation: 0.0.into(),
             reflection_tint: Rgb::WHITE.into(),
             nonlinear: false,
+            sides: SurfaceSides::Both,
         }
     }
 }
@@ -76,14 +83,15 @@ impl Material for Plastic {
         check_unit_color("reflection_tint", &self.reflection_tint)?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
-        Ok(CompiledMaterial::scattering(CompiledPlastic {
+        let compiled = CompiledMaterial::scattering(CompiledPlastic {
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
             diffuse_roughness: textures.resolve("diffuse_roughness", &self.diffuse_roughness)?,
             ior: self.ior,
             roughness: Roughness::new(textures, roughness)?,
             reflection: textures.resolve("reflection_tint", &self.reflection_tint)?,
             nonlinear: self.nonlinear,
-        }))
+        });
+        Ok(self.sides.restrict(compiled, resolver))
     }
 }
 

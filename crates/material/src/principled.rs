@@ -8,14 +8,17 @@
 //! transmission, volume, ior, specular, sheen, anisotropy, iridescence, diffuse_transmission,
 //! emissive_strength. [`juggler_bsdf::principled`] states the deviations.
 
-use super::emissive::{CompiledEmissive, Sides};
+use super::emissive::{CompiledEmissive, EmissionCoat, Sides};
 use super::error::in_range;
 use super::input::{
     check_color, check_emission, check_number, check_unit_color, emitted_color, unit_color, unit_number,
 };
 use super::mask::CompiledMask;
 use super::roughness::{rotation_slot, rotation_turns};
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView,
+    SurfaceSides,
+};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Principled as PrincipledLobes};
 use juggler_math::{MAX_LIGHT, Rgb};
@@ -35,8 +38,10 @@ pub struct Principled {
     pub metallic: Input<f32>,
     /// Roughness, 0 (mirror) to 1. The alpha of GGX is its square.
     pub roughness: Input<f32>,
-    /// Index of refraction of plastic and glass.
-    #[schemars(range(min = 1, max = 10))]
+    /// Index of refraction of plastic and glass, 1 to 10, or 0: then `specular_color` is the whole
+    /// reflectance at normal incidence, and light enters glass without refraction, as with
+    /// `KHR_materials_ior`.
+    #[schemars(range(min = 0, max = 10))]
     pub ior: f32,
     /// Weight of the specular reflection of plastic and glass, 0 to 1.
     pub specular: Input<f32>,
@@ -83,8 +88,8 @@ pub struct Principled {
     /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
     /// and Budge 2002), among equals the one that a path entered last.
     pub priority: i32,
-    /// Emitted radiance on both sides, 0 to 1e30 per channel, also after multiplication by
-    /// `emissive_strength`. Black emits nothing.
+    /// Emitted radiance on all `sides`, 0 to 1e30 per channel, also after multiplication by
+    /// `emissive_strength`. Black emits nothing. A clearcoat reflects some of it back.
     #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub emissive: Input<Rgb>,
     /// Factor on `emissive`.
@@ -98,6 +103,10 @@ pub struct Principled {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub alpha_cutoff: Option<f32>,
+    /// Sides of the surface on which the material is present and emits: `both`, `front` (absent from
+    /// behind) or `black_behind`. Has no effect with `transmission` or `diffuse_transmission`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
     /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017). Set
     /// it to `false` to match renderers with single scattering only, where rough metal and glass
     /// are darker.
@@ -133,6 +142,7 @@ impl Default for Principled {
             emissive_strength: 1.0,
             opacity: 1.0.into(),
             alpha_cutoff: None,
+            sides: SurfaceSides::Both,
             energy_compensation: true,
         }
     }
@@ -153,6 +163,8 @@ pub struct CompiledPrincipled {
     rotation: Slot<f32>,
     /// Values that hold at all points; without textures, all values.
     fixed: PrincipledLobes,
+    /// Index of refraction behind the surface.
+    interior_ior: f32,
     /// Interior of the solid; `None` if light cannot enter it.
     pub interior: Option<Interior>,
 }
@@ -174,17 +186,28 @@ impl Material for Principled {
         let compiled = self.surface(textures, medium)?;
         let emissive = textures.resolve("emissive", &self.emissive)?;
         let opacity = textures.resolve("opacity", &self.opacity)?;
+        let coverage = textures.resolve("clearcoat", &self.clearcoat)?;
+        let coat = may_be_nonzero(&self.clearcoat).then_some(EmissionCoat { coverage, ior: self.clearcoat_ior });
         let mut compiled = CompiledMaterial::scattering(compiled);
         if self.is_area_light() {
             let inner = resolver.add_nested(compiled);
-            compiled =
-                CompiledMaterial::Emissive(CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner));
+            let emission = CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner);
+            compiled = CompiledMaterial::Emissive(match coat {
+                Some(coat) => emission.under_coat(coat),
+                None => emission,
+            });
         }
         if self.opacity != Input::Value(1.0) {
             let inner = resolver.add_nested(compiled);
             compiled = CompiledMaterial::Mask(CompiledMask::new(opacity, self.alpha_cutoff, inner));
         }
-        Ok(compiled)
+        let sides = if self.transmission_field().is_some() { SurfaceSides::Both } else { self.sides };
+        Ok(sides.restrict(compiled, resolver))
+    }
+
+    fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
+        let replaced_by = self.transmission_field().filter(|_| self.sides != SurfaceSides::Both);
+        replaced_by.into_iter().map(|replaced_by| IneffectiveSetting { field: "sides", replaced_by }).collect()
     }
 
     fn is_area_light(&self) -> bool {
@@ -205,7 +228,9 @@ impl Principled {
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
         check_emission("emissive", &self.emissive, "emissive_strength", self.emissive_strength)?;
         in_range("alpha_cutoff", self.alpha_cutoff.unwrap_or_default(), 0.0, 1.0)?;
-        in_range("ior", self.ior, 1.0, 10.0)?;
+        if self.ior != 0.0 {
+            in_range("ior", self.ior, 1.0, 10.0)?;
+        }
         in_range("clearcoat_ior", self.clearcoat_ior, 1.0, 10.0)?;
         in_range("iridescence_ior", self.iridescence_ior, 1.0, 10.0)
     }
@@ -235,6 +260,12 @@ impl Principled {
         ]
     }
 
+    /// Field by which light passes through the surface, if any.
+    fn transmission_field(&self) -> Option<&'static str> {
+        let fields = [("transmission", &self.transmission), ("diffuse_transmission", &self.diffuse_transmission)];
+        fields.into_iter().find(|(_, input)| may_be_nonzero(input)).map(|(field, _)| field)
+    }
+
     /// Whether light can enter the solid: by refraction, or by diffuse transmission into a medium.
     fn has_interior(&self, medium: &Medium) -> bool {
         !self.thin
@@ -257,10 +288,11 @@ impl Principled {
         if !slots.any_texture() {
             slots.fill(&mut fixed, textures, &TextureLookup::default());
         }
-        let interior = Interior { ior: self.ior, priority: self.priority, medium };
+        let interior_ior = if self.ior == 0.0 { 1.0 } else { self.ior };
+        let interior = Interior { ior: interior_ior, priority: self.priority, medium };
         let interior = self.has_interior(&medium).then_some(interior);
         let rotation = rotation_slot(textures, &self.anisotropy_rotation)?;
-        Ok(CompiledPrincipled { slots, rotation, fixed, interior })
+        Ok(CompiledPrincipled { slots, rotation, fixed, interior_ior, interior })
     }
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {
@@ -310,7 +342,7 @@ impl Slots {
 
 impl ScatteringMaterial for CompiledPrincipled {
     fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
-        let relative_ior = self.fixed.ior / view.outside_ior;
+        let relative_ior = self.interior_ior / view.outside_ior;
         if !self.is_textured() {
             return self.fixed.add_lobes(relative_ior, bsdf);
         }
@@ -369,6 +401,8 @@ impl Principled {
             ..Self::default()
         };
         let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
+        let coated = Self { clearcoat: 0.7.into(), clearcoat_ior: 1.8, ..emitter.clone() };
+        let mirror = Self { ior: 0.0, specular_color: Rgb::new(0.9, 0.5, 0.1).into(), ..Self::default() };
         let products = Self {
             base_color: Input::product("wild", Rgb::new(1.0, 0.5, 0.0)),
             roughness: Input::product("wild", 0.5),
@@ -377,6 +411,11 @@ impl Principled {
             opacity: Input::product("wild", 0.75),
             ..Self::default()
         };
-        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter, products]
+        let [front, black_behind] = [SurfaceSides::Front, SurfaceSides::BlackBehind].map(|sides| Self {
+            sides,
+            opacity: 0.7.into(),
+            ..emitter.clone()
+        });
+        vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, emitter, coated, mirror, products, front, black_behind]
     }
 }

@@ -69,6 +69,9 @@ pub struct Shading {
     pub bsdf: Bsdf,
     /// Whether the BSDF may transmit light.
     pub transmissive: bool,
+    /// Whether `emission` is the color of an unlit surface, which exists only for camera rays and
+    /// their specular continuations.
+    pub is_unlit: bool,
     /// Factor on the contribution of the scene's lights, emissive shapes excepted: π for the
     /// classic material, whose lights are measured so that radiance 1 makes a white surface white;
     /// 1 with `inverse_pi` and for all other materials.
@@ -86,6 +89,7 @@ impl Shading {
             frame: Frame::AXES,
             bsdf: Bsdf::new(),
             transmissive: false,
+            is_unlit: false,
             light_scale: 1.0,
         }
     }

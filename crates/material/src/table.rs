@@ -7,7 +7,7 @@ use super::{
 };
 use crate::medium::{Interior, InteriorId};
 use juggler_bsdf::PhongParameters;
-use juggler_math::{Frame, Rgb};
+use juggler_math::{Frame, Rgb, Vec3};
 use juggler_shape::surface::Surface;
 use juggler_texture::{TextureLookup, TextureTable};
 use std::borrow::Cow;
@@ -30,6 +30,8 @@ struct MaterialProperties {
     transparent: bool,
     /// Whether opacity is below 1 somewhere.
     has_opacity: bool,
+    /// Whether the surface is absent for some rays, whatever the point.
+    has_absence: bool,
     /// Whether shading varies over the surface.
     textured: bool,
     /// Whether shading needs the surface's tangents.
@@ -44,6 +46,7 @@ impl MaterialProperties {
     const NONE: Self = Self {
         transparent: false,
         has_opacity: false,
+        has_absence: false,
         textured: false,
         tangents: false,
         emission: None,
@@ -59,24 +62,29 @@ impl MaterialTable {
     pub(super) fn push(&mut self, compiled: CompiledMaterial) -> MaterialId {
         let nested = compiled.nested_materials();
         let any = |property: fn(&MaterialProperties) -> bool| nested.iter().any(|id| property(&self.properties(*id)));
+        let absent = compiled.has_absence();
         let has_opacity = match &compiled {
             CompiledMaterial::Mask(material) => !material.is_opaque(),
             CompiledMaterial::Boundary(_) => true,
             _ => false,
         };
         let classic = matches!(&compiled, CompiledMaterial::Phong(material) if material.is_transparent());
-        let has_opacity = has_opacity || any(|properties| properties.has_opacity);
+        let nested_opacity = any(|properties| properties.has_opacity);
+        let has_opacity = has_opacity || absent || nested_opacity;
+        // A material that is absent from behind is as opaque on the front as the one inside it.
+        let emits_partly = has_opacity && (nested_opacity || !absent);
         let tangents = compiled.needs_tangents() || any(|properties| properties.tangents);
         let properties = MaterialProperties {
             transparent: has_opacity || classic || any(|properties| properties.transparent),
             has_opacity,
+            has_absence: absent || any(|properties| properties.has_absence),
             // Tangents are computed from the point in object space, which untextured surfaces lack.
             textured: tangents || compiled.is_textured() || any(|properties| properties.textured),
             tangents,
             // Radiance is constant only where the material is fully opaque.
             emission: self
                 .emission_of(&compiled)
-                .map(|emission| if has_opacity { emission.with_varying_radiance() } else { emission }),
+                .map(|emission| if emits_partly { emission.with_varying_radiance() } else { emission }),
             interior: None,
         };
         let interior = self.interior_of(&compiled, &nested);
@@ -126,13 +134,14 @@ impl MaterialTable {
         let emissions = || compiled.nested_materials().into_iter().filter_map(|id| self.properties(id).emission);
         match compiled {
             CompiledMaterial::Phong(phong) => phong.surface_emission(),
-            CompiledMaterial::Scattering(_) | CompiledMaterial::Boundary(_) => None,
+            CompiledMaterial::Scattering(_) | CompiledMaterial::Unlit(_) | CompiledMaterial::Boundary(_) => None,
             CompiledMaterial::Emissive(emissive) => match emissions().next() {
                 None => Some(emissive.surface_emission())
                     .filter(|emission| emission.radiance.is_none_or(|light| !light.is_black())),
                 Some(other) => Some(emissive.surface_emission().union(other).with_varying_radiance()),
             },
             CompiledMaterial::NormalMap(_) | CompiledMaterial::BumpMap(_) => emissions().next(),
+            CompiledMaterial::OneSided(_) => emissions().next().map(SurfaceEmission::on_front),
             CompiledMaterial::Checkerboard(_) | CompiledMaterial::Mix(_) | CompiledMaterial::Mask(_) => {
                 emissions().reduce(SurfaceEmission::union).map(SurfaceEmission::with_varying_radiance)
             }
@@ -200,9 +209,23 @@ impl MaterialTable {
                     shading.opacity *= mask.opacity(&self.textures, &view);
                     mask.material
                 }
+                CompiledMaterial::Unlit(unlit) => {
+                    shading.emission += unlit.color(&self.textures, &view);
+                    shading.is_unlit = true;
+                    break;
+                }
                 CompiledMaterial::Boundary(_) => {
                     shading.opacity = 0.0;
                     break;
+                }
+                CompiledMaterial::OneSided(one_sided) => {
+                    if !view.is_outside() {
+                        if one_sided.is_absent_behind {
+                            shading.opacity = 0.0;
+                        }
+                        break;
+                    }
+                    one_sided.material
                 }
                 CompiledMaterial::Emissive(emissive) => {
                     shading.emission += emissive.emission(&self.textures, &view);
@@ -240,31 +263,69 @@ impl MaterialTable {
         }
     }
 
-    /// Transmittance of material `id` at a point for shadow rays of the classic integrator.
+    /// Transmittance of material `id` at a point, seen from `wo`, for shadow rays of the classic
+    /// integrator.
     #[inline]
-    pub fn shadow_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>) -> Rgb {
+    pub fn shadow_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>, wo: Vec3) -> Rgb {
         let at = at.into();
         match self.resolve_checkerboards(id, at.surface) {
             Some(CompiledMaterial::Phong(phong)) => phong.shadow_transmittance(&self.textures, || lookup(at)),
             Some(CompiledMaterial::Mask(mask)) => {
                 let opacity = mask.opacity(&self.textures, &ShadingView::along_normal(at));
-                self.shadow_transmittance(mask.material, at) * opacity + Rgb::splat(1.0 - opacity)
+                self.shadow_transmittance(mask.material, at, wo) * opacity + Rgb::splat(1.0 - opacity)
             }
-            Some(CompiledMaterial::Boundary(_)) => Rgb::WHITE,
-            Some(CompiledMaterial::Emissive(emissive)) => self.shadow_transmittance(emissive.material, at),
-            Some(CompiledMaterial::NormalMap(map)) => self.shadow_transmittance(map.material, at),
-            Some(CompiledMaterial::BumpMap(map)) => self.shadow_transmittance(map.material, at),
+            Some(CompiledMaterial::Boundary(_) | CompiledMaterial::Unlit(_)) => Rgb::WHITE,
+            Some(CompiledMaterial::Emissive(emissive)) => self.shadow_transmittance(emissive.material, at, wo),
+            Some(CompiledMaterial::NormalMap(map)) => self.shadow_transmittance(map.material, at, wo),
+            Some(CompiledMaterial::BumpMap(map)) => self.shadow_transmittance(map.material, at, wo),
+            Some(CompiledMaterial::OneSided(one_sided)) if at.surface.normal.dot(wo) >= 0.0 => {
+                self.shadow_transmittance(one_sided.material, at, wo)
+            }
+            Some(CompiledMaterial::OneSided(one_sided)) => Rgb::splat(f32::from(one_sided.is_absent_behind)),
+            Some(CompiledMaterial::Mix(mix)) if mix.choices().iter().any(|id| self.has_absence(*id)) => {
+                let [a, b] = mix.choices().map(|id| self.straight_transmittance(id, at, wo));
+                let amount = mix.amount(&self.textures, &ShadingView::along_normal(at));
+                Rgb::splat(a + (b - a) * amount)
+            }
             _ => Rgb::BLACK,
         }
     }
 
-    /// Share of light that passes straight through material `id` at a point: 1 - opacity.
+    /// Share of light that passes straight through material `id` at a point, seen from `wo`: 1 -
+    /// opacity.
     #[inline]
-    pub fn straight_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>) -> f32 {
+    pub fn straight_transmittance<'a>(&self, id: MaterialId, at: impl Into<TexturedPoint<'a>>, wo: Vec3) -> f32 {
         if !self.has_opacity(id) {
             return 0.0;
         }
-        1.0 - self.opacity(id, &ShadingView::along_normal(at))
+        1.0 - self.opacity(id, &ShadingView { wo, ..ShadingView::along_normal(at) })
+    }
+
+    /// Whether material `id` is absent at a point for shadow rays that come from the side of `wo`,
+    /// as an unlit surface is, and a surface without a back from behind. Opacity does not count, nor
+    /// do mixtures.
+    pub fn is_absent(&self, mut id: MaterialId, surface: &Surface, wo: Vec3) -> bool {
+        // The loop ends, since nested materials have smaller ids.
+        while self.has_absence(id) {
+            id = match self.compiled(id) {
+                Some(CompiledMaterial::OneSided(one_sided)) if surface.normal.dot(wo) >= 0.0 => one_sided.material,
+                Some(CompiledMaterial::OneSided(one_sided)) => return one_sided.is_absent_behind,
+                Some(CompiledMaterial::Unlit(_)) => return true,
+                Some(CompiledMaterial::Checkerboard(board)) => board.pick(surface),
+                Some(CompiledMaterial::Mask(mask)) => mask.material,
+                Some(CompiledMaterial::NormalMap(map)) => map.material,
+                Some(CompiledMaterial::BumpMap(map)) => map.material,
+                Some(CompiledMaterial::Emissive(emissive)) => emissive.material,
+                _ => return false,
+            };
+        }
+        false
+    }
+
+    /// Whether [`MaterialTable::is_absent`] holds for some rays.
+    #[inline]
+    pub fn has_absence(&self, id: MaterialId) -> bool {
+        self.properties(id).has_absence
     }
 
     /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.

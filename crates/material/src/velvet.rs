@@ -6,15 +6,16 @@
 //! ```
 
 use super::input::{check_number, check_unit_color, unit_color, unit_number};
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
+use super::{
+    CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
+};
 use juggler_bsdf::{Bsdf, Sheen};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Cloth: a sheen of upright fibers over a diffuse base, the same from both sides. Use it for
-/// velvet and other fabrics.
+/// Cloth: a sheen of upright fibers over a diffuse base. Use it for velvet and other fabrics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Velvet {
@@ -27,6 +28,10 @@ pub struct Velvet {
     pub reflectance: Input<Rgb>,
     /// Roughness of the diffuse base, 0 (Lambert's law) to 1: see `diffuse`.
     pub roughness: Input<f32>,
+    /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
+    /// `black_behind`.
+    #[serde(skip_serializing_if = "SurfaceSides::is_default")]
+    pub sides: SurfaceSides,
 }
 
 impl Default for Velvet {
@@ -36,6 +41,7 @@ impl Default for Velvet {
             sheen_roughness: 0.5.into(),
             reflectance: Rgb::BLACK.into(),
             roughness: 0.0.into(),
+            sides: SurfaceSides::Both,
         }
     }
 }
@@ -56,12 +62,13 @@ impl Material for Velvet {
         check_unit_color("reflectance", &self.reflectance)?;
         check_number("roughness", &self.roughness, 0.0, 1.0)?;
         let textures = resolver.textures();
-        Ok(CompiledMaterial::scattering(CompiledVelvet {
+        let compiled = CompiledMaterial::scattering(CompiledVelvet {
             sheen_color: textures.resolve("sheen_color", &self.sheen_color)?,
             sheen_roughness: textures.resolve("sheen_roughness", &self.sheen_roughness)?,
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
             roughness: textures.resolve("roughness", &self.roughness)?,
-        }))
+        });
+        Ok(self.sides.restrict(compiled, resolver))
     }
 }
 
@@ -88,6 +95,7 @@ impl Velvet {
     pub fn examples() -> Vec<Self> {
         let red = Self { reflectance: Rgb::new(0.3, 0.02, 0.02).into(), roughness: 0.8.into(), ..Self::default() };
         let woven = Self { sheen_color: Input::Texture("tiles".into()), sheen_roughness: 0.2.into(), ..red.clone() };
-        vec![Self::default(), red, woven]
+        let front = Self { sides: SurfaceSides::Front, ..red.clone() };
+        vec![Self::default(), red, woven, front]
     }
 }

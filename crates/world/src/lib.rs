@@ -113,6 +113,8 @@ pub struct World {
     casters: Vec<CausticCaster>,
     has_transparency: bool,
     has_opacity: bool,
+    /// Whether any surface is absent for some rays: see [`MaterialTable::is_absent`].
+    has_absence: bool,
     has_media: bool,
     has_image_textures: bool,
     /// Whether any mesh has attributes or a second set of surface coordinates.
@@ -155,6 +157,7 @@ impl World {
         let used = || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material);
         let has_transparency = used().any(|id| materials.is_transparent(id));
         let has_opacity = used().any(|id| materials.has_opacity(id));
+        let has_absence = used().any(|id| materials.has_absence(id));
         let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
         let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
@@ -175,6 +178,7 @@ impl World {
             casters,
             has_transparency,
             has_opacity,
+            has_absence,
             has_media,
             has_image_textures,
             has_mesh_attributes,
@@ -283,6 +287,19 @@ impl World {
     #[inline]
     pub fn is_simple(&self, vertex: &Vertex) -> bool {
         self.materials.is_simple(vertex.material)
+    }
+
+    /// Whether the surface is absent for shadow rays that come from the side of `wo`.
+    pub fn is_absent(&self, vertex: &Vertex, wo: Vec3) -> bool {
+        self.has_absence && self.materials.is_absent(vertex.material, &vertex.surface, wo)
+    }
+
+    /// Whether rays from the side of `wo` pass straight through the surface at this point, by opacity 0.
+    /// `u_choice`, in [0, 1), selects among mixed materials.
+    pub fn is_cut_out(&self, vertex: &Vertex, wo: Vec3, u_choice: impl FnOnce() -> f32) -> bool {
+        self.has_opacity
+            && self.materials.has_opacity(vertex.material)
+            && self.shade(vertex, wo, 1.0, u_choice()).opacity == 0.0
     }
 
     /// Interior of the solid that the surface bounds; `None` if the material transmits no light

@@ -218,9 +218,19 @@ impl World {
         }
         let mut occluded = vec![false; rays.len()];
         self.top.occludes_rays(rays, coherence, &mut occluded);
-        for (occluded, transmittance) in occluded.iter().zip(transmittance) {
-            *transmittance = if *occluded { Rgb::BLACK } else { Rgb::WHITE };
+        for ((occluded, transmittance), ray) in occluded.iter().zip(transmittance).zip(rays) {
+            *transmittance = match (*occluded, self.has_absence) {
+                (false, _) => Rgb::WHITE,
+                (true, false) => Rgb::BLACK,
+                (true, true) => self.visibility(*ray),
+            };
         }
+    }
+
+    /// Visibility along a ray: 1 if all surfaces on it are absent for shadow rays, else 0.
+    fn visibility(&self, ray: Ray) -> Rgb {
+        let filter = |vertex: &Vertex| Rgb::splat(f32::from(self.is_absent(vertex, -ray.direction)));
+        self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), |_| Rgb::WHITE, filter)
     }
 
     /// Whether opacity or media may attenuate shadow rays, so that [`World::transmittance_inside`]
@@ -237,8 +247,16 @@ impl World {
         inside: impl Iterator<Item = Interiors>,
         transmittance: &mut [Rgb],
     ) {
-        for ((ray, inside), transmittance) in rays.iter().zip(inside).zip(transmittance) {
-            *transmittance = self.physical_transmittance(*ray, inside);
+        // Where surfaces have no back, all of them have an opacity, though most rays meet none. Opacity
+        // of the other kind is rare enough to need no such test.
+        let mut occluded = vec![true; if self.has_absence && !self.has_media { rays.len() } else { 0 }];
+        if !occluded.is_empty() {
+            occluded.fill(false);
+            self.top.occludes_rays(rays, RayCoherence::Incoherent, &mut occluded);
+        }
+        for (index, ((ray, inside), transmittance)) in rays.iter().zip(inside).zip(transmittance).enumerate() {
+            let is_free = occluded.get(index).is_some_and(|occluded| !occluded);
+            *transmittance = if is_free { Rgb::WHITE } else { self.physical_transmittance(*ray, inside) };
         }
     }
 
@@ -247,7 +265,7 @@ impl World {
         let filter = |vertex: &Vertex| {
             let mesh = self.mesh_point(vertex);
             let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
-            self.materials.shadow_transmittance(vertex.material, at)
+            self.materials.shadow_transmittance(vertex.material, at, -ray.direction)
         };
         self.transmittance_through(ray, MAX_FILTERS - 1, |_| Rgb::WHITE, filter)
     }
@@ -271,7 +289,7 @@ impl World {
             }
             let mesh = self.mesh_point(vertex);
             let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
-            Rgb::splat(self.materials.straight_transmittance(vertex.material, at))
+            Rgb::splat(self.materials.straight_transmittance(vertex.material, at, -ray.direction))
         };
         self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), medium_transmittance, transparency)
     }

@@ -67,7 +67,7 @@ pub const EXTENSIONS: [Extension; 34] = [
     whole("KHR_materials_sheen"),
     whole("KHR_materials_specular"),
     whole("KHR_materials_transmission"),
-    approximated("KHR_materials_unlit", "the surface emits its color"),
+    whole("KHR_materials_unlit"),
     whole("KHR_materials_variants"),
     whole("KHR_materials_volume"),
     whole("KHR_mesh_quantization"),

@@ -88,10 +88,8 @@ impl Integrator for Classic {
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
         output.record_miss(ray);
-        // A camera ray has passed only through transparent surfaces.
-        let is_camera_ray = path.depth == u32::from(path.history.pass_throughs);
         let radiance =
-            if is_camera_ray { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
+            if path.is_camera_ray() { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
         output.add(radiance, world.background_group());
     }
 }

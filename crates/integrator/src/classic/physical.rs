@@ -35,6 +35,7 @@ impl Classic {
         let room = path.depth < self.max_depth;
         // Pass through by opacity.
         if shading.opacity < 1.0 && choices.y >= shading.opacity {
+            output.record_pass_through(ray);
             if room {
                 output.trace_through(vertex.surface.spawn_ray(ray.direction, ray.time));
             }

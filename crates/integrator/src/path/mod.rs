@@ -14,6 +14,7 @@ use juggler_material::Shading;
 use juggler_math::{Ray, Rgb, Vec2};
 use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, World};
 pub use sampling::Sampling;
+pub use surface::pass_through;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use surface::ShadingPoint;
@@ -166,6 +167,10 @@ impl Integrator for Path {
         // Pass through by opacity.
         if shading.opacity < 1.0 && choice.y >= shading.opacity {
             return surface::pass_through(world, ray, path, vertex, output);
+        }
+        // Unlit surfaces exist only for camera rays and their specular continuations.
+        if shading.is_unlit {
+            return surface::add_unlit(world, ray, path, vertex, &shading, output);
         }
         // Record AOVs of the surface.
         output.record_shading(world, ray, vertex, &shading);

@@ -23,19 +23,38 @@ pub struct ShadingPoint<'a> {
     pub visible_casters: Option<&'a VisibleCasters>,
 }
 
-/// Continues the path straight through the surface.
+/// Continues the path straight through the surface. Shadow rays through specular spheres pass only
+/// surfaces that are absent for them, so only those keep the state of the path through a sphere.
 pub fn pass_through(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
     if path.history.pass_throughs < MAX_PASS_THROUGHS {
         let interiors = interiors_after(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
         output.record_pass_through(ray);
+        let is_absent = world.is_absent(vertex, -ray.direction);
         let history = PathHistory {
             pass_throughs: path.history.pass_throughs + 1,
             interiors,
-            caustic: CausticState::NONE,
+            caustic: if is_absent { path.history.caustic } else { CausticState::NONE },
             ..path.history
         };
         output.continue_path(vertex.surface.spawn_ray(ray.direction, ray.time), Rgb::WHITE, history, 0);
     }
+}
+
+/// Ends the path at an unlit surface, with its color, if all scattering so far was specular;
+/// otherwise the path passes straight through.
+pub fn add_unlit(
+    world: &World,
+    ray: &Ray,
+    path: &PathState,
+    vertex: &Vertex,
+    shading: &Shading,
+    output: &mut VertexOutput,
+) {
+    if !path.history.events.is_only_specular() {
+        return pass_through(world, ray, path, vertex, output);
+    }
+    output.record_shading(world, ray, vertex, shading);
+    output.add(shading.emission, world.shape_group(vertex.shape));
 }
 
 /// Solids that contain the path after it crosses the interface of one, inwards or outwards.

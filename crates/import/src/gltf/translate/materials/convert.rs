@@ -33,7 +33,7 @@ pub fn material(
     let glossiness = glossiness.filter(|_| material.pbr_metallic_roughness == MetallicRoughness::default());
     let base = Base::new(material, glossiness);
     if extensions.unlit.is_some() || !surface.is_lit {
-        return surface::unlit(textures, material, &base, surface, at);
+        return surface::unlit(textures, material, &base, surface);
     }
     let mut principled = match glossiness {
         Some(model) => from_glossiness(textures, model)?,
@@ -46,7 +46,7 @@ pub fn material(
     let strength = extensions.emissive_strength.as_ref().map_or(1.0, |strength| strength.emissive_strength);
     principled.emissive_strength = strength.min(MAX_STRENGTH) as f32;
     (principled.opacity, principled.alpha_cutoff) = base.opacity(textures, material, surface)?;
-    surface::sides(textures, &mut principled, material, extensions, at);
+    principled.sides = surface::sides(material, extensions);
     surface::with_normals(textures, principled, material, extensions.clearcoat.as_ref(), at)
 }
 
@@ -101,14 +101,14 @@ fn from_glossiness(textures: &mut TextureSet<'_>, model: &SpecularGlossiness) ->
     let texture = model.specular_glossiness_texture.as_ref();
     let roughness = 1.0 - model.glossiness_factor;
     let textured = textures.between(1.0, roughness, texture, Reading::alpha(false))?;
-    let mut principled = Principled {
+    Ok(Principled {
         metallic: 0.0.into(),
         roughness: textured.unwrap_or_else(|| (roughness as f32).into()),
+        // The specular color is the reflectance at normal incidence.
+        ior: 0.0,
         specular_color: textures.color(model.specular_factor, texture)?,
         ..Principled::default()
-    };
-    surface::full_reflectance(&mut principled);
-    Ok(principled)
+    })
 }
 
 /// Specular reflection, clear coat, sheen, thin film, anisotropy and dispersion.
@@ -122,11 +122,7 @@ fn layers(
         specular(textures, principled, model)?;
     }
     if let Some(ior) = extensions.ior.as_ref().filter(|_| extensions.specular_glossiness.is_none()) {
-        if ior.ior == 0.0 {
-            surface::full_reflectance(principled);
-        } else {
-            principled.ior = index(ior.ior);
-        }
+        principled.ior = if ior.ior == 0.0 { 0.0 } else { index(ior.ior) };
     }
     if let Some(model) = &extensions.clearcoat {
         clearcoat(textures, principled, model)?;

@@ -4,25 +4,14 @@
 
 use super::PrimitiveSurface;
 use super::convert::Base;
-use super::textures::{Reading, TextureSet, scaled, with_vertex_colors};
+use super::textures::{Reading, TextureSet, with_vertex_colors};
 use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, TextureInfo};
 use crate::gltf::error::Fault;
-use juggler_material::{AnyMaterial, Emissive, Mask, MaterialRef, NormalMap, Principled, Sides};
-use juggler_math::Rgb;
+use juggler_material::{AnyMaterial, Mask, MaterialRef, NormalMap, Principled, SurfaceSides, Unlit};
 use juggler_texture::Input;
 
-/// Highest index of refraction, and the color that makes its reflectance 1: ((10 + 1) / (10 - 1))².
-const HIGHEST_IOR: f32 = 10.0;
-const FULL_REFLECTANCE: f32 = 121.0 / 81.0;
 /// Largest strength of a normal map.
 const MAX_NORMAL_SCALE: f64 = 1000.0;
-
-/// Makes the specular color the reflectance at normal incidence.
-pub fn full_reflectance(principled: &mut Principled) {
-    principled.ior = HIGHEST_IOR;
-    let color = std::mem::replace(&mut principled.specular_color, Rgb::WHITE.into());
-    principled.specular_color = scaled(color, Rgb::splat(FULL_REFLECTANCE));
-}
 
 /// Dispersion of refracted light.
 pub fn dispersion(textures: &mut TextureSet<'_>, dispersion: f64, at: &str) {
@@ -44,20 +33,14 @@ pub fn direction(
     Ok(textures.directions(info, turns)?.unwrap_or_else(|| turns.into()))
 }
 
-/// Sides of the surface that are visible. The back is not there unless the material is double-sided
-/// or light passes through it.
-pub fn sides(
-    textures: &mut TextureSet<'_>,
-    _principled: &mut Principled,
-    material: &Material,
-    extensions: &MaterialExtensions,
-    at: &str,
-) {
+/// Sides of the surface that are visible. The back is absent unless the material is double-sided or
+/// light passes through it.
+pub fn sides(material: &Material, extensions: &MaterialExtensions) -> SurfaceSides {
     let is_thick = extensions.volume.as_ref().is_some_and(|volume| volume.thickness_factor > 0.0);
     let transmission = extensions.transmission.as_ref().map_or(0.0, |model| model.transmission_factor);
     let diffuse = extensions.diffuse_transmission.as_ref().map_or(0.0, |model| model.diffuse_transmission_factor);
-    let is_front_only = !(material.double_sided || is_thick || transmission > 0.0 || diffuse > 0.0);
-    textures.warnings.add(at, "is one-sided; its back is visible all the same", u64::from(is_front_only));
+    let is_visible_behind = material.double_sided || is_thick || transmission > 0.0 || diffuse > 0.0;
+    if is_visible_behind { SurfaceSides::Both } else { SurfaceSides::Front }
 }
 
 /// Material with its normal maps.
@@ -104,14 +87,12 @@ pub fn unlit(
     material: &Material,
     base: &Base<'_>,
     surface: &PrimitiveSurface,
-    at: &str,
 ) -> Result<AnyMaterial, Fault> {
-    textures.warnings.add(at, "is not lit; it emits its color and lights what is around it", 1);
-    let radiance = base.color(textures, surface)?;
+    let color = base.color(textures, surface)?;
     let (opacity, cutoff) = base.opacity(textures, material, surface)?;
-    let shown = Emissive { radiance, sides: Sides::Both, ..Emissive::default() };
-    if opacity == Input::Value(1.0) {
-        return Ok(shown.into());
+    if cutoff.is_none() {
+        return Ok(Unlit { color, opacity }.into());
     }
-    Ok(Mask { opacity, cutoff, material: MaterialRef::from(shown) }.into())
+    let shown = MaterialRef::from(Unlit { color, ..Unlit::default() });
+    Ok(Mask { opacity, cutoff, material: shown }.into())
 }

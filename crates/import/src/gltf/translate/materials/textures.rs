@@ -202,18 +202,6 @@ impl<'a> TextureSet<'a> {
     }
 }
 
-/// Color times a constant.
-pub fn scaled(color: Input<Rgb>, factor: Rgb) -> Input<Rgb> {
-    match color {
-        Input::Value(color) => (color * factor).into(),
-        Input::Texture(name) => Input::product(name, factor),
-        Input::Product(mut product) => {
-            product.factor = Some(product.factor.map_or(factor, |own| own * factor));
-            Input::Product(product)
-        }
-    }
-}
-
 /// Input times the colors of vertices, or times their alpha.
 pub fn with_vertex_colors<T: InputValue>(input: Input<T>) -> Input<T> {
     let attribute = Some(VERTEX_COLORS.to_owned());
