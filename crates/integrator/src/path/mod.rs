@@ -156,7 +156,7 @@ impl Integrator for Path {
         // Skip interfaces that a medium of higher priority hides.
         let interior = world.interior(vertex);
         if interior.is_some_and(|id| surface::is_hidden(world, ray, path, vertex, id)) {
-            return surface::pass_through(world, ray, path, vertex, output);
+            return pass_through(world, ray, path, vertex, output);
         }
         // Evaluate the material.
         let exterior_ior = surface::exterior_ior(world, path, interior);
@@ -166,7 +166,7 @@ impl Integrator for Path {
         world.shade_into(vertex, -ray.direction, exterior_ior, choice.x, &mut shading);
         // Pass through by opacity.
         if shading.opacity < 1.0 && choice.y >= shading.opacity {
-            return surface::pass_through(world, ray, path, vertex, output);
+            return pass_through(world, ray, path, vertex, output);
         }
         // Unlit surfaces exist only for camera rays and their specular continuations.
         if shading.is_unlit {
