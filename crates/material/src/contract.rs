@@ -11,6 +11,7 @@ use std::f32::consts::FRAC_1_PI;
 mod examples;
 mod maps;
 mod one_sided;
+mod unlit;
 
 fn textures() -> TextureTable {
     let json = r#"{"tiles": {"checker": {"size": 1, "even": [0.2, 0.4, 0.6], "odd": [0, 0, 0]}},

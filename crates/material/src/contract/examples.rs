@@ -246,6 +246,7 @@ const WILD: &[(&str, &[&str])] = &[
             "opacity",
         ],
     ),
+    ("unlit", &["color", "opacity"]),
     ("normal_map", &["texture", "strength"]),
     ("bump_map", &["height"]),
 ];

@@ -12,6 +12,7 @@ mod glass;
 mod lights;
 mod limits;
 mod media;
+mod one_sided;
 mod probe;
 mod rooms;
 mod skies;
