@@ -2,6 +2,7 @@
 
 use super::*;
 use juggler_bsdf::fresnel::dielectric_reflectance;
+use juggler_math::testing::{close, close3};
 
 /// Straight transmittance, shadow transmittance and absence from both sides.
 fn shadows(json: &str) -> [(f32, f32, bool); 2] {

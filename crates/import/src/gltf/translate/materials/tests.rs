@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::gltf::testing::Builder;
-use juggler_material::Principled;
+use juggler_material::{Principled, SurfaceSides};
 use juggler_math::Rgb;
 use juggler_texture::{Channel, ColorSpace, Filter, Image, Input, Mix, MixMode, Wrap};
 use std::collections::BTreeMap;
@@ -94,9 +94,26 @@ fn default_material_is_white_rough_metal() {
         base_color: Rgb::WHITE.into(),
         metallic: 1.0.into(),
         roughness: 1.0.into(),
+        sides: SurfaceSides::Front,
         ..Principled::default()
     };
     assert_eq!(principled(&parts), expected);
+}
+
+#[test]
+fn one_sided_surfaces_have_no_back_unless_light_passes_through_them() {
+    let sides = |material: &str| principled(&parts(material, &LIT)).sides;
+    assert_eq!(sides("{}"), SurfaceSides::Front);
+    assert_eq!(sides(r#"{"doubleSided": true}"#), SurfaceSides::Both);
+    for extension in [
+        r#""KHR_materials_transmission": {"transmissionFactor": 0.5}"#,
+        r#""KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5}"#,
+        r#""KHR_materials_volume": {"thicknessFactor": 0.5}"#,
+    ] {
+        assert_eq!(sides(&format!(r#"{{"extensions": {{{extension}}}}}"#)), SurfaceSides::Both, "{extension}");
+    }
+    let none = r#"{"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0}}}"#;
+    assert_eq!(sides(none), SurfaceSides::Front);
 }
 
 #[test]
@@ -325,11 +342,14 @@ fn unlit_surfaces_show_their_base_color() {
     let text = r#"{"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.5]}, "alphaMode": "BLEND",
         "extensions": {"KHR_materials_unlit": {}}}"#;
     let parts = parts(text, &LIT);
+    let AnyMaterial::Unlit(shown) = only(&parts) else { panic!("{parts:?}") };
+    assert_eq!((shown.color.clone(), shown.opacity.clone()), (Rgb::new(0.1, 0.2, 0.3).into(), 0.5.into()));
+    let parts = self::parts(&text.replace("BLEND", "MASK"), &LIT);
     let AnyMaterial::Mask(mask) = only(&parts) else { panic!("{parts:?}") };
-    assert_eq!(mask.opacity, 0.5.into());
+    assert_eq!((mask.opacity.clone(), mask.cutoff), (0.5.into(), Some(0.5)));
     let points = self::parts("{}", &UNLIT);
-    let AnyMaterial::Emissive(shown) = only(&points) else { panic!("{points:?}") };
-    assert_eq!(shown.radiance, Rgb::WHITE.into());
+    let AnyMaterial::Unlit(shown) = only(&points) else { panic!("{points:?}") };
+    assert_eq!(shown.color, Rgb::WHITE.into());
 }
 
 #[test]
@@ -350,7 +370,7 @@ fn tangents_are_needed_for_normal_maps_and_anisotropy() {
 #[test]
 fn settings_without_effect_are_reported() {
     let parts = parts(r#"{"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}}"#, &LIT);
-    assert_eq!(texts(&parts), ["its dispersion has no effect", "is one-sided; its back is visible all the same",]);
+    assert_eq!(texts(&parts), ["its dispersion has no effect"]);
 }
 
 #[test]
