@@ -6,8 +6,7 @@ use juggler_math::Ray;
 use juggler_world::{Vertex, World};
 
 impl PathState {
-    /// Whether the path is still a camera ray: it has met only surfaces that it passed straight
-    /// through.
+    /// Whether the path is still a camera ray: it has passed straight through all surfaces so far.
     #[inline]
     pub(crate) fn is_camera_ray(&self) -> bool {
         let PathHistory { events, pass_throughs, .. } = &self.history;

@@ -9,7 +9,7 @@ use super::normal_map::CompiledNormalMap;
 use super::one_sided::CompiledOneSided;
 use super::phong::CompiledPhong;
 use super::unlit::CompiledUnlit;
-use super::{MaterialId, ShadingView};
+use super::{MaterialId, Shading, ShadingView};
 use crate::medium::Interior;
 use juggler_bsdf::Bsdf;
 use juggler_texture::TextureTable;
@@ -99,6 +99,19 @@ impl CompiledMaterial {
             Self::Emissive(emissive) => emissive.is_textured(),
             Self::Unlit(unlit) => unlit.is_textured(),
             Self::Boundary(_) | Self::OneSided(_) => false,
+        }
+    }
+
+    /// Sets the emission and opacity of a material with neither a BSDF nor a nested material, or of
+    /// the back of a one-sided one.
+    pub fn end(&self, textures: &TextureTable, view: &ShadingView, shading: &mut Shading) {
+        match self {
+            Self::Unlit(unlit) => {
+                shading.emission += unlit.color(textures, view);
+                shading.is_unlit = true;
+            }
+            Self::OneSided(one_sided) if !one_sided.is_absent_behind => {}
+            _ => shading.opacity = 0.0,
         }
     }
 

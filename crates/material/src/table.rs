@@ -192,48 +192,53 @@ impl MaterialTable {
                     self.fill_scattering(&**scattering, &view, shading);
                     return;
                 }
-                CompiledMaterial::NormalMap(map) => {
-                    view.normal = map.shading_normal(&self.textures, &view);
-                    map.material
-                }
-                CompiledMaterial::BumpMap(map) => {
-                    view.normal = map.shading_normal(&self.textures, &view);
-                    map.material
-                }
-                CompiledMaterial::Checkerboard(board) => board.pick(view.surface),
-                CompiledMaterial::Mix(mix) => {
-                    (id, view.u_choice) = mix.pick(&self.textures, &view);
-                    continue;
-                }
-                CompiledMaterial::Mask(mask) => {
-                    shading.opacity *= mask.opacity(&self.textures, &view);
-                    mask.material
-                }
-                CompiledMaterial::Unlit(unlit) => {
-                    shading.emission += unlit.color(&self.textures, &view);
-                    shading.is_unlit = true;
-                    break;
-                }
-                CompiledMaterial::Boundary(_) => {
-                    shading.opacity = 0.0;
-                    break;
-                }
-                CompiledMaterial::OneSided(one_sided) => {
-                    if !view.is_outside() {
-                        if one_sided.is_absent_behind {
-                            shading.opacity = 0.0;
-                        }
-                        break;
-                    }
-                    one_sided.material
-                }
-                CompiledMaterial::Emissive(emissive) => {
-                    shading.emission += emissive.emission(&self.textures, &view);
-                    emissive.material
-                }
+                layer => match self.apply_layer(layer, &mut view, shading) {
+                    Some(nested) => nested,
+                    None => break,
+                },
             };
         }
         shading.frame = Frame::around(facing_normal(first, first.normal));
+    }
+
+    /// Applies a material without a BSDF of its own. Returns the material inside it, which comes
+    /// next; `None` if there is none.
+    #[inline(always)]
+    fn apply_layer(
+        &self,
+        layer: &CompiledMaterial,
+        view: &mut ShadingView,
+        shading: &mut Shading,
+    ) -> Option<MaterialId> {
+        match layer {
+            CompiledMaterial::NormalMap(map) => {
+                view.normal = map.shading_normal(&self.textures, view);
+                Some(map.material)
+            }
+            CompiledMaterial::BumpMap(map) => {
+                view.normal = map.shading_normal(&self.textures, view);
+                Some(map.material)
+            }
+            CompiledMaterial::Checkerboard(board) => Some(board.pick(view.surface)),
+            CompiledMaterial::Mix(mix) => {
+                let (id, u_choice) = mix.pick(&self.textures, view);
+                view.u_choice = u_choice;
+                Some(id)
+            }
+            CompiledMaterial::Mask(mask) => {
+                shading.opacity *= mask.opacity(&self.textures, view);
+                Some(mask.material)
+            }
+            CompiledMaterial::Emissive(emissive) => {
+                shading.emission += emissive.emission(&self.textures, view);
+                Some(emissive.material)
+            }
+            CompiledMaterial::OneSided(one_sided) if view.is_outside() => Some(one_sided.material),
+            layer => {
+                layer.end(&self.textures, view, shading);
+                None
+            }
+        }
     }
 
     /// Fills in the BSDF of a scattering material, with its frame.

@@ -12,9 +12,9 @@ use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Color without lighting, as `KHR_materials_unlit`: camera rays see it, directly and through
-/// mirrors, glass and holes. For all other rays the surface is absent: it casts no shadow, and its
-/// color does not light other surfaces. Use it for labels and backdrops; for lamps, use `emissive`.
+/// Color without lighting, as `KHR_materials_unlit`: camera rays see it, directly, in mirrors and
+/// through glass. For all other rays the surface is absent: it casts no shadow, and its color does
+/// not light other surfaces. Use it for labels and backdrops; use `emissive` for area lights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Unlit {

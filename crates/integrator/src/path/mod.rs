@@ -14,10 +14,10 @@ use juggler_material::Shading;
 use juggler_math::{Ray, Rgb, Vec2};
 use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, World};
 pub use sampling::Sampling;
-pub use surface::pass_through;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use surface::ShadingPoint;
+pub use surface::pass_through;
 
 mod caustic;
 mod sampling;

@@ -24,7 +24,7 @@ fn unlit_surfaces_show_their_color_and_are_absent_for_shadow_rays() {
     ] {
         assert_eq!(shadows(json), [(1.0, 1.0, true); 2], "{json}");
         let (table, id) = compile(json).unwrap();
-        assert_eq!((table.emission(id), table.interior(id)), (None, None), "an unlit surface is no lamp: {json}");
+        assert_eq!((table.emission(id), table.interior(id)), (None, None), "an unlit surface emits no light: {json}");
         assert!(table.is_textured(id) && table.has_absence(id) && !table.is_simple(id));
         for wo in [Vec3::Y, -Vec3::Y] {
             let surface = at(0.5);

@@ -1,13 +1,13 @@
-//! Surfaces that some rays do not meet: one-sided and unlit ones.
+//! Surfaces that are absent for some rays: one-sided and unlit ones.
 
 use crate::closed_forms::polygon;
 use crate::probe::{Scene, at_origin, looking, measure, path, traced};
 use juggler_math::{Transform, Vec3};
 use std::f64::consts::PI;
 
-const LAMP: &str = r#"{"point": {"position": [0, 2, 0], "intensity": 5}}"#;
+const LIGHT: &str = r#"{"point": {"position": [0, 2, 0], "intensity": 5}}"#;
 const SHEET: &str = r#"{"rectangle": {"size": [50, 50]}}"#;
-/// Radiance of the floor below the lamp.
+/// Radiance of the floor below the light.
 const LIT: f64 = 0.5 / PI * 5.0 / 4.0;
 
 fn diffuse(sides: &str) -> String {
@@ -22,7 +22,7 @@ fn facing(up: bool, at: Vec3) -> Transform {
 
 /// Radiance of the floor under a sheet at a height of 1, seen from below the sheet.
 fn floor_under(sheet: &str, up: bool) -> f64 {
-    let scene = Scene::floor().lit(LAMP).placed(SHEET, facing(up, Vec3::Y), sheet);
+    let scene = Scene::floor().lit(LIGHT).placed(SHEET, facing(up, Vec3::Y), sheet);
     let below = looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO);
     measure(&scene.world(), &below, &*path(r#""max_depth": 2"#), 4).mean
 }
@@ -39,8 +39,7 @@ fn shadow_rays_pass_through_the_back_of_a_surface_without_one() {
     }
 }
 
-/// The floor between two lamps: paths that scatter at the floor pass the back of a ceiling, and
-/// meet its front.
+/// Paths that scatter at the floor pass straight through the back of a ceiling, and hit its front.
 #[test]
 fn paths_pass_through_the_back_of_a_surface_without_one() {
     let sky = |sheet: &str, up: bool| {
@@ -57,11 +56,11 @@ fn paths_pass_through_the_back_of_a_surface_without_one() {
 #[test]
 fn cameras_see_the_front_of_one_sided_surfaces_and_through_their_back() {
     let seen = |sheet: &str, up: bool, options: &str| {
-        let scene = Scene::floor().lit(LAMP).placed(SHEET, facing(up, Vec3::Y), sheet);
+        let scene = Scene::floor().lit(LIGHT).placed(SHEET, facing(up, Vec3::Y), sheet);
         measure(&scene.world(), &looking(Vec3::new(0.3, 5.0, 0.2), Vec3::ZERO), &*path(options), 4).mean
     };
-    // From above, a sheet that faces down is absent; the lamp is above it, so the floor has light
-    // only if shadow rays meet no front.
+    // From above, a sheet that faces down is absent; the light is above it, so the floor has light
+    // only if shadow rays hit no front.
     assert_eq!(seen(&diffuse("front"), false, r#""max_depth": 2"#), 0.0);
     assert_eq!(seen(&diffuse("black_behind"), false, r#""max_depth": 2"#), 0.0);
     let top = seen(&diffuse("front"), true, r#""max_depth": 2"#);
@@ -69,7 +68,7 @@ fn cameras_see_the_front_of_one_sided_surfaces_and_through_their_back() {
     assert_eq!(seen(r#"{"unlit": {"color": 7}}"#, false, ""), 7.0);
 }
 
-/// A square lamp that emits to its front: the light is that of the plain emitter of one side.
+/// A square that emits to its front: the light is that of the plain emitter of one side.
 #[test]
 fn one_sided_emitters_light_what_their_front_faces() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
@@ -77,11 +76,10 @@ fn one_sided_emitters_light_what_their_front_faces() {
     let form = 0.5 / PI * 3.0 * polygon(&corners.map(|[x, z]| place.point(Vec3::new(x, 0.0, z))), Vec3::Y);
     let square = r#"{"rectangle": {"size": [2, 2]}}"#;
     for sides in ["front", "black_behind"] {
-        let lamp = format!(
-            r#"{{"principled": {{"emissive": 3, "base_color": 0, "specular": 0, "sides": "{sides}"}}}}"#
-        );
-        traced(Scene::floor().placed(square, place, &lamp), &at_origin(), 512).is(form);
-        let dark = Scene::floor().placed(square, facing(true, Vec3::Y), &lamp);
+        let emitter =
+            format!(r#"{{"principled": {{"emissive": 3, "base_color": 0, "specular": 0, "sides": "{sides}"}}}}"#);
+        traced(Scene::floor().placed(square, place, &emitter), &at_origin(), 512).is(form);
+        let dark = Scene::floor().placed(square, facing(true, Vec3::Y), &emitter);
         assert_eq!(traced(dark, &at_origin(), 16).mean, 0.0);
     }
 }
@@ -97,7 +95,7 @@ fn unlit_surfaces_are_seen_in_mirrors_and_light_nothing() {
     let glass = r#"{"dielectric": {"thin": true}}"#;
     let scene = Scene::new().with(SHEET, Vec3::Y, glass).with(SHEET, Vec3::ZERO, poster);
     traced(scene, &at_origin(), 256).is(7.0 * transmitted());
-    let room = || Scene::floor().lit(LAMP);
+    let room = || Scene::floor().lit(LIGHT);
     let alone = traced(room(), &at_origin(), 16);
     let among = traced(room().with(SHEET, Vec3::Y * 1.5, poster).with(SHEET, Vec3::Y * 9.0, poster), &at_origin(), 16);
     assert!((among.mean - 7.0).abs() < 1e-6, "the camera looks at the poster");
