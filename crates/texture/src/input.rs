@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(read(r##"{"texture": "t", "factor": "#ffffff"}"##).unwrap(), Input::product("t", Rgb::WHITE));
         let number = serde_json::from_str::<Input<f32>>(r#"{"texture": "t", "factor": 0.25}"#).unwrap();
         assert_eq!(number, Input::product("t", 0.25));
-        assert!(read(r#"{"checker": {}}"#).is_err() && read(r#"{"texture": "t", "faktor": 1}"#).is_err());
+        assert!(read(r#"{"checker": {}}"#).is_err() && read(r#"{"texture": "t", "scale": 1}"#).is_err());
     }
 
     #[test]
