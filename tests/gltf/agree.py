@@ -71,9 +71,10 @@ def check_models(program, models, folder):
         report(f"render {name}", all(other == one for other in others))
 
 
+# gltf-transform writes matrices of nodes as rounded rotations, so models with matrices are left out.
 ENCODED = ["Fox/glTF-Binary/Fox.glb", "Box/glTF-Binary/Box.glb", "BoxInterleaved/glTF-Binary/BoxInterleaved.glb",
            "BoxVertexColors/glTF-Binary/BoxVertexColors.glb", "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
-           "OrientationTest/glTF-Binary/OrientationTest.glb", "SimpleSkin/glTF/SimpleSkin.gltf",
+           "TextureCoordinateTest/glTF-Binary/TextureCoordinateTest.glb", "SimpleSkin/glTF/SimpleSkin.gltf",
            "ClearCoatCarPaint/glTF-Binary/ClearCoatCarPaint.glb", "GlassVaseFlowers/glTF-Binary/GlassVaseFlowers.glb",
            "TextureTransformTest/glTF/TextureTransformTest.gltf"]
 
@@ -92,9 +93,9 @@ def check_encodings(program, models, folder):
 
 
 def check_lossy(program, model, encodings, folder):
-    """FLIP of encodings that round numbers, in pictures without much noise."""
+    """FLIP of encodings that round numbers; both pictures have the same random numbers."""
     def render(scene, path):
-        run(program, "render", scene, "-o", path, "--size", "256x256", "--samples", 64)
+        run(program, "render", scene, "-o", path, "--size", "128x128", "--samples", 16)
         return path
     original = render(model, Path(folder) / "original.exr")
     for encoding in encodings:
@@ -113,6 +114,10 @@ POSES = {"Fox/glTF-Binary/Fox.glb": "Run", "BoxAnimated/glTF-Binary/BoxAnimated.
          "SimpleSkin/glTF/SimpleSkin.gltf": "0"}
 
 
+# Models whose bounds three.js gives: trimesh does not read sparse accessors.
+NOT_BY_TRIMESH = {"SimpleSparseAccessor"}
+
+
 def check_numbers(program, models, folder):
     """A6."""
     import numpy as np
@@ -126,7 +131,10 @@ def check_numbers(program, models, folder):
         drawn = sum(len(theirs.geometry[theirs.graph[node][1]].faces) for node in theirs.graph.nodes_geometry
                     if hasattr(theirs.geometry[theirs.graph[node][1]], "faces"))
         report(f"triangles of {name}", triangles == drawn, f"{triangles} {drawn}")
-        error = np.abs(np.array(ours) - theirs.bounds).max() / np.linalg.norm(theirs.extents)
+        expected = theirs.bounds
+        if name.stem in NOT_BY_TRIMESH:
+            expected = np.array(json.loads(run("node", HERE / "poses.mjs", model, "none", 0).stdout)["bounds"][0])
+        error = np.abs(np.array(ours) - expected).max() / np.linalg.norm(theirs.extents)
         report(f"bounds of {name}", error < 1e-5, f"{error:.1e}")
     for model, clip in POSES.items():
         check_poses(program, models / model, clip, folder)
@@ -152,7 +160,7 @@ def check_poses(program, model, clip, folder):
 def check_movie(program, models, folder):
     """A12."""
     model = models / "Fox/glTF-Binary/Fox.glb"
-    options = ["--animation", "Run", "--size", "96x72", "--samples", 4]
+    options = ["--animation", "Run", "--size", "160x120", "--samples", 8]
     whole, resumed = (Path(folder) / name for name in ("whole.mp4", "resumed.mp4"))
     run(program, "render", model, "-o", whole, *options)
     command = list(map(str, [program, "render", model, "-o", resumed, *options]))

@@ -2,8 +2,10 @@
 //
 //     node poses.mjs MODEL CLIP TIME...
 //
-// CLIP is the name of a clip, or its number from 0. Prints, for each time in seconds, the bounds of
-// all posed vertices as JSON: [[min x, min y, min z], [max x, max y, max z]].
+// CLIP is the name of a clip, its number from 0, or `none` for the rest pose. Prints, for each time
+// in seconds, bounds as JSON: [[min x, min y, min z], [max x, max y, max z]]. They are the bounds of
+// all vertices of skins, and of the transformed bounding boxes of other meshes, as `juggler info`
+// computes them. Rotations of keys are normalized, which three.js leaves to the file.
 
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -41,21 +43,34 @@ const loader = new GLTFLoader().register(() => new NoImages());
 const gltf = await new Promise((resolve, reject) =>
   loader.parse(path.endsWith(".glb") ? content : file.toString(), join(dirname(path), "/"), resolve, reject));
 const action = gltf.animations.find((animation) => animation.name === clip) ?? gltf.animations[Number(clip)];
+for (const track of action?.tracks ?? []) {
+  if (track.ValueTypeName !== "quaternion") continue;
+  track.values = Float64Array.from(track.values);
+  for (let i = 0; i < track.values.length; i += 4) {
+    const length = Math.hypot(...track.values.slice(i, i + 4));
+    for (let k = i; k < i + 4; k++) track.values[k] /= length;
+  }
+}
 const mixer = new AnimationMixer(gltf.scene);
-mixer.clipAction(action).play();
+if (action) mixer.clipAction(action).play();
 const vertex = new Vector3();
 const bounds = times.map((time) => {
   // The last key of a clip counts, not the first one again.
-  mixer.setTime(Math.min(Number(time), action.duration * (1 - 1e-12)));
+  if (action) mixer.setTime(Math.min(Number(time), action.duration * (1 - 1e-12)));
   gltf.scene.updateMatrixWorld(true);
   const box = new Box3();
   gltf.scene.traverse((object) => {
     if (!object.isMesh) return;
-    if (object.isSkinnedMesh) object.skeleton.update();
+    if (!object.isSkinnedMesh) {
+      object.geometry.computeBoundingBox();
+      box.union(object.geometry.boundingBox.clone().applyMatrix4(object.matrixWorld));
+      return;
+    }
+    object.skeleton.update();
     for (let i = 0; i < object.geometry.attributes.position.count; i++) {
       box.expandByPoint(object.getVertexPosition(i, vertex).applyMatrix4(object.matrixWorld));
     }
   });
   return [box.min.toArray(), box.max.toArray()];
 });
-console.log(JSON.stringify({ duration: action.duration, bounds }));
+console.log(JSON.stringify({ duration: action?.duration ?? 0, bounds }));

@@ -49,7 +49,7 @@ pub use point::MeshPoint;
 /// each triangle.
 ///
 /// Clones share the arrays and, once prepared, the hierarchy.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(from = "MeshDescription")]
 pub struct Mesh {
     /// Model file (PLY, OBJ, STL), relative to the scene file, instead of arrays.
@@ -69,14 +69,28 @@ pub struct Mesh {
     memo: Memo,
 }
 
-/// Prepared mesh, once a clone has prepared it. Meshes are equal whether or not they are prepared.
+/// Prepared mesh, once a clone has prepared it.
 #[derive(Clone, Debug, Default)]
 struct Memo(Arc<OnceLock<Arc<PreparedMesh>>>);
 
-impl PartialEq for Memo {
-    fn eq(&self, _: &Self) -> bool {
-        true
+/// The memo does not count. Clones, which share their arrays, are compared without reading these.
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { file, arrays, crease_angle_degrees, morphs, prepared, memo: _ } = self;
+        let same_prepared = match (prepared, &other.prepared) {
+            (Some(a), Some(b)) => same(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        (file, crease_angle_degrees) == (&other.file, &other.crease_angle_degrees)
+            && same(arrays, &other.arrays)
+            && *morphs == other.morphs
+            && same_prepared
     }
+}
+
+/// Whether both are one value or equal values.
+fn same<T: PartialEq>(a: &Arc<T>, b: &Arc<T>) -> bool {
+    Arc::ptr_eq(a, b) || a == b
 }
 
 impl From<MeshData> for Mesh {
