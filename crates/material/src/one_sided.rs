@@ -1,8 +1,5 @@
-//! Materials that only one side of the surface shows, as the field `sides` of a material selects.
-//!
-//! ```json
-//! {"diffuse": {"reflectance": 0.8, "sides": "front"}}
-//! ```
+//! Materials that only one side of the surface shows, as the field `sides` of a material selects:
+//! `front` or `black_behind`.
 //!
 //! A surface that is absent from behind uses the same machinery as opacity: its opacity is 0 there,
 //! so paths and shadow rays pass straight through.
