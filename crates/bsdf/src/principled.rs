@@ -166,13 +166,17 @@ impl Principled {
         self.thin_film(f0).map_or(fresnel, |(thin_film, amount)| Fresnel::ThinFilm { thin_film, amount })
     }
 
+    /// Index of refraction of glass: 1, which refracts nothing, where `ior` is 0.
+    pub fn glass_ior(&self) -> f32 {
+        if self.ior == 0.0 { 1.0 } else { self.ior }
+    }
+
     fn push_glass(&self, bsdf: &mut Bsdf, relative_ior: f32, weight: f32) {
         let reflection = self.specular_color.map(|c| c.min(1.0)) * self.specular;
         let thin_film = self.thin_film(self.dielectric_f0());
         if self.thin_walled {
             let new = if self.single_scattering { ThinDielectric::new } else { ThinDielectric::compensated };
-            let ior = if self.ior == 0.0 { 1.0 } else { self.ior };
-            let mut pane = new(ior, self.alpha()).tinted(reflection, self.base_color);
+            let mut pane = new(self.glass_ior(), self.alpha()).tinted(reflection, self.base_color);
             pane.thin_film = thin_film;
             bsdf.push_scaled(pane, weight);
         } else {

@@ -102,10 +102,10 @@ impl CompiledEmissive {
         Self { radiance, scale, sides, coat: None, material }
     }
 
-    /// The same emission under a clear coat.
+    /// The same emission under a clear coat, if there is one.
     #[must_use]
-    pub fn under_coat(self, coat: EmissionCoat) -> Self {
-        Self { coat: Some(coat), ..self }
+    pub fn under_coat(self, coat: Option<EmissionCoat>) -> Self {
+        Self { coat, ..self }
     }
 
     /// Radiance emitted towards the viewer.

@@ -40,7 +40,7 @@ impl SurfaceSides {
         *self == Self::default()
     }
 
-    /// Restricts a material to these sides. A material on both sides stays as it is.
+    /// Restricts a material to these sides; `Both` returns the material unchanged.
     pub(super) fn restrict(self, compiled: CompiledMaterial, resolver: &mut dyn MaterialResolver) -> CompiledMaterial {
         if self == Self::Both {
             return compiled;

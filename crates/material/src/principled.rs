@@ -168,10 +168,7 @@ impl Material for Principled {
         if self.is_area_light() {
             let inner = resolver.add_nested(compiled);
             let emission = CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner);
-            compiled = CompiledMaterial::Emissive(match coat {
-                Some(coat) => emission.under_coat(coat),
-                None => emission,
-            });
+            compiled = CompiledMaterial::Emissive(emission.under_coat(coat));
         }
         if self.opacity != Input::Value(1.0) {
             let inner = resolver.add_nested(compiled);
@@ -264,11 +261,10 @@ impl Principled {
         if !slots.any_texture() {
             slots.fill(&mut fixed, textures, &TextureLookup::default());
         }
-        let interior_ior = if self.ior == 0.0 { 1.0 } else { self.ior };
-        let interior = Interior { ior: interior_ior, priority: self.priority, medium };
+        let interior = Interior { ior: fixed.glass_ior(), priority: self.priority, medium };
         let interior = self.has_interior(&medium).then_some(interior);
         let rotation = rotation_slot(textures, &self.anisotropy_rotation)?;
-        Ok(CompiledPrincipled { slots, rotation, fixed, interior_ior, interior })
+        Ok(CompiledPrincipled { slots, rotation, fixed, interior })
     }
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {

@@ -145,7 +145,7 @@ impl TextureTable {
     pub fn number(&self, slot: &Slot<f32>, at: &TextureLookup) -> f32 {
         match slot {
             Slot::Value(value) => *value,
-            Slot::Texture(id) => self.textures.get(id.0 as usize).map_or(0.0, |t| t.eval(self, at).luminance()),
+            Slot::Texture(id) => self.texture_color(*id, at).luminance(),
             Slot::Product(product) => product.number(self, at),
         }
     }

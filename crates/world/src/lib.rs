@@ -294,8 +294,8 @@ impl World {
         self.has_absence && self.materials.is_absent(vertex.material, &vertex.surface, wo)
     }
 
-    /// Whether rays from the side of `wo` pass straight through the surface at this point, by opacity 0.
-    /// `u_choice`, in [0, 1), selects among mixed materials.
+    /// Whether rays from the side of `wo` pass straight through the surface at this point, because
+    /// its opacity is 0. `u_choice`, in [0, 1), selects among mixed materials.
     pub fn is_cut_out(&self, vertex: &Vertex, wo: Vec3, u_choice: impl FnOnce() -> f32) -> bool {
         self.has_opacity
             && self.materials.has_opacity(vertex.material)

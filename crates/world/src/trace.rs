@@ -247,16 +247,14 @@ impl World {
         inside: impl Iterator<Item = Interiors>,
         transmittance: &mut [Rgb],
     ) {
-        // Where surfaces have no back, all of them have an opacity, though most rays meet none. Opacity
-        // of the other kind is rare enough to need no such test.
-        let mut occluded = vec![true; if self.has_absence && !self.has_media { rays.len() } else { 0 }];
-        if !occluded.is_empty() {
-            occluded.fill(false);
+        // Most surfaces of a model may be one-sided, while most shadow rays hit none of them: a test
+        // of occlusion decides those rays.
+        let mut occluded = vec![!self.has_absence || self.has_media; rays.len()];
+        if self.has_absence && !self.has_media {
             self.top.occludes_rays(rays, RayCoherence::Incoherent, &mut occluded);
         }
-        for (index, ((ray, inside), transmittance)) in rays.iter().zip(inside).zip(transmittance).enumerate() {
-            let is_free = occluded.get(index).is_some_and(|occluded| !occluded);
-            *transmittance = if is_free { Rgb::WHITE } else { self.physical_transmittance(*ray, inside) };
+        for (((ray, inside), transmittance), occluded) in rays.iter().zip(inside).zip(transmittance).zip(occluded) {
+            *transmittance = if occluded { self.physical_transmittance(*ray, inside) } else { Rgb::WHITE };
         }
     }
 

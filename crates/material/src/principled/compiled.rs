@@ -18,8 +18,6 @@ pub struct CompiledPrincipled {
     pub rotation: Slot<f32>,
     /// Values that hold at all points; without textures, all values.
     pub fixed: PrincipledLobes,
-    /// Index of refraction behind the surface.
-    pub interior_ior: f32,
     /// Interior of the solid; `None` if light cannot enter it.
     pub interior: Option<Interior>,
 }
@@ -69,7 +67,7 @@ impl Slots {
 
 impl ScatteringMaterial for CompiledPrincipled {
     fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
-        let relative_ior = self.interior_ior / view.outside_ior;
+        let relative_ior = self.fixed.glass_ior() / view.outside_ior;
         if !self.is_textured() {
             return self.fixed.add_lobes(relative_ior, bsdf);
         }
