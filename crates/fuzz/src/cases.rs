@@ -11,6 +11,8 @@ use std::time::Duration;
 const MAX_MEMORY: u64 = 2 << 30;
 /// Time limit of one case.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
+/// Time limit of a process until its first case, which includes the list of all fields.
+const START_LIMIT: Duration = Duration::from_secs(60);
 /// Kind of the cases generated from the schema.
 pub const FIELDS: &str = "fields";
 
@@ -76,9 +78,9 @@ fn read_results(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mu
         let lines = out.into_iter().flat_map(|out| BufReader::new(out).lines());
         lines.map_while(Result::ok).try_for_each(|line| sender.send(line)).is_ok()
     });
-    let mut case = first;
+    let (mut case, mut limit) = (first, START_LIMIT);
     let failure = loop {
-        match lines.recv_timeout(TIME_LIMIT) {
+        match lines.recv_timeout(limit) {
             Ok(line) => match line.split_once(' ').unwrap_or((&line, "")) {
                 ("case", number) => case = number.parse().unwrap_or(case),
                 ("taken", _) => outcome.accepted += 1,
@@ -87,10 +89,11 @@ fn read_results(mut child: Child, kind: &str, first: u64, end: u64, outcome: &mu
             },
             Err(RecvTimeoutError::Timeout) => {
                 let _ = child.kill();
-                break Some(format!("takes longer than {} s", TIME_LIMIT.as_secs()));
+                break Some(format!("takes longer than {} s", limit.as_secs()));
             }
             Err(RecvTimeoutError::Disconnected) => break None,
         }
+        limit = TIME_LIMIT;
     };
     let _ = listener.join();
     let status = child.wait().map(|status| status.to_string());

@@ -13,8 +13,10 @@ use std::collections::BTreeMap;
 const PLACEHOLDER: &str = "@";
 /// Path suffix of the only number whose animation is walked too.
 const ANIMATED_PATH: &str = "sphere.radius";
-/// Paths on which a member of a definition is visited, where not all are.
-const MAX_VISITS: u32 = 2;
+/// Maximum number of paths on which each member of a definition is visited.
+const MAX_VISITS: u32 = 8;
+/// The same for [`all_fields`].
+const MAX_VISITS_OF_ALL: u32 = 2;
 /// Maximum nesting depth of definitions.
 const MAX_DEPTH: usize = 14;
 
@@ -56,21 +58,22 @@ pub struct Field {
     scene: Value,
 }
 
-/// All numbers of the scene format.
+/// Every number of every definition of the format, each on several paths.
 pub fn fields() -> Vec<Field> {
-    walk(None)
+    walk(false, MAX_VISITS)
 }
 
 /// Every field of every definition of the format: numbers, words and switches, each on a few paths.
 /// Words and switches have their possible values after the placeholder.
 pub fn all_fields() -> Vec<Field> {
-    walk(Some(RefCell::default()))
+    walk(true, MAX_VISITS_OF_ALL)
 }
 
 /// Fields that a walk over the schema finds.
-fn walk(visits: Option<RefCell<BTreeMap<String, u32>>>) -> Vec<Field> {
+fn walk(with_words: bool, max_visits: u32) -> Vec<Field> {
     let schema: Value = serde_json::from_str(&schema_json()).unwrap_or_default();
-    let walk = Walk { definitions: schema.get("$defs").cloned().unwrap_or_default(), visits };
+    let definitions = schema.get("$defs").cloned().unwrap_or_default();
+    let walk = Walk { definitions, with_words, max_visits, visits: RefCell::default() };
     let found = walk.placeholders(&schema, &mut Vec::new(), "");
     found.into_iter().map(|(path, scene)| Field { path, scene: complete(scene) }).collect()
 }
@@ -134,9 +137,11 @@ pub fn render(text: &str) -> Result<bool, String> {
 /// Walk over the definitions of the schema.
 struct Walk {
     definitions: Value,
-    /// Number of paths to each member of each definition so far, if words and switches count as
-    /// fields and each field is visited a few times only.
-    visits: Option<RefCell<BTreeMap<String, u32>>>,
+    /// Whether words and switches count as fields.
+    with_words: bool,
+    max_visits: u32,
+    /// Number of paths to each member of each definition so far.
+    visits: RefCell<BTreeMap<String, u32>>,
 }
 
 impl Walk {
@@ -175,7 +180,9 @@ impl Walk {
 
     /// Placeholder for a word or switch, with the values that may stand in its place.
     fn words(&self, node: &Value) -> Option<Value> {
-        self.visits.as_ref()?;
+        if !self.with_words {
+            return None;
+        }
         let variants = |key: &str| node.get(key).and_then(Value::as_array).into_iter().flatten();
         let constants = variants("oneOf").chain(variants("anyOf")).filter_map(|variant| variant.get("const"));
         let lists = variants("oneOf").filter_map(|variant| variant.get("enum")?.as_array()).flatten();
@@ -190,13 +197,13 @@ impl Walk {
         }
     }
 
-    /// Whether a member of a definition is to be visited.
+    /// Whether a member of a definition is to be visited once more. Without a limit, the paths are
+    /// hundreds of thousands, nearly all of them to numbers of nested textures.
     fn visit(&self, within: &[&str], name: &str) -> bool {
-        let Some(visits) = &self.visits else { return true };
-        let mut visits = visits.borrow_mut();
+        let mut visits = self.visits.borrow_mut();
         let count = visits.entry(format!("{}.{name}", within.last().unwrap_or(&""))).or_default();
         *count += 1;
-        *count <= MAX_VISITS
+        *count <= self.max_visits
     }
 
     fn in_items<'s>(
