@@ -1,7 +1,7 @@
 //! History of a path since its last scattering event.
 
 use super::path::Sampling;
-use juggler_material::medium::Interiors;
+use juggler_material::medium::{Interiors, Wavelength};
 use juggler_math::Vec3;
 use juggler_world::{CasterId, LightSampleContext};
 
@@ -26,6 +26,8 @@ pub struct PathHistory {
     pub eta_scale: f32,
     /// Solids that contain the path.
     pub interiors: Interiors,
+    /// Wavelength of the path since its first dispersive surface; `None` for white light.
+    pub wavelength: Option<Wavelength>,
     /// Number of surfaces passed through because of opacity, or hidden by priority, since the last
     /// scattering event.
     pub pass_throughs: u16,
@@ -102,6 +104,7 @@ impl PathHistory {
         light_samples: 1,
         eta_scale: 1.0,
         interiors: Interiors::NONE,
+        wavelength: None,
         pass_throughs: 0,
         events: ScatterCounts { diffuse: 0, glossy: 0, specular: 0, volume: 0 },
         caustic: CausticState::NONE,

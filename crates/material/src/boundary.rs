@@ -25,7 +25,7 @@ pub struct Boundary {
 impl Material for Boundary {
     fn compile(&self, _resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         let medium = compile_medium(&self.medium)?;
-        Ok(CompiledMaterial::Boundary(Interior { ior: 1.0, priority: self.priority, medium }))
+        Ok(CompiledMaterial::Boundary(Interior { ior: 1.0, dispersion: 0.0, priority: self.priority, medium }))
     }
 }
 

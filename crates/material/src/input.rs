@@ -5,6 +5,12 @@ use super::error::in_range;
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 
+/// Whether a number has the default 0, which scenes leave out.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature is that of serde")]
+pub fn is_zero(number: &f32) -> bool {
+    *number == 0.0
+}
+
 /// Rejects a constant color or factor with a channel outside 0 to 1.
 pub fn check_unit_color(field: &'static str, input: &Input<Rgb>) -> Result<(), MaterialError> {
     check_color(field, input, 1.0)

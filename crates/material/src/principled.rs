@@ -10,11 +10,11 @@
 
 use super::emissive::{CompiledEmissive, EmissionCoat, Sides};
 use super::error::in_range;
-use super::input::{check_color, check_emission, check_number, check_unit_color};
+use super::input::{check_color, check_emission, check_number, check_unit_color, is_zero};
 use super::mask::CompiledMask;
 use super::roughness::rotation_slot;
 use super::{CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, SurfaceSides};
-use crate::medium::{Interior, Medium};
+use crate::medium::{Interior, MAX_DISPERSION, Medium};
 use compiled::{CompiledPrincipled, Slots};
 use juggler_bsdf::Principled as PrincipledLobes;
 use juggler_math::{MAX_LIGHT, Rgb};
@@ -41,6 +41,11 @@ pub struct Principled {
     /// `KHR_materials_ior`.
     #[schemars(range(min = 0, max = 10))]
     pub ior: f32,
+    /// Dispersion of the light that glass refracts: 20 over the Abbe number, 0 to 20; 0 for none.
+    /// Only the path integrator shows it.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0, max = 20))]
+    pub dispersion: f32,
     /// Weight of the specular reflection of plastic and glass, 0 to 1.
     pub specular: Input<f32>,
     /// Color of the specular reflection of plastic and glass at normal incidence, 0 or more per
@@ -118,6 +123,7 @@ impl Default for Principled {
             metallic: 0.0.into(),
             roughness: 0.5.into(),
             ior: 1.5,
+            dispersion: 0.0,
             specular: 1.0.into(),
             specular_color: Rgb::WHITE.into(),
             anisotropy: 0.0.into(),
@@ -180,7 +186,10 @@ impl Material for Principled {
 
     fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
         let replaced_by = self.transmission_field().filter(|_| self.sides != SurfaceSides::Both);
-        replaced_by.into_iter().map(|replaced_by| IneffectiveSetting { field: "sides", replaced_by }).collect()
+        let sides = replaced_by.map(|replaced_by| IneffectiveSetting { field: "sides", replaced_by });
+        let is_achromatic = self.thin && self.dispersion > 0.0;
+        let dispersion = is_achromatic.then_some(IneffectiveSetting { field: "dispersion", replaced_by: "thin" });
+        sides.into_iter().chain(dispersion).collect()
     }
 
     fn is_area_light(&self) -> bool {
@@ -204,6 +213,7 @@ impl Principled {
         if self.ior != 0.0 {
             in_range("ior", self.ior, 1.0, 10.0)?;
         }
+        in_range("dispersion", self.dispersion, 0.0, MAX_DISPERSION)?;
         in_range("clearcoat_ior", self.clearcoat_ior, 1.0, 10.0)?;
         in_range("iridescence_ior", self.iridescence_ior, 1.0, 10.0)
     }
@@ -261,7 +271,7 @@ impl Principled {
         if !slots.any_texture() {
             slots.fill(&mut fixed, textures, &TextureLookup::default());
         }
-        let interior = Interior { ior: fixed.glass_ior(), priority: self.priority, medium };
+        let interior = Interior { ior: fixed.glass_ior(), dispersion: self.dispersion, priority: self.priority, medium };
         let interior = self.has_interior(&medium).then_some(interior);
         let rotation = rotation_slot(textures, &self.anisotropy_rotation)?;
         Ok(CompiledPrincipled { slots, rotation, fixed, interior })

@@ -72,6 +72,10 @@ impl SpecularMaterial {
             let weights = deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
             weights.fold(0.0, |sum: f32, weight| sum + weight.max_channel())
         };
+        // Light samples through the sphere have no wavelength.
+        if interior.is_some_and(|interior| interior.dispersion > 0.0) {
+            return None;
+        }
         let clear = interior.filter(|interior| bsdf.is_specular() && interior.ior > 1.0 && !interior.medium.scatters());
         let transmittance = if clear.is_some() { (1.0 - total_weight(true)).max(0.0) } else { 0.0 };
         let (ior, medium) = interior.map_or((1.0, Medium::default()), |interior| (interior.ior, interior.medium));

@@ -116,6 +116,8 @@ pub struct World {
     /// Whether any surface is absent for some rays: see [`MaterialTable::is_absent`].
     has_absence: bool,
     has_media: bool,
+    /// Whether the index of refraction of any material depends on the wavelength.
+    has_dispersion: bool,
     has_image_textures: bool,
     /// Whether any mesh has attributes or a second set of surface coordinates.
     has_mesh_attributes: bool,
@@ -159,6 +161,7 @@ impl World {
         let has_opacity = used().any(|id| materials.has_opacity(id));
         let has_absence = used().any(|id| materials.has_absence(id));
         let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
+        let has_dispersion = materials.interiors().iter().any(|interior| interior.dispersion > 0.0);
         let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
         lights.retain(|light| light.ambient.is_black());
@@ -180,6 +183,7 @@ impl World {
             has_opacity,
             has_absence,
             has_media,
+            has_dispersion,
             has_image_textures,
             has_mesh_attributes,
             moves,
@@ -313,6 +317,18 @@ impl World {
     #[inline]
     pub fn interiors(&self) -> &[Interior] {
         self.materials.interiors()
+    }
+
+    /// Interior by its id; `None` for an id of another world.
+    #[inline]
+    pub fn interior_at(&self, id: InteriorId) -> Option<&Interior> {
+        self.interiors().get(id.index())
+    }
+
+    /// Whether the index of refraction of any material depends on the wavelength.
+    #[inline]
+    pub fn has_dispersion(&self) -> bool {
+        self.has_dispersion
     }
 
     /// Surface at a hit of `ray`.

@@ -59,7 +59,7 @@ pub const EXTENSIONS: [Extension; 34] = [
     whole("KHR_materials_anisotropy"),
     approximated("KHR_materials_clearcoat", "the coat has the normals of its base"),
     whole("KHR_materials_diffuse_transmission"),
-    ignored("KHR_materials_dispersion", "refracted light keeps its color"),
+    whole("KHR_materials_dispersion"),
     whole("KHR_materials_emissive_strength"),
     whole("KHR_materials_ior"),
     whole("KHR_materials_iridescence"),

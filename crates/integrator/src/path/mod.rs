@@ -8,9 +8,10 @@
 //! {"path": {"max_depth": 16, "roulette_depth": 4}}
 //! ```
 
-use super::{Clamp, Integrator, PathState, VertexOutput};
+use super::{Clamp, Integrator, PathHistory, PathState, VertexOutput};
 use caustic::HitEmitter;
 use juggler_material::Shading;
+use juggler_material::medium::{InteriorId, Wavelength};
 use juggler_math::{Ray, Rgb, Vec2};
 use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, World};
 pub use sampling::Sampling;
@@ -44,6 +45,8 @@ enum Dimension {
     CausticCaster = 6,
     /// Choice of a light, and of a point on it, as seen from the specular sphere.
     CausticLight = 7,
+    /// Wavelength of the path at its first dispersive surface.
+    Wavelength = 8,
 }
 
 /// Default number of light samples at the first vertex, if the world has several emitters.
@@ -129,6 +132,26 @@ impl Path {
         if path.history.events.is_only_specular() { first().clamp(1, 64) as u16 } else { 1 }
     }
 
+    /// State of the path with a wavelength, if the path has none and hits the interface of a
+    /// dispersive solid. The color of the wavelength scales all that the path finds from here on.
+    #[inline]
+    fn disperse(
+        &self,
+        world: &World,
+        path: &PathState,
+        interior: Option<InteriorId>,
+        output: &mut VertexOutput,
+    ) -> Option<PathState> {
+        if !world.has_dispersion() || path.history.wavelength.is_some() {
+            return None;
+        }
+        interior.and_then(|id| world.interior_at(id)).filter(|interior| interior.dispersion > 0.0)?;
+        let u = path.sampler.skipped(Dimension::Wavelength as u32).next_1d();
+        let (wavelength, weight) = Wavelength::sample(u);
+        output.scale(weight);
+        Some(PathState { history: PathHistory { wavelength: Some(wavelength), ..path.history }, ..*path })
+    }
+
     /// Applies Russian roulette: the survival probability of a path of this throughput, `None` if
     /// the path ends.
     fn roulette_survival(&self, path: &PathState, throughput: Rgb) -> Option<f32> {
@@ -158,6 +181,9 @@ impl Integrator for Path {
         if interior.is_some_and(|id| surface::is_hidden(world, ray, path, vertex, id)) {
             return pass_through(world, ray, path, vertex, output);
         }
+        // Choose a wavelength at the first dispersive surface.
+        let dispersed = self.disperse(world, path, interior, output);
+        let path = dispersed.as_ref().unwrap_or(path);
         // Evaluate the material.
         let exterior_ior = surface::exterior_ior(world, path, interior);
         let choice =

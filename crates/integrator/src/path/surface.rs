@@ -69,14 +69,17 @@ pub fn is_hidden(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id
     path.history.interiors.hides_interface(id, inwards, world.interiors())
 }
 
-/// Index of refraction of the medium around the solid that the path hit.
+/// Index of refraction of the medium around the solid that the path hit. Where the path has a
+/// wavelength, the index is relative to a solid of its index at 587.56 nm.
 pub fn exterior_ior(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
-    let inside = path.history.interiors;
-    if inside.is_empty() {
+    let PathHistory { interiors: inside, wavelength, .. } = path.history;
+    if inside.is_empty() && wavelength.is_none() {
         return 1.0;
     }
     let others = interior.map_or(inside, |id| inside.exited(id));
-    others.top(world.interiors()).map_or(1.0, |interior| interior.ior)
+    let exterior = others.top(world.interiors()).map_or(1.0, |interior| interior.ior_at(wavelength));
+    let solid = interior.and_then(|id| world.interior_at(id)).filter(|_| wavelength.is_some());
+    solid.map_or(exterior, |solid| exterior * (solid.ior / solid.ior_at(wavelength)))
 }
 
 impl<'a> ShadingPoint<'a> {
@@ -267,6 +270,7 @@ impl<'a> ShadingPoint<'a> {
             light_samples,
             eta_scale,
             interiors,
+            wavelength: path.history.wavelength,
             pass_throughs,
             events,
             caustic,

@@ -1,7 +1,7 @@
 //! Solids around a path: nested dielectrics by priority (Schmidt and Budge, Simple Nested
 //! Dielectrics in Ray Traced Images, 2002).
 
-use super::Medium;
+use super::{Medium, Wavelength};
 
 /// Maximum number of nested solids that a path tracks.
 pub const MAX_INTERIORS: usize = 4;
@@ -9,12 +9,22 @@ pub const MAX_INTERIORS: usize = 4;
 /// Interior of a solid, behind a surface that transmits light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interior {
-    /// Index of refraction.
+    /// Index of refraction, at 587.56 nm.
     pub ior: f32,
+    /// Dispersion: 20 over the Abbe number, 0 for none.
+    pub dispersion: f32,
     /// Priority where solids overlap: the highest priority fills the overlap.
     pub priority: i32,
     /// Medium inside.
     pub medium: Medium,
+}
+
+impl Interior {
+    /// Index of refraction for light of a wavelength, or of all wavelengths.
+    #[inline]
+    pub fn ior_at(&self, wavelength: Option<Wavelength>) -> f32 {
+        wavelength.map_or(self.ior, |wavelength| wavelength.ior(self.ior, self.dispersion))
+    }
 }
 
 /// Index of an interior in the table of a world's interiors.

@@ -4,12 +4,14 @@ use juggler_math::{Rgb, portable, range};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+mod dispersion;
 mod interior;
 mod phase;
 
 #[cfg(test)]
 mod tests;
 
+pub use dispersion::{MAX_DISPERSION, Wavelength};
 pub use interior::{Interior, InteriorId, Interiors, MAX_INTERIORS};
 pub use phase::HenyeyGreenstein;
 

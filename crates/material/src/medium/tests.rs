@@ -80,7 +80,7 @@ fn phase_functions_follow_their_density_and_sum_to_one() {
 
 #[test]
 fn interior_of_highest_priority_wins() {
-    let interior = |ior: f32, priority: i32| Interior { ior, priority, medium: Medium::default() };
+    let interior = |ior: f32, priority: i32| Interior { ior, dispersion: 0.0, priority, medium: Medium::default() };
     let table = [interior(1.5, 0), interior(1.33, -1), interior(2.4, 0)];
     let id = |place| InteriorId::new(place).unwrap();
     let top = |interiors: Interiors| interiors.top(&table).map(|interior| interior.ior);

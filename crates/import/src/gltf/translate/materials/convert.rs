@@ -40,8 +40,11 @@ pub fn material(
         None => from_metallic_roughness(textures, &material.pbr_metallic_roughness)?,
     };
     principled.base_color = base.color(textures, surface)?;
-    layers(textures, &mut principled, extensions, at)?;
+    layers(textures, &mut principled, extensions)?;
     glass(textures, &mut principled, extensions)?;
+    if let Some(model) = &extensions.dispersion {
+        surface::set_dispersion(textures, &mut principled, model.dispersion, at);
+    }
     principled.emissive = textures.color(material.emissive_factor, material.emissive_texture.as_ref())?;
     let strength = extensions.emissive_strength.as_ref().map_or(1.0, |strength| strength.emissive_strength);
     principled.emissive_strength = strength.min(MAX_STRENGTH) as f32;
@@ -111,12 +114,11 @@ fn from_glossiness(textures: &mut TextureSet<'_>, model: &SpecularGlossiness) ->
     })
 }
 
-/// Specular reflection, clear coat, sheen, thin film, anisotropy and dispersion.
+/// Specular reflection, clear coat, sheen, thin film and anisotropy.
 fn layers(
     textures: &mut TextureSet<'_>,
     principled: &mut Principled,
     extensions: &MaterialExtensions,
-    at: &str,
 ) -> Result<(), Fault> {
     if let Some(model) = &extensions.specular {
         specular(textures, principled, model)?;
@@ -135,9 +137,6 @@ fn layers(
     }
     if let Some(model) = &extensions.anisotropy {
         anisotropy(textures, principled, model)?;
-    }
-    if let Some(model) = &extensions.dispersion {
-        surface::dispersion(textures, model.dispersion, at);
     }
     Ok(())
 }

@@ -7,15 +7,20 @@ use super::convert::Base;
 use super::textures::{Reading, TextureSet, with_vertex_colors};
 use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, TextureInfo};
 use crate::gltf::error::Fault;
+use juggler_material::medium::MAX_DISPERSION;
 use juggler_material::{AnyMaterial, Mask, MaterialRef, NormalMap, Principled, SurfaceSides, Unlit};
 use juggler_texture::Input;
 
 /// Largest strength of a normal map.
 const MAX_NORMAL_SCALE: f64 = 1000.0;
 
-/// Dispersion of refracted light.
-pub fn dispersion(textures: &mut TextureSet<'_>, dispersion: f64, at: &str) {
-    textures.warnings.add(at, "its dispersion has no effect", u64::from(dispersion > 0.0));
+/// Sets the dispersion of the light that a material refracts.
+pub fn set_dispersion(textures: &mut TextureSet<'_>, principled: &mut Principled, dispersion: f64, at: &str) {
+    if principled.thin || principled.transmission.constant() == Some(0.0) {
+        let warning = "its dispersion has no effect, because it refracts no light";
+        return textures.warnings.add(at, warning, u64::from(dispersion > 0.0));
+    }
+    principled.dispersion = dispersion.clamp(0.0, MAX_DISPERSION.into()) as f32;
 }
 
 /// Rotation of the anisotropy in turns, with the directions of a texture.
