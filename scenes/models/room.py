@@ -106,7 +106,6 @@ def window(document, look):
     parts += [box((wide / 2 - 0.03, 0.03, 0.04), 0.006).moved((x + s * wide / 4, y + 0.28, z)) for s in (-1, 1)]
     parts.append(box((wide + 0.14, 0.035, 0.2), 0.01, 3).moved((x, SILL - 0.0175 + 0.012, BACK - 0.02)))
     put(document, "Window frame", joined(*parts), look["paint"])
-    put(document, "Window pane", flat(wide - bar, high - bar), look["glass"], None, (x, y, z))
     for name, side, seed in (("Left curtain", -1, 1), ("Right curtain", 1, 4)):
         curtain(document, look, name, (x + side * (wide / 2 + 0.13), 0.03, BACK + 0.085), 0.44, 2.4, seed)
     rail = tube([(x + t * 0.1, 2.44, BACK + 0.085) for t in range(-13, 14)], 0.011, 16)
@@ -114,8 +113,15 @@ def window(document, look):
     put(document, "Curtain rail", joined(rail, *knobs), look["brass"])
     view = document.texture(png.rgb(textures.outdoors()), "Outdoors", repeat=False)
     sky = document.material("Outdoors", (0, 0, 0), 1.0, emissiveFactor=[1, 1, 1], emissiveTexture={"index": view},
-                            extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 3.2}})
-    put(document, "Outdoors", flat(9, 4.6), sky, None, (-0.8, 0.95, -6.4))
+                            extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 8}})
+    put(document, "Outdoors", flat(2.8, 2.4), sky, None, (-1.25, 1.7, -4.5))
+
+
+def fill(document):
+    """Add the light of a large window behind the viewer."""
+    panel = document.material("Window behind", (0, 0, 0), 1.0, emissiveFactor=srgb("dfe9ff"),
+                              extensions={"KHR_materials_emissive_strength": {"emissiveStrength": 2.5}})
+    put(document, "Window behind", flat(3, 1.7), panel, None, (0, 1.7, FRONT - 0.01), rotation((0, 1, 0), 180))
 
 
 def make():
@@ -130,6 +136,7 @@ def make():
     look["canvas"] = document.material("Canvas", (1, 1, 1), 0.6, texture={"index": art})
     shell(document, look)
     window(document, look)
+    fill(document)
     table(document, look, (-0.72, 0, -1.5))
     chair(document, look, (-0.62, 0, -0.98), 14)
     vase(document, look, (-1.02, 0.75, -1.55))
@@ -141,8 +148,8 @@ def make():
     plant(document, look, (-1.98, 0, -1.35))
     picture(document, look, "Large picture", (-WIDTH / 2, 1.62, -1.0), 0.8, 0.6, 90)
     picture(document, look, "Small picture", (0.64, 1.92, BACK), 0.36, 0.27, 0)
-    sun = document.light(type="directional", name="Sun", color=[1, 0.9, 0.76], intensity=15)
-    document.node("Sun", rotation=rounded(look_at((0, 0, 0), (0.36, -0.62, 1))), extensions=sun)
+    sun = document.light(type="directional", name="Sun", color=[1, 0.9, 0.76], intensity=70)
+    document.node("Sun", rotation=rounded(look_at((0, 0, 0), (0.42, -0.8, 1))), extensions=sun)
     eye, target = (0.5, 1.4, 2.85), (-0.08, 0.93, -1.5)
     document.camera("View", eye, target, 45, look_at(eye, target))
     return document.glb()

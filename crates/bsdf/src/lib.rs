@@ -34,6 +34,7 @@ pub mod sheen;
 mod sum;
 pub mod thin;
 pub mod thin_film;
+pub mod tilted;
 pub mod whitted;
 
 #[cfg(test)]
@@ -48,6 +49,7 @@ pub use plastic::Plastic;
 pub use principled::Principled;
 pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};
 pub use thin_film::ThinFilm;
+pub use tilted::TiltedConductor;
 
 juggler_math::closed_set! {
     /// Any kind of lobe; a [`Bsdf`] is a sum of a few.
@@ -62,6 +64,7 @@ juggler_math::closed_set! {
         sheen::Sheen,
         highlight::PhongHighlight,
         whitted::Whitted,
+        tilted::TiltedConductor,
     }
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
     fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample>;

@@ -17,8 +17,10 @@
 
 use super::fresnel::f0_from_ior;
 use super::thin_film::ThinFilm;
-use super::{Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Sheen, ThinDielectric};
-use juggler_math::{Rgb, Vec2};
+use super::{
+    Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Sheen, ThinDielectric, TiltedConductor,
+};
+use juggler_math::{Rgb, Vec2, Vec3};
 
 /// Parameters of the model; all weights, roughnesses and color channels are from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +52,8 @@ pub struct Principled {
     pub clearcoat_roughness: f32,
     /// Index of refraction of the clearcoat; 1.5 in glTF.
     pub clearcoat_ior: f32,
+    /// Unit normal of the clearcoat, in the shading frame.
+    pub clearcoat_normal: Vec3,
     /// Color of the sheen; black for none.
     pub sheen_color: Rgb,
     /// Roughness of the sheen.
@@ -88,6 +92,7 @@ impl Default for Principled {
             clearcoat: 0.0,
             clearcoat_roughness: 0.0,
             clearcoat_ior: 1.5,
+            clearcoat_normal: Vec3::Z,
             sheen_color: Rgb::BLACK,
             sheen_roughness: 0.0,
             iridescence: 0.0,
@@ -109,7 +114,12 @@ impl Principled {
         if self.clearcoat > 0.0 {
             let fresnel = Fresnel::Dielectric { ior: self.clearcoat_ior, color: Rgb::WHITE };
             let alpha = self.clearcoat_roughness * self.clearcoat_roughness;
-            bsdf.push_layer(self.mirror(fresnel, Vec2::splat(alpha)), self.clearcoat);
+            let coat = self.mirror(fresnel, Vec2::splat(alpha));
+            if self.clearcoat_normal == Vec3::Z {
+                bsdf.push_layer(coat, self.clearcoat);
+            } else {
+                bsdf.push_layer(TiltedConductor::new(coat, self.clearcoat_normal), self.clearcoat);
+            }
         }
         if !self.sheen_color.is_black() {
             let sheen = Sheen::new(self.sheen_color, self.sheen_roughness * self.sheen_roughness);
@@ -213,8 +223,8 @@ impl Principled {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler_math::portable;
     use juggler_math::testing::close;
-    use juggler_math::{Vec3, portable};
 
     #[test]
     fn principled_plastic_matches_the_gltf_formula() {

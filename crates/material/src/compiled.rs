@@ -12,6 +12,7 @@ use super::unlit::CompiledUnlit;
 use super::{MaterialId, Shading, ShadingView};
 use crate::medium::Interior;
 use juggler_bsdf::Bsdf;
+use juggler_math::Frame;
 use juggler_texture::TextureTable;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -45,8 +46,9 @@ pub enum CompiledMaterial {
 
 /// Material that consists of a BSDF alone, with its names resolved.
 pub trait ScatteringMaterial: Debug + Send + Sync {
-    /// Adds the lobes at a point to `bsdf`, in place, because a BSDF is large to return.
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf);
+    /// Adds the lobes at a point to `bsdf`, in place, because a BSDF is large to return. `frame` is
+    /// the frame of the lobes.
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, frame: &Frame, bsdf: &mut Bsdf);
 
     /// Whether the lobes vary over the surface.
     fn is_textured(&self) -> bool;
@@ -71,6 +73,11 @@ pub trait ScatteringMaterial: Debug + Send + Sync {
     fn is_anisotropic(&self) -> bool {
         false
     }
+
+    /// Whether the lobes have normals from a texture.
+    fn has_normal_map(&self) -> bool {
+        false
+    }
 }
 
 impl CompiledMaterial {
@@ -82,7 +89,7 @@ impl CompiledMaterial {
     /// Whether shading needs the surface's tangents, nested materials not counted.
     pub fn needs_tangents(&self) -> bool {
         match self {
-            Self::Scattering(scattering) => scattering.is_anisotropic(),
+            Self::Scattering(scattering) => scattering.is_anisotropic() || scattering.has_normal_map(),
             Self::NormalMap(_) | Self::BumpMap(_) => true,
             _ => false,
         }

@@ -16,7 +16,7 @@ use super::{
 };
 use juggler_bsdf::metals::Metal;
 use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
@@ -222,7 +222,7 @@ impl CompiledConductor {
 
 impl ScatteringMaterial for CompiledConductor {
     #[inline]
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         match self.constant_lobe {
             Some(constant_lobe) => bsdf.push(constant_lobe),
             None => bsdf.push(self.at(textures, &view.lookup())),

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::medium::{Interior, MAX_DISPERSION, Medium};
 use juggler_bsdf::{Bsdf, Dielectric as DielectricLobe, ThinDielectric};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -117,7 +117,7 @@ impl Material for Dielectric {
 
 impl ScatteringMaterial for CompiledDielectric {
     #[inline]
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         let at = if self.is_textured() { view.lookup() } else { TextureLookup::default() };
         let alpha = self.roughness.alpha(textures, &at);
         let (reflection, transmission) =

@@ -9,7 +9,7 @@ use super::{
     CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
 };
 use juggler_bsdf::{Bsdf, Lambert};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ impl Material for Diffuse {
 }
 
 impl ScatteringMaterial for CompiledDiffuse {
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         if let (Slot::Value(albedo), Slot::Value(0.0)) = (&self.reflectance, &self.roughness) {
             bsdf.push(Lambert { albedo: *albedo });
             return;

@@ -11,6 +11,12 @@ pub fn is_zero(number: &f32) -> bool {
     *number == 0.0
 }
 
+/// Whether a number has the default 1, which scenes leave out.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature is that of serde")]
+pub fn is_one(number: &f32) -> bool {
+    *number == 1.0
+}
+
 /// Rejects a constant color or factor with a channel outside 0 to 1.
 pub fn check_unit_color(field: &'static str, input: &Input<Rgb>) -> Result<(), MaterialError> {
     check_color(field, input, 1.0)

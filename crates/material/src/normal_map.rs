@@ -29,10 +29,10 @@ pub struct NormalMap {
 }
 
 /// Encoding of the unchanged normal.
-const UNCHANGED_NORMAL: Rgb = Rgb::new(0.5, 0.5, 1.0);
+pub const UNCHANGED_NORMAL: Rgb = Rgb::new(0.5, 0.5, 1.0);
 
 /// Largest `strength`.
-const MAX_STRENGTH: f32 = 1000.0;
+pub const MAX_STRENGTH: f32 = 1000.0;
 
 impl Default for NormalMap {
     fn default() -> Self {
@@ -72,15 +72,20 @@ impl CompiledNormalMap {
             Slot::Value(strength) => *strength,
             slot => textures.number(slot, &at).clamp(0.0, MAX_STRENGTH),
         };
-        let color = super::input::unit_color(textures, &self.texture, &at);
-        let [x, y, z] = color.to_array().map(|channel| channel * 2.0 - 1.0);
-        let (x, y) = (x * strength, y * strength);
-        if x == 0.0 && y == 0.0 {
-            return view.normal;
-        }
-        let (u, v) = axes(view.normal, view.tangents);
-        (u * x + v * y + view.normal * z.max(0.0)).normalize_or(view.normal)
+        mapped_normal(super::input::unit_color(textures, &self.texture, &at), strength, view.normal, view)
     }
+}
+
+/// Normal that a color of a normal map encodes, a unit vector in world space on the side of
+/// `normal`, the unit normal without the map. `strength` scales its tangential components.
+pub fn mapped_normal(color: Rgb, strength: f32, normal: Vec3, view: &ShadingView) -> Vec3 {
+    let [x, y, z] = color.to_array().map(|channel| channel * 2.0 - 1.0);
+    let (x, y) = (x * strength, y * strength);
+    if x == 0.0 && y == 0.0 {
+        return normal;
+    }
+    let (u, v) = axes(normal, view.tangents);
+    (u * x + v * y + normal * z.max(0.0)).normalize_or(normal)
 }
 
 #[cfg(any(test, feature = "testing"))]

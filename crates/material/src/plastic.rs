@@ -11,7 +11,7 @@ use super::{
     CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
 };
 use juggler_bsdf::{Bsdf, Plastic as PlasticLobes};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -96,7 +96,7 @@ impl Material for Plastic {
 }
 
 impl ScatteringMaterial for CompiledPlastic {
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         let at = view.lookup();
         PlasticLobes {
             albedo: unit_color(textures, &self.reflectance, &at),

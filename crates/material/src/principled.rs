@@ -10,12 +10,13 @@
 
 use super::emissive::{CompiledEmissive, EmissionCoat, Sides};
 use super::error::in_range;
-use super::input::{check_color, check_emission, check_number, check_unit_color, is_zero};
+use super::input::{check_color, check_emission, check_number, check_unit_color, is_one, is_zero};
 use super::mask::CompiledMask;
+use super::normal_map::MAX_STRENGTH;
 use super::roughness::rotation_slot;
 use super::{CompiledMaterial, IneffectiveSetting, Material, MaterialError, MaterialResolver, SurfaceSides};
 use crate::medium::{Interior, MAX_DISPERSION, Medium};
-use compiled::{CompiledPrincipled, Slots};
+use compiled::{CoatNormals, CompiledPrincipled, Slots};
 use juggler_bsdf::Principled as PrincipledLobes;
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
@@ -64,6 +65,15 @@ pub struct Principled {
     /// Index of refraction of the clearcoat.
     #[schemars(range(min = 1, max = 10))]
     pub clearcoat_ior: f32,
+    /// Normals of the clearcoat, encoded as those of `normal_map`. They ignore normal and bump maps
+    /// around this material: (0.5, 0.5, 1) makes the coat smooth over a mapped base. `null` gives
+    /// the coat the normals of its base.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearcoat_normal: Option<Input<Rgb>>,
+    /// Factor on the tangential components of `clearcoat_normal`, 0 to 1000.
+    #[serde(skip_serializing_if = "is_one")]
+    #[schemars(range(min = 0, max = 1000))]
+    pub clearcoat_normal_scale: f32,
     /// Color of the sheen of fibers, 0 to 1 per channel. Black disables the sheen.
     pub sheen_color: Input<Rgb>,
     /// Roughness of the sheen, 0 to 1. Small values confine the sheen to grazing angles.
@@ -131,6 +141,8 @@ impl Default for Principled {
             clearcoat: 0.0.into(),
             clearcoat_roughness: 0.0.into(),
             clearcoat_ior: 1.5,
+            clearcoat_normal: None,
+            clearcoat_normal_scale: 1.0,
             sheen_color: Rgb::BLACK.into(),
             sheen_roughness: 0.0.into(),
             iridescence: 0.0.into(),
@@ -214,6 +226,10 @@ impl Principled {
             in_range("ior", self.ior, 1.0, 10.0)?;
         }
         in_range("dispersion", self.dispersion, 0.0, MAX_DISPERSION)?;
+        if let Some(normal) = &self.clearcoat_normal {
+            check_unit_color("clearcoat_normal", normal)?;
+        }
+        in_range("clearcoat_normal_scale", self.clearcoat_normal_scale, 0.0, MAX_STRENGTH)?;
         in_range("clearcoat_ior", self.clearcoat_ior, 1.0, 10.0)?;
         in_range("iridescence_ior", self.iridescence_ior, 1.0, 10.0)
     }
@@ -271,10 +287,20 @@ impl Principled {
         if !slots.any_texture() {
             slots.fill(&mut fixed, textures, &TextureLookup::default());
         }
-        let interior = Interior { ior: fixed.glass_ior(), dispersion: self.dispersion, priority: self.priority, medium };
+        let interior =
+            Interior { ior: fixed.glass_ior(), dispersion: self.dispersion, priority: self.priority, medium };
         let interior = self.has_interior(&medium).then_some(interior);
         let rotation = rotation_slot(textures, &self.anisotropy_rotation)?;
-        Ok(CompiledPrincipled { slots, rotation, fixed, interior })
+        let coat_normals = self.coat_normals(textures)?;
+        Ok(CompiledPrincipled { slots, rotation, fixed, coat_normals, interior })
+    }
+
+    fn coat_normals(&self, textures: &TextureTable) -> Result<Option<CoatNormals>, MaterialError> {
+        let Some(normal) = self.clearcoat_normal.as_ref().filter(|_| may_be_nonzero(&self.clearcoat)) else {
+            return Ok(None);
+        };
+        let texture = textures.resolve("clearcoat_normal", normal)?;
+        Ok(Some(CoatNormals { texture, scale: self.clearcoat_normal_scale }))
     }
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {
@@ -320,8 +346,14 @@ impl Principled {
             alpha_cutoff: Some(0.1),
             ..Self::default()
         };
+        let lacquer = Self {
+            clearcoat: 1.0.into(),
+            clearcoat_roughness: 0.2.into(),
+            clearcoat_normal: Some(Rgb::new(0.7, 0.4, 0.9).into()),
+            ..gold.clone()
+        };
         let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };
-        let mut all = vec![Self::default(), gold, brushed, amber, pane, petal, wax, all];
+        let mut all = vec![Self::default(), gold, brushed, amber, pane, petal, wax, all, lacquer];
         all.extend(emitter.surface_examples());
         all
     }

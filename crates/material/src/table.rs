@@ -250,7 +250,7 @@ impl MaterialTable {
             normal = if is_mapped { outwards } else { view.normal };
         }
         shading.frame = tangent::frame(view, normal, material.rotation_turns(&self.textures, view));
-        material.add_lobes(&self.textures, view, &mut shading.bsdf);
+        material.add_lobes(&self.textures, view, &shading.frame, &mut shading.bsdf);
         shading.transmissive = material.is_transmissive();
         if is_mapped {
             shading.set_geometric_normal(view.surface.normal);

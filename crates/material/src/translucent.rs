@@ -7,7 +7,7 @@
 use super::input::{check_unit_color, unit_color};
 use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, DiffuseTransmission};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureLookup, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -57,7 +57,7 @@ impl Material for Translucent {
 }
 
 impl ScatteringMaterial for CompiledTranslucent {
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         let at = if self.is_textured() { view.lookup() } else { TextureLookup::default() };
         let (back, through) =
             (unit_color(textures, &self.reflectance, &at), unit_color(textures, &self.transmittance, &at));

@@ -10,7 +10,7 @@ use super::{
     CompiledMaterial, Material, MaterialError, MaterialResolver, ScatteringMaterial, ShadingView, SurfaceSides,
 };
 use juggler_bsdf::{Bsdf, Sheen};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ impl Material for Velvet {
 }
 
 impl ScatteringMaterial for CompiledVelvet {
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, _frame: &Frame, bsdf: &mut Bsdf) {
         let at = view.lookup();
         let roughness = unit_number(textures, &self.sheen_roughness, &at);
         let ground = unit_color(textures, &self.reflectance, &at);

@@ -57,7 +57,7 @@ pub const EXTENSIONS: [Extension; 34] = [
     ignored("KHR_interactivity", "a rendered scene does not react"),
     whole("KHR_lights_punctual"),
     whole("KHR_materials_anisotropy"),
-    approximated("KHR_materials_clearcoat", "the coat has the normals of its base"),
+    whole("KHR_materials_clearcoat"),
     whole("KHR_materials_diffuse_transmission"),
     whole("KHR_materials_dispersion"),
     whole("KHR_materials_emissive_strength"),

@@ -3,10 +3,12 @@
 use super::MAX_FILM_THICKNESS_NM;
 use crate::input::{emitted_color, unit_color, unit_number};
 use crate::medium::Interior;
+use crate::normal_map::{UNCHANGED_NORMAL, mapped_normal};
 use crate::roughness::rotation_turns;
+use crate::shading::facing_normal;
 use crate::{ScatteringMaterial, ShadingView};
 use juggler_bsdf::{Bsdf, Principled as PrincipledLobes};
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb, Vec3};
 use juggler_texture::{Slot, TextureLookup, TextureTable};
 
 /// A [`Principled`] with its names resolved, without emission and opacity.
@@ -18,8 +20,32 @@ pub struct CompiledPrincipled {
     pub rotation: Slot<f32>,
     /// Values that hold at all points; without textures, all values.
     pub fixed: PrincipledLobes,
+    /// Normals of the clearcoat, if they are its own.
+    pub coat_normals: Option<CoatNormals>,
     /// Interior of the solid; `None` if light cannot enter it.
     pub interior: Option<Interior>,
+}
+
+/// Normals of a clearcoat that ignores the normal maps of the layers below it.
+#[derive(Clone, Debug)]
+pub struct CoatNormals {
+    /// Normals, encoded as in a normal map.
+    pub texture: Slot<Rgb>,
+    /// Factor on their tangential components.
+    pub scale: f32,
+}
+
+impl CoatNormals {
+    /// Whether the normals differ from those of the surface.
+    fn is_mapped(&self) -> bool {
+        !matches!(self.texture, Slot::Value(UNCHANGED_NORMAL))
+    }
+
+    /// Unit normal in world space, on the viewer's side.
+    fn normal(&self, textures: &TextureTable, view: &ShadingView) -> Vec3 {
+        let color = unit_color(textures, &self.texture, &view.lookup());
+        facing_normal(view, mapped_normal(color, self.scale, view.surface.shading_normal, view))
+    }
 }
 
 /// Inputs that may be textures.
@@ -66,13 +92,17 @@ impl Slots {
 }
 
 impl ScatteringMaterial for CompiledPrincipled {
-    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &ShadingView, frame: &Frame, bsdf: &mut Bsdf) {
         let relative_ior = self.fixed.glass_ior() / view.outside_ior;
         if !self.is_textured() {
             return self.fixed.add_lobes(relative_ior, bsdf);
         }
         let mut lobes = self.fixed;
         self.slots.fill(&mut lobes, textures, &view.lookup());
+        if let Some(coat) = &self.coat_normals {
+            let sign = if self.interior.is_some() && !view.is_outside() { -1.0 } else { 1.0 };
+            lobes.clearcoat_normal = frame.to_local(coat.normal(textures, view)) * sign;
+        }
         lobes.add_lobes(relative_ior, bsdf);
     }
 
@@ -91,7 +121,11 @@ impl ScatteringMaterial for CompiledPrincipled {
     }
 
     fn is_textured(&self) -> bool {
-        self.slots.any_texture()
+        self.slots.any_texture() || self.coat_normals.is_some()
+    }
+
+    fn has_normal_map(&self) -> bool {
+        self.coat_normals.as_ref().is_some_and(CoatNormals::is_mapped)
     }
 
     fn interior(&self) -> Option<Interior> {

@@ -6,6 +6,7 @@
 
 mod caustics;
 mod closed_forms;
+mod dispersion;
 mod emissive_shapes;
 mod furnaces;
 mod glass;

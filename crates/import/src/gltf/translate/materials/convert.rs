@@ -50,7 +50,7 @@ pub fn material(
     principled.emissive_strength = strength.min(MAX_STRENGTH) as f32;
     (principled.opacity, principled.alpha_cutoff) = base.opacity(textures, material, surface)?;
     principled.sides = surface::sides(material, extensions);
-    surface::with_normals(textures, principled, material, extensions.clearcoat.as_ref(), at)
+    surface::with_normals(textures, principled, material, extensions.clearcoat.as_ref())
 }
 
 /// Base color and alpha of a material.

@@ -9,8 +9,11 @@ use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, 
 use crate::gltf::error::Fault;
 use juggler_material::medium::MAX_DISPERSION;
 use juggler_material::{AnyMaterial, Mask, MaterialRef, NormalMap, Principled, SurfaceSides, Unlit};
+use juggler_math::Rgb;
 use juggler_texture::Input;
 
+/// Encoding of the unchanged normal in a normal map.
+const UNCHANGED_NORMAL: Rgb = Rgb::new(0.5, 0.5, 1.0);
 /// Largest strength of a normal map.
 const MAX_NORMAL_SCALE: f64 = 1000.0;
 
@@ -51,18 +54,29 @@ pub fn sides(material: &Material, extensions: &MaterialExtensions) -> SurfaceSid
 /// Material with its normal maps.
 pub fn with_normals(
     textures: &mut TextureSet<'_>,
-    principled: Principled,
+    mut principled: Principled,
     material: &Material,
     coat: Option<&Clearcoat>,
-    at: &str,
 ) -> Result<AnyMaterial, Fault> {
-    let coat = coat.filter(|coat| coat.clearcoat_factor > 0.0);
-    let differs = coat.is_some_and(|coat| coat.clearcoat_normal_texture != material.normal_texture);
-    textures.warnings.add(at, "its clear coat has the normals of the base", u64::from(differs));
-    let Some(info) = &material.normal_texture else { return Ok(principled.into()) };
-    let Some(texture) = textures.normals(info, info.scale < 0.0)? else { return Ok(principled.into()) };
-    let strength = (info.scale.abs().min(MAX_NORMAL_SCALE) as f32).into();
-    Ok(NormalMap { texture, strength, material: MaterialRef::from(principled) }.into())
+    if let Some(coat) = coat.filter(|coat| coat.clearcoat_factor > 0.0)
+        && coat.clearcoat_normal_texture != material.normal_texture
+    {
+        let mapped = normals(textures, coat.clearcoat_normal_texture.as_ref())?;
+        let (normal, scale) = mapped.unwrap_or((UNCHANGED_NORMAL.into(), 1.0));
+        principled.clearcoat_normal = Some(normal);
+        principled.clearcoat_normal_scale = scale;
+    }
+    let Some((texture, strength)) = normals(textures, material.normal_texture.as_ref())? else {
+        return Ok(principled.into());
+    };
+    Ok(NormalMap { texture, strength: strength.into(), material: MaterialRef::from(principled) }.into())
+}
+
+/// Texture and strength of a normal map.
+fn normals(textures: &mut TextureSet<'_>, info: Option<&TextureInfo>) -> Result<Option<(Input<Rgb>, f32)>, Fault> {
+    let Some(info) = info else { return Ok(None) };
+    let texture = textures.normals(info, info.scale < 0.0)?;
+    Ok(texture.map(|texture| (texture, info.scale.abs().min(MAX_NORMAL_SCALE) as f32)))
 }
 
 /// Opacity and its threshold by the alpha mode.

@@ -7,6 +7,7 @@ use juggler_math::Rgb;
 use juggler_texture::{Channel, ColorSpace, Filter, Image, Input, Mix, MixMode, Wrap};
 use std::collections::BTreeMap;
 
+mod layers;
 mod sides;
 
 const LIT: PrimitiveSurface = PrimitiveSurface { has_color: false, is_lit: true };
@@ -342,16 +343,6 @@ fn tangents_are_needed_for_normal_maps_and_anisotropy() {
 fn settings_without_effect_are_reported() {
     let parts = parts(r#"{"extensions": {"KHR_materials_dispersion": {"dispersion": 1}}}"#, &LIT);
     assert_eq!(texts(&parts), ["its dispersion has no effect, because it refracts no light"]);
-}
-
-#[test]
-fn solid_glass_disperses() {
-    let dispersion = |more: &str| {
-        let glass = r#""KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_dispersion":"#;
-        principled(&extended(&format!(r#"{glass} {{"dispersion": 0.5}}{more}"#))).dispersion
-    };
-    assert_eq!(dispersion(r#", "KHR_materials_volume": {"thicknessFactor": 1}"#), 0.5);
-    assert_eq!(dispersion(""), 0.0);
 }
 
 #[test]
