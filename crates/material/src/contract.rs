@@ -8,6 +8,7 @@ use juggler_texture::AnyTexture;
 use std::collections::BTreeMap;
 use std::f32::consts::FRAC_1_PI;
 
+mod coat;
 mod examples;
 mod maps;
 mod one_sided;

@@ -296,11 +296,10 @@ impl Principled {
     }
 
     fn coat_normals(&self, textures: &TextureTable) -> Result<Option<CoatNormals>, MaterialError> {
-        let Some(normal) = self.clearcoat_normal.as_ref().filter(|_| may_be_nonzero(&self.clearcoat)) else {
-            return Ok(None);
-        };
+        let Some(normal) = &self.clearcoat_normal else { return Ok(None) };
         let texture = textures.resolve("clearcoat_normal", normal)?;
-        Ok(Some(CoatNormals { texture, scale: self.clearcoat_normal_scale }))
+        let normals = CoatNormals { texture, scale: self.clearcoat_normal_scale };
+        Ok(may_be_nonzero(&self.clearcoat).then_some(normals))
     }
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {
@@ -338,6 +337,7 @@ impl Principled {
             roughness: Input::Texture("wild".into()),
             specular_color: Input::Texture("wild".into()),
             clearcoat: tiles(),
+            clearcoat_normal: Some(Input::Texture("wild".into())),
             anisotropy: tiles(),
             transmission: tiles(),
             emissive: Input::Texture("tiles".into()),

@@ -114,7 +114,9 @@ fn directions_follow_their_density() {
 fn opaque_materials_are_two_sided() {
     let mut random = Random::new(812);
     let sided = |name: &str| {
-        ["phong", "normal_map", "bump_map", "\"red\"", "black_behind"].iter().any(|kind| name.contains(kind))
+        ["phong", "normal_map", "bump_map", "clearcoat_normal", "\"red\"", "black_behind"]
+            .iter()
+            .any(|kind| name.contains(kind))
     };
     let mut compared = 0;
     for (name, table, id) in examples().into_iter().filter(|(name, ..)| !sided(name)) {
@@ -299,6 +301,10 @@ fn invalid_fields_are_rejected_by_path() {
         (r#"{"principled": {"medium": {"distance": 0}}}"#, "principled.medium.distance"),
         (r#"{"principled": {"alpha_cutoff": 3}}"#, "principled.alpha_cutoff"),
         (r#"{"principled": {"opacity": -0.1}}"#, "principled.opacity"),
+        (r#"{"principled": {"dispersion": -0.1}}"#, "principled.dispersion"),
+        (r#"{"principled": {"clearcoat_normal": [0.5, 1.5, 1]}}"#, "principled.clearcoat_normal"),
+        (r#"{"principled": {"clearcoat_normal_scale": -1}}"#, "principled.clearcoat_normal_scale"),
+        (r#"{"dielectric": {"dispersion": 21}}"#, "dielectric.dispersion"),
         (r#"{"mask": {"cutoff": 2}}"#, "mask.cutoff"),
         (r#"{"normal_map": {"strength": -1}}"#, "normal_map.strength"),
         (r#"{"normal_map": {"material": {"plastic": {"ior": 11}}}}"#, "normal_map.material.plastic.ior"),
