@@ -49,7 +49,6 @@ pub use plastic::Plastic;
 pub use principled::Principled;
 pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};
 pub use thin_film::ThinFilm;
-pub use tilted::TiltedConductor;
 
 juggler_math::closed_set! {
     /// Any kind of lobe; a [`Bsdf`] is a sum of a few.
