@@ -48,7 +48,9 @@ pub use asset::Asset;
 pub use camera_text::{camera_json, with_camera};
 pub use change::{Change, Changed};
 pub use compile::{Compiled, Illuminance, Names};
-pub use description::{Chain, ControlSphere, Description, Limb, Model, Object, TransformStep};
+pub use description::{
+    Chain, ControlSphere, Description, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, TransformStep,
+};
 pub use error::SceneError;
 pub use fingerprint::Fingerprint;
 pub use integrator::{IntegratorChoice, IntegratorReason};

@@ -16,6 +16,7 @@ mod building;
 mod changes;
 mod cryptomatte;
 mod gallery;
+mod instances;
 mod motion;
 mod noise;
 mod probe;

@@ -115,7 +115,7 @@ impl<'s> Counter<'s> {
         if let Some(objects) = &object.objects {
             count = count.saturating_add(self.objects(objects, &path.index(index).key("objects")));
         }
-        count
+        count.saturating_mul(object.instance_count())
     }
 
     /// Number of objects of a group that is named at `path`; 0 for an unknown group, which
@@ -141,7 +141,9 @@ impl<'s> Counter<'s> {
         let count = self.objects(objects, &Path::root().key("groups").key(name));
         self.in_progress.pop();
         let mut below = 0;
-        each_group(objects, &mut |inner| below = below.max(self.counts.get(inner).map_or(0, |count| count.nesting)));
+        each_group(objects, 1, &mut |inner, _| {
+            below = below.max(self.counts.get(inner).map_or(0, |count| count.nesting))
+        });
         self.counts.insert(name, Count { objects: count, nesting: below + 1, ..Count::default() });
         if below == MAX_NESTING { self.too_deep(path) } else { count }
     }
@@ -153,7 +155,7 @@ impl<'s> Counter<'s> {
     }
 }
 
-/// Number of an object's own shapes, without groups and child objects.
+/// Number of an object's own shapes, without groups and child objects, per instance.
 pub fn shapes(object: &Object) -> u64 {
     let mut count = u64::from(object.shape.is_some());
     if let Some(chain) = &object.chain {
@@ -165,13 +167,14 @@ pub fn shapes(object: &Object) -> u64 {
     count
 }
 
-/// Calls `visit` with each group that the visible objects place.
-fn each_group<'s>(objects: &'s [Item<Object>], visit: &mut impl FnMut(&'s str)) {
+/// Calls `visit` with each group that the visible objects place, and the number of placements.
+fn each_group<'s>(objects: &'s [Item<Object>], times: u64, visit: &mut impl FnMut(&'s str, u64)) {
     for object in objects.iter().filter(|object| object.is_visible()) {
+        let times = times.saturating_mul(object.instance_count());
         if let Some(group) = &object.group {
-            visit(&group.0);
+            visit(&group.0, times);
         }
-        each_group(object.inner(), visit);
+        each_group(object.inner(), times, visit);
     }
 }
 
@@ -186,7 +189,7 @@ fn count_placements(scene: &Description, counts: &mut Counts<'_>) {
 }
 
 fn add_placements(objects: &[Item<Object>], times: u64, counts: &mut Counts<'_>) {
-    each_group(objects, &mut |name| {
+    each_group(objects, times, &mut |name, times| {
         if let Some(count) = counts.get_mut(name) {
             count.placements = count.placements.saturating_add(times);
         }
@@ -222,6 +225,7 @@ fn count_list(objects: &[Item<Object>], counts: &Counts<'_>) -> (u64, u32) {
             stored = stored.saturating_add(if count.is_shared { 1 } else { count.stored });
             below = below.max(count.depth + u32::from(count.is_shared));
         }
+        let stored = stored.saturating_mul(object.instance_count());
         (sum.saturating_add(stored), depth.max(below))
     })
 }

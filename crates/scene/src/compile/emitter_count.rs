@@ -64,7 +64,7 @@ impl<'s> EmitterCounter<'s> {
         if let Some(group) = &object.group {
             count = count.saturating_add(self.group(&group.0, emits));
         }
-        count.saturating_add(self.among(object.inner(), emits))
+        count.saturating_add(self.among(object.inner(), emits)).saturating_mul(object.instance_count())
     }
 
     fn group(&mut self, name: &'s str, inherited: bool) -> u64 {

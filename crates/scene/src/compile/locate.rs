@@ -59,15 +59,18 @@ impl ShapeSearch<'_> {
     }
 
     fn count(&self, object: &Object) -> u64 {
-        if !object.is_visible() {
-            return 0;
-        }
+        if object.is_visible() { self.count_instance(object).saturating_mul(object.instance_count()) } else { 0 }
+    }
+
+    /// Number of shapes of one instance of an object.
+    fn count_instance(&self, object: &Object) -> u64 {
         let group = object.group.as_ref().and_then(|group| self.counts.get(group.0.as_str()));
         let inner = object.inner().iter().map(|object| self.count(object));
         count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()
     }
 
     fn within(&self, object: &Object, at: &Path, number: u64, inherited: String) -> Option<ShapePlace> {
+        let number = number % self.count_instance(object).max(1);
         let material = match &object.material {
             None => inherited,
             Some(MaterialRef::Name(name)) => name.clone(),

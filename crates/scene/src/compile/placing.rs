@@ -3,7 +3,7 @@
 use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
-use crate::description::{ChainSphere, Description, Object, TransformStep};
+use crate::description::{ChainSphere, Description, Instances, Object, TransformStep};
 use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, PathRef};
@@ -49,6 +49,8 @@ struct Prepared<'s> {
     /// Index in its list.
     index: usize,
     motion: Motion,
+    /// Motions of the instances to the object's space; `None` for an object without instances.
+    instances: Option<Vec<Motion>>,
     material: Option<MaterialId>,
     content: Content<'s>,
 }
@@ -123,8 +125,12 @@ impl Preparer<'_> {
         let motion = self.motion(&object.transform, at, &path.key("transform"));
         let material = object.material.as_ref();
         let material = material.map(|m| self.materials.get(m, &path.key("material"), self.findings));
+        let instances = match &object.instances {
+            Some(instances) => Some(self.instances(instances, at, &path.key("instances"))?),
+            None => None,
+        };
         let content = self.content(object, at, inner, path)?;
-        Some(Prepared { index: 0, motion: motion?, material, content })
+        Some(Prepared { index: 0, motion: motion?, instances, material, content })
     }
 
     /// Prepares the content of an object. Validation ensures that there is exactly one.
@@ -211,6 +217,23 @@ impl Preparer<'_> {
             false => at.iter().map(|at| composed(&at.transform)).collect(),
         };
         Some(keys.and_then(Motion::from_keys).unwrap_or(still.into()))
+    }
+
+    /// Motions of an object's instances. They move if there are as many `at` all other times.
+    fn instances(&mut self, instances: &Instances, at: &[&Object], path: &PathRef<'_>) -> Option<Vec<Motion>> {
+        let still = match instances.transforms() {
+            Ok(transforms) => transforms,
+            Err(wrong) => return self.fail(wrong.message, path.join(wrong.field)),
+        };
+        let others = collect_all(at, |at| at.instances.as_ref());
+        let moves = others.iter().any(|other| *other != instances);
+        let keys = if moves { collect_all(at, |at| at.instances.as_ref()?.transforms().ok()) } else { Vec::new() };
+        let keys = if keys.iter().all(|list| list.len() == still.len()) { keys } else { Vec::new() };
+        let motion = |(index, transform): (usize, Transform)| {
+            let keys = keys.iter().filter_map(|list| list.get(index).copied()).collect();
+            Motion::from_keys(keys).unwrap_or(transform.into())
+        };
+        Some(still.into_iter().enumerate().map(motion).collect())
     }
 
     fn transform(&mut self, steps: &[TransformStep], path: &PathRef<'_>) -> Option<Transform> {
@@ -317,17 +340,32 @@ impl Placer<'_> {
         for object in objects {
             let motion = object.motion.then(parent);
             let material = object.material.or(inherited);
-            match &object.content {
-                Content::Shapes(shapes) => objects_of(shapes, &motion, material, found),
-                Content::Objects(objects) => self.place(objects, &motion, material, found),
-                Content::Group(name) => match self.levels.get(name) {
-                    Some(level) => found.push(new_object(WorldContent::Geometry(Arc::clone(level)), motion, material)),
-                    None => {
-                        let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
-                        self.place(objects, &motion, material, found);
-                    }
-                },
+            match &object.instances {
+                None => self.place_content(&object.content, motion, material, found),
+                Some(instances) => instances.iter().for_each(|instance| {
+                    self.place_content(&object.content, instance.then(&motion), material, found);
+                }),
             }
+        }
+    }
+
+    fn place_content(
+        &self,
+        content: &Content<'_>,
+        motion: Motion,
+        material: Option<MaterialId>,
+        found: &mut Vec<juggler_world::Object>,
+    ) {
+        match content {
+            Content::Shapes(shapes) => objects_of(shapes, &motion, material, found),
+            Content::Objects(objects) => self.place(objects, &motion, material, found),
+            Content::Group(name) => match self.levels.get(name) {
+                Some(level) => found.push(new_object(WorldContent::Geometry(Arc::clone(level)), motion, material)),
+                None => {
+                    let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
+                    self.place(objects, &motion, material, found);
+                }
+            },
         }
     }
 }

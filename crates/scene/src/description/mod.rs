@@ -22,6 +22,7 @@ use std::collections::BTreeSet;
 
 mod animation;
 mod bones;
+mod instances;
 mod model;
 mod object;
 mod read;
@@ -33,6 +34,7 @@ mod transform;
 pub use animation::{Animation, Component, ScenePath, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
+pub use instances::{InstanceArray, Instances};
 pub use model::Model;
 pub use object::{GroupName, Object, Visible};
 pub(crate) use read::deserialize_scene;

@@ -5,7 +5,7 @@
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
-use super::{Chain, Limb, Model, Objects, Rotate, ScaleFactors, TransformStep, transform};
+use super::{Chain, Instances, Limb, Model, Objects, Rotate, ScaleFactors, TransformStep, transform};
 use crate::item::Item;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_math::Vec3;
@@ -48,6 +48,10 @@ pub struct Object {
     /// Model file of another format.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<Model>,
+    /// Instances of the object: it is placed once for each of them, then by `transform`. In memory, a
+    /// scene may have millions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instances: Option<Instances>,
     /// Transform from the object's space to that of its parent: a list of steps, applied in order,
     /// or a single step. Defaults to the identity.
     #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "transform::steps")]
@@ -122,6 +126,11 @@ impl Object {
         self.visible.0
     }
 
+    /// Number of times that the object is placed for each placement of its list.
+    pub fn instance_count(&self) -> u64 {
+        self.instances.as_ref().map_or(1, |instances| instances.count() as u64)
+    }
+
     /// Child objects listed in `objects`; empty for all other kinds of objects.
     pub fn inner(&self) -> &[Item<Self>] {
         self.objects.as_ref().map(|objects| objects.as_slice()).unwrap_or_default()
@@ -186,6 +195,13 @@ impl Object {
     #[must_use]
     pub fn transformed(mut self, step: TransformStep) -> Self {
         self.transform.push(step);
+        self
+    }
+
+    /// Places the object once for each instance.
+    #[must_use]
+    pub fn instances(mut self, instances: Instances) -> Self {
+        self.instances = Some(instances);
         self
     }
 

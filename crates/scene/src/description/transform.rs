@@ -158,6 +158,16 @@ pub enum ScaleFactors {
     Each(#[schemars(with = "[f32; 3]")] Vec3),
 }
 
+impl ScaleFactors {
+    /// Factors along x, y and z.
+    pub(super) fn factors(&self) -> Vec3 {
+        match self {
+            Self::All(factor) => Vec3::splat(*factor),
+            Self::Each(factors) => *factors,
+        }
+    }
+}
+
 impl TransformStep {
     /// Affine map of this step, or an error if the step is degenerate.
     pub fn transform(&self) -> Result<Transform, PlacementError> {
@@ -165,14 +175,8 @@ impl TransformStep {
             Self::Translate(by) => Ok(Transform::translation(*by)),
             Self::Rotate(Rotate { axis, degrees }) => Transform::rotation(*axis, degrees.to_radians())
                 .ok_or_else(|| PlacementError::new("rotate.axis", "`axis` must not be zero")),
-            Self::Scale(axes) => {
-                let by = match axes {
-                    ScaleFactors::All(factor) => Vec3::splat(*factor),
-                    ScaleFactors::Each(factors) => *factors,
-                };
-                Transform::scale(by)
-                    .ok_or_else(|| PlacementError::new("scale", "`scale` must not be 0: the object would be flat"))
-            }
+            Self::Scale(axes) => Transform::scale(axes.factors())
+                .ok_or_else(|| PlacementError::new("scale", "`scale` must not be 0: the object would be flat")),
             Self::Orient(quaternion) => {
                 let turn = quaternion::matrix(quaternion.map(f64::from));
                 turn.and_then(|turn| Transform::new(turn.as_mat3(), Vec3::ZERO))
@@ -184,7 +188,8 @@ impl TransformStep {
     }
 }
 
-fn matrix(rows: &[f32]) -> Result<Transform, String> {
+/// Affine map of the 3 or 4 rows of a matrix.
+pub fn matrix(rows: &[f32]) -> Result<Transform, String> {
     let (rows, last) = rows.split_at_checked(12).ok_or("`matrix` needs 12 or 16 numbers")?;
     if !matches!(last, [] | [0.0, 0.0, 0.0, 1.0]) {
         return Err(match last.len() {

@@ -212,7 +212,9 @@ impl Expander<'_> {
     /// to the scene.
     fn object(&mut self, object: &Object, seconds: f64, path: &PathRef<'_>, place: Place<'_>) -> Object {
         let mut expanded = object.clone();
-        let transform = place.transform.and_then(|outer| Some(composed(object)?.then(&outer)));
+        // Lights and cameras of a model with several instances have no single place.
+        let outer = place.transform.filter(|_| object.instances.is_none());
+        let transform = outer.and_then(|outer| Some(composed(object)?.then(&outer)));
         let place = Place { transform, is_hidden: place.is_hidden || !object.is_visible(), ..place };
         if let Some(objects) = &object.objects {
             let inner = objects.iter().enumerate().map(|(i, inner)| match object_has_models(inner) {

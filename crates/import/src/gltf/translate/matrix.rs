@@ -10,6 +10,11 @@ const MAX_NUMBER: f64 = 1e30;
 /// Transform step of a map, whose numbers are rounded to single precision once. `None` if the map
 /// is singular or exceeds the range of coordinates.
 pub fn matrix_step(map: &DAffine3) -> Option<TransformStep> {
+    matrix_rows(map).map(|rows| TransformStep::Matrix(rows.to_vec()))
+}
+
+/// The 3 rows of the matrix of a map, as of [`matrix_step`].
+pub fn matrix_rows(map: &DAffine3) -> Option<[f32; 12]> {
     let rounded = DAffine3::from_cols_array(&map.to_cols_array().map(|number| f64::from(number as f32)));
     let in_range = rounded.to_cols_array().iter().all(|number| number.abs() <= MAX_NUMBER);
     if !in_range || !is_invertible(&rounded.matrix3) {
@@ -18,5 +23,5 @@ pub fn matrix_step(map: &DAffine3) -> Option<TransformStep> {
     let [x, y, z] = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
     let t = map.translation;
     let rows = [x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z];
-    Some(TransformStep::Matrix(rows.iter().map(|number| *number as f32).collect()))
+    Some(rows.map(|number| number as f32))
 }

@@ -5,7 +5,7 @@ use super::Content;
 use super::deformed::{Deformation, deformed_mesh, morph_weights};
 use super::faults::Faults;
 use super::materials::{MaterialSet, PrimitiveSurface};
-use super::matrix::matrix_step;
+use super::matrix::{matrix_rows, matrix_step};
 use super::meshes::{Form, Geometry, pointer};
 use super::select::Selection;
 use super::thin::{RELATIVE_RADIUS, local_radius, solids};
@@ -18,7 +18,7 @@ use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
 use juggler_math::Aabb;
-use juggler_scene::Object;
+use juggler_scene::{Instances, Object};
 use std::borrow::Cow;
 
 /// What the objects of a scene are made of.
@@ -129,10 +129,27 @@ impl<'a> Objects<'a> {
             let limit = content.data.gltf.limits.instances;
             Fault::at(format_args!("/nodes/{index}"), format!("the scene has more than {limit} instances, the limit"))
         })?;
-        for instance in instances {
-            self.place(object.clone(), &(world * *instance), index, findings);
-        }
+        self.place_instances(object, &world, instances, index, findings);
         Ok(())
+    }
+
+    /// Places the instances of an object in world space. Singular transforms are left out.
+    fn place_instances(
+        &mut self,
+        object: Object,
+        world: &DAffine3,
+        instances: &[DAffine3],
+        node: usize,
+        findings: &mut Findings,
+    ) {
+        let matrices: Vec<[f32; 12]> =
+            instances.iter().filter_map(|instance| matrix_rows(&(*world * *instance))).collect();
+        let hidden = instances.len() - matrices.len();
+        let text = "has instances with a scale of 0 or a transform out of range, which are left out";
+        findings.warnings.add(format_args!("/nodes/{node}"), text, hidden as u64);
+        if !matrices.is_empty() {
+            self.objects.push(object.instances(Instances::from_matrices(matrices)));
+        }
     }
 
     /// Places an object in world space. A singular transform hides it.
