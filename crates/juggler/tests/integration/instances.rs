@@ -124,5 +124,5 @@ fn a_program_places_a_million_instances() {
     let object = Object::new(juggler_shape::Sphere { radius: 0.3 }).instances(Instances::at(positions));
     let scene = Scene::new().size(8, 8).samples(1).add(object);
     let picture = Picture::new(&scene, &Settings::default()).unwrap();
-    assert_eq!(picture.world().totals().shapes, 1_000_000);
+    assert_eq!(picture.world().geometry_stats().shapes, 1_000_000);
 }
