@@ -349,7 +349,7 @@ impl Principled {
         let lacquer = Self {
             clearcoat: 1.0.into(),
             clearcoat_roughness: 0.2.into(),
-            clearcoat_normal: Some(Rgb::new(0.7, 0.4, 0.9).into()),
+            clearcoat_normal: Some(Rgb::new(0.56, 0.45, 0.98).into()),
             ..gold.clone()
         };
         let emitter = Self { emissive: Rgb::new(2.0, 1.0, 0.5).into(), ..gold.clone() };

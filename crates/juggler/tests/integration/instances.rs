@@ -4,7 +4,7 @@ use juggler::math::{Rgb, Transform, Vec3};
 use juggler::{Picture, Settings};
 use juggler_scene::{Instances, Object, Scene};
 
-/// A scene of these objects and render settings, with the groups `two` (a ball on a cone) and `many` (18 balls).
+/// A scene of these objects and render settings, with the groups `two` (a ball on a cylinder) and `many` (18 balls).
 fn scene(objects: &str, render: &str) -> Scene {
     let ball = |x: usize| {
         format!(r#"{{"shape": {{"sphere": {{"radius": 0.1}}}}, "transform": {{"translate": [0, 0, {x}]}}}}"#)
@@ -16,7 +16,7 @@ fn scene(objects: &str, render: &str) -> Scene {
             "camera": {{"perspective": {{"eye": [4, 5, 9], "look_at": [1, 0.5, 0], "vertical_fov_degrees": 40}}}},
             "background": 1, "materials": {{"red": {{"diffuse": {{"reflectance": [0.8, 0.1, 0.1]}}}}}},
             "groups": {{"two": [{{"shape": {{"sphere": {{"radius": 0.3}}}}, "material": "red"}},
-                    {{"shape": {{"cone": {{"height": 0.5}}}}, "transform": {{"translate": [0, -0.5, 0]}}}}],
+                    {{"shape": {{"cylinder": {{"radius": 0.2, "height": 0.5}}}}, "transform": {{"translate": [0, -0.5, 0]}}}}],
                 "many": [{}]}},
             "objects": [{{"shape": "plane"}}, {objects}]}}"#,
         balls.join(", ")
@@ -104,12 +104,12 @@ fn moving_instances_are_blurred() {
 #[test]
 fn wrong_instances_are_errors_with_their_place() {
     let report = |instances: &str| {
-        let scene = scene(&format!(r#"{{"shape": "sphere", "instances": {instances}}}"#), "");
-        scene.check().to_string()
+        let text = format!(r#"{{"version": 1, "objects": [{{"shape": "sphere", "instances": {instances}}}]}}"#);
+        Scene::from_json(&text, "instances.json").unwrap_err().to_string()
     };
     let lengths = report(r#"{"positions": [[0, 0, 0], [1, 0, 0]], "scales": [1]}"#);
     assert!(lengths.contains("`scales` has 1 elements, another array 2"), "{lengths}");
-    assert!(lengths.contains("objects[1].instances.scales"), "{lengths}");
+    assert!(lengths.contains("objects[0].instances.scales"), "{lengths}");
     let zero = report(r#"{"rotations": [[0, 0, 0, 0]]}"#);
     assert!(zero.contains("the rotation of instance 0 must not be zero"), "{zero}");
     let none = scene(r#"{"shape": "sphere", "instances": {}}"#, "");

@@ -85,7 +85,7 @@ fn dispersive_glass_in_uniform_light_is_invisible() {
     for material in [
         glass(1.5, 3.0),
         r#"{"dielectric": {"ior": 1.7, "dispersion": 0.7, "roughness": 0.4}}"#.to_owned(),
-        r#"{"principled": {"transmission": 1, "roughness": 0.2, "dispersion": 1}}"#.to_owned(),
+        r#"{"principled": {"base_color": 1, "transmission": 1, "roughness": 0.2, "dispersion": 1}}"#.to_owned(),
     ] {
         let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, &material).in_light(1.0);
         let camera = looking(Vec3::new(3.0, 2.0, 4.0), Vec3::new(0.3, 0.2, 0.1));

@@ -7,7 +7,7 @@ use juggler_math::Rgb;
 use juggler_texture::{Channel, ColorSpace, Filter, Image, Input, Mix, MixMode, Wrap};
 use std::collections::BTreeMap;
 
-mod layers;
+mod coats;
 mod sides;
 
 const LIT: PrimitiveSurface = PrimitiveSurface { has_color: false, is_lit: true };

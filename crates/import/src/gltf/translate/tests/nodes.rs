@@ -69,10 +69,13 @@ fn instances_are_placed_in_the_space_of_their_node() {
             {"attributes": {"TRANSLATION": 1, "SCALE": 2}}}}]"#,
     );
     let found = parts(&builder);
-    assert_eq!(found.objects.len(), 2);
-    assert!(found.objects.iter().all(|object| object.name.as_deref() == Some("Tree") && object.group.is_some()));
-    assert_eq!(rows(&found.objects[0]), [1.0, 0.0, 0.0, 11.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    assert_eq!(rows(&found.objects[1]), [3.0, 0.0, 0.0, 10.0, 0.0, 3.0, 0.0, 5.0, 0.0, 0.0, 3.0, 0.0]);
+    let [tree] = found.objects.as_slice() else { panic!("{found:?}") };
+    assert!(tree.name.as_deref() == Some("Tree") && tree.group.is_some());
+    let matrices = [
+        [1.0, 0.0, 0.0, 11.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        [3.0, 0.0, 0.0, 10.0, 0.0, 3.0, 0.0, 5.0, 0.0, 0.0, 3.0, 0.0],
+    ];
+    assert_eq!(tree.instances, Some(Instances::from_matrices(matrices)));
     let summary = open(&builder).summary(&ModelChoice::default()).unwrap();
     assert_eq!((summary.distinct_triangles, summary.drawn_triangles, summary.nodes), (1, 2, 1));
 }
