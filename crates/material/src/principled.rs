@@ -42,8 +42,8 @@ pub struct Principled {
     /// `KHR_materials_ior`.
     #[schemars(range(min = 0, max = 10))]
     pub ior: f32,
-    /// Dispersion of the light that glass refracts: 20 over the Abbe number, 0 to 20; 0 for none.
-    /// Only the path integrator shows it.
+    /// Dispersion of the light that glass refracts: 20 over the Abbe number, 0 to 20. The
+    /// default is 0. Only the path integrator shows it.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 20))]
     pub dispersion: f32,
@@ -70,7 +70,8 @@ pub struct Principled {
     /// the coat the normals of its base.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearcoat_normal: Option<Input<Rgb>>,
-    /// Factor on the tangential components of `clearcoat_normal`, 0 to 1000.
+    /// Factor on the tangential components of `clearcoat_normal`, 0 to 1000. The default
+    /// is 1.
     #[serde(skip_serializing_if = "is_one")]
     #[schemars(range(min = 0, max = 1000))]
     pub clearcoat_normal_scale: f32,

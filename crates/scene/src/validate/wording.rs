@@ -127,9 +127,9 @@ pub fn noun(name: &str) -> String {
     words
 }
 
-/// Plural of a noun.
+/// Plural of a noun; a noun that ends with an s, such as "axes", is one already.
 pub fn plural(noun: &str) -> String {
-    format!("{noun}s")
+    if noun.ends_with('s') { noun.to_owned() } else { format!("{noun}s") }
 }
 
 /// Indefinite article of a noun, "a" or "an".
