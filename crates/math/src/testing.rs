@@ -291,10 +291,11 @@ pub fn chi_squared_directions(
         return Err(format!("the density integrates to {}", total / f64::from(count)));
     }
     // One minus the integral of the density is the expected share of rejected samples. Drop that
-    // cell where both agree to the accuracy of the integral, or where nothing is rejected.
+    // cell where both agree to the accuracy of the integral, or where next to nothing is rejected.
     let (rejected, expected_rejected) = (observed[Z_CELLS * TURN_CELLS], f64::from(count) - total);
-    let is_close = (rejected - expected_rejected).abs() < f64::from(count) * 5e-4;
-    if is_close || rejected == 0.0 && expected_rejected.abs() < f64::from(count) * 0.01 {
+    let accuracy = f64::from(count) * 5e-4;
+    let is_close = (rejected - expected_rejected).abs() < accuracy;
+    if is_close || rejected < accuracy && expected_rejected.abs() < f64::from(count) * 0.01 {
         observed.pop();
         expected.pop();
     } else {

@@ -16,7 +16,7 @@ fn scene(objects: &str, render: &str) -> Scene {
             "camera": {{"perspective": {{"eye": [4, 5, 9], "look_at": [1, 0.5, 0], "vertical_fov_degrees": 40}}}},
             "background": 1, "materials": {{"red": {{"diffuse": {{"reflectance": [0.8, 0.1, 0.1]}}}}}},
             "groups": {{"two": [{{"shape": {{"sphere": {{"radius": 0.3}}}}, "material": "red"}},
-                    {{"shape": {{"cylinder": {{"radius": 0.2, "height": 0.5}}}}, "transform": {{"translate": [0, -0.5, 0]}}}}],
+                    {{"shape": {{"cylinder": {{"radius": 0.2, "y_min": 0, "y_max": 0.5}}}}, "transform": {{"translate": [0, -0.5, 0]}}}}],
                 "many": [{}]}},
             "objects": [{{"shape": "plane"}}, {objects}]}}"#,
         balls.join(", ")
@@ -105,7 +105,7 @@ fn moving_instances_are_blurred() {
 fn wrong_instances_are_errors_with_their_place() {
     let report = |instances: &str| {
         let text = format!(r#"{{"version": 1, "objects": [{{"shape": "sphere", "instances": {instances}}}]}}"#);
-        Scene::from_json(&text, "instances.json").unwrap_err().to_string()
+        Scene::from_json(&text, "instances.json").unwrap().check().to_string()
     };
     let lengths = report(r#"{"positions": [[0, 0, 0], [1, 0, 0]], "scales": [1]}"#);
     assert!(lengths.contains("`scales` has 1 elements, another array 2"), "{lengths}");

@@ -104,7 +104,7 @@ mod tests {
         for index in 0..count {
             let (wavelength, weight) = Wavelength::sample((index as f32 + 0.5) / count as f32);
             assert!((400.0..=700.0).contains(&wavelength.nanometers));
-            assert!(weight.to_array().iter().all(|channel| (0.0..3.7).contains(channel)), "{weight:?}");
+            assert!(weight.to_array().iter().all(|channel| (0.0..5.0).contains(channel)), "{weight:?}");
             for (sum, channel) in sum.iter_mut().zip(weight.to_array()) {
                 *sum += f64::from(channel) / f64::from(count);
             }
