@@ -66,8 +66,6 @@ def plain(document, look):
     look["petal"] = document.material("Petal", srgb("f7d9dc"), 0.6, doubleSided=True, extensions={
         "KHR_materials_diffuse_transmission": {
             "diffuseTransmissionFactor": 0.4, "diffuseTransmissionColorFactor": srgb("fbd5da")}})
-    look["glass"] = document.material("Window glass", (1, 1, 1), 0.0, extensions={
-        "KHR_materials_transmission": {"transmissionFactor": 1.0}})
     look["books"] = [document.material(f"Binding {i + 1}", srgb(code), 0.55)
                      for i, code in enumerate(("7d2f2b", "24425c", "d8c8a4", "3f5b45", "c08a3e"))]
     look["fruit"] = document.material("Lemon", srgb("efc23a"), 0.42)
@@ -97,7 +95,7 @@ def shell(document, look):
 
 
 def window(document, look):
-    """Add frame, bars, sill, panes, curtains and what is seen outside."""
+    """Add frame, bars, sill, curtains and what is seen outside."""
     x, y, z = (LEFT + RIGHT) / 2, (SILL + HEAD) / 2, BACK - 0.13
     wide, high, bar = RIGHT - LEFT, HEAD - SILL, 0.055
     parts = [box((wide, bar, 0.07), 0.006).moved((x, y + s * (high - bar) / 2, z)) for s in (-1, 1)]
