@@ -22,6 +22,25 @@ pub struct ModelArgs {
 }
 
 impl ModelArgs {
+    /// Edits of the scene that select what the model shows: values by JSON pointer.
+    ///
+    /// # Errors
+    ///
+    /// A flag is given and the scene is not one model file, or cannot be loaded.
+    #[cfg(any(feature = "view", feature = "serve"))]
+    pub fn edits(&self, name: &str) -> Result<Vec<(String, serde_json::Value)>, Failure> {
+        let flags = [("variant", &self.variant), ("animation", &self.animation), ("scene", &self.model_scene)];
+        let edit = |(key, value): (&str, &Option<String>)| {
+            let value = serde_json::to_value(name_or_index(value.as_deref()?)).ok()?;
+            Some((format!("/objects/0/model/{key}"), value))
+        };
+        let edits: Vec<_> = flags.into_iter().filter_map(edit).collect();
+        if !edits.is_empty() {
+            crate::source::load_model(name, self, None)?;
+        }
+        Ok(edits)
+    }
+
     /// Selects what the model shows.
     ///
     /// # Errors

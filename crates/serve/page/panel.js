@@ -3,6 +3,7 @@
 import { element } from "./notices.js";
 import { steering } from "./camera.js";
 import { showLights } from "./lights.js";
+import { showModels } from "./models.js";
 
 const byId = (id) => document.getElementById(id);
 const SIZES = [[320, 180], [640, 360], [960, 540], [1280, 720], [1920, 1080], [640, 480], [1024, 768]];
@@ -125,6 +126,7 @@ export function showStatus(status, title, edit) {
   byId("hash").hidden = !status.hash;
   byId("hash").textContent = status.hash ? `film hash ${status.hash}` : "";
   showLights(status.light_groups, edit);
+  showModels(status.models, edit);
   showTime(status);
 }
 

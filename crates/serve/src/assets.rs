@@ -28,6 +28,7 @@ pub const ASSETS: &[Asset] = &[
     asset!("/pointer.js", "pointer.js", "text/javascript; charset=utf-8"),
     asset!("/keys.js", "keys.js", "text/javascript; charset=utf-8"),
     asset!("/lights.js", "lights.js", "text/javascript; charset=utf-8"),
+    asset!("/models.js", "models.js", "text/javascript; charset=utf-8"),
     asset!("/panel.js", "panel.js", "text/javascript; charset=utf-8"),
     asset!("/scenes.js", "scenes.js", "text/javascript; charset=utf-8"),
     asset!("/notices.js", "notices.js", "text/javascript; charset=utf-8"),

@@ -1,5 +1,6 @@
 //! Builds of worlds: reading, compiling and building hierarchies, with the errors of a scene.
 
+use crate::ModelStatus;
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
 use juggler::math::{Rgb, Vec3};
@@ -15,11 +16,18 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 /// Maximum number of pixels of the denoised preview: the denoiser needs up to 320 bytes per pixel.
 pub const MAX_DENOISED_PIXELS: u64 = 1 << 21;
 
+/// JSON pointer of the clip of the model in a scene around a model file.
+const SHOWN_CLIP: &str = "/objects/0/model/animation";
+
 /// Request to build a world, run by [`BuildRequest::run`].
 pub struct BuildRequest {
     pub(crate) task: Task,
     pub(crate) name: String,
     pub(crate) values: Vec<(String, Value)>,
+    /// Values that a reset keeps.
+    pub(crate) given_values: Vec<(String, Value)>,
+    /// Models of the scene; `None` if they may have changed.
+    pub(crate) models: Option<Arc<[ModelStatus]>>,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
     pub(crate) size: Option<[u32; 2]>,
@@ -58,10 +66,27 @@ impl BuildRequest {
     /// Request for a scene file, or for a built-in scene by name.
     pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
         let settings = Settings { size, ..Settings::default() };
-        let (values, bookmarks, gains) = (Vec::new(), Vec::new(), Vec::new());
-        let (task, name) = (Task::Open, name.to_owned());
-        let (camera, interest, previous) = (None, None, None);
-        Self { task, name, values, frame: 0.0, settings, size, camera, bookmarks, gains, interest, previous }
+        Self {
+            task: Task::Open,
+            name: name.to_owned(),
+            values: Vec::new(),
+            given_values: Vec::new(),
+            models: None,
+            frame: 0.0,
+            settings,
+            size,
+            camera: None,
+            bookmarks: Vec::new(),
+            gains: Vec::new(),
+            interest: None,
+            previous: None,
+        }
+    }
+
+    /// The same request with values of the scene that differ from its file; a reset keeps them.
+    #[must_use]
+    pub fn with_values(self, values: Vec<(String, Value)>) -> Self {
+        Self { values: values.clone(), given_values: values, ..self }
     }
 
     /// Request for a scene that a program has built.
@@ -95,7 +120,8 @@ impl BuildRequest {
         if let Some(camera) = &self.camera {
             picture = picture.with_view(View { camera: camera.clone(), ..picture.view() })?;
         }
-        let Self { name, values, frame, settings, size, camera, bookmarks, gains, .. } = self;
+        let models = self.models.unwrap_or_else(|| ModelStatus::of_scene(&scene).into());
+        let Self { name, values, given_values, frame, settings, size, camera, bookmarks, gains, .. } = self;
         let chosen = self.interest.filter(|_| camera.is_some());
         let (picture, interest, interest_is_chosen) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
         let mut subject = Subject {
@@ -103,6 +129,8 @@ impl BuildRequest {
             file,
             scene,
             values,
+            given_values,
+            models,
             frame,
             settings,
             size,
@@ -139,6 +167,9 @@ impl BuildRequest {
         let mut scene = Arc::clone(file);
         for (path, value) in &self.values {
             scene = Arc::new(scene.with_value(path, value.clone())?);
+        }
+        if scene.is_around_model() && self.values.iter().any(|(path, _)| path == SHOWN_CLIP) {
+            Arc::make_mut(&mut scene).fit_animation();
         }
         if self.frame != 0.0 {
             scene = Arc::new(scene.at_frame(self.frame)?);

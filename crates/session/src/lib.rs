@@ -21,6 +21,7 @@ mod denoising;
 mod edit;
 mod frame;
 mod interest;
+mod model_status;
 mod pixel_info;
 pub mod pose;
 pub mod preview;
@@ -44,6 +45,7 @@ pub use build::{BuildError, BuildRequest, MAX_PIXELS, error_text};
 pub use coarse::{RenderRate, coarse_size, next_pass};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
+pub use model_status::ModelStatus;
 pub use pixel_info::PixelInfo;
 #[cfg(feature = "native")]
 pub use session::{SaveError, Session, SessionOptions};

@@ -17,6 +17,9 @@ use std::time::Duration;
 pub struct SessionOptions {
     /// Width and height in pixels; `None` uses the scene's.
     pub size: Option<[u32; 2]>,
+    /// Values of the scene by JSON pointer that differ from its file, as by [`Edit::Set`]; a reset
+    /// keeps them.
+    pub values: Vec<(String, serde_json::Value)>,
     /// Number of render threads, at most 1024; 0 uses all cores.
     pub threads: usize,
     /// Target duration of a frame while the camera moves, 30 ms by default. The session lowers the
@@ -28,7 +31,7 @@ pub struct SessionOptions {
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { size: None, threads: 0, budget: Duration::from_millis(30), watch: false }
+        Self { size: None, values: Vec::new(), threads: 0, budget: Duration::from_millis(30), watch: false }
     }
 }
 
@@ -62,7 +65,7 @@ impl Session {
     /// Opens a scene file, or a built-in scene by name. Errors of the scene do not end the session;
     /// see [`Status::error`].
     pub fn open(name: &str, options: SessionOptions) -> Self {
-        let build = BuildRequest::open(name, options.size);
+        let build = BuildRequest::open(name, options.size).with_values(options.values.clone());
         Self::start(build, name, options)
     }
 

@@ -1,6 +1,6 @@
 //! Status of a session.
 
-use crate::Channel;
+use crate::{Channel, ModelStatus};
 use juggler::camera::film::Rect;
 use serde::Serialize;
 use serde_json::Value;
@@ -79,6 +79,8 @@ pub struct Status {
     pub exposure: f32,
     /// Light groups of the scene by name, with their RGB gains; empty if the scene has none.
     pub light_groups: Vec<(String, [f32; 3])>,
+    /// Models of the scene that have variants or clips.
+    pub models: Vec<ModelStatus>,
     /// Names of the scene's cameras, including bookmarks.
     pub cameras: Vec<String>,
     /// Current camera in the scene format.

@@ -2,7 +2,7 @@
 //! in [`BuildRequest::run`], which the owner runs where it likes.
 
 use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, Task, error_text, pixel_count};
-use crate::{Edit, Setting, Status, pose};
+use crate::{Edit, ModelStatus, Setting, Status, pose};
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
 use juggler::denoise::Denoiser;
@@ -28,6 +28,10 @@ pub struct Subject {
     pub(crate) scene: Arc<Scene>,
     /// Edited values by JSON pointer, in the order of the edits.
     pub(crate) values: Vec<(String, Value)>,
+    /// Values that a reset keeps.
+    pub(crate) given_values: Vec<(String, Value)>,
+    /// Models of the scene.
+    pub(crate) models: Arc<[ModelStatus]>,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
     /// Size that a reset restores; `None` restores the scene's.
@@ -92,7 +96,7 @@ impl Subject {
 
     /// Returns length and frame rate of the animation, if the scene has one.
     pub fn animation(&self) -> Option<Animation> {
-        let animation = self.file.description.animation;
+        let animation = self.scene.description.animation;
         (animation.frames > 1).then_some(animation)
     }
 
@@ -127,6 +131,7 @@ impl Subject {
                 let mut build = self.build(Task::InMemory(Arc::clone(&self.file)));
                 build.values.retain(|(other, _)| other != path);
                 build.values.push((path.clone(), value.clone()));
+                build.models = None;
                 Ok(rebuild(build))
             }
             Edit::At(frame) => {
@@ -185,9 +190,10 @@ impl Subject {
     /// Requests the scene as its file describes it, with the same denoiser.
     fn reset(&self) -> BuildRequest {
         let settings = Settings { size: self.size, denoiser: self.settings.denoiser, ..Settings::default() };
-        let (values, gains, camera) = (Vec::new(), Vec::new(), None);
+        let (values, gains, camera) = (self.given_values.clone(), Vec::new(), None);
         BuildRequest {
             values,
+            models: None,
             frame: 0.0,
             settings,
             camera,
@@ -198,9 +204,11 @@ impl Subject {
 
     fn build(&self, task: Task) -> BuildRequest {
         BuildRequest {
+            models: matches!(task, Task::InMemory(_)).then(|| Arc::clone(&self.models)),
             task,
             name: self.name.clone(),
             values: self.values.clone(),
+            given_values: self.given_values.clone(),
             frame: self.frame,
             settings: self.settings.clone(),
             size: self.size,
@@ -378,6 +386,7 @@ impl Subject {
         status.exposure = tone.exposure_stops;
         let groups = self.picture.aovs().light_groups();
         status.light_groups = groups.iter().map(|name| (name.clone(), self.gain(name).to_array())).collect();
+        status.models = self.models.to_vec();
         status.cameras = self.cameras();
         status.camera = camera_json(&camera);
         status.interest = self.interest.to_array();

@@ -15,6 +15,7 @@ mod frame_rate;
 mod help;
 mod keys;
 mod lights;
+mod models;
 mod overlay;
 mod panel;
 mod picture;

@@ -3,6 +3,7 @@
 use crate::controls::{Controls, Mode};
 use crate::keys::Command;
 use crate::lights;
+use crate::models;
 use crate::overlay;
 use crate::saving::Saving;
 use crate::style;
@@ -92,6 +93,9 @@ impl Panel {
             section(ui, "Picture", true, |ui| self.picture(ui, context));
             if !context.status.light_groups.is_empty() {
                 section(ui, "Lights", true, |ui| lights::show(ui, &context.status.light_groups, context.edits));
+            }
+            if !context.status.models.is_empty() {
+                section(ui, "Models", true, |ui| models::show(ui, &context.status.models, context.edits));
             }
             section(ui, "Show", true, |ui| channels(ui, context));
             section(ui, "Save", true, |ui| save(ui, context));
@@ -230,7 +234,7 @@ fn button(ui: &mut Ui, context: &mut PanelContext<'_>, words: &str, command: Com
 }
 
 /// Shows a choice of names, and returns the name if another is selected.
-fn choice(ui: &mut Ui, id: &str, current: &str, names: &[String]) -> Option<String> {
+pub fn choice(ui: &mut Ui, id: &str, current: &str, names: &[String]) -> Option<String> {
     let mut chosen = None;
     ComboBox::from_id_salt(id).width(190.0).selected_text(current).show_ui(ui, |ui| {
         for name in names {

@@ -3,6 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, plain};
 use crate::interrupt::Interrupts;
+use crate::model_args::ModelArgs;
 use crate::source;
 use crate::value;
 use clap::Args;
@@ -39,6 +40,9 @@ pub struct Serve {
     /// Number of rendering threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    #[command(flatten)]
+    model: ModelArgs,
 }
 
 impl Serve {
@@ -50,7 +54,8 @@ impl Serve {
         }
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
-        let options = juggler_session::SessionOptions { size: self.size, threads, watch: true, ..Default::default() };
+        let (size, values) = (self.size, self.model.edits(name)?);
+        let options = juggler_session::SessionOptions { size, values, threads, watch: true, ..Default::default() };
         let session = Session::open(name, options);
         let (address, allow_remote, token) = (self.addr, self.allow_remote, !self.no_token);
         let options = ServerOptions { address, allow_remote, token, scene: self.scene, ..ServerOptions::default() };

@@ -1,6 +1,7 @@
 //! `juggler view`: an interactive window.
 
 use crate::failure::Failure;
+use crate::model_args::ModelArgs;
 use crate::{source, value};
 use clap::Args;
 use juggler_session::{Session, SessionOptions};
@@ -21,6 +22,8 @@ pub struct View {
     /// Number of rendering threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    model: ModelArgs,
 }
 
 impl View {
@@ -30,8 +33,9 @@ impl View {
         let name = self.scene.unwrap_or_else(|| FIRST.into());
         source::find(&name)?;
         let threads = self.threads.map_or(0, usize::from);
-        let session =
-            Session::open(&name, SessionOptions { size: self.size, threads, watch: true, ..SessionOptions::default() });
+        let (size, values) = (self.size, self.model.edits(&name)?);
+        let options = SessionOptions { size, values, threads, watch: true, ..SessionOptions::default() };
+        let session = Session::open(&name, options);
         Ok(juggler_viewer::run(session, juggler_viewer::ViewerOptions { choose })?)
     }
 }

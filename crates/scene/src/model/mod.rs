@@ -20,4 +20,5 @@ pub use format::{ModelError, ModelFile, ModelFormat};
 pub(crate) use model_scene::{describe_model_scene, frames_of};
 pub use parts::ModelParts;
 pub(crate) use scene::ExpansionMemo;
+pub use scene::SceneModel;
 pub use summary::{ExtensionSupport, ModelClip, ModelExtension, ModelSummary};

@@ -21,6 +21,17 @@ struct KnownExpansion {
     expansion: Arc<Expansion>,
 }
 
+/// A model of a scene.
+#[derive(Clone, Debug)]
+pub struct SceneModel {
+    /// Path of the model in the scene.
+    pub path: ScenePath,
+    /// The model as the scene describes it.
+    pub model: Model,
+    /// Description of its file.
+    pub summary: ModelSummary,
+}
+
 impl Scene {
     /// The scene with its models expanded; `None` without models.
     pub(crate) fn expanded(&self) -> Option<Arc<Expansion>> {
@@ -66,7 +77,7 @@ impl Scene {
 
     /// Sets the length of the animation to that of the chosen clip of the scene's first model.
     pub fn fit_animation(&mut self) {
-        let summary = self.model_summaries().into_iter().next().map(|(_, summary)| summary);
+        let summary = self.model_summaries().into_iter().next().map(|found| found.summary);
         let seconds = summary.and_then(|summary| summary.clips.get(summary.clip?).map(|clip| clip.seconds));
         self.description.animation.frames = super::frames_of(seconds.unwrap_or(0.0));
     }
@@ -93,15 +104,14 @@ impl Scene {
         identities(self) == identities(other)
     }
 
-    /// Paths of the scene's models, each with a description of the model's file.
-    pub fn model_summaries(&self) -> Vec<(String, ModelSummary)> {
-        let models = self.models();
-        let summary = |(path, model): &(ScenePath, Model)| {
-            let opened = self.opened(path, model);
+    /// Models of the scene, each with a description of its file.
+    pub fn model_summaries(&self) -> Vec<SceneModel> {
+        let summary = |(path, model): (ScenePath, Model)| {
+            let opened = self.opened(&path, &model);
             let summary = opened.file.as_ref().ok()?.summary(&model.choice(0.0)).ok()?;
-            Some((path.to_string(), summary))
+            Some(SceneModel { path, model, summary })
         };
-        models.iter().filter_map(summary).collect()
+        self.models().into_iter().filter_map(summary).collect()
     }
 
     /// The scene's description with its models expanded to objects, materials, textures and lights.

@@ -1,12 +1,12 @@
 //! Models of a scene: contents and support of their extensions.
 
 use juggler::scene::Scene;
-use juggler::scene::model::{ExtensionSupport, ModelSummary};
+use juggler::scene::model::{ExtensionSupport, ModelSummary, SceneModel};
 use serde_json::{Value, json};
 
 /// Rows of the output for all models of a scene.
 pub fn rows(scene: &Scene) -> Vec<(String, String)> {
-    scene.model_summaries().iter().flat_map(|(path, summary)| model_rows(path, summary)).collect()
+    scene.model_summaries().iter().flat_map(|found| model_rows(&found.path.to_string(), &found.summary)).collect()
 }
 
 fn model_rows(path: &str, summary: &ModelSummary) -> Vec<(String, String)> {
@@ -44,12 +44,12 @@ fn support_text(support: ExtensionSupport) -> &'static str {
 
 /// The models of a scene as JSON.
 pub fn json(scene: &Scene) -> Value {
-    let model = |(path, summary): &(String, ModelSummary)| {
+    let model = |SceneModel { path, summary, .. }: &SceneModel| {
         let clips = summary.clips.iter().map(|clip| json!({"name": clip.name, "seconds": clip.seconds}));
         let extensions = summary.extensions.iter();
         let extensions = extensions.map(|e| json!({"name": e.name, "support": support_text(e.support)}));
         json!({
-            "path": path,
+            "path": path.to_string(),
             "format": summary.format,
             "generator": summary.generator,
             "nodes": summary.nodes,
