@@ -17,7 +17,7 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 pub const MAX_DENOISED_PIXELS: u64 = 1 << 21;
 
 /// JSON pointer of the clip of the model in a scene around a model file.
-const SHOWN_CLIP: &str = "/objects/0/model/animation";
+pub const SHOWN_CLIP: &str = "/objects/0/model/animation";
 
 /// Request to build a world, run by [`BuildRequest::run`].
 pub struct BuildRequest {

@@ -95,7 +95,7 @@ mod tests {
         assert_eq!((status(&subject).frame, status(&subject).models), (100.0, second.models));
 
         let rest = status(&set(subject.clone(), CLIP, json!("none")));
-        assert_eq!((rest.models[0].clip.as_deref(), rest.frames), (None, 0));
+        assert_eq!((rest.models[0].clip.as_deref(), rest.frames, rest.frame), (None, 0, 0.0));
         let plain = status(&set(subject, VARIANT, Value::Null));
         assert_eq!(plain.models[0].variant, None);
     }

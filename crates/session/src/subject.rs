@@ -1,7 +1,7 @@
 //! Edited scene with the picture to render. It needs neither threads nor clocks: all long work is
 //! in [`BuildRequest::run`], which the owner runs where it likes.
 
-use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, Task, error_text, pixel_count};
+use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, SHOWN_CLIP, Task, error_text, pixel_count};
 use crate::{Edit, ModelStatus, Setting, Status, pose};
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
@@ -132,6 +132,10 @@ impl Subject {
                 build.values.retain(|(other, _)| other != path);
                 build.values.push((path.clone(), value.clone()));
                 build.models = None;
+                // Another clip starts at its beginning.
+                if path == SHOWN_CLIP {
+                    build.frame = 0.0;
+                }
                 Ok(rebuild(build))
             }
             Edit::At(frame) => {
