@@ -17,7 +17,7 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 pub const MAX_DENOISED_PIXELS: u64 = 1 << 21;
 
 /// JSON pointer of the clip of the model in a scene around a model file.
-pub const SHOWN_CLIP: &str = "/objects/0/model/animation";
+const SHOWN_CLIP: &str = "/objects/0/model/animation";
 
 /// Request to build a world, run by [`BuildRequest::run`].
 pub struct BuildRequest {
@@ -92,6 +92,14 @@ impl BuildRequest {
     /// Request for a scene that a program has built.
     pub fn from_scene(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
         Self { task: Task::InMemory(Arc::new(scene)), ..Self::open(name, size) }
+    }
+
+    /// The same request with another value of the scene. Another clip starts at its beginning.
+    pub(crate) fn with_value(mut self, path: &str, value: &Value) -> Self {
+        self.values.retain(|(other, _)| other != path);
+        self.values.push((path.to_owned(), value.clone()));
+        let frame = if path == SHOWN_CLIP { 0.0 } else { self.frame };
+        Self { models: None, frame, ..self }
     }
 
     /// Reads the scene and builds its world on the threads of the current rayon pool. This call may

@@ -1,7 +1,7 @@
 //! Edited scene with the picture to render. It needs neither threads nor clocks: all long work is
 //! in [`BuildRequest::run`], which the owner runs where it likes.
 
-use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, SHOWN_CLIP, Task, error_text, pixel_count};
+use crate::build::{BuildRequest, MAX_DENOISED_PIXELS, MAX_PIXELS, Task, error_text, pixel_count};
 use crate::{Edit, ModelStatus, Setting, Status, pose};
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
@@ -128,15 +128,8 @@ impl Subject {
             Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
             Edit::Reset => Ok(rebuild(self.reset())),
             Edit::Set { path, value } => {
-                let mut build = self.build(Task::InMemory(Arc::clone(&self.file)));
-                build.values.retain(|(other, _)| other != path);
-                build.values.push((path.clone(), value.clone()));
-                build.models = None;
-                // Another clip starts at its beginning.
-                if path == SHOWN_CLIP {
-                    build.frame = 0.0;
-                }
-                Ok(rebuild(build))
+                let build = self.build(Task::InMemory(Arc::clone(&self.file)));
+                Ok(rebuild(build.with_value(path, value)))
             }
             Edit::At(frame) => {
                 let frame = self.animation().map_or(0.0, |animation| frame.clamp(0.0, f64::from(animation.frames)));
