@@ -12,7 +12,7 @@ use super::{Clamp, Integrator, PathHistory, PathState, VertexOutput};
 use caustic::HitEmitter;
 use juggler_material::Shading;
 use juggler_material::medium::{InteriorId, Wavelength};
-use juggler_math::{Ray, Rgb, Vec2};
+use juggler_math::{Ray, Rgb};
 use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, World};
 pub use sampling::Sampling;
 use schemars::JsonSchema;
@@ -185,13 +185,10 @@ impl Integrator for Path {
         let dispersed = self.disperse(world, path, interior, output);
         let path = dispersed.as_ref().unwrap_or(path);
         // Evaluate the material.
-        let exterior_ior = surface::exterior_ior(world, path, interior);
-        let choice =
-            if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(Dimension::Choice as u32).next_2d() };
         let mut shading = Shading::black();
-        world.shade_into(vertex, -ray.direction, exterior_ior, choice.x, &mut shading);
+        let u_opacity = surface::shade_into(world, ray, path, vertex, interior, &mut shading);
         // Pass through by opacity.
-        if shading.opacity < 1.0 && choice.y >= shading.opacity {
+        if shading.opacity < 1.0 && u_opacity >= shading.opacity {
             return pass_through(world, ray, path, vertex, output);
         }
         // Unlit surfaces exist only for camera rays and their specular continuations.

@@ -5,7 +5,7 @@ use super::{Dimension, Path, Sampling};
 use juggler_bsdf::{Bsdf, BsdfSample, Scatter};
 use juggler_material::Shading;
 use juggler_material::medium::{InteriorId, Interiors};
-use juggler_math::{Ray, Rgb, Vec3};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use juggler_shape::surface::Surface;
 use juggler_world::{EmitterId, EmitterSample, LightSampleContext, MAX_PASS_THROUGHS, Vertex, VisibleCasters, World};
 
@@ -69,9 +69,28 @@ pub fn is_hidden(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id
     path.history.interiors.hides_interface(id, inwards, world.interiors())
 }
 
+/// Writes the shading of a vertex, which lies on the interface of `interior`, into a black
+/// `shading`. Returns a random number in [0, 1) that decides whether the path passes through by
+/// opacity.
+#[inline(always)]
+pub fn shade_into(
+    world: &World,
+    ray: &Ray,
+    path: &PathState,
+    vertex: &Vertex,
+    interior: Option<InteriorId>,
+    shading: &mut Shading,
+) -> f32 {
+    let exterior_ior = exterior_ior(world, path, interior);
+    let choice =
+        if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(Dimension::Choice as u32).next_2d() };
+    world.shade_into(vertex, -ray.direction, exterior_ior, choice.x, shading);
+    choice.y
+}
+
 /// Index of refraction of the medium around the solid that the path hit. Where the path has a
 /// wavelength, the index is relative to a solid of its index at 587.56 nm.
-pub fn exterior_ior(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
+fn exterior_ior(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
     let PathHistory { interiors: inside, wavelength, .. } = path.history;
     if inside.is_empty() && wavelength.is_none() {
         return 1.0;
