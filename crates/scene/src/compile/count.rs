@@ -142,7 +142,7 @@ impl<'s> Counter<'s> {
         self.in_progress.pop();
         let mut below = 0;
         each_group(objects, 1, &mut |inner, _| {
-            below = below.max(self.counts.get(inner).map_or(0, |count| count.nesting))
+            below = below.max(self.counts.get(inner).map_or(0, |count| count.nesting));
         });
         self.counts.insert(name, Count { objects: count, nesting: below + 1, ..Count::default() });
         if below == MAX_NESTING { self.too_deep(path) } else { count }
