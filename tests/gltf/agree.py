@@ -13,6 +13,7 @@ encodings  rewrites by gltf-transform: the same numbers give pictures equal in e
            ones nearly the same picture (FLIP, which needs `juggler compare`)
 numbers    triangles and bounds against trimesh, poses at seven times against three.js
 movie      a movie that is killed and resumed, or rendered in shards, is the same file
+extensions models of each extension: the same picture as the scene format's own material or nodes
 malformed  500 defective files: no panic, status 2, and the place of the defect in the message
 speed      times of large models
 
@@ -52,10 +53,10 @@ def models_of(folder):
     return sorted(path for kind in ("*.glb", "*.gltf") for path in folder.rglob(kind))
 
 
-def picture(program, scene, folder, *args):
+def picture(program, scene, folder, *args, samples=1):
     """Bytes of a small picture."""
     path = Path(folder) / "picture.pfm"
-    run(program, "render", scene, "-o", path, "--size", "64x64", "--samples", 1, *args)
+    run(program, "render", scene, "-o", path, "--size", "64x64", "--samples", samples, *args)
     return path.read_bytes()
 
 
@@ -178,6 +179,14 @@ def check_movie(program, models, folder):
     report("movie in shards", shards.read_bytes() == whole.read_bytes())
 
 
+def check_extensions(program, models, folder):
+    """A4b."""
+    from extensions import cases
+    for name, *scenes in cases(folder):
+        one, other = (picture(program, scene, folder, samples=4) for scene in scenes)
+        report(f"extension {name}", one == other and len(set(one)) > 16)
+
+
 def check_malformed(program, models, folder):
     """A13."""
     from malformed import defects
@@ -212,7 +221,7 @@ def check_speed(program, models, folder):
 
 
 PARTS = {"models": check_models, "encodings": check_encodings, "numbers": check_numbers, "movie": check_movie,
-         "malformed": check_malformed, "speed": check_speed}
+         "extensions": check_extensions, "malformed": check_malformed, "speed": check_speed}
 
 
 def main():
