@@ -41,7 +41,7 @@ fn clear_coats_reflect_about_their_own_normals() {
             let v = normal.cross(u);
             let tangents = Tangents { u, v, local_u: u, local_v: v, given: None };
             let surface = Surface::new(random.point(2.0), 0.0, normal, Vec2::ZERO);
-            // Near the normal, neither map leans behind the viewer; both sides of the surface have the coat.
+            // Near the normal, neither map leans behind the viewer. Both sides have the coat.
             let side = if random.f32() < 0.5 { 1.0 } else { -1.0 };
             let wo = (normal * side + random.unit_vector() * 0.3).normalize();
             let view = ShadingView { wo, tangents: Some(&tangents), ..ShadingView::along_normal(&surface) };
