@@ -4,7 +4,8 @@ use juggler::math::{Rgb, Transform, Vec3};
 use juggler::{Picture, Settings};
 use juggler_scene::{Instances, Object, Scene};
 
-/// A scene of these objects and render settings, with the groups `two` (a ball on a cylinder) and `many` (18 balls).
+/// A scene of these objects and render settings, with the groups `two` (a ball on a cylinder) and
+/// `many` (18 balls).
 fn scene(objects: &str, render: &str) -> Scene {
     let ball = |x: usize| {
         format!(r#"{{"shape": {{"sphere": {{"radius": 0.1}}}}, "transform": {{"translate": [0, 0, {x}]}}}}"#)
