@@ -85,7 +85,7 @@ impl Scene {
     }
 
     pub(crate) fn read(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
-        if asset_cache.is_model(path) {
+        if asset_cache.is_model(path) && !asset_cache.is_plain_mesh(path) {
             return Self::around_model(path, asset_cache);
         }
         match asset_cache.store().content(path) {

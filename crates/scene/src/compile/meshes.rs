@@ -68,6 +68,18 @@ impl AssetCache {
         self.models.format(path, &self.store.head(path)).is_some()
     }
 
+    /// Whether a file in a format of models shows nothing but a mesh, so that the scene around it is
+    /// that of a mesh file.
+    pub(crate) fn is_plain_mesh(&self, path: &std::path::Path) -> bool {
+        if matches!(self.store.content(path), crate::import::Content::Unsupported(_)) {
+            return false;
+        }
+        self.models.format(path, &self.store.head(path)).is_some_and(|format| {
+            let bytes = self.store.read_bytes(path, &Limits::default());
+            format.is_plain_mesh(&bytes.unwrap_or_default())
+        })
+    }
+
     /// Adds an asset under a name, or replaces the asset of that name. Other scenes that share the
     /// library's files are not changed.
     pub fn insert_asset(&mut self, name: String, asset: Asset) {
