@@ -12,7 +12,7 @@ use juggler_scene::import::{self, parse_obj};
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -117,7 +117,7 @@ impl ModelFile for ObjFile {
             warnings: self.warnings.clone(),
         };
         let mut materials = IndexMap::new();
-        let (mut objects, mut unnamed) = (Vec::new(), BTreeMap::new());
+        let mut objects = Vec::new();
         for piece in &self.pieces {
             let known = piece.material.as_deref().and_then(|name| self.library.materials.get(name));
             if let Some(name) = piece.material.as_deref().filter(|_| known.is_none()) {
@@ -129,12 +129,8 @@ impl ModelFile for ObjFile {
                 let material = known.map_or_else(|| gray(self.has_colors), |loaded| translated.material(loaded));
                 materials.insert(name.clone(), material);
             }
-            let count = unnamed.len();
-            let object_name = piece.name.clone().unwrap_or_else(|| {
-                let number = *unnamed.entry(piece.material.clone()).or_insert(count);
-                format!("object {number}")
-            });
-            let object = Object::new(piece.mesh.clone()).named(format!("{prefix}{object_name}"));
+            let shown = piece.name.as_deref().map_or_else(|| format!("object {}", objects.len()), str::to_owned);
+            let object = Object::new(piece.mesh.clone()).named(format!("{prefix}{shown}"));
             objects.push(object.material_named(name));
         }
         let assets = self.library.pictures.iter();
