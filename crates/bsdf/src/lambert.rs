@@ -13,7 +13,7 @@ pub struct Lambert {
 }
 
 impl ScatteringLobe for Lambert {
-    /// f |cos θi|, and the density per steradian.
+    /// f |cos θi|, and the density of `wi` per steradian.
     #[inline]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z <= 0.0 || wi.z <= 0.0 {

@@ -8,12 +8,13 @@ use juggler_math::{Rgb, Vec2, portable};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Highlight {
-    /// `(r · v)^n` (Phong 1975), with `r` the mirror direction of the light, `v` the direction to
-    /// the viewer and `n` the `shininess`.
+    /// `(r · v)^shininess` (Phong 1975), with `r` the mirror direction of the light and `v` the
+    /// direction to the viewer.
     #[default]
     Phong,
-    /// `(r · v)^n (n · l)`: also scaled by the cosine of the incident light, so the highlight fades
-    /// towards the terminator, as in the article about the Juggler.
+    /// `(r · v)^shininess (n · l)`, with `n` the shading normal and `l` the direction to the light:
+    /// also scaled by the cosine of the incident light, so the highlight fades towards the
+    /// terminator, as in the article about the Juggler.
     PhongCosine,
 }
 
@@ -41,7 +42,7 @@ pub struct PhongParameters {
     pub ambient: Rgb,
     /// Fraction of the ambient light that nearby geometry occludes, 0 to 1.
     pub occlusion: f32,
-    /// Weight of `n · l`; includes the factor 1/π, if any.
+    /// Weight of `n · l`, the cosine of the incident light; includes the factor 1/π, if any.
     pub diffuse: Rgb,
     /// Albedo over `diffuse`: 1, or π where `diffuse` includes a factor 1/π.
     pub albedo_scale: f32,
@@ -64,12 +65,12 @@ pub struct PhongParameters {
     pub blurry: ConeSampling,
     /// Index of refraction inside over outside; 1 transmits in a straight line.
     pub ior: f32,
-    /// Divides light between reflection and transmission by Fresnel's equations.
+    /// Whether Fresnel's equations divide light between reflection and transmission.
     pub fresnel: bool,
 }
 
 impl PhongParameters {
-    /// Absorbs all light.
+    /// Parameters of a surface that absorbs all light.
     pub const BLACK: Self = Self {
         emission: Rgb::BLACK,
         ambient: Rgb::BLACK,
@@ -94,12 +95,13 @@ impl PhongParameters {
         std::f32::consts::PI / self.albedo_scale
     }
 
-    /// Adds lobes that approximate the model in a path tracer; z is the viewer's side, which is
-    /// `outside` if it is the side of the geometric normal. `diffuse` times `albedo_scale` is the
-    /// albedo of a Lambertian lobe, `specular` the albedo at normal incidence of a highlight of the
-    /// same exponent; reflection and transmission are deltas. Glossy reflection becomes a rough
-    /// conductor of about the same spread, glossy or blurry glass with `fresnel` a rough
-    /// dielectric; blurry transmission without `fresnel` is sharp.
+    /// Adds lobes that approximate the model in a path tracer. The z axis of the BSDF points to the
+    /// viewer's side; `outside` is whether that is the side of the geometric normal. `diffuse`
+    /// times `albedo_scale` is the albedo of a Lambertian lobe, `specular` the albedo at normal
+    /// incidence of a highlight of the same exponent; sharp reflection and transmission become
+    /// specular lobes. Glossy reflection becomes a rough conductor of about the same spread, glossy
+    /// or blurry glass with `fresnel` a rough dielectric; blurry transmission without `fresnel` is
+    /// approximated by sharp transmission.
     ///
     /// The classic model may reflect more light than arrives; then all lobes are scaled so that no
     /// channel's albedo exceeds 1.

@@ -72,8 +72,7 @@ pub trait Camera: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Enumeration of all cameras. In JSON: `{"perspective": {"eye": [0, 2, 6], "look_at": [0, 1,
-    /// 0]}}`.
+    /// Camera of any kind. In JSON: `{"perspective": {"eye": [0, 2, 6], "look_at": [0, 1, 0]}}`.
     pub enum AnyCamera: Camera {
         perspective::Perspective,
         thin_lens::ThinLens,

@@ -5,7 +5,7 @@
 //! Readers return a whole [`juggler_math::Image`], for comparisons and textures.
 //!
 //! - [`tone`]: tone mapping from linear RGB to levels of 8 or 16 bits;
-//! - [`look`]: display looks, applied to the levels of a whole image;
+//! - [`look`]: display looks, which emulate old display modes on the levels of a whole image;
 //! - [`codec`]: writer and reader of each image format;
 //! - [`layered`]: files with several layers;
 //! - [`animation`]: movie files;
@@ -15,7 +15,7 @@
 //! - [`raster`]: reads files as stored samples, for textures;
 //! - [`mod@compare`]: error metrics between two images;
 //! - [`mod@flip`]: perceived difference between two images;
-//! - [`mod@significance`]: statistical test whether two noisy images have the same mean.
+//! - [`mod@significance`]: statistical test of whether two noisy images have the same mean.
 
 pub mod animation;
 pub mod atomic;

@@ -45,7 +45,8 @@ impl Destination {
         }
     }
 
-    /// Converts to seekable output. Flush it once at the end, which is when data go to a pipe.
+    /// Converts to seekable output. Flush it exactly once, at the end: a pipe receives the data
+    /// only then.
     pub(crate) fn into_seekable(self) -> Box<dyn WriteSeek> {
         match self.sink {
             Sink::Seekable(sink) => sink,
@@ -91,8 +92,8 @@ pub fn create(path: &Path, format: ImageFormat, header: &Header) -> Result<Box<d
     })
 }
 
-/// Temporary output for the file at `path`, and the file to commit; devices and named pipes are
-/// written directly.
+/// Opens a temporary file, which replaces the file at `path` when it is committed. Devices and
+/// named pipes are written directly, without a file to commit.
 pub(crate) fn whole_file(path: &Path) -> Result<(Destination, Option<AtomicFile>), ImageError> {
     let name = path.display().to_string();
     let failed = |source| ImageError::Write { file: name.clone(), source };
@@ -117,6 +118,7 @@ pub fn write_image(rows: Box<dyn RowWriter>, image: &Image) -> Result<(), ImageE
     rows.finish()
 }
 
+/// Writer to a temporary file that replaces the old file only when it is finished.
 struct WholeFile {
     rows: Box<dyn RowWriter>,
     file: AtomicFile,

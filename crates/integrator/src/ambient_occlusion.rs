@@ -28,6 +28,7 @@ impl Integrator for AmbientOcclusion {
             return;
         }
         output.record_surface(world, ray, vertex);
+        // Trace a shadow ray in a cosine-weighted direction on the viewer's side.
         let surface = &vertex.surface;
         let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });

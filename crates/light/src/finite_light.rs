@@ -34,13 +34,13 @@ pub struct Attenuation {
 pub enum Extent {
     /// Sphere. The hemisphere that faces the lit point emits uniformly.
     Sphere {
-        /// Radius in scene units, 0 or more.
+        /// Radius in scene units, 0 or more. Larger values soften shadows; 0 makes them hard.
         #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
         radius: f32,
     },
     /// Square that always faces the lit point.
     Square {
-        /// Edge length in scene units, 0 or more.
+        /// Edge length in scene units, 0 or more. Larger values soften shadows; 0 makes them hard.
         #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
         side: f32,
     },

@@ -101,7 +101,7 @@ pub trait Light: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Enumeration of all lights. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1],
+    /// Light of any kind. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1],
     /// "intensity": 60}}`.
     pub enum AnyLight: Light {
         ambient::Ambient,

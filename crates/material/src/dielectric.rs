@@ -26,8 +26,9 @@ pub struct Dielectric {
     /// Index of refraction inside: 1.33 for water, 1.5 for glass, 2.42 for diamond.
     #[schemars(range(min = 0.1, max = 10))]
     pub ior: f32,
-    /// Dispersion: 20 over the Abbe number of the glass, 0 to 20: 0.34 for crown glass, 0.36 for
-    /// diamond, 0.7 for flint glass. The default is 0. Only the path integrator shows it.
+    /// Dispersion: 20 divided by the Abbe number of the glass, 0 to 20; 0.34 for crown glass, 0.36
+    /// for diamond, 0.7 for flint glass. The default, 0, refracts all wavelengths alike. Only the
+    /// integrator `path` shows dispersion.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 20))]
     pub dispersion: f32,

@@ -159,7 +159,7 @@ pub trait Material: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Every material. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
+    /// Material of any kind. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
     #[allow(clippy::large_enum_variant, reason = "descriptions are few, and those within others are boxed")]
     pub enum AnyMaterial: Material {
         phong::Phong,

@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mix {
-    /// Weight of `b`, 0 to 1; `a` has the rest.
+    /// Weight of `b`, 0 to 1; the weight of `a` is 1 - `amount`.
     pub amount: Input<f32>,
-    /// First material.
+    /// Material that an `amount` of 0 shows alone.
     pub a: MaterialRef,
-    /// Second material.
+    /// Material that an `amount` of 1 shows alone.
     pub b: MaterialRef,
 }
 

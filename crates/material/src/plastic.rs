@@ -23,7 +23,8 @@ use serde::{Deserialize, Serialize};
 pub struct Plastic {
     /// Reflectance of the diffuse base, 0 to 1 per channel.
     pub reflectance: Input<Rgb>,
-    /// Roughness of the diffuse base, 0 (Lambert's law) to 1: see `diffuse`.
+    /// Roughness of the diffuse base, 0 (Lambert's law) to 1 (energy-preserving Oren-Nayar model),
+    /// as in the material `diffuse`.
     pub diffuse_roughness: Input<f32>,
     /// Index of refraction of the coating.
     #[schemars(range(min = 1, max = 10))]

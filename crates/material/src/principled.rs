@@ -42,8 +42,8 @@ pub struct Principled {
     /// `KHR_materials_ior`.
     #[schemars(range(min = 0, max = 10))]
     pub ior: f32,
-    /// Dispersion of the light that glass refracts: 20 over the Abbe number, 0 to 20. The
-    /// default is 0. Only the path integrator shows it.
+    /// Dispersion of the light that glass refracts: 20 divided by the Abbe number, 0 to 20. The
+    /// default, 0, refracts all wavelengths alike. Only the integrator `path` shows dispersion.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 20))]
     pub dispersion: f32,
@@ -58,7 +58,7 @@ pub struct Principled {
     /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     #[schemars(extend("x-unit" = "turns"))]
     pub anisotropy_rotation: Input<f32>,
-    /// Coverage by the clearcoat, 0 to 1.
+    /// Coverage of the surface by the clearcoat, 0 (none) to 1 (complete).
     pub clearcoat: Input<f32>,
     /// Roughness of the clearcoat, 0 (mirror) to 1.
     pub clearcoat_roughness: Input<f32>,

@@ -7,8 +7,8 @@ use juggler_shape::MeshPoint;
 use juggler_shape::surface::{Surface, Tangents};
 use juggler_texture::TextureLookup;
 
-/// Smallest cosine between geometric normal and mirror direction. Below it, a mirror would reflect
-/// the surface itself.
+/// Smallest cosine between the geometric normal and the mirror direction. At smaller cosines, a
+/// mirror would reflect the surface itself.
 const MIN_MIRROR_COSINE: f32 = 0.01;
 
 /// Point of a surface with the direction to its viewer.
@@ -20,14 +20,14 @@ pub struct ShadingView<'a> {
     pub mesh: Option<&'a MeshPoint<'a>>,
     /// Tangents of the surface along u and v, if known.
     pub tangents: Option<&'a Tangents>,
-    /// Unit shading normal in world space, on the side of the shape's normals, after the normal and
-    /// bump maps so far.
+    /// Unit shading normal in world space, on the side of the shape's normals. The normal and bump
+    /// maps around the material have been applied.
     pub normal: Vec3,
     /// Unit direction towards the viewer, in world space.
     pub wo: Vec3,
-    /// Index of refraction outside the object, whichever side is seen.
+    /// Index of refraction outside the object, even if the viewer is inside.
     pub outside_ior: f32,
-    /// Random number in [0, 1) that chooses among mixed materials.
+    /// Random number in [0, 1) that chooses one of the materials of a mixture.
     pub u_choice: f32,
 }
 
@@ -72,9 +72,9 @@ pub struct Shading {
     /// Whether `emission` is the color of an unlit surface, which exists only for camera rays and
     /// their specular continuations.
     pub is_unlit: bool,
-    /// Factor on the contribution of the scene's lights, emissive shapes excepted: π for the
-    /// classic material, whose lights are measured so that radiance 1 makes a white surface white;
-    /// 1 with `inverse_pi` and for all other materials.
+    /// Factor on the contribution of the scene's lights, but not of emissive shapes. It is π for
+    /// the material `phong`, for which a light of radiance 1 makes a white surface white; it is 1
+    /// for `phong` with the `diffuse_normalization` of `inverse_pi` and for all other materials.
     pub light_scale: f32,
 }
 

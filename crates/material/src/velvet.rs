@@ -26,7 +26,8 @@ pub struct Velvet {
     pub sheen_roughness: Input<f32>,
     /// Reflectance of the diffuse base, 0 to 1 per channel. Black leaves the sheen alone.
     pub reflectance: Input<Rgb>,
-    /// Roughness of the diffuse base, 0 (Lambert's law) to 1: see `diffuse`.
+    /// Roughness of the diffuse base, 0 (Lambert's law) to 1 (energy-preserving Oren-Nayar model),
+    /// as in the material `diffuse`.
     pub roughness: Input<f32>,
     /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
     /// `black_behind`.

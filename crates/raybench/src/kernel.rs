@@ -1,4 +1,5 @@
-//! Kernels under measurement: ways to build and trace a triangle hierarchy.
+//! Kernels that the benchmark measures: construction and traversal of a bounding volume hierarchy
+//! of triangles.
 
 use crate::Mesh;
 use crate::measure::HitSummary;
@@ -9,18 +10,18 @@ use juggler_math::Ray;
 /// Number of rays per call of a coherent kernel: a tile of pixels.
 const TILE: usize = 64;
 
-/// A triangle test. A new one is one more line in [`TESTS`].
+/// A ray-triangle intersection test. To measure another test, add a line to [`TESTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct NamedTest {
     /// Name of the test.
     pub name: &'static str,
-    /// Whether no ray passes between triangles that share an edge; only tests of the same kind are
-    /// compared.
+    /// Whether no ray passes between triangles that share an edge. Compare only tests with the same
+    /// value.
     pub watertight: bool,
     test: TriangleTest,
 }
 
-/// All triangle tests.
+/// All ray-triangle intersection tests.
 pub const TESTS: [NamedTest; 2] = [
     NamedTest { name: "watertight", watertight: true, test: TriangleTest::Watertight },
     NamedTest { name: "fast", watertight: false, test: TriangleTest::Fast },
@@ -31,13 +32,14 @@ pub fn build(mesh: &Mesh, quality: Quality) -> Result<TriangleBvh, TriangleError
     TriangleBvh::build(&mesh.positions, &mesh.triangles, quality)
 }
 
-/// The hierarchy with each of the triangle tests: a copy each, since they are traced alternately.
+/// Copies of a hierarchy, one for each intersection test, because the benchmark traces them
+/// alternately.
 pub fn with_tests(tree: TriangleBvh) -> [(NamedTest, TriangleBvh); 2] {
     let ([first, second], copy) = (TESTS, tree.clone());
     [(first, tree.with_test(first.test)), (second, copy.with_test(second.test))]
 }
 
-/// A query kernel.
+/// A query kernel: how many rays a call traces, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// One ray per call.
@@ -65,6 +67,7 @@ impl Scratch {
         (&mut self.rays, &mut self.hits[..rays.len()])
     }
 
+    /// Space for whether each ray is occluded.
     fn any(&mut self, rays: &[Ray]) -> &mut [bool] {
         self.occluded.resize(rays.len(), false);
         &mut self.occluded[..rays.len()]

@@ -120,7 +120,7 @@ pub trait Shape: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Any shape. In JSON: `{"sphere": {"radius": 1}}`.
+    /// Shape of any kind. In JSON: `{"sphere": {"radius": 1}}`.
     pub enum AnyShape: Shape {
         sphere::Sphere,
         plane::Plane,

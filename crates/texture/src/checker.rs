@@ -30,14 +30,14 @@ pub struct Checker {
     pub odd: Input<Rgb>,
     /// Coordinate space of the cells.
     pub space: Space,
-    /// Axes that the cells divide. The pattern is constant along all others.
+    /// Axes along which the colors alternate. The pattern is constant along all others.
     pub axes: Axes,
     /// Position of a corner of the cells, in `space`.
     #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub offset: Vec3,
 }
 
-/// Axes that the cells of a checkerboard divide.
+/// Axes along which the colors of a checkerboard alternate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Axes {

@@ -35,7 +35,8 @@ pub struct Gradient {
     /// Point of position 1, different from `start`.
     #[schemars(with = "[f32; 3]", extend("x-unit" = "units of space"))]
     pub end: Vec3,
-    /// Shape of the gradient.
+    /// Shape of the gradient: `linear`, along the line from `start` to `end`, or `radial`, around
+    /// `start`.
     pub shape: GradientShape,
 }
 

@@ -4,8 +4,8 @@ use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Constant number or color, a texture that gives it at every point, inline or by name, or a
-/// product of a texture, a factor and an attribute of the mesh.
+/// Number or color: a constant, a texture (inline or by name) whose value varies over the surface,
+/// or a product of a texture, a factor and an attribute of the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, a color, the name of a texture or a product")]
 pub enum Input<T> {

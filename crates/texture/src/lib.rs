@@ -156,7 +156,7 @@ pub trait Texture: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Every texture. In JSON: `{"checker": {"size": 1}}`.
+    /// Texture of any kind. In JSON: `{"checker": {"size": 1}}`.
     pub enum AnyTexture: Texture {
         image::Image,
         attribute::Attribute,

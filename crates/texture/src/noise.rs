@@ -24,7 +24,7 @@ pub struct Noise {
     pub low: Input<Rgb>,
     /// Color where the noise is highest.
     pub high: Input<Rgb>,
-    /// Seed of the noise.
+    /// Seed of the noise. Another seed gives another pattern of the same kind.
     pub seed: u32,
     /// Placement of the pattern: coordinate space, scale, rotation and offset.
     #[serde(flatten)]

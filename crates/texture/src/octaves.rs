@@ -22,7 +22,7 @@ pub struct Octaves {
     /// rougher.
     #[schemars(range(min = 0, max = 1))]
     pub gain: f32,
-    /// Seed of the noise.
+    /// Seed of the noise. Another seed gives another pattern of the same kind.
     pub seed: u32,
 }
 

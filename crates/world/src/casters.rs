@@ -1,5 +1,5 @@
-//! Specular spheres through which paths sample lights (caustics). A path that starts at a diffuse
-//! surface would find those lights by chance only.
+//! Specular spheres through which paths sample lights (caustics). Without these samples, a path
+//! from a diffuse surface finds such lights only when a BSDF sample happens to hit a sphere.
 
 use super::world_shapes::{WorldShape, collect_shapes};
 use super::{Geometry, LightSampleContext, World};
@@ -22,13 +22,13 @@ const MAX_CASTERS: usize = 16;
 /// Maximum number of candidate shapes examined, because instancing may multiply them without limit.
 const MAX_CANDIDATES: usize = 1 << 12;
 
-/// Total weight of all visible spheres, reflectance times solid angle over 2π, from which one of
-/// them is always selected.
+/// Total weight from which [`VisibleCasters::pick`] always selects a sphere. The weight of a
+/// visible sphere is its reflectance or transmittance times its solid angle, divided by 2π.
 const FULL_WEIGHT: f32 = 0.5;
 
-/// Maximum fraction of BSDF samples that are replaced by directions towards spheres, and that
-/// fraction per unit of weight.
+/// Maximum fraction of BSDF samples that are replaced by directions towards spheres.
 const MAX_GUIDED: f32 = 0.15;
+/// Fraction of BSDF samples to replace, per unit of the total weight.
 const GUIDED_PER_WEIGHT: f32 = 8.0;
 
 /// Two spheres coincide if their surfaces are nowhere further apart than this, in radii.
@@ -66,13 +66,13 @@ impl SpecularMaterial {
         let surface = Surface::new(Vec3::ZERO, 0.0, Vec3::Z, Vec2::ZERO);
         let bsdf = materials.shade(id, &ShadingView::along_normal(&surface)).bsdf;
         let interior = materials.interior(id).and_then(|id| materials.interiors().get(id.index()));
-        // Oblique incidence, whose reflectance approximates the average.
+        // Evaluate at oblique incidence, where the reflectance approximates the average.
         let deltas = bsdf.deltas(Vec3::new(0.8, 0.0, 0.6));
         let total_weight = |is_up: bool| {
             let weights = deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
             weights.fold(0.0, |sum: f32, weight| sum + weight.max_channel())
         };
-        // Light samples through the sphere have no wavelength.
+        // Exclude dispersive glass: light samples through a sphere have no wavelength.
         if interior.is_some_and(|interior| interior.dispersion > 0.0) {
             return None;
         }
@@ -125,8 +125,8 @@ impl CausticCaster {
     }
 
     /// Joins spheres of one material that coincide exactly. Removes spheres that nearly coincide,
-    /// or whose materials differ: rounding decides which of them a ray hits, so only the path
-    /// itself may find light through them.
+    /// or whose materials differ: rounding decides which of them a ray hits, so only BSDF sampling
+    /// may find light through them.
     fn without_coincident(casters: Vec<Self>) -> Vec<Self> {
         let mut joined: Vec<(Self, bool)> = Vec::with_capacity(casters.len());
         for caster in casters {
@@ -192,8 +192,8 @@ impl CausticCaster {
         in_and_out * self.material.medium.transmittance(2.0 * self.sphere.radius * cos_inside)
     }
 
-    /// Evaluates the sphere as seen from `to`; weights are 0 from inside it, and where it lies
-    /// below the receiver's horizon.
+    /// Evaluates the sphere as seen from `to`. The weights are 0 if `to` lies inside the sphere, or
+    /// the sphere below the horizon of `to`.
     #[inline]
     fn view_from(&self, to: &LightSampleContext) -> CasterView {
         let SpecularSphere { center, radius } = self.sphere;
@@ -241,8 +241,8 @@ impl VisibleCasters {
         Self { views: ArrayVec::new(), total_weight: 0.0 }
     }
 
-    /// Selects a caster and a kind of path, with its probability. Returns `None` more often the
-    /// smaller the total weight is.
+    /// Selects a caster and a kind of path, and returns both with their probability. The smaller
+    /// the total weight is, the more often it returns `None`.
     pub fn pick(&self, u: f32) -> Option<(CasterId, f32)> {
         let all = self.total_weight.max(FULL_WEIGHT);
         let mut target = u * all;
@@ -268,7 +268,7 @@ impl VisibleCasters {
         (GUIDED_PER_WEIGHT * self.total_weight).min(MAX_GUIDED)
     }
 
-    /// Samples a direction towards a caster, uniform within its cone.
+    /// Samples a direction towards a caster, uniformly within the cone that it subtends.
     pub fn sample(&self, u: Vec2) -> Option<Vec3> {
         let mut target = u.x * self.total_weight;
         for view in &self.views {

@@ -1,11 +1,11 @@
-//! Conservation of energy, white furnaces and reciprocity.
+//! Tests of energy conservation, in white furnaces, and of reciprocity.
 
 use super::*;
 
 #[test]
 fn scattered_energy_never_exceeds_incident_energy() {
     for Example { name, bsdf, both_sides, white_within, .. } in examples() {
-        // Layers conserve energy on average over directions only.
+        // Layers conserve energy only on average over all directions.
         let more = if name.contains("varnish") { 0.045 } else { MORE };
         for wo in views(both_sides) {
             let energy = furnace(&bsdf, wo, 64);
@@ -46,11 +46,11 @@ fn scattering_is_reciprocal() {
         for _ in 0..if bsdf.is_specular() { 0 } else { 300 } {
             let (o, i) = (random.unit_vector(), random.unit_vector());
             let (there, back) = (bsdf.eval(o, i) / i.z.abs(), bsdf.eval(i, o) / o.z.abs());
-            // Radiance over the square of the index is reciprocal; a transmitted sample tells the
-            // index.
-            let scale = if o.z * i.z > 0.0 { 1.0 } else { crossing(&bsdf, o) };
-            // Near an index of 1, microfacets between two directions are edge-on, and rounding
-            // decides their side.
+            // Radiance divided by the squared index of refraction is reciprocal; a transmitted
+            // sample reports the relative index.
+            let scale = if o.z * i.z > 0.0 { 1.0 } else { relative_ior(&bsdf, o) };
+            // If the relative index is near 1, the microfacet that refracts one direction into the
+            // other is nearly edge-on, and rounding decides which side of it is visible.
             let least = if name.contains(" 1.01 ") { 5e-4 } else { 1e-5 };
             for (t, b) in (there * (scale * scale)).to_array().into_iter().zip(back.to_array()) {
                 assert!(
@@ -64,8 +64,9 @@ fn scattering_is_reciprocal() {
     }
 }
 
-/// Index of refraction on the opposite side of `wo` over that on its own.
-fn crossing(bsdf: &Bsdf, wo: Vec3) -> f32 {
+/// Relative index of refraction: that on the side opposite to `wo`, divided by that on the side of
+/// `wo`.
+fn relative_ior(bsdf: &Bsdf, wo: Vec3) -> f32 {
     let mut random = Random::new(92);
     let mut find =
         |w: Vec3| (0..2000).find_map(|_| bsdf.sample(w, random.vec2(), random.f32()).filter(|s| s.is_transmitted(w)));

@@ -22,7 +22,7 @@ pub(super) enum Breadth {
 pub(super) struct Example {
     pub name: String,
     pub bsdf: Bsdf,
-    /// Whether it is also tested from below.
+    /// Whether the tests also view the BSDF from below.
     pub both_sides: bool,
     /// Allowed deviation of the albedo from 1 where no light is lost; 0 where light may be lost.
     pub white_within: f32,
@@ -48,11 +48,11 @@ impl Example {
     }
 }
 
-/// Alpha along x and y: smooth, barely rough, polished, rough, roughest, brushed.
+/// Alpha along x and y: smooth, barely rough, polished, rough, roughest, and two brushed surfaces.
 const ALPHAS: [(f32, f32); 7] =
     [(0.0, 0.0), (0.001, 0.001), (0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)];
 
-/// Every lobe in every kind of use.
+/// Examples of every lobe: smooth and rough, tinted and white, alone and in sums.
 pub(super) fn examples() -> Vec<Example> {
     let mut all = vec![
         Example::new("nothing", Bsdf::new()),
@@ -81,7 +81,8 @@ pub(super) fn examples() -> Vec<Example> {
     all
 }
 
-/// Allowed deviation of a compensated mirror from white.
+/// Allowed deviation of the albedo from 1, for a white conductor with compensation of multiple
+/// scattering.
 fn within(alpha: Vec2) -> f32 {
     if alpha.x == alpha.y { 0.015 } else { 0.03 }
 }
@@ -103,7 +104,7 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
     let tinted = Dielectric::new(1.5, alpha).tinted(pink, cyan);
     let mut all = vec![Example::new(format!("tinted glass {alpha}"), tinted)];
     let all_iors = [0.5, 1.0 / 1.33, 1.0, 1.01, 1.5, 2.4, 4.0];
-    // All indices at three roughnesses, two at the others.
+    // Test all indices of refraction with three of the roughnesses, two indices with the others.
     let iors = if alpha.x == alpha.y && (alpha.x == 0.0 || alpha.x > 0.2) { &all_iors[..] } else { &all_iors[3..5] };
     for ior in iors.iter().copied() {
         let narrow = |example: Example| if ior == 1.01 { example.with_breadth(Breadth::Needle) } else { example };

@@ -1,4 +1,4 @@
-//! Named metals against the spectral integrals that `tests/metals/derive.py` prints.
+//! Comparison of the named metals with the spectral integrals that `tests/metals/derive.py` prints.
 
 use super::{METALS, Metal};
 use juggler_math::testing::close;
@@ -7,7 +7,8 @@ use juggler_math::{Rgb, portable};
 /// Angles of incidence of [`SPECTRAL`].
 const DEGREES: [f32; 6] = [0.0, 40.0, 60.0, 70.0, 75.0, 80.0];
 
-/// Reflectance of each metal's table, integrated to linear sRGB and clamped, at [`DEGREES`].
+/// Reflectance of each metal at [`DEGREES`]: its tabulated spectrum, integrated to linear sRGB and
+/// clamped to 0 to 1.
 #[expect(clippy::approx_constant, reason = "a reflectance that happens to be near 2/π")]
 const SPECTRAL: [(&str, [[f32; 3]; 6]); 13] = [
     (
@@ -180,7 +181,7 @@ fn reflectance_follows_the_spectral_integral_up_to_80_degrees() {
     assert!(SPECTRAL.iter().zip(METALS).all(|(spectral, metal)| spectral.0 == metal.name));
 }
 
-/// Only gold's red is clamped; every other channel meets its integral to the four digits of η and
+/// Only gold's red is clamped; every other channel equals its integral to the four digits of η and
 /// k.
 #[test]
 fn reflectance_at_normal_incidence_is_the_spectral_integral() {

@@ -17,7 +17,7 @@ pub trait SamplerDescription: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Enumeration of all samplers. In JSON: `{"sobol": {}}`, or short `"sobol"`.
+    /// Sampler of any kind. In JSON: `{"sobol": {}}`, or short `"sobol"`.
     pub enum AnySampler: SamplerDescription {
         sobol::Sobol => SobolPoints,
         stratified::Stratified => StratifiedPoints,

@@ -16,7 +16,7 @@ const BEAM: usize = 16;
 const STEP: u8 = 17;
 /// Perceptual weights of squared errors in red, green and blue.
 pub(super) const WEIGHTS: [u32; 3] = [3, 6, 2];
-/// Codes that modify red, green and blue.
+/// Commands that modify red, green and blue: the upper two of the six bits of a code.
 const CHANGES: [u8; 3] = [2, 3, 1];
 
 /// An image encoded for hold-and-modify display.
@@ -103,7 +103,7 @@ fn error(color: Color, target: [u8; 3]) -> u64 {
     u64::from(squares.sum::<u32>())
 }
 
-/// Nearest 4-bit level.
+/// 4-bit level nearest to an 8-bit level.
 fn nearest(level: u8) -> u8 {
     ((u16::from(level) + 8) / 17) as u8
 }

@@ -1,7 +1,7 @@
 //! Palette of 16 colors for hold-and-modify images: variance-based cuts of color boxes (Heckbert,
 //! "Color image quantization for frame buffer display", 1982), refined by k-means iterations (Lloyd
 //! 1982). A pixel's weight grows with the number of channels that differ from the pixel to its
-//! left, since gradients need no palette colors.
+//! left: a change of one channel, as in gradients, needs no palette color.
 
 use super::ham::WEIGHTS;
 
@@ -40,11 +40,11 @@ pub(super) fn choose_palette(pixels: &[[u8; 3]], width: usize) -> [Color; 16] {
 /// Distinct colors with their weights, in ascending order.
 fn weighted_colors(pixels: &[[u8; 3]], width: usize) -> Vec<WeightedColor> {
     let mut counts = vec![0_u64; 1 << 12];
-    let short = |pixel: &[u8; 3]| pixel.map(|level| ((u16::from(level) + 8) / 17) as u8);
+    let to_4_bits = |pixel: &[u8; 3]| pixel.map(|level| ((u16::from(level) + 8) / 17) as u8);
     for row in pixels.chunks(width.max(1)) {
         let mut left = [0; 3];
         for pixel in row {
-            let color = short(pixel);
+            let color = to_4_bits(pixel);
             let changed = (0..3).filter(|channel| color[*channel] != left[*channel]).count();
             let [r, g, b] = color.map(usize::from);
             counts[r << 8 | g << 4 | b] += CHANGE_WEIGHTS[changed];
@@ -71,7 +71,7 @@ fn split_boxes(colors: Vec<WeightedColor>) -> Vec<Vec<WeightedColor>> {
         }
         let cluster = std::mem::take(&mut clusters[index]);
         let (sum, count) = sums(&cluster, channel);
-        // Colors up to the mean go low, so neither box is empty.
+        // Split at the mean: the spread is above 0, so neither box is empty.
         let (low, high) = cluster.into_iter().partition(|(color, _)| u64::from(color[channel]) * count <= sum);
         clusters[index] = low;
         clusters.push(high);
@@ -102,6 +102,7 @@ fn mean_color(cluster: &[WeightedColor]) -> Color {
     })
 }
 
+/// Squared distance of two colors, weighted by channel.
 fn distance(a: Color, b: Color) -> u32 {
     a.iter().zip(b).zip(WEIGHTS).map(|((a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
 }

@@ -88,7 +88,7 @@ pub struct Path {
     #[schemars(range(min = 1, max = 10_000))]
     pub roulette_depth: Option<u32>,
     /// Number of light samples at the first vertex that is not specular, where most of the noise
-    /// arises; 1 to 64. By default 2 if the scene has several emitters, else 1. More of them reduce
+    /// arises; 1 to 64. By default 2 if the scene has several emitters, else 1. More samples reduce
     /// the noise of direct lighting.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 64), extend("x-unit" = "samples"))]

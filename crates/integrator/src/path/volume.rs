@@ -10,8 +10,8 @@ use juggler_world::{LightSampleContext, World};
 const SHADOW_RAY_FRACTION: f32 = 1.0 - 1e-4;
 
 impl Path {
-    /// Samples a collision in the current medium within `distance`. Returns whether the path ends
-    /// here or scatters.
+    /// Samples a collision in the current medium within `distance`. Returns whether there is one;
+    /// the path then scatters or ends there.
     pub fn sample_medium(
         &self,
         world: &World,
@@ -39,16 +39,16 @@ impl Path {
         true
     }
 
-    /// Scatters a path in a medium, at the origin of `ray`.
+    /// Scatters a path that arrives along `ray` in a medium, at the origin of `ray`.
     fn scatter(&self, world: &World, ray: &Ray, path: &PathState, phase: HenyeyGreenstein, output: &mut VertexOutput) {
-        let from = |direction| Ray { time: ray.time, ..Ray::new(ray.origin, direction) };
+        let spawn_ray = |direction| Ray { time: ray.time, ..Ray::new(ray.origin, direction) };
         // Sample direct illumination.
         let to = LightSampleContext { point: ray.origin, error: 0.0, normal: juggler_math::Vec3::ZERO, time: ray.time };
         if let Some(light) = world.sample_light(&to, path.sampler.skipped(Dimension::Light as u32).next_2d()) {
             let scattered = phase.eval(ray.direction.dot(light.wi));
             let mis_weight =
                 if light.can_be_bsdf_sampled { self.sampling.light_weight(light.pdf, scattered) } else { 1.0 };
-            let shadow = from(light.wi).with_t_max(light.distance * SHADOW_RAY_FRACTION);
+            let shadow = spawn_ray(light.wi).with_t_max(light.distance * SHADOW_RAY_FRACTION);
             let (radiance, group) =
                 (light.radiance * (scattered * mis_weight / light.pdf), world.light_group(light.emitter));
             output.add_shadow_ray_inside(shadow, radiance, group, path.history.interiors);
@@ -71,7 +71,7 @@ impl Path {
         };
         // Terminate by Russian roulette.
         if let Some(probability) = self.roulette_survival(path, output.beta() * history.eta_scale) {
-            output.continue_path(from(wi), Rgb::splat(1.0 / probability), history, 1);
+            output.continue_path(spawn_ray(wi), Rgb::splat(1.0 / probability), history, 1);
         }
     }
 }

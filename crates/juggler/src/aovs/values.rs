@@ -5,7 +5,7 @@ use juggler_camera::aov::{AdjacentFrame, FilmAov, LightGroup};
 use juggler_camera::film::{AovSums, PixelStatistics, Rect, Tile};
 use juggler_math::Rgb;
 
-/// Indices of the film's masks.
+/// Indices of the film's coverage masks.
 const OBJECTS: usize = 0;
 const MATERIALS: usize = 1;
 const SHAPES: usize = 2;
@@ -15,7 +15,9 @@ struct Pixel<'t> {
     set: &'t AovSet,
     tile: &'t Tile,
     aov_sums: &'t AovSums,
+    /// Index of the pixel in the tile, row by row.
     number: usize,
+    /// Number of samples of the pixel.
     count: f32,
 }
 
@@ -33,8 +35,8 @@ impl AovSet {
         picture.map(channels_of).into_iter().flatten().chain(channels).collect()
     }
 
-    /// Returns a tile's pixels with each light group scaled by its gain, by index. Unit gains
-    /// return the pixels of the film bit for bit.
+    /// Returns a tile's pixels with each light group scaled by its gain; `gains` are in the order
+    /// of the light groups. If all gains are 1, the pixels equal those of the film bit for bit.
     pub fn relight(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
         let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
         let mut pixels = tile.means();
@@ -65,33 +67,34 @@ impl AovSet {
 }
 
 impl Pixel<'_> {
-    /// Returns the mean of a layer over all samples.
-    fn mean(&self, layer: FilmAov) -> Rgb {
-        self.sum(layer) / self.count
+    /// Returns the mean of an AOV over all samples.
+    fn mean(&self, aov: FilmAov) -> Rgb {
+        self.sum(aov) / self.count
     }
 
-    fn sum(&self, layer: FilmAov) -> Rgb {
+    /// Returns the sum of an AOV over all samples; black if the film has no such AOV.
+    fn sum(&self, aov: FilmAov) -> Rgb {
         let planes = self.set.film_aovs.planes.len();
         let place =
-            self.set.film_aovs.index_of(layer).and_then(|place| self.aov_sums.planes.get(self.number * planes + place));
+            self.set.film_aovs.index_of(aov).and_then(|place| self.aov_sums.planes.get(self.number * planes + place));
         place.copied().unwrap_or(Rgb::BLACK)
     }
 
-    /// Returns the mean of a layer's first two channels over its third, which counts the valid
-    /// samples.
-    fn mean_of_valid(&self, layer: FilmAov) -> impl Iterator<Item = f32> {
-        let sum = self.sum(layer);
+    /// Returns the first two channels of an AOV, averaged over the valid samples, which its third
+    /// channel counts.
+    fn mean_of_valid(&self, aov: FilmAov) -> impl Iterator<Item = f32> {
+        let sum = self.sum(aov);
         divide(sum, sum.b).into_iter().take(2)
     }
 
-    /// Returns the coverages of a mask's objects, by increasing index.
+    /// Returns the coverage by each object of a mask, in order of the objects' indices.
     fn coverages(&self, kind: usize) -> Vec<(u32, f32)> {
         let mask = self.aov_sums.masks.get(kind).map(|mask| mask.pixel(self.number)).unwrap_or_default();
         mask.iter().map(|(id, sum)| (*id, (sum / self.count).clamp(0.0, 1.0))).collect()
     }
 
-    /// Returns the index of the object with the largest coverage, from 1; the first of equal ones,
-    /// 0 for none.
+    /// Returns the index, counted from 1, of the object with the largest coverage: the first if
+    /// several coverages are equal, 0 if no object covers the pixel.
     fn dominant(&self, kind: usize) -> f32 {
         let coverages = self.coverages(kind);
         let dominant =
@@ -99,6 +102,7 @@ impl Pixel<'_> {
         dominant.map_or(0.0, |(id, _)| *id as f32 + 1.0)
     }
 
+    /// Appends the channels of an AOV to `row`.
     fn append(&self, aov: Aov, row: &mut Vec<f32>) {
         match aov {
             Aov::Alpha => row.push(self.mean(FilmAov::Coverage).r),
@@ -146,7 +150,7 @@ fn channels_of(pixels: &[Rgb]) -> Vec<Vec<f32>> {
     (0..3).map(|channel| pixels.iter().map(|pixel| pixel.to_array()[channel]).collect()).collect()
 }
 
-/// Returns the mean over the covered samples; 0 without any.
+/// Divides a sum by the sum of weights; returns 0 if the latter is 0.
 fn divide(sum: Rgb, weight: f32) -> [f32; 3] {
     if weight > 0.0 { (sum / weight).to_array() } else { [0.0; 3] }
 }

@@ -80,7 +80,7 @@ pub trait Background: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Enumeration of all backgrounds. In JSON: `{"solid": {"color": [0, 0, 0]}}`.
+    /// Background of any kind. In JSON: `{"solid": {"color": [0, 0, 0]}}`.
     pub enum AnyBackground: Background {
         solid::Solid,
         gradient::Gradient,

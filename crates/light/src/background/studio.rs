@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Photo studio: a bright dome with four soft boxes, which lights an object well from all sides.
-/// The front is +Z.
+/// Its front, where the camera usually stands, is +Z.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Studio {

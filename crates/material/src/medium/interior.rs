@@ -11,7 +11,7 @@ pub const MAX_INTERIORS: usize = 4;
 pub struct Interior {
     /// Index of refraction, at 587.56 nm.
     pub ior: f32,
-    /// Dispersion: 20 over the Abbe number, 0 for none.
+    /// Dispersion: 20 divided by the Abbe number, 0 for none.
     pub dispersion: f32,
     /// Priority where solids overlap: the highest priority fills the overlap.
     pub priority: i32,

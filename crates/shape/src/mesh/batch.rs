@@ -1,4 +1,5 @@
-//! Intersection of many rays with a mesh's hierarchy. The hits are the same as one by one.
+//! Intersection of many rays with a mesh's bounding volume hierarchy. The hits equal those of
+//! queries with single rays.
 
 use super::Mesh;
 use crate::Hit;
@@ -6,9 +7,9 @@ use crate::arithmetic::clamp_to_f32_range;
 use juggler_math::{Ray, Vec2};
 
 impl Mesh {
-    /// [`Shape::intersect`](crate::Shape::intersect) for many rays, object space. `coherent` is for
-    /// rays of about the same origin and direction as their neighbors, which are traced as packets.
-    /// The rays are overwritten.
+    /// [`Shape::intersect`](crate::Shape::intersect) for many rays, in object space. Set `coherent`
+    /// if neighboring rays have about the same origin and direction: they are then traced in
+    /// packets. The rays are overwritten.
     pub fn intersect_rays(&self, rays: &mut [Ray], coherent: bool) -> Vec<Option<Hit>> {
         let Some(prepared) = &self.prepared else { return vec![None; rays.len()] };
         rays.iter_mut().for_each(|ray| *ray = clamp_to_f32_range(ray));
@@ -22,7 +23,7 @@ impl Mesh {
         hits.into_iter().map(|found| found.map(hit)).collect()
     }
 
-    /// [`Shape::occludes`](crate::Shape::occludes) for many rays, object space; see
+    /// [`Shape::occludes`](crate::Shape::occludes) for many rays, in object space; see
     /// [`Mesh::intersect_rays`].
     pub fn occludes_rays(&self, rays: &mut [Ray], coherent: bool) -> Vec<bool> {
         let mut occluded = vec![false; rays.len()];

@@ -47,7 +47,7 @@ pub struct MeshDescription {
     /// the surface coordinates. A zero tangent counts as missing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     tangents: Vec<[f32; 4]>,
-    /// Named attributes for the texture `attribute`, such as `color`.
+    /// Named attributes of the vertices or triangles, such as `color`, for the texture `attribute`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     attributes: BTreeMap<String, MeshAttribute>,
     /// Largest angle between the normals of two neighboring triangles whose edge is shaded

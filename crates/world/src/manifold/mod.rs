@@ -30,7 +30,7 @@ pub enum SpecularPath {
     },
 }
 
-/// A sphere in world space.
+/// A specular sphere in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpecularSphere {
     /// Center.
@@ -75,7 +75,8 @@ impl SpecularSphere {
         (inverse_distance <= MAX_INVERSE_DISTANCE).then(|| EndPoint { toward: offset / distance, inverse_distance })
     }
 
-    /// Solid angle that the sphere subtends at a point of this inverse distance, divided by 2π.
+    /// 1 - cos θ, with θ half the angle that the sphere subtends at a point of this inverse
+    /// distance: the sphere's solid angle divided by 2π.
     #[inline]
     pub fn one_minus_cos(inverse_distance: f32) -> f32 {
         let squared = inverse_distance * inverse_distance;
@@ -98,16 +99,18 @@ struct Plane {
     axis: Vec3,
     /// Unit vector orthogonal to `axis`, on the side of the second end point.
     across: Vec3,
-    /// Sine of `angle`, the angle Φ at the center between the end points.
+    /// Sine of `angle`.
     sin: f32,
+    /// Cosine of `angle`.
     cos: f32,
+    /// Angle Φ at the center between the end points, in radians.
     angle: f32,
     /// Inverse distance of both end points.
     inverse_distance: [f32; 2],
 }
 
 impl Plane {
-    /// `None` if the end points and the center are collinear.
+    /// Plane of two end points; `None` if they are collinear with the center.
     #[inline]
     fn new(from: &EndPoint, to: &EndPoint) -> Option<Self> {
         let cos = from.toward.dot(to.toward);
@@ -124,8 +127,8 @@ impl Plane {
         self.axis * cos + self.across * sin
     }
 
-    /// Direction at the first end point of the path of incidence `sine`; `side` is 1 or -1 by the
-    /// side on which it passes the center.
+    /// Direction in which a path leaves the first end point. `sine` is the sine of its angle of
+    /// incidence; `side` is 1 if it passes the center on the side of the second end point, else -1.
     #[inline]
     fn direction(&self, sine: f32, side: f32) -> Vec3 {
         let sin = self.inverse_distance[0] * sine;
@@ -143,12 +146,15 @@ pub fn connections(kind: SpecularPath, from: &EndPoint, to: &EndPoint) -> ArrayV
     }
 }
 
-/// Ratio of solid angles of a thin bundle of paths: at the sphere's center towards the second end
-/// point, over that at the first end point. It converts a density of directions at the center to
-/// one at the first end point.
+/// Ratio that converts a density of directions at the sphere's center to one at the first end
+/// point. At the second end point, a thin bundle of paths has a cross-section; the ratio is the
+/// area of this cross-section over the squared distance from the center, divided by the solid angle
+/// of the bundle at the first end point. For a point on a surface, the caller also applies the
+/// ratio of the cosines at that surface.
 ///
-/// With Φ(u) the angle at the center between the end points and a the angles between path and axis
-/// at the end points, it is cos a₁ cos a₂ |Φ'(u)| sin Φ / (u k₁²).
+/// With Φ(u) the angle at the center between the end points, and a₁ and a₂ the angles at the end
+/// points between the path and the line to the center, the ratio is cos a₁ cos a₂ |Φ'(u)| sin Φ /
+/// (u k₁²).
 #[inline]
 pub fn solid_angle_ratio(kind: SpecularPath, from: &EndPoint, to: &EndPoint, sine: f32) -> f32 {
     let [k1, k2] = [from.inverse_distance, to.inverse_distance];

@@ -56,7 +56,8 @@ pub trait ReconstructionFilter: Send + Sync {
 }
 
 juggler_math::closed_set! {
-    /// Enumeration of all filters. In JSON: `{"gaussian": {"radius": 1.5}}`, or short `"box"`.
+    /// Reconstruction filter of any kind. In JSON: `{"gaussian": {"radius": 1.5}}`, or short
+    /// `"box"`.
     pub enum AnyFilter: ReconstructionFilter {
         box_filter::Box, tent::Tent, gaussian::Gaussian, mitchell::Mitchell, juggler::Juggler,
     }

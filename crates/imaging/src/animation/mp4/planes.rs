@@ -3,11 +3,13 @@
 
 /// Fractional bits of the fixed-point factors.
 const BITS: u32 = 16;
-/// Luma coefficients of red and blue.
+/// Luma coefficients of red, green and blue.
 const RED: f64 = 0.2126;
+const GREEN: f64 = 1.0 - RED - BLUE;
 const BLUE: f64 = 0.0722;
 
-/// Fixed-point factors of red, green and blue that map 0 to 255 to 0 to `range`.
+/// Fixed-point factors of red, green and blue that map the levels 0 to 255 to the range from 0 to
+/// `range`.
 const fn factors(coefficients: [f64; 3], range: f64) -> [i32; 3] {
     let one = range / 255.0 * (1 << BITS) as f64;
     [rounded(coefficients[0] * one), rounded(coefficients[1] * one), rounded(coefficients[2] * one)]
@@ -17,14 +19,15 @@ const fn rounded(value: f64) -> i32 {
     if value < 0.0 { (value - 0.5) as i32 } else { (value + 0.5) as i32 }
 }
 
-const GREEN: f64 = 1.0 - RED - BLUE;
+/// Factors of Y', whose limited range spans 219 levels.
 const LUMA: [i32; 3] = factors([RED, GREEN, BLUE], 219.0);
+/// Factors of Cb and Cr, whose limited range spans 224 levels.
 const CHROMA: [[i32; 3]; 2] = [
     factors([-RED / (2.0 - 2.0 * BLUE), -GREEN / (2.0 - 2.0 * BLUE), 0.5], 224.0),
     factors([0.5, -GREEN / (2.0 - 2.0 * RED), -BLUE / (2.0 - 2.0 * RED)], 224.0),
 ];
 
-/// Buffers for the three planes of a frame.
+/// Buffers for the planes Y', Cb and Cr of a frame.
 pub(super) struct Planes {
     width: usize,
     height: usize,
@@ -37,7 +40,7 @@ impl Planes {
         Self { width, height, planes: Default::default() }
     }
 
-    /// Converts 8-bit RGB pixels to planes, each returned with its row length.
+    /// Converts 8-bit RGB pixels to the planes Y', Cb and Cr, each returned with its row length.
     pub fn convert(&mut self, bytes: &[u8]) -> [(&[u8], usize); 3] {
         let pixels = bytes.as_chunks::<3>().0;
         let [luma, blue, red] = &mut self.planes;
@@ -60,7 +63,8 @@ impl Planes {
     }
 }
 
-/// Chroma of two rows, filtered horizontally with weights 1/4, 1/2, 1/4.
+/// Appends the chroma of two rows: averaged vertically, filtered horizontally with weights 1/4,
+/// 1/2, 1/4.
 fn append_chroma(upper: &[[u8; 3]], lower: &[[u8; 3]], blue: &mut Vec<u8>, red: &mut Vec<u8>) {
     let last = upper.len().saturating_sub(1);
     for x in (0..upper.len()).step_by(2) {
@@ -73,11 +77,12 @@ fn append_chroma(upper: &[[u8; 3]], lower: &[[u8; 3]], blue: &mut Vec<u8>, red: 
     }
 }
 
-/// Weighted sum of 2^`samples_log2` pixels, rounded, plus the level of black.
-fn weighted_sum(factors: [i32; 3], pixel: [i32; 3], samples_log2: u32, black: i64) -> u8 {
+/// Weighted sum of the channels of a color, rounded, plus the level `offset`. The color is the mean
+/// of 2^`samples_log2` pixels; `sum` is the sum of these pixels.
+fn weighted_sum(factors: [i32; 3], sum: [i32; 3], samples_log2: u32, offset: i64) -> u8 {
     let shift = BITS + samples_log2;
-    let sum: i64 = factors.iter().zip(pixel).map(|(factor, level)| i64::from(*factor) * i64::from(level)).sum();
-    (((sum + (1 << (shift - 1))) >> shift) + black).clamp(0, 255) as u8
+    let weighted: i64 = factors.iter().zip(sum).map(|(factor, level)| i64::from(*factor) * i64::from(level)).sum();
+    (((weighted + (1 << (shift - 1))) >> shift) + offset).clamp(0, 255) as u8
 }
 
 #[cfg(test)]
