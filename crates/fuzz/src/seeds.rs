@@ -1,6 +1,6 @@
 //! Valid files for every reader, made by the program's own writers where they exist.
 
-use crate::{models, streams};
+use crate::{models, obj, streams};
 use juggler::film::{self, RenderDescription, ShardDescription};
 use juggler::imaging::{Destination, ExrCompression, Header, ImageFormat, Options, SampleDepth, writer};
 use juggler::math::{Image, Rgb};
@@ -63,6 +63,7 @@ pub fn for_target(target: &str) -> Vec<Vec<u8>> {
         "scene" => scenes(),
         "expression" => texts(&EXPRESSIONS),
         "obj" => texts(&[OBJ]),
+        "mtl" => texts(&obj::LIBRARIES),
         "ply" => [texts(&[PLY]), vec![binary_ply()]].concat(),
         "stl" => [texts(&[STL]), vec![binary_stl()]].concat(),
         "ies" => texts(&[IES]),

@@ -1,8 +1,8 @@
 //! One function per reader, which accepts arbitrary bytes and returns. Every panic is a bug of the
 //! reader.
 
-use crate::models;
 use crate::streams::{FILTERS, MESHOPT_HEAD, MODES};
+use crate::{models, obj};
 use juggler::film::{Merge, MergeGoal, PartialRender};
 use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
 use juggler::light::IesProfile;
@@ -33,10 +33,11 @@ pub struct Target {
 }
 
 /// All readers.
-pub const TARGETS: [Target; 19] = [
+pub const TARGETS: [Target; 20] = [
     Target { name: "scene", read: scene },
     Target { name: "expression", read: expression },
-    Target { name: "obj", read: |bytes| mesh("a.obj", bytes) },
+    Target { name: "obj", read: |bytes| mesh("a.obj", bytes) & obj::read_model(bytes) },
+    Target { name: "mtl", read: obj::read_library },
     Target { name: "ply", read: |bytes| mesh("a.ply", bytes) },
     Target { name: "stl", read: |bytes| mesh("a.stl", bytes) },
     Target { name: "png", read: picture },

@@ -1,11 +1,12 @@
 //! Formats of model files that the program knows.
 
 use juggler_import::gltf::GltfFormat;
+use juggler_import::obj::ObjFormat;
 use juggler_scene::Loader;
 use juggler_scene::model::ModelFormat;
 
 /// All formats of model files.
-pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }];
+pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }, &ObjFormat];
 
 /// Loader of scenes that knows all formats of model files.
 ///

@@ -12,7 +12,7 @@ use juggler_light::{AnyLight, Directional};
 use juggler_material::{AnyMaterial, Diffuse, Principled};
 use juggler_math::{Aabb, DVec3, Rgb, Vec3, portable};
 use juggler_shape::{Mesh, Plane};
-use juggler_texture::{AnyTexture, Attribute, Input};
+use juggler_texture::{AnyTexture, Attribute, Image, Input};
 use std::path::Path;
 
 /// Direction from the center of the model to the camera: in front, slightly right and above.
@@ -31,10 +31,21 @@ const FLOOR_DEPTH: f64 = 1e-4;
 /// Maximum absolute coordinate for which a camera and a floor are made.
 const MAX_COORDINATE: f64 = 1e15;
 
-/// Describes a scene around the mesh in `file` with the given bounds. With `z_up`, the mesh is
-/// rotated so that its z axis points up. With `has_colors`, it shows its attribute `color`.
-#[expect(clippy::fn_params_excessive_bools, reason = "both are properties of the file")]
-pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool, has_colors: bool) -> Description {
+/// Properties of a mesh file that decide the scene around it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshOverview {
+    /// Bounding box in object space.
+    pub bounds: Aabb,
+    /// Whether the mesh has the attribute `color`.
+    pub has_colors: bool,
+    /// Name of the picture of the surface, in the folder of the file; `None` if the file names none
+    /// or the mesh has no surface coordinates.
+    pub texture_file: Option<String>,
+}
+
+/// Describes a scene around the mesh in `file`. With `z_up`, the mesh is rotated so that its z axis
+/// points up. The mesh shows its picture, or else its attribute `color`, or else gray.
+pub fn describe_mesh_scene(file: &str, overview: &MeshOverview, z_up: bool) -> Description {
     let title = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
     let mut model = Object::new(Mesh::from_file(file)).named(title.as_str());
     if z_up {
@@ -54,14 +65,17 @@ pub fn describe_mesh_scene(file: &str, bounds: &Aabb, z_up: bool, has_colors: bo
         lights: [AnyLight::from(sun()).into()].into_iter().collect(),
         ..Description::default()
     };
-    let mut surface = Principled { base_color: Rgb::splat(0.8).into(), roughness: 0.5.into(), ..Principled::default() };
-    if has_colors {
-        scene.textures.insert("color".into(), AnyTexture::from(Attribute::default()).into());
-        surface.base_color = Input::Texture("color".into());
-    }
+    let texture = overview.texture_file.as_ref().map(|name| {
+        let picture = Path::new(file).with_file_name(name);
+        ("surface", AnyTexture::from(Image::new(picture.to_string_lossy())))
+    });
+    let texture = texture.or_else(|| overview.has_colors.then(|| ("color", AnyTexture::from(Attribute::default()))));
+    let base_color = texture.as_ref().map_or(Rgb::splat(0.8).into(), |(name, _)| Input::Texture((*name).into()));
+    scene.textures.extend(texture.map(|(name, texture)| (name.into(), texture.into())));
+    let surface = Principled { base_color, roughness: 0.5.into(), ..Principled::default() };
     scene.materials.insert("model".into(), AnyMaterial::from(surface).into());
     scene.objects.push(model.material_named("model").into());
-    if let Some(bounds) = ModelBounds::from_bounds(bounds, z_up) {
+    if let Some(bounds) = ModelBounds::from_bounds(&overview.bounds, z_up) {
         let floor = Diffuse { reflectance: Rgb::splat(0.42).into(), ..Diffuse::default() };
         scene.materials.insert("floor".into(), AnyMaterial::from(floor).into());
         let plane = Object::new(Plane {}).named("floor").at(0.0, bounds.floor(), 0.0);
@@ -175,15 +189,34 @@ mod tests {
         Aabb { min: min.into(), max: max.into() }
     }
 
+    fn overview(bounds: Aabb) -> MeshOverview {
+        MeshOverview { bounds, has_colors: false, texture_file: None }
+    }
+
     #[test]
     fn mesh_scenes_use_round_numbers() {
         assert_eq!([0.5, 1.0, 7.0, 10.0, 12345.0].map(power_of_ten), [0.1, 1.0, 1.0, 10.0, 10000.0]);
-        let scene = describe_mesh_scene("models/cow.obj", &bounds([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0]), false, false);
+        let scene = describe_mesh_scene("models/cow.obj", &overview(bounds([-1.0, 0.0, -1.0], [1.0, 2.0, 1.0])), false);
         let json = serde_json::to_value(&scene).unwrap();
         assert_eq!(json["title"], "cow");
         assert_eq!(json["objects"][0]["shape"]["mesh"]["file"], "models/cow.obj");
         assert_eq!(json["camera"]["perspective"]["look_at"], serde_json::json!([0.0, 1.0, 0.0]));
         assert_eq!(scene.objects.len(), 2);
+    }
+
+    #[test]
+    fn a_mesh_shows_its_picture_or_else_its_colors() {
+        let bounds = bounds([0.0; 3], [1.0; 3]);
+        let textures = |has_colors, texture_file: Option<&str>| {
+            let overview = MeshOverview { bounds, has_colors, texture_file: texture_file.map(str::to_owned) };
+            let json = serde_json::to_value(describe_mesh_scene("models/a.ply", &overview, false)).unwrap();
+            (json["materials"]["model"]["principled"]["base_color"].clone(), json["textures"].clone())
+        };
+        let (color, pictures) = textures(true, Some("skin.png"));
+        assert_eq!(color, "surface");
+        assert_eq!(pictures["surface"]["image"]["file"], "models/skin.png");
+        assert_eq!(textures(true, None).0, "color");
+        assert!(textures(false, None).0.is_array());
     }
 
     /// All corners of the bounds are inside the picture, and one of them is near its edge.
@@ -195,7 +228,7 @@ mod tests {
             ([0.0, 0.0, 0.0], [1e-3, 1e-3, 7e-3], true),
             ([0.0, 0.0, 0.0], [3e4, 2e4, 0.0], true),
         ] {
-            let scene = describe_mesh_scene("a.stl", &bounds(min, max), z_up, true);
+            let scene = describe_mesh_scene("a.stl", &overview(bounds(min, max)), z_up);
             let bounds = ModelBounds::from_bounds(&bounds(min, max), z_up).unwrap();
             let projection = scene.camera.unwrap().projection(UVec2::new(800, 600)).unwrap();
             let world_to_film = WorldToFilm::new(&projection).unwrap();
@@ -218,7 +251,7 @@ mod tests {
     #[test]
     fn empty_huge_and_tiny_bounds_give_no_camera() {
         for bounds in [Aabb::EMPTY, bounds([0.0; 3], [1e30; 3]), bounds([0.0; 3], [1e-30; 3])] {
-            let scene = describe_mesh_scene("a.obj", &bounds, false, false);
+            let scene = describe_mesh_scene("a.obj", &overview(bounds), false);
             assert!(scene.camera.is_none() && scene.objects.len() == 1);
         }
     }

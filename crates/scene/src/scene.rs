@@ -85,16 +85,14 @@ impl Scene {
     }
 
     pub(crate) fn read(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
-        if asset_cache.is_model(path) {
+        if asset_cache.is_model(path) && !asset_cache.is_plain_mesh(path) {
             return Self::around_model(path, asset_cache);
         }
         match asset_cache.store().content(path) {
             Content::Scene => {}
             Content::Mesh { z_up } => {
-                let bounds = asset_cache.bounds(path).map_err(SceneError::Mesh)?;
-                let has_colors = asset_cache.has_colors(path);
-                let name = path.to_string_lossy();
-                let description = mesh_scene::describe_mesh_scene(&name, &bounds, z_up, has_colors);
+                let overview = asset_cache.mesh_overview(path).map_err(SceneError::Mesh)?;
+                let description = mesh_scene::describe_mesh_scene(&path.to_string_lossy(), &overview, z_up);
                 return Ok(Self::around(description, asset_cache));
             }
             Content::Unsupported(format) => return Err(SceneError::Foreign { path: path.into(), format }),
@@ -243,6 +241,12 @@ impl Scene {
         let (scene, frame) = (self.description.clone(), self.frame);
         *known = Some(CachedTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
         (tracks, findings)
+    }
+
+    /// Whether the scene was read from files in memory ([`Scene::from_bundle`]), so that its names
+    /// of files mean nothing on disk.
+    pub fn is_in_memory(&self) -> bool {
+        self.asset_cache.store().is_in_memory()
     }
 
     /// Names of the scene's files: those it was read from, meshes, images and photometric files.

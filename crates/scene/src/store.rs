@@ -37,7 +37,7 @@ impl From<Bundle> for Store {
 ///
 /// A file is found by its path, or else by its name alone, since files dropped on a web page come
 /// without their folders.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bundle(Arc<BTreeMap<PathBuf, Vec<u8>>>);
 
 impl FromIterator<(String, Vec<u8>)> for Bundle {
@@ -54,6 +54,11 @@ impl Bundle {
 }
 
 impl Store {
+    /// Whether the store holds only files in memory.
+    pub(crate) fn is_in_memory(&self) -> bool {
+        matches!(self.backend, Backend::Memory(_))
+    }
+
     /// Reads the text of a file.
     pub(crate) fn text(&self, path: &Path) -> Result<String, Unreadable> {
         match &self.backend {

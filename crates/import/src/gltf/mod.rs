@@ -1,6 +1,7 @@
 //! The format glTF 2.0 (Khronos Group, ISO/IEC 12113): documents, decoded arrays and poses.
 //!
-//! The modules know the format, not scenes, except the last step. A file passes through them in this order:
+//! The modules know the format, not scenes, except the last step. A file passes through them in
+//! this order:
 //!
 //! | step | result |
 //! |---|---|
@@ -47,6 +48,7 @@ pub use container::is_binary;
 pub use data::GltfData;
 pub use error::{Fault, GltfError, Place};
 pub use format::GltfFormat;
+pub(crate) use image_size::image_size;
 pub use juggler_scene::model::{FileError, Files};
 pub use limits::Limits;
 pub use open::Gltf;

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Folder of the assets, if they are available.
-fn assets() -> Option<PathBuf> {
+pub fn assets() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
     let folder = std::env::var_os("JUGGLER_ASSETS").map_or_else(beside, PathBuf::from);
     if !folder.is_dir() {
@@ -21,7 +21,7 @@ fn assets() -> Option<PathBuf> {
 }
 
 /// Files of a folder.
-struct Folder(PathBuf);
+pub struct Folder(pub PathBuf);
 
 impl Files for Folder {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
@@ -35,7 +35,7 @@ impl Files for Folder {
 }
 
 /// All files with one of the endings, in order.
-fn find(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+pub fn find(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     for path in entries {

@@ -1,4 +1,4 @@
-//! Tests on real glTF files, and the speed of decoding.
+//! Tests on real glTF and OBJ files, and the speed of decoding.
 
 #![allow(
     clippy::unwrap_used,
@@ -9,4 +9,5 @@
 )]
 
 mod assets;
+mod obj;
 mod speed;

@@ -1,4 +1,4 @@
-//! Paths of a scene. Each is resolved once, on first use or after all variables.
+//! Paths of a scene: named curves. Each is resolved once, on first use or after all variables.
 
 use super::curve::Curve;
 use super::tree_resolver::TreeResolver;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Maximum number of points of a path.
 pub const MAX_POINTS: usize = 10_000;
 
-/// Name of a path of the scene.
+/// Name of a curve in the scene's `paths`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct PathName(pub String);
 

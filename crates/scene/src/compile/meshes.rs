@@ -7,12 +7,13 @@ use super::lighting::LightFiles;
 use crate::asset::Asset;
 use crate::description::Description;
 use crate::document::Sources;
-use crate::import::{ImportError, ImportErrorKind, Limits, parse};
+use crate::import::{ImportError, ImportErrorKind, Limits, parse, texture_file};
+use crate::mesh_scene::MeshOverview;
 use crate::model::{ModelCache, ModelFormat, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
-use juggler_math::{Aabb, Vec3};
+use juggler_math::Vec3;
 use juggler_shape::{InvalidShape, Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -36,6 +37,8 @@ struct Entry {
     digest: [u8; 32],
     /// Prepared mesh with its warnings, or an error message.
     mesh: Result<(Mesh, Vec<String>), String>,
+    /// Name of the picture of the surface that the file names.
+    texture_file: Option<String>,
     /// Length and modification time, taken before the file was read.
     stamp: Option<(u64, SystemTime)>,
 }
@@ -66,6 +69,18 @@ impl AssetCache {
     /// Whether a file is in a known format of models, by its first bytes or its name.
     pub(crate) fn is_model(&self, path: &std::path::Path) -> bool {
         self.models.format(path, &self.store.head(path)).is_some()
+    }
+
+    /// Whether a file in a format of models shows nothing but a mesh, so that the scene around it
+    /// is that of a mesh file.
+    pub(crate) fn is_plain_mesh(&self, path: &std::path::Path) -> bool {
+        if matches!(self.store.content(path), crate::import::Content::Unsupported(_)) {
+            return false;
+        }
+        self.models.format(path, &self.store.head(path)).is_some_and(|format| {
+            let bytes = self.store.read_bytes(path, &Limits::default());
+            format.is_plain_mesh(&bytes.unwrap_or_default())
+        })
     }
 
     /// Adds an asset under a name, or replaces the asset of that name. Other scenes that share the
@@ -103,15 +118,16 @@ impl AssetCache {
         self.get(path).digest
     }
 
-    /// Bounding box of a file's mesh in object space, or an error message.
-    pub fn bounds(&self, path: &std::path::Path) -> Result<Aabb, String> {
-        self.get(path).mesh.as_ref().map(|(mesh, _)| mesh.bounds()).map_err(Clone::clone)
-    }
-
-    /// Whether a file's mesh has the attribute `color`; false if it cannot be read.
-    pub fn has_colors(&self, path: &std::path::Path) -> bool {
+    /// Properties of a file's mesh that decide the scene around it, or an error message.
+    pub fn mesh_overview(&self, path: &std::path::Path) -> Result<MeshOverview, String> {
         let entry = self.get(path);
-        entry.mesh.as_ref().is_ok_and(|(mesh, _)| mesh.arrays().attributes.contains_key("color"))
+        let (mesh, _) = entry.mesh.as_ref().map_err(Clone::clone)?;
+        let arrays = mesh.arrays();
+        Ok(MeshOverview {
+            bounds: mesh.bounds(),
+            has_colors: arrays.attributes.contains_key("color"),
+            texture_file: entry.texture_file.clone().filter(|_| !arrays.uvs.is_empty()),
+        })
     }
 
     /// Loads a file without holding the lock, since threads of one pool must not wait for each
@@ -140,9 +156,13 @@ impl Entry {
         let (limits, stamp) = (Limits::default(), file_stamp(path));
         let bytes = match store.read_bytes(path, &limits) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], mesh: Err(import_error_message(&error)), stamp },
+            Err(error) => {
+                let mesh = Err(import_error_message(&error));
+                return Self { digest: [0; 32], mesh, texture_file: None, stamp };
+            }
         };
         let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
+        let texture_file = texture_file(&bytes);
         // Free memory before the hierarchy is built.
         drop(bytes);
         let mesh = imported.map_err(|error| import_error_message(&error)).and_then(|found| {
@@ -153,7 +173,7 @@ impl Entry {
             warnings.extend(shape.warnings());
             Ok((shape, warnings))
         });
-        Self { digest, mesh, stamp }
+        Self { digest, mesh, texture_file, stamp }
     }
 }
 

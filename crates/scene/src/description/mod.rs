@@ -180,7 +180,7 @@ impl PlacementError {
 #[serde(untagged)]
 #[schemars(rename = "Backdrop")]
 pub enum BackgroundInput {
-    /// Uniform color: linear radiance in all directions.
+    /// Color of a uniform background: its linear radiance, the same in all directions.
     Color(#[schemars(extend("x-unit" = "W/(scene unit² sr)"))] Rgb),
     /// Background of any kind.
     Kind(AnyBackground),

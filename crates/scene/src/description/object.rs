@@ -72,12 +72,13 @@ pub struct Object {
     pub visible: Visible,
 }
 
-/// Whether the scene contains an object.
+/// Whether the scene contains an object: a boolean, or a number, which expressions yield, where 0
+/// means `false`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(from = "VisibleInput", into = "bool")]
 pub struct Visible(pub bool);
 
-/// Boolean, or a number as expressions yield it, of which 0 means `false`.
+/// Boolean, or a number, which expressions yield, where 0 means `false`.
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Visible")]

@@ -60,8 +60,8 @@ pub struct Limb {
     /// Lengths of the bones at `from` and at `to`.
     #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
     pub lengths: [f32; 2],
-    /// Normal of the plane in which the limb bends. Any length except zero; must not be parallel to
-    /// `to − from`.
+    /// Normal of the plane in which the limb bends, in the space of `from` and `to`. It has any
+    /// length except zero and must not be parallel to `to − from`.
     #[schemars(with = "[f32; 3]")]
     pub plane_normal: Vec3,
     /// Number of spheres on the bones at `from` and at `to`; the joint has one more sphere.

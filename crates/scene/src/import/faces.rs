@@ -41,6 +41,11 @@ impl Faces {
         Self { triangles: Vec::with_capacity(triangles), ..Self::default() }
     }
 
+    /// Number of triangles so far.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// Appends the faces of the next piece of the file and adds `first` to their vertex indices.
     pub fn append(&mut self, piece: &Self, first: u32, limits: &Limits) -> Result<(), ImportErrorKind> {
         let start = self.triangles.len();

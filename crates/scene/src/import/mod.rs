@@ -31,6 +31,8 @@ pub use detect::Content;
 pub(crate) use detect::head;
 pub use error::{FilePosition, ImportError, ImportErrorKind};
 pub use estimate::{Estimate, estimate};
+pub use obj::{ObjModel, ObjSection};
+pub(crate) use ply::texture_file;
 pub use unsupported::UnsupportedFormat;
 
 use juggler_imaging::regular;
@@ -130,6 +132,15 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
             .insert(0, format!("the file's extension does not match its content, which is {}", format.name()));
     }
     Ok(imported)
+}
+
+/// Parses the bytes of an OBJ with what its statements say about the faces: objects, groups,
+/// materials, smoothing groups and colors of positions. `path` names the file in errors.
+pub fn parse_obj(path: &Path, bytes: &[u8], limits: &Limits) -> Result<ObjModel, ImportError> {
+    let in_file = |kind| ImportError { path: path.to_owned(), kind };
+    limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    obj::read_model(bytes, limits).map_err(in_file)
 }
 
 fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, ImportErrorKind> {

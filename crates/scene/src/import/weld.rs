@@ -75,6 +75,11 @@ impl Welded {
         Self { faces: Faces::with_capacity(triangles), ..Self::default() }
     }
 
+    /// Number of triangles so far.
+    pub fn triangles(&self) -> usize {
+        self.faces.len()
+    }
+
     /// Appends the next piece of the file.
     pub fn append(&mut self, piece: WeldedPiece, limits: &Limits) -> Result<(), ImportErrorKind> {
         let all = self.keys.len().saturating_add(piece.corners.keys.len());

@@ -15,6 +15,12 @@ pub trait ModelFormat: Debug + Send + Sync {
     /// Whether the first bytes of a file are certainly of this format.
     fn is_content(&self, head: &[u8]) -> bool;
 
+    /// Whether a file contains nothing but a mesh, without materials. The scene around such a file
+    /// is that of a mesh file. Defaults to `false`.
+    fn is_plain_mesh(&self, _bytes: &[u8]) -> bool {
+        false
+    }
+
     /// Opens a model file. `name` is the file's name in messages; `files` reads the files that it
     /// names.
     ///

@@ -8,11 +8,11 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Image {
-    /// Name of the file, or data.
+    /// URI of the file, or a data URI.
     pub uri: Option<String>,
-    /// Type of the data; a hint, because the content determines it.
+    /// MIME type: only a hint, because the reader detects the type from the content.
     pub mime_type: Option<String>,
-    /// Index of the buffer view of the data.
+    /// Index of the buffer view that contains the encoded image.
     pub buffer_view: Option<Index>,
     /// Name for people.
     pub name: Option<String>,
@@ -21,7 +21,7 @@ pub struct Image {
 /// An image with a sampler.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Texture {
-    /// Index of the sampler; without, textures repeat.
+    /// Index of the sampler. Without it, the texture repeats along u and v.
     pub sampler: Option<Index>,
     /// Index of the image, a PNG or JPEG.
     pub source: Option<Index>,
@@ -128,9 +128,9 @@ impl TryFrom<Index> for MinFilter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "Index")]
 pub enum Wrap {
-    /// The edge continues.
+    /// The texels at the edge extend outwards.
     ClampToEdge,
-    /// The texture repeats, every second time reflected.
+    /// The texture repeats, mirrored every other time.
     MirroredRepeat,
     /// The texture repeats.
     #[default]
@@ -156,13 +156,13 @@ impl TryFrom<Index> for Wrap {
 pub struct TextureInfo {
     /// Index of the texture.
     pub index: Index,
-    /// Set of texture coordinates.
+    /// Index n of the set of texture coordinates, `TEXCOORD_n`.
     #[serde(default)]
     pub tex_coord: Index,
-    /// Factor of the x and y of normals; normal textures only.
+    /// Factor on the x and y components of normals; normal textures only.
     #[serde(default = "one")]
     pub scale: f64,
-    /// Strength of the occlusion; occlusion textures only.
+    /// Strength of the occlusion, 0 (none) to 1; occlusion textures only.
     #[serde(default = "one")]
     pub strength: f64,
     /// Extensions.
@@ -183,13 +183,13 @@ pub struct TextureInfoExtensions {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct TextureTransform {
-    /// Offset.
+    /// Offset along u and v.
     pub offset: [f64; 2],
     /// Counter-clockwise rotation in radians.
     pub rotation: f64,
-    /// Scale factors.
+    /// Scale factors along u and v.
     pub scale: [f64; 2],
-    /// Set of texture coordinates instead of [`TextureInfo::tex_coord`].
+    /// Index of the set of texture coordinates, in place of [`TextureInfo::tex_coord`].
     pub tex_coord: Option<Index>,
 }
 
@@ -200,7 +200,7 @@ impl Default for TextureTransform {
 }
 
 impl TextureInfo {
-    /// Set of texture coordinates that the reference uses.
+    /// Index of the set of texture coordinates that the reference uses.
     pub fn set(&self) -> Index {
         self.extensions.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(self.tex_coord)
     }

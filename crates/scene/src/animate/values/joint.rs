@@ -32,8 +32,8 @@ pub struct Joint {
     /// Lengths of the bones at `from` and at `to`.
     #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
     pub lengths: [f64; 2],
-    /// Normal of the plane in which the bones bend. Any length except zero; must not be parallel to
-    /// `to − from`.
+    /// Normal of the plane in which the bones bend, in the space of `from` and `to`. It has any
+    /// length except zero and must not be parallel to `to − from`.
     pub plane_normal: [f64; 3],
     /// Whether the bones keep their lengths if `plane_normal` is not perpendicular to `to − from`.
     /// With `false`, the joint moves closer to the line between the ends.

@@ -6,14 +6,16 @@
 //! backwards from -1, the last element so far. A face may refer to a position that is defined
 //! further down. An undefined position is an error; undefined texture coordinates or normals are
 //! dropped, since the mesh keeps its form without them. Statements without an equivalent in a
-//! single mesh (groups, materials, smoothing groups, lines, curves, vertex colors) are counted and
-//! ignored.
+//! single mesh (groups, materials, smoothing groups, lines, curves) are counted and ignored, except
+//! by [`read_model`], which keeps them all but lines and curves. Positions may have sRGB colors
+//! after x, y and z, as MeshLab and Blender write them; they become the attribute `color`.
 
+mod model;
 mod notes;
 #[cfg(test)]
 mod tests;
 
-use super::assemble::MeshParts;
+use super::assemble::{Colors, MeshParts};
 use super::error::{ImportErrorKind, quote};
 use super::estimate::{Counts, FileSampler};
 use super::format::MeshFormat;
@@ -22,6 +24,9 @@ use super::text::{Scanner, integer};
 use super::weld::{Key, Welded, WeldedPiece};
 use super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
+use model::Mark;
+pub(super) use model::read_model;
+pub use model::{ObjModel, ObjSection};
 use notes::Notes;
 use rayon::prelude::*;
 use std::io;
@@ -57,8 +62,22 @@ impl MeshFormat for Obj {
 
 /// Reads a whole file in pieces of about `piece` bytes.
 pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, ImportErrorKind> {
+    read_contents(bytes, limits, piece, false).map(|contents| contents.imported)
+}
+
+/// Contents of a file.
+struct Contents {
+    imported: Imported,
+    /// Index of the position of each vertex; empty unless the file is read as a model.
+    positions: Vec<u32>,
+    /// Settings of the faces; empty unless the file is read as a model.
+    marks: Vec<Mark>,
+}
+
+/// Reads a whole file in pieces of about `piece` bytes. A model keeps the settings of faces.
+fn read_contents(bytes: &[u8], limits: &Limits, piece: usize, is_model: bool) -> Result<Contents, ImportErrorKind> {
     let texts = cut(bytes, piece);
-    let mut start = Start { line: 1, ..Start::default() };
+    let mut start = Start { line: 1, is_model, ..Start::default() };
     let mut starts = Vec::with_capacity(texts.len());
     read_pieces(
         &texts,
@@ -93,6 +112,8 @@ fn cut(bytes: &[u8], piece: usize) -> Vec<&[u8]> {
 #[derive(Clone, Copy, Default)]
 struct Start {
     line: u64,
+    /// Whether the settings of faces are kept.
+    is_model: bool,
     /// Number of positions, texture coordinates and normals.
     counts: [usize; 3],
     faces: usize,
@@ -127,7 +148,7 @@ impl Start {
 
 fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<ObjPiece, ImportErrorKind> {
     let mut scanner = Scanner::with_obj_rules(text).starting_at_line(start.line);
-    let mut reader = ObjPiece { start: start.counts, ..ObjPiece::default() };
+    let mut reader = ObjPiece { start: start.counts, is_model: start.is_model, ..ObjPiece::default() };
     loop {
         reader.statement(&mut scanner, limits)?;
         if !scanner.next_line() {
@@ -141,7 +162,12 @@ fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<ObjPiece, Im
 struct ObjPiece {
     /// Number of positions, texture coordinates and normals before the piece.
     start: [usize; 3],
+    /// Whether the settings of faces are kept.
+    is_model: bool,
     positions: Vec<Vec3>,
+    /// Linear colors of the positions; positions beyond the last color are white.
+    colors: Vec<Vec3>,
+    marks: Vec<Mark>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
     welded: WeldedPiece,
@@ -163,7 +189,7 @@ impl ObjPiece {
             Some(b"v") => {
                 limits.next_vertex(self.counts()[0])?;
                 self.positions.push(vec3(scanner.finite("x")?, scanner.finite("y")?, scanner.finite("z")?));
-                self.notes.colors += u64::from(scanner.word().is_some());
+                self.color(scanner);
             }
             Some(b"vt") => {
                 limits.next_vertex(self.counts()[1])?;
@@ -175,9 +201,29 @@ impl ObjPiece {
                 self.normals.push(vec3(scanner.real(x)?, scanner.real(y)?, scanner.real(z)?));
             }
             Some(b"f" | b"fo") => self.face(scanner, limits)?,
-            Some(other) => self.notes.ignore(other),
+            Some(word) => {
+                let rest = if self.is_model { scanner.rest_of_line() } else { &[] };
+                let mark = Mark::new(self.welded.faces.len(), word, rest).filter(|_| self.is_model);
+                match mark {
+                    Some(mark) => self.marks.push(mark),
+                    None => self.notes.ignore(word),
+                }
+            }
         }
         Ok(())
+    }
+
+    /// Reads what follows x, y and z of the last position: a color, or a weight, which is ignored.
+    fn color(&mut self, scanner: &mut Scanner<'_>) {
+        let Some(first) = scanner.word() else { return };
+        let words = std::iter::once(first).chain(std::iter::from_fn(|| scanner.word()));
+        match model::color(words) {
+            Some(color) => {
+                self.colors.resize(self.positions.len().saturating_sub(1), Vec3::ONE);
+                self.colors.push(color);
+            }
+            None => self.notes.weights += 1,
+        }
     }
 
     fn face(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), ImportErrorKind> {
@@ -219,7 +265,11 @@ impl ObjPiece {
 /// The joined pieces of a text.
 #[derive(Default)]
 struct ObjData {
+    is_model: bool,
     positions: Vec<Vec3>,
+    /// Linear colors of the positions; positions beyond the last color are white.
+    colors: Vec<Vec3>,
+    marks: Vec<Mark>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
     welded: Welded,
@@ -231,7 +281,10 @@ impl ObjData {
     fn with_room_for(counted: &Start, limits: &Limits) -> Self {
         let [v, vt, vn] = counted.counts.map(|count| count.min(limits.vertices as usize));
         Self {
+            is_model: counted.is_model,
             positions: Vec::with_capacity(v),
+            colors: Vec::new(),
+            marks: Vec::new(),
             uvs: Vec::with_capacity(vt),
             normals: Vec::with_capacity(vn),
             welded: Welded::with_capacity(counted.faces.min(limits.triangles as usize)),
@@ -240,6 +293,12 @@ impl ObjData {
     }
 
     fn append(&mut self, piece: ObjPiece, limits: &Limits) -> Result<(), ImportErrorKind> {
+        if !piece.colors.is_empty() {
+            self.colors.resize(self.positions.len(), Vec3::ONE);
+            self.colors.extend(piece.colors);
+        }
+        let triangles = self.welded.triangles();
+        self.marks.extend(piece.marks.into_iter().map(|mark| mark.after(triangles)));
         self.positions.extend(piece.positions);
         self.uvs.extend(piece.uvs);
         self.normals.extend(piece.normals);
@@ -247,7 +306,7 @@ impl ObjData {
         self.welded.append(piece.welded, limits)
     }
 
-    fn finish(self, limits: &Limits) -> Result<Imported, ImportErrorKind> {
+    fn finish(self, limits: &Limits) -> Result<Contents, ImportErrorKind> {
         let count = self.positions.len();
         if let Some((index, place)) = self.notes.furthest.filter(|(index, _)| *index as usize >= count) {
             let number = u64::from(index) + 1;
@@ -264,8 +323,21 @@ impl ObjData {
         if !uvs.is_empty() && without > 0 {
             warnings.push(format!("{without} vertices have no texture coordinates and get 0 0"));
         }
-        MeshParts { positions, normals, uvs, faces, warnings, ..MeshParts::default() }.assemble()
+        let vertex_colors = vertex_colors(self.colors, self.positions.len(), &keys);
+        let imported =
+            MeshParts { positions, normals, uvs, vertex_colors, faces, warnings, ..MeshParts::default() }.assemble()?;
+        let positions = if self.is_model { keys.iter().map(|[position, ..]| *position).collect() } else { Vec::new() };
+        Ok(Contents { imported, positions, marks: self.marks })
     }
+}
+
+/// Colors of the vertices, if positions have colors.
+fn vertex_colors(mut colors: Vec<Vec3>, positions: usize, keys: &[Key]) -> Colors {
+    if colors.is_empty() {
+        return Colors::default();
+    }
+    colors.resize(positions, Vec3::ONE);
+    Colors { channels: 3, values: gather(keys, 0, &colors).iter().flat_map(Vec3::to_array).collect() }
 }
 
 const NAMES: [&str; 3] = ["vertex (v)", "texture coordinate (vt)", "normal (vn)"];

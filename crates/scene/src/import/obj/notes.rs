@@ -12,8 +12,8 @@ const NAMED_STATEMENTS: usize = 16;
 pub(super) struct Notes {
     /// Highest index of a position used before its definition, and the line of the use.
     pub furthest: Option<(u32, FilePosition)>,
-    /// Number of positions with more than three numbers.
-    pub colors: u64,
+    /// Number of positions with further numbers that are no colors, such as weights.
+    pub weights: u64,
     ignored: BTreeMap<String, u64>,
     other_ignored: u64,
 }
@@ -46,7 +46,7 @@ impl Notes {
         if let Some((index, place)) = piece.furthest {
             self.not_yet_defined(index, place);
         }
-        self.colors += piece.colors;
+        self.weights += piece.weights;
         self.other_ignored += piece.other_ignored;
         piece.ignored.into_iter().for_each(|(name, count)| self.add(name, count));
     }
@@ -54,8 +54,8 @@ impl Notes {
     /// The observations as warnings.
     pub fn in_words(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        if self.colors > 0 {
-            warnings.push(format!("{} vertices have colors or weights after x y z: ignored", self.colors));
+        if self.weights > 0 {
+            warnings.push(format!("{} vertices have numbers after x y z that are no colors: ignored", self.weights));
         }
         let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {

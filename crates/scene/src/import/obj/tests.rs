@@ -90,11 +90,11 @@ fn comments_continuations_and_line_ends_are_read() {
 fn ignored_statements_are_counted() {
     let text = "mtllib a.mtl\no name\ng a b\nusemtl red\ns 1\nv 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0\nusemtl blue\nf 1 2 3\nl 1 2\np 1\nf 1 2\n";
     let Imported { mesh, warnings } = read(text);
-    assert_eq!(mesh.triangles.len(), 1);
+    assert_eq!((mesh.triangles.len(), mesh.attributes.contains_key("color")), (1, true));
     assert_eq!(
         warnings,
         [
-            "2 vertices have colors or weights after x y z: ignored",
+            "1 vertices have numbers after x y z that are no colors: ignored",
             "ignored statements: 1 'g', 1 'l', 1 'mtllib', 1 'o', 1 'p', 1 's', 2 'usemtl'",
             "1 faces with fewer than 3 vertices ignored",
         ]

@@ -145,6 +145,23 @@ impl Header {
     }
 }
 
+/// Maximum number of bytes in which a comment is searched.
+const MAX_SEARCHED: usize = 1 << 20;
+
+/// Name of the picture of the surface in the header's first comment `TextureFile NAME`, as MeshLab
+/// writes it; the last part of a path. `None` for other files.
+pub fn texture_file(bytes: &[u8]) -> Option<String> {
+    let head = bytes.get(..MAX_SEARCHED).unwrap_or(bytes);
+    let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    lines.next().filter(|line| *line == b"ply")?;
+    let name = lines.take_while(|line| *line != b"end_header").find_map(|line| {
+        let (word, name) = line.strip_prefix(b"comment")?.trim_ascii_start().split_at_checked(b"TextureFile".len())?;
+        (word.eq_ignore_ascii_case(b"TextureFile") && name.first().is_some_and(u8::is_ascii_whitespace)).then_some(name)
+    })?;
+    let name = std::str::from_utf8(name).ok()?.rsplit(['/', '\\']).next()?.trim();
+    Some(name.to_owned()).filter(|name| !name.is_empty())
+}
+
 /// Lines of a header that are neither declarations nor comments, as some exporters write them.
 #[derive(Default)]
 struct IgnoredLines {

@@ -5,9 +5,10 @@
 //! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
 //! `vertex_index`), in any order and of any number type. Colors `red green blue` of vertices or
 //! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
-//! are linear. It ignores everything else with a warning that names it, including lines of the header that are neither declarations nor comments, such as
-//! `Created by Blender3D`. In a text, each line is one row of an element, as the header describes
-//! it.
+//! are linear. The comment `TextureFile` names a picture for a scene around the file
+//! ([`texture_file`]). The reader ignores everything else with a warning that names it, including
+//! lines of the header that are neither declarations nor comments, such as `Created by Blender3D`.
+//! In a text, each line is one row of an element, as the header describes it.
 
 mod ascii;
 mod binary;
@@ -27,6 +28,7 @@ use super::format::MeshFormat;
 use super::text::Scanner;
 use super::{Imported, Limits};
 use body::Body;
+pub use header::texture_file;
 use header::{Encoding, Header};
 use std::io;
 

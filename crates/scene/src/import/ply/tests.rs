@@ -266,6 +266,25 @@ fn limits_are_kept_and_named() {
 
 /// Colors of vertices and faces; a polygon gives its color to each of its triangles.
 #[test]
+fn a_comment_names_the_picture_of_the_surface() {
+    let with = |line: &str| {
+        super::texture_file(SQUARE.replace("element vertex", &format!("{line}\nelement vertex")).as_bytes())
+    };
+    let found = |name: &str| Some(name.to_owned());
+    assert_eq!(with("comment TextureFile skin 1.png"), found("skin 1.png"));
+    assert_eq!(with("comment texturefile C:\\art\\skin.png\r\ncomment TextureFile b.png"), found("skin.png"));
+    assert_eq!(super::texture_file(b"ply\rcomment TextureFile a.png\rend_header\r"), found("a.png"));
+    for line in
+        ["comment TextureFile", "comment TextureFile ", "comment TextureFileX a.png", "TextureFile a.png", "comment"]
+    {
+        assert_eq!(with(line), None, "{line}");
+    }
+    let behind = format!("{SQUARE}comment TextureFile a.png\n");
+    assert_eq!(super::texture_file(behind.as_bytes()), None);
+    assert_eq!(super::texture_file(b"solid a\ncomment TextureFile a.png\n"), None);
+}
+
+#[test]
 fn colors_become_attributes() {
     use juggler_shape::attribute::{AttributeData, AttributeDomain};
     let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\

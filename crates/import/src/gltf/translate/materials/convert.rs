@@ -2,12 +2,13 @@
 
 use super::PrimitiveSurface;
 use super::surface;
-use super::textures::{Reading, TextureSet, with_vertex_colors};
+use super::textures::{Reading, TextureSet};
 use crate::gltf::document::{
     Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, MaterialExtensions, MetallicRoughness, Sheen,
     Specular, SpecularGlossiness, Transmission, Volume,
 };
 use crate::gltf::error::Fault;
+use crate::textures::with_vertex_colors;
 use juggler_material::medium::Medium;
 use juggler_material::{AnyMaterial, Principled};
 use juggler_math::Rgb;

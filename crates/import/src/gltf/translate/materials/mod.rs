@@ -20,6 +20,7 @@ use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, Material, TextureInfo};
 use crate::gltf::error::Fault;
 use crate::gltf::warning::Warnings;
+use crate::textures::NamedTextures;
 use indexmap::{IndexMap, IndexSet};
 use juggler_material::AnyMaterial;
 use juggler_scene::Asset;
@@ -91,7 +92,7 @@ impl<'a> MaterialSet<'a> {
 
     /// All materials so far.
     pub fn finish(self) -> MaterialParts {
-        let TextureSet { textures, pictures, warnings, .. } = self.textures;
+        let TextureSet { textures: NamedTextures { by_name: textures, .. }, pictures, warnings, .. } = self.textures;
         MaterialParts { textures, materials: self.materials, assets: pictures.assets, warnings }
     }
 }

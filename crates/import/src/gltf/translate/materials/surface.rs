@@ -4,9 +4,10 @@
 
 use super::PrimitiveSurface;
 use super::convert::Base;
-use super::textures::{Reading, TextureSet, with_vertex_colors};
+use super::textures::{Reading, TextureSet};
 use crate::gltf::document::{AlphaMode, Clearcoat, Material, MaterialExtensions, TextureInfo};
 use crate::gltf::error::Fault;
+use crate::textures::with_vertex_colors;
 use juggler_material::medium::MAX_DISPERSION;
 use juggler_material::{AnyMaterial, Mask, MaterialRef, NormalMap, Principled, SurfaceSides, Unlit};
 use juggler_math::Rgb;

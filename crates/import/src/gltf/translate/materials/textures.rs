@@ -1,20 +1,16 @@
-//! Textures of materials: images with samplers and transforms, and their products. Each distinct
-//! texture is added once.
+//! Textures of materials: images with samplers and texture transforms, and their products with
+//! factors and vertex colors. Equal textures are added once.
 
 use super::pictures::Pictures;
 use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, MagFilter, MinFilter, Sampler, TextureInfo, TextureTransform, Wrap};
 use crate::gltf::error::Fault;
 use crate::gltf::warning::Warnings;
-use indexmap::IndexMap;
+use crate::textures::{NamedTextures, channel_suffix};
 use juggler_math::{Rgb, portable};
 use juggler_texture::{
-    AnyTexture, Channel, ColorSpace, Direction, Filter, Image, Input, InputProduct, InputValue, Mapping, Mix, MixMode,
-    TextureRef, Wrap as Continuation,
+    Channel, ColorSpace, Direction, Filter, Image, Input, Mapping, Mix, MixMode, Wrap as Continuation,
 };
-
-/// Name of the vertex colors among the attributes of meshes.
-const VERTEX_COLORS: &str = "color";
 
 /// Textures by name, as the materials of a file use them.
 #[derive(Debug)]
@@ -22,50 +18,49 @@ pub struct TextureSet<'a> {
     document: &'a Document,
     prefix: &'a str,
     /// Textures by name.
-    pub textures: IndexMap<String, AnyTexture>,
-    /// Names of the textures by their content.
-    known: IndexMap<String, String>,
+    pub textures: NamedTextures,
     /// Pictures that the textures use.
     pub pictures: Pictures<'a>,
     /// Warnings.
     pub warnings: Warnings,
 }
 
-/// What a texture reads of an image.
+/// Channels of an image that a texture uses, and how it reads them.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
-    /// The channels.
+    /// Channels that the texture uses.
     pub channel: Channel,
-    /// Encoding of the image.
+    /// Color space of the image's values.
     pub space: ColorSpace,
-    /// Whether minified textures show single texels, so that thresholds keep their area.
+    /// Whether the texture is never averaged over MIP map levels, so that an alpha cut-off leaves
+    /// the same area at any distance.
     pub is_sharp: bool,
 }
 
 impl Reading {
-    /// Colors.
+    /// Colors, encoded in sRGB.
     pub const COLOR: Self = Self { channel: Channel::Rgb, space: ColorSpace::Srgb, is_sharp: false };
 
-    /// Numbers in a channel.
+    /// Linear numbers in one channel.
     pub const fn number(channel: Channel) -> Self {
         Self { channel, space: ColorSpace::Linear, is_sharp: false }
     }
 
-    /// Alpha of colors. The encoding, which does not apply to alpha, is that of the colors, so that
-    /// both share their pixels.
+    /// Alpha of colors. The color space does not apply to alpha; it equals that of [`Self::COLOR`],
+    /// so that color and alpha share one decoded image.
     pub const fn alpha(is_sharp: bool) -> Self {
         Self { channel: Channel::A, space: ColorSpace::Srgb, is_sharp }
     }
 }
 
 impl<'a> TextureSet<'a> {
-    /// No textures yet.
+    /// Creates an empty set; the names of its textures will begin with `prefix`.
     pub fn new(document: &'a Document, data: &'a GltfData, prefix: &'a str) -> Self {
-        let (textures, known, warnings) = Default::default();
-        Self { document, prefix, textures, known, pictures: Pictures::new(document, data, prefix), warnings }
+        let (textures, warnings) = Default::default();
+        Self { document, prefix, textures, pictures: Pictures::new(document, data, prefix), warnings }
     }
 
-    /// Color of a factor and a texture: their product.
+    /// Product of a color and a texture; the color alone without a texture.
     ///
     /// # Errors
     ///
@@ -80,7 +75,7 @@ impl<'a> TextureSet<'a> {
         Ok(if r == g && g == b { Input::Texture(texture) } else { Input::product(texture, constant) })
     }
 
-    /// Number of a factor and a texture: their product.
+    /// Product of a number and a channel of a texture; the number alone without a texture.
     ///
     /// # Errors
     ///
@@ -92,7 +87,8 @@ impl<'a> TextureSet<'a> {
         Ok(texture.map_or(factor.into(), Input::Texture))
     }
 
-    /// Number from `low`, where a texture is 0, to `high`, where it is 1. `None` without texture.
+    /// Linear interpolation from `low`, where a texture is 0, to `high`, where it is 1. `None`
+    /// without a texture.
     ///
     /// # Errors
     ///
@@ -107,10 +103,10 @@ impl<'a> TextureSet<'a> {
         let Input::Texture(name) = self.number(1.0, info, reading)? else { return Ok(None) };
         let [a, b] = [low, high].map(|bound| Rgb::splat(number(bound)).into());
         let amount = Input::Texture(name.clone());
-        Ok(Some(Input::Texture(self.add(&format!("{name} scaled"), Mix { a, b, amount, mode: MixMode::Mix }))))
+        Ok(Some(Input::Texture(self.textures.add(&format!("{name} scaled"), Mix { a, b, amount, mode: MixMode::Mix }))))
     }
 
-    /// Normals of a texture, the tangential parts of which are multiplied by 1 or -1.
+    /// Normal map; `is_negated` negates the tangential components of its normals.
     ///
     /// # Errors
     ///
@@ -125,10 +121,10 @@ impl<'a> TextureSet<'a> {
         // The encoded normal (1 - r, 1 - g, b) is the difference to (1, 1, 0).
         let b = Rgb::new(1.0, 1.0, 0.0).into();
         let negated = Mix { a: texture, b, amount: 1.0.into(), mode: MixMode::Difference };
-        Ok(Some(Input::Texture(self.add(&format!("{name} negated"), negated))))
+        Ok(Some(Input::Texture(self.textures.add(&format!("{name} negated"), negated))))
     }
 
-    /// Angles of the directions in a texture plus a constant, in turns.
+    /// Angles of the directions that a texture encodes, plus the constant `turns`; both in turns.
     ///
     /// # Errors
     ///
@@ -137,10 +133,10 @@ impl<'a> TextureSet<'a> {
         let reading = Reading { space: ColorSpace::Linear, ..Reading::COLOR };
         let Some(name) = self.image(info, reading, 1.0)? else { return Ok(None) };
         let direction = Direction { of: Input::Texture(name.clone()), turns };
-        Ok(Some(Input::Texture(self.add(&format!("{name} directions"), direction))))
+        Ok(Some(Input::Texture(self.textures.add(&format!("{name} directions"), direction))))
     }
 
-    /// Name of an image texture. `None` for a texture without an image.
+    /// Adds an image texture and returns its name; `None` for a texture without an image.
     fn image(&mut self, info: &TextureInfo, reading: Reading, factor: f32) -> Result<Option<String>, Fault> {
         let document = self.document;
         let Some(texture) = document.textures.get(info.index.get()) else { return Ok(None) };
@@ -162,18 +158,11 @@ impl<'a> TextureSet<'a> {
             mapping: self.mapping(info, &at),
             ..Image::new(picture.file)
         };
-        let channel = match reading.channel {
-            Channel::Rgb => "",
-            Channel::R => ".r",
-            Channel::G => ".g",
-            Channel::B => ".b",
-            Channel::A => ".a",
-            Channel::Luminance => ".luminance",
-        };
-        Ok(Some(self.add(&format!("{}{}{channel}", self.prefix, picture.name), image)))
+        let channel = channel_suffix(reading.channel);
+        Ok(Some(self.textures.add(&format!("{}{}{channel}", self.prefix, picture.name), image)))
     }
 
-    /// Set of texture coordinates and transform of a reference.
+    /// Mapping of a texture reference: its set of texture coordinates and its transform.
     fn mapping(&mut self, info: &TextureInfo, at: &str) -> Mapping {
         let set = info.set().get();
         self.warnings.add(at, "uses texture coordinates beyond the second set; the first is used", u64::from(set > 1));
@@ -182,41 +171,9 @@ impl<'a> TextureSet<'a> {
         let matrix = matrix.map(|matrix| matrix.map(|number| number as f32));
         Mapping { uv_set: u32::from(set == 1), matrix, ..Mapping::default() }
     }
-
-    /// Adds a texture under a name, or under this name with a number; an equal one is used again.
-    fn add(&mut self, name: &str, texture: impl Into<AnyTexture>) -> String {
-        let texture = texture.into();
-        let content = format!("{texture:?}");
-        if let Some(known) = self.known.get(&content) {
-            return known.clone();
-        }
-        let mut unique = name.to_owned();
-        let mut number = 2u64;
-        while self.textures.contains_key(&unique) {
-            unique = format!("{name}#{number}");
-            number = number.saturating_add(1);
-        }
-        self.textures.insert(unique.clone(), texture);
-        self.known.insert(content, unique.clone());
-        unique
-    }
 }
 
-/// Input times the colors of vertices, or times their alpha.
-pub fn with_vertex_colors<T: InputValue>(input: Input<T>) -> Input<T> {
-    let attribute = Some(VERTEX_COLORS.to_owned());
-    let product = match input {
-        Input::Value(value) if value == T::ZERO => return value.into(),
-        Input::Value(value) => {
-            InputProduct { texture: None, factor: Some(value).filter(|value| *value != T::ONE), attribute }
-        }
-        Input::Texture(name) => InputProduct { texture: Some(TextureRef::Name(name)), factor: None, attribute },
-        Input::Product(product) => InputProduct { attribute, ..*product },
-    };
-    Input::Product(Box::new(product))
-}
-
-/// Factor of a document, which texture and material limit.
+/// Clamps a factor of a document to the range that the scene format allows.
 fn number(factor: f64) -> f32 {
     factor.clamp(-1e6, 1e6) as f32
 }
