@@ -25,7 +25,7 @@ RUSTC=$rustc RUSTFLAGS="-C target-feature=+simd128" \
 rm -rf dist.new
 mkdir dist.new
 "$built/bindgen/release/bindgen" "$built/$target/web/juggler_web.wasm" dist.new
-cp page/* dist.new
+cp page/* ../crates/serve/page/files.js dist.new
 rm -rf dist
 mv dist.new dist
 du -sh dist

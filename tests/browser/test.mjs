@@ -5,6 +5,7 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { dropFiles, model } from "./drop.mjs";
 import { Tab, difference, median, pause, startBrowser, startServer, until } from "./harness.mjs";
 
 const [program, executable, pictures] = process.argv.slice(2);
@@ -280,6 +281,44 @@ async function wheel(tab) {
   await change(tab, () => tab.page.keyboard.press("a"));
 }
 
+/// Drops models on the page and chooses what they show.
+async function dropped(tab) {
+  const { glb, gltf } = model("robot");
+  const show = async (files, name) => {
+    await dropFiles(tab.page, files);
+    await tab.reported(`${name} is open`, (status) => status.scene === name && status.stage !== "loading");
+    await tab.page.fill("#samples", "2");
+    await tab.page.keyboard.press("Enter");
+    // A field that has the focus keeps its value when another scene opens.
+    await tab.page.locator("#picture").focus();
+    await tab.reported("two samples", (status) => status.samples_wanted === 2);
+    await tab.finished();
+    return tab.fields();
+  };
+  const whole = await show(glb, "robot.glb");
+  assert(new Set(whole).size > 30, "the picture is blank");
+  await tab.screenshot("16-dropped-glb");
+  const parts = await show(gltf, "robot.gltf");
+  assert(difference(whole, parts) < 0.5, "the same model from several files");
+  await tab.screenshot("17-dropped-gltf");
+  const variant = tab.page.locator("#model-rows select[name=variant]");
+  const last = (await variant.locator("option").count()) - 1;
+  assert((await change(tab, () => variant.selectOption({ index: last }))) > 0.5, "another variant");
+  await tab.screenshot("19-variant");
+  const clip = tab.page.locator("#model-rows select[name=clip]");
+  assert((await change(tab, () => clip.selectOption({ index: 0 }))) > 0.05, "the rest pose");
+  assert.equal(tab.status.models[0].clip, null);
+  await dropFiles(tab.page, { "readme.txt": "no scene" });
+  await until("a reason", async () => /no scene among the files/.test(await tab.page.textContent("#toast")));
+  await dropFiles(tab.page, { "broken.glb": Buffer.from("glTF") });
+  await until("an error", () => tab.visible("#error"));
+  await tab.screenshot("18-dropped-broken");
+  await change(tab, () => tab.page.evaluate(() => {
+    document.getElementById("open-scenes").click();
+    document.querySelector(".card").click();
+  }));
+}
+
 async function phone(tab) {
   await tab.page.close();
   const context = await browser.newContext({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
@@ -315,7 +354,7 @@ async function phone(tab) {
 
 try {
   const tab = await firstPicture();
-  for (const step of [dragAndKeys, latency, tools, save, scenes, liveEdits, reconnect, wheel, phone]) {
+  for (const step of [dragAndKeys, latency, tools, save, scenes, liveEdits, reconnect, wheel, dropped, phone]) {
     await step(tab);
     say(step.name);
   }

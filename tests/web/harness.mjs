@@ -7,6 +7,7 @@ import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import { chromium } from "playwright-core";
+import { dropFiles } from "../browser/drop.mjs";
 
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
 /** Timeout of every operation, in milliseconds. */
@@ -99,13 +100,9 @@ export class Browser {
     }, count);
   }
 
-  /** Drops files on the page; `files` maps names to texts. */
-  async drop(files) {
-    await this.page.evaluate((files) => {
-      const dataTransfer = new DataTransfer();
-      for (const [name, text] of Object.entries(files)) dataTransfer.items.add(new File([text], name));
-      window.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
-    }, files);
+  /** Drops files on the page; `files` maps names to texts or buffers. */
+  drop(files) {
+    return dropFiles(this.page, files);
   }
 
   /** Returns the picture scaled to 16 by 16 pixels, as numbers from 0 to 255. */

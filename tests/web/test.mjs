@@ -4,6 +4,7 @@ import { strict as assert } from "node:assert";
 import { writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { join } from "node:path";
+import { model } from "../browser/drop.mjs";
 import { Browser, Program, difference, median, pause, serve } from "./harness.mjs";
 
 const [program, chromium, pictures] = process.argv.slice(2);
@@ -130,6 +131,23 @@ async function takesFiles() {
   say("dropped files: a scene with a mesh and an include has the hash of the program");
 }
 
+/** Drops a model as one file, and as several: both have the hash of the program. */
+async function takesModels() {
+  const { glb, gltf } = model("robot");
+  for (const [kind, files] of Object.entries({ glb, gltf })) {
+    for (const [name, content] of Object.entries(files)) writeFileSync(join(juggler.folder, name), content);
+    await browser.page.waitForFunction(() => document.getElementById("size").textContent === "320 × 240");
+    await browser.drop(files);
+    await browser.page.waitForFunction(() => document.getElementById("size").textContent !== "320 × 240");
+    await browser.samples(1);
+    const { hash } = juggler.render(join(juggler.folder, `robot.${kind}`), "--samples", "1");
+    assert.equal(await browser.hash(), hash, `robot.${kind}`);
+    await browser.screenshot(`dropped-${kind}`);
+    say(`robot.${kind}: ${hash.slice(0, 16)}…, the hash of the program`);
+    await browser.drop(FILES);
+  }
+}
+
 async function saysWhatIsWrong() {
   const { page } = browser;
   const wrong = `{"version": 1, "objects": [{"shape": {"sphere": {"radios": 2}}}, {"shape": {"mesh": {"file": "none.obj"}}}]}`;
@@ -189,6 +207,7 @@ await sameAsTheProgram("juggler", 1);
 await sameAsTheProgram("scalablitz-pool");
 const latency = await answersSoon();
 await takesFiles();
+await takesModels();
 await saysWhatIsWrong();
 await fitsAPhone();
 const gain = availableParallelism() > 1 ? await twoAreFaster() : Infinity;

@@ -2,7 +2,7 @@
 
 import init, { scenes } from "./juggler.js";
 import { listen } from "./controls.js";
-import { chosen, dropped, scene } from "./files.js";
+import { chosen, scene, watchDrops } from "./files.js";
 import { Pool } from "./pool.js";
 import { View } from "./view.js";
 
@@ -169,19 +169,6 @@ async function take(files) {
   }
 }
 
-function drops() {
-  let inside = 0;
-  const mark = (by) => document.body.classList.toggle("dropping", (inside = Math.max(0, inside + by)) > 0);
-  addEventListener("dragenter", () => mark(1));
-  addEventListener("dragleave", () => mark(-1));
-  addEventListener("dragover", (event) => event.preventDefault());
-  addEventListener("drop", async (event) => {
-    event.preventDefault();
-    mark(-inside);
-    take(await dropped(event.dataTransfer));
-  });
-}
-
 let module = null;
 
 /** Starts the requested number of workers; they open the current scene and repeat all edits. */
@@ -209,7 +196,7 @@ async function start() {
   };
   listen($("picture"), hands);
   panel();
-  drops();
+  watchDrops(take);
   begin();
 }
 

@@ -11,7 +11,8 @@ function row(model, label, names, edit) {
   const control = element("select", { name: label, ariaLabel: `${label} of ${model.file}` }, ...options);
   const [path, none] = label === "clip" ? [`${model.pointer}/animation`, "none"] : [`${model.pointer}/variant`, null];
   control.onchange = ({ target }) => edit({ set: { path, value: target.value || none } });
-  return element("label", { className: "row" }, element("span", {}, label), control);
+  const title = label[0].toUpperCase() + label.slice(1);
+  return element("label", { className: "row" }, element("span", {}, title), control);
 }
 
 function rows(model, edit) {

@@ -3,12 +3,14 @@
 
 import { held, steering } from "./camera.js";
 import { Connection } from "./connection.js";
+import { chosen, watchDrops } from "./files.js";
 import { Keys } from "./keys.js";
 import * as notices from "./notices.js";
 import { setMode, setSpeed, showLatency, showStatus, watchPanel } from "./panel.js";
 import { Picture } from "./picture.js";
 import { watchPointer } from "./pointer.js";
 import { fillScenes, openScenes } from "./scenes.js";
+import { upload } from "./upload.js";
 
 const byId = (id) => document.getElementById(id);
 const canvas = byId("picture");
@@ -23,11 +25,29 @@ let choosingRegion = false;
 // Remove the token from the URL; the server has stored it in a cookie.
 if (new URLSearchParams(location.search).has("token")) history.replaceState(null, "", "/");
 
+// Whether this page is connected and steers; otherwise the user learns why not.
+function canEdit() {
+  if (connection.isOpen && !wheel.steering && !wheel.free) {
+    notices.toast("Another page controls the session: take control first");
+    return false;
+  }
+  return connection.isOpen;
+}
+
+// Opens the scene, model or mesh among dropped or chosen files.
+async function openFiles(files) {
+  if (files.length === 0 || !canEdit()) return;
+  try {
+    notices.toast("uploading the files");
+    connection.send({ dropped: await upload(files) });
+  } catch (error) {
+    notices.toast(error.message);
+  }
+}
+
 // Sends an edit to the server if this page steers.
 function edit(change) {
-  if (!change) return;
-  if (!connection.isOpen) return;
-  if (!wheel.steering && !wheel.free) return notices.toast("Another page controls the session: take control first");
+  if (!change || !canEdit()) return;
   pending ??= { at: performance.now(), revision: status?.revision ?? 0 };
   connection.send({ edit: change });
 }
@@ -230,6 +250,12 @@ for (const dialog of document.querySelectorAll("dialog")) {
     if (target === dialog || target.closest("[data-close]")) dialog.close();
   });
 }
+watchDrops(openFiles);
+byId("files").onchange = ({ target }) => {
+  byId("scenes").close();
+  openFiles(chosen(target.files));
+  target.value = "";
+};
 if (matchMedia("(max-width: 720px)").matches) togglePanel(false);
 setMode(steering.mode);
 notices.fillHelp();

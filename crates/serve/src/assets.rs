@@ -30,6 +30,8 @@ pub const ASSETS: &[Asset] = &[
     asset!("/lights.js", "lights.js", "text/javascript; charset=utf-8"),
     asset!("/models.js", "models.js", "text/javascript; charset=utf-8"),
     asset!("/panel.js", "panel.js", "text/javascript; charset=utf-8"),
+    asset!("/files.js", "files.js", "text/javascript; charset=utf-8"),
+    asset!("/upload.js", "upload.js", "text/javascript; charset=utf-8"),
     asset!("/scenes.js", "scenes.js", "text/javascript; charset=utf-8"),
     asset!("/notices.js", "notices.js", "text/javascript; charset=utf-8"),
 ];

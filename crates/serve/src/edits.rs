@@ -25,6 +25,7 @@ const EDITABLE_PATHS: [&str; 6] = ["/materials/", "/lights/", "/background", "/c
 pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String> {
     match edit {
         Edit::Scene(name) => check_scene(name, scene),
+        Edit::Files(_) => Err("pages open dropped files by their number".into()),
         Edit::Fly(Fly { right, up, forward, yaw_degrees, pitch_degrees, roll_degrees }) => {
             finite(&[right, up, forward, yaw_degrees, pitch_degrees, roll_degrees].map(|number| f64::from(*number)))
         }
@@ -41,6 +42,7 @@ pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String
         Edit::Bookmark(name) if name.trim().is_empty() => Err("a bookmark needs a name".into()),
         Edit::Bookmark(name) => short(name),
         Edit::Look(camera) => check_value(camera),
+        Edit::Set { path, value } if is_model_choice(path) => check_choice(value),
         Edit::Set { path, value } => check_path(path).and_then(|()| check_value(value)),
         Edit::Setting(setting) => check_setting(setting),
         Edit::Reload | Edit::Frame(None) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) | Edit::Reset => Ok(()),
@@ -100,6 +102,21 @@ fn short(name: &str) -> Result<(), String> {
     if name.chars().count() <= MAX_NAME { Ok(()) } else { Err(format!("a name has at most {MAX_NAME} characters")) }
 }
 
+/// Whether a JSON pointer names the variant or the clip of a model, which are no files.
+fn is_model_choice(path: &str) -> bool {
+    let mut steps = path.rsplit('/');
+    let choice = matches!(steps.next(), Some("variant" | "animation")) && steps.next() == Some("model");
+    choice && path.starts_with("/objects/") && steps.all(|step| step != "file")
+}
+
+fn check_choice(value: &Value) -> Result<(), String> {
+    match value {
+        Value::Null => Ok(()),
+        Value::String(name) => short(name),
+        _ => Err("variants and clips of models are chosen by name".into()),
+    }
+}
+
 fn check_path(path: &str) -> Result<(), String> {
     let file = path.split('/').any(|step| step == "file");
     if !file && EDITABLE_PATHS.iter().any(|prefix| path.starts_with(prefix)) {
@@ -146,6 +163,14 @@ mod tests {
         for value in [json!("/etc/passwd"), json!({"image": {"file": "#a"}}), json!([["a"]])] {
             assert!(!set("/materials/red/phong/diffuse", value.clone()), "{value}");
         }
+        assert!(set("/objects/0/model/variant", json!("red")) && set("/objects/0/model/variant", json!(null)));
+        assert!(set("/objects/3/objects/1/model/animation", json!("Run")));
+        for path in
+            ["/objects/0/model", "/objects/0/model/file", "/objects/0/shape/mesh/file", "/include/model/variant"]
+        {
+            assert!(!set(path, json!("a")), "{path}");
+        }
+        assert!(!set("/objects/0/model/variant", json!({"file": "a"})) && !set("/objects/0/model/variant", json!(1)));
         assert!(allowed(json!({"look": {"perspective": {"eye": [0, 1, 2]}}})));
     }
 

@@ -6,6 +6,7 @@
 //!   [`Running`] is dropped.
 //! - `access` has the access rules, [`Limits`] the resource limits, `edits` the edits that a page
 //!   may send.
+//! - `dropped` reads files that were dropped on a page.
 //! - `socket` serves a page's WebSocket, `encoded_frame` encodes its frames, `wheel` decides which
 //!   page steers.
 
@@ -13,6 +14,7 @@ mod accept;
 mod access;
 mod assets;
 mod catalog;
+mod dropped;
 mod edits;
 mod encoded_frame;
 mod message;

@@ -13,6 +13,9 @@ pub enum PageMessage {
     Ack(u32),
     /// Probes a pixel.
     Probe([u32; 2]),
+    /// Opens the dropped files that were uploaded under this number; only the page that steers may
+    /// send it.
+    Dropped(u64),
     /// Takes the wheel.
     Steer(True),
     /// Keeps the connection alive.

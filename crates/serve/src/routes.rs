@@ -1,17 +1,20 @@
 //! Routes of the server. Plain requests change nothing; all changes arrive through the WebSocket.
+//! Uploaded files wait until a page opens them through its WebSocket.
 
 use crate::accept::ConnectionPermit;
 use crate::access::{Authorization, Peer};
 use crate::assets::ASSETS;
+use crate::dropped;
 use crate::socket;
 use crate::state::ServerState;
+use axum::body::{Body, to_bytes};
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::{Path, Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
 use axum::{Extension, Router};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -36,6 +39,7 @@ pub fn router(state: Arc<ServerState>) -> Router {
         .route("/catalogue.json", get(catalog))
         .route("/thumbnail/{name}", get(thumbnail))
         .route("/save/{name}", get(save))
+        .route("/drop", post(keep_dropped))
         .route("/socket", get(open_socket));
     for asset in ASSETS {
         router = router.route(asset.path, get(|| async { ([(header::CONTENT_TYPE, asset.media_type)], asset.text) }));
@@ -103,6 +107,27 @@ async fn save(State(state): State<Arc<ServerState>>, Path(name): Path<String>) -
                 .into_response()
         }
         Ok(Err(error)) => (StatusCode::CONFLICT, format!("{error}\n")).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}
+
+/// Receives files that were dropped on a page, and answers with the number under which the page
+/// opens them.
+async fn keep_dropped(State(state): State<Arc<ServerState>>, Extension(peer): Extension<Peer>, body: Body) -> Response {
+    let Ok(_turn) = state.uploading.try_acquire() else {
+        return (StatusCode::SERVICE_UNAVAILABLE, "another page uploads files\n").into_response();
+    };
+    let most = state.limits.dropped_bytes;
+    let Ok(bytes) = to_bytes(body, most).await else {
+        let reason = format!("the files cannot be received, or have more than {} MiB\n", most >> 20);
+        return (StatusCode::PAYLOAD_TOO_LARGE, reason).into_response();
+    };
+    match tokio::task::spawn_blocking(move || dropped::parse(&bytes)).await {
+        Ok(Ok(files)) => state.keep_dropped(files).to_string().into_response(),
+        Ok(Err(why)) => {
+            state.refusals.log(peer.remote, why);
+            (StatusCode::BAD_REQUEST, format!("{why}\n")).into_response()
+        }
         Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
     }
 }

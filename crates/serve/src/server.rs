@@ -52,6 +52,9 @@ pub struct Limits {
     pub sockets: usize,
     /// Maximum size of a page's message, in bytes; 64 KiB by default.
     pub message_bytes: usize,
+    /// Maximum size of the files that are dropped on a page at once, in bytes; 1 GiB by default.
+    /// They stay in memory.
+    pub dropped_bytes: usize,
     /// Maximum time to receive the head of a request, 10 seconds by default.
     pub head: Duration,
     /// Maximum duration of a connection that is no WebSocket, 10 minutes by default.
@@ -67,6 +70,7 @@ impl Default for Limits {
             connections: 64,
             sockets: 16,
             message_bytes: 64 << 10,
+            dropped_bytes: 1 << 30,
             head: Duration::from_secs(10),
             connection: Duration::from_secs(600),
             silence: Duration::from_secs(90),

@@ -18,6 +18,8 @@ use tokio::time::timeout;
 
 mod sender;
 
+/// Reason why a page that only watches is refused an edit.
+const WATCHES: &str = "another page controls the session";
 /// Maximum number of queued answers.
 const ANSWERS: usize = 8;
 /// Maximum number of pending edits; a page waits beyond it.
@@ -79,15 +81,26 @@ impl Listener {
                 self.displayed.send_replace(serial);
             }
             Ok(PageMessage::Probe(pixel)) => self.probe(pixel).await,
+            Ok(PageMessage::Dropped(number)) => self.open_dropped(number).await,
             Ok(PageMessage::Steer(_)) => self.state.change_wheel(|wheel| wheel.take(self.id)),
             Ok(PageMessage::Here(_)) => {}
             Err(error) => self.refuse(&format!("a message is invalid at column {}", error.column())).await,
         }
     }
 
+    async fn open_dropped(&mut self, number: u64) {
+        if !self.try_steer() {
+            return self.answer(&ServerMessage::Refused(WATCHES)).await;
+        }
+        match self.state.take_dropped(number) {
+            Some(files) => drop(self.state.session.edit(Edit::Files(files))),
+            None => self.answer(&ServerMessage::Refused("other files were dropped in the meantime")).await,
+        }
+    }
+
     async fn edit(&mut self, edit: Edit) {
         if !self.try_steer() {
-            return self.answer(&ServerMessage::Refused("another page controls the session")).await;
+            return self.answer(&ServerMessage::Refused(WATCHES)).await;
         }
         if let Err(why) = edits::check(&edit, self.state.scene.as_deref(), self.peer.is_local()) {
             return self.refuse(&why).await;

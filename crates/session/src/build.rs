@@ -4,7 +4,7 @@ use crate::ModelStatus;
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
 use juggler::math::{Rgb, Vec3};
-use juggler::scene::{Names, Scene, SceneError};
+use juggler::scene::{Bundle, Names, Scene, SceneError};
 use juggler::{Aov, Error, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -47,6 +47,8 @@ pub struct BuildRequest {
 pub(crate) enum Task {
     /// Open another scene by its name.
     Open,
+    /// Open another scene of files in memory.
+    OpenFiles(Bundle),
     /// Read the same file again; the given scene holds meshes that need not be read again.
     Reload(Arc<Scene>),
     /// Use a scene in memory.
@@ -83,6 +85,12 @@ impl BuildRequest {
         }
     }
 
+    /// The same request for a scene of files in memory.
+    #[must_use]
+    pub fn with_files(self, files: Bundle) -> Self {
+        Self { task: Task::OpenFiles(files), ..self }
+    }
+
     /// The same request with values of the scene that differ from its file; a reset keeps them.
     #[must_use]
     pub fn with_values(self, values: Vec<(String, Value)>) -> Self {
@@ -105,10 +113,12 @@ impl BuildRequest {
     /// Reads the scene and builds its world on the threads of the current rayon pool. This call may
     /// take long.
     pub fn run(self) -> Result<Subject, BuildError> {
-        let name = PathBuf::from(&self.name);
+        let is_in_memory = matches!(self.task, Task::OpenFiles(_));
+        let mut files = if is_in_memory { Vec::new() } else { vec![PathBuf::from(&self.name)] };
         self.build().map_err(|error| {
-            let mut files = vec![name];
-            if let Error::Scene(SceneError::Problems(problems)) = &error {
+            if let Error::Scene(SceneError::Problems(problems)) = &error
+                && !is_in_memory
+            {
                 files.extend(problems.sources().names().map(PathBuf::from));
             }
             BuildError { text: error_text(&error), files }
@@ -118,6 +128,7 @@ impl BuildRequest {
     fn build(mut self) -> Result<Subject, Error> {
         let file = match self.task.clone() {
             Task::Open => Arc::new(juggler::loader().named(&self.name)?),
+            Task::OpenFiles(files) => Arc::new(juggler::loader().from_bundle(files, &self.name)?),
             Task::Reload(scene) => self.reload(&scene)?,
             Task::InMemory(scene) => scene,
         };
@@ -195,6 +206,9 @@ impl BuildRequest {
     /// Reads the file again. Edited values and the camera are kept unless the file has changed
     /// there too.
     fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
+        if old.is_in_memory() {
+            return Ok(Arc::clone(old));
+        }
         let is_file = Path::new(&self.name).is_file();
         let new = Arc::new(if is_file { old.reload(&self.name)? } else { juggler::loader().named(&self.name)? });
         if !self.values.is_empty() {

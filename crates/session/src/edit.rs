@@ -2,6 +2,7 @@
 //! {"forward": 0.5, "yaw_degrees": 3}}`.
 
 use juggler::camera::film::Rect;
+use juggler::scene::Bundle;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -12,6 +13,10 @@ use serde_json::Value;
 pub enum Edit {
     /// Opens another scene, a file or a built-in scene by name, and uses its initial camera.
     Scene(String),
+    /// Opens a scene of files in memory, such as files that were dropped on a page. No JSON stands
+    /// for this edit.
+    #[serde(skip)]
+    Files(SceneFiles),
     /// Reads the scene's files again. If they have errors, the last valid image stays and
     /// [`Status::error`](crate::Status) reports them.
     Reload,
@@ -63,17 +68,26 @@ pub enum Edit {
 impl Edit {
     /// Returns whether all earlier edits become irrelevant.
     pub fn supersedes(&self) -> bool {
-        matches!(self, Self::Scene(_))
+        matches!(self, Self::Scene(_) | Self::Files(_))
     }
 
     /// Returns whether this edit overwrites the effect of the edit directly `before` it.
     pub fn replaces(&self, before: &Self) -> bool {
         match (self, before) {
-            (Self::At(_), Self::At(_)) | (Self::Reload, Self::Reload) | (Self::Scene(_), _) => true,
+            (Self::At(_), Self::At(_)) | (Self::Reload, Self::Reload) | (Self::Scene(_) | Self::Files(_), _) => true,
             (Self::Set { path: a, .. }, Self::Set { path: b, .. }) => a == b,
             _ => false,
         }
     }
+}
+
+/// Scene of files in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFiles {
+    /// Name of the scene, model or mesh among the files.
+    pub name: String,
+    /// All files. The scene cannot read others.
+    pub files: Bundle,
 }
 
 /// Translation and rotation along the camera's own axes; all 0 by default.

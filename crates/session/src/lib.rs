@@ -43,7 +43,7 @@ mod worker;
 
 pub use build::{BuildError, BuildRequest, MAX_PIXELS, error_text};
 pub use coarse::{RenderRate, coarse_size, next_pass};
-pub use edit::{Channel, Edit, Fly, Orbit, Setting};
+pub use edit::{Channel, Edit, Fly, Orbit, SceneFiles, Setting};
 pub use frame::Frame;
 pub use model_status::ModelStatus;
 pub use pixel_info::PixelInfo;

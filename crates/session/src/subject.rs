@@ -125,6 +125,7 @@ impl Subject {
     pub fn apply(&mut self, edit: &Edit) -> Result<EditEffect, String> {
         match edit {
             Edit::Scene(name) => Ok(rebuild(self.open(name))),
+            Edit::Files(scene) => Ok(rebuild(self.open(&scene.name).with_files(scene.files.clone()))),
             Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
             Edit::Reset => Ok(rebuild(self.reset())),
             Edit::Set { path, value } => {
@@ -164,7 +165,7 @@ impl Subject {
     /// no file holds the scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
         let path = Path::new(&self.name);
-        if Content::detect(path).is_mesh() || self.file.is_around_model() {
+        if self.file.is_in_memory() || Content::detect(path).is_mesh() || self.file.is_around_model() {
             return None;
         }
         let text = read_text(path).ok()?;
@@ -172,9 +173,9 @@ impl Subject {
         Some(edited.map_err(|error| format!("error: cannot save the camera in `{}`: {error}", self.name)))
     }
 
-    /// Returns the files of the scene, including its meshes.
+    /// Returns the files of the scene, including its meshes; none if they are in memory.
     pub fn files(&self) -> Vec<PathBuf> {
-        self.file.paths()
+        if self.file.is_in_memory() { Vec::new() } else { self.file.paths() }
     }
 
     /// Requests another scene with the same size and denoiser.

@@ -9,11 +9,12 @@ use crate::session::SessionOptions;
 use crate::shared::{Shared, Snapshot};
 use crate::subject::{EditEffect, Subject};
 use crate::watch::Watch;
-use crate::{Edit, Frame, Setting, Stage, Status};
+use crate::{Edit, Frame, SceneFiles, Setting, Stage, Status};
 use juggler::Picture;
 use juggler::camera::film::{Film, Rect};
 use juggler::imaging::{Tone, atomic};
 use juggler::render::Scheduler;
+use juggler::scene::Bundle;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
@@ -53,6 +54,8 @@ pub struct Worker {
     pub playing: Option<(Instant, f64)>,
     /// Scene that was requested last.
     requested_scene: String,
+    /// Files of the scene that was requested last, if they are in memory.
+    requested_files: Option<Bundle>,
     /// Errors in the scene's files.
     pub scene_error: Option<String>,
     pub watch: Option<Watch>,
@@ -77,6 +80,7 @@ impl Worker {
         });
         Self {
             requested_scene: status.scene.clone(),
+            requested_files: None,
             options,
             pool,
             scheduler: Scheduler::default(),
@@ -193,7 +197,11 @@ impl Worker {
             }
             Edit::Bookmark(name) => self.bookmark(name)?,
             Edit::Scene(name) => {
-                name.clone_into(&mut self.requested_scene);
+                (self.requested_scene, self.requested_files) = (name.clone(), None);
+                self.open()?;
+            }
+            Edit::Files(SceneFiles { name, files }) => {
+                (self.requested_scene, self.requested_files) = (name.clone(), Some(files.clone()));
                 self.open()?;
             }
             // The requested scene could not be opened yet.
@@ -207,10 +215,20 @@ impl Worker {
 
     /// Opens the scene that was requested last.
     fn open(&mut self) -> Result<(), String> {
+        let (name, files) = (self.requested_scene.clone(), self.requested_files.clone());
         if self.subject.is_some() {
-            return self.apply_to_subject(&Edit::Scene(self.requested_scene.clone()));
+            let edit = match files {
+                Some(files) => Edit::Files(SceneFiles { name, files }),
+                None => Edit::Scene(name),
+            };
+            return self.apply_to_subject(&edit);
         }
-        self.build(BuildRequest::open(&self.requested_scene, self.options.size), BuildReason::OtherScene);
+        let request = BuildRequest::open(&name, self.options.size);
+        let request = match files {
+            Some(files) => request.with_files(files),
+            None => request,
+        };
+        self.build(request, BuildReason::OtherScene);
         Ok(())
     }
 
@@ -221,7 +239,7 @@ impl Worker {
             EditEffect::Nothing => self.update_status(),
             EditEffect::Build(build) => {
                 let reason = match edit {
-                    Edit::Scene(_) => BuildReason::OtherScene,
+                    Edit::Scene(_) | Edit::Files(_) => BuildReason::OtherScene,
                     Edit::Reload => BuildReason::Files,
                     _ => BuildReason::Edit,
                 };

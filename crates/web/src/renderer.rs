@@ -7,7 +7,7 @@ use crate::worker_film::{WorkerFilm, coarse};
 use juggler::Picture;
 use juggler::imaging::Options;
 use juggler::scene::Bundle;
-use juggler_session::{BuildRequest, Edit, EditEffect, Subject, error_text};
+use juggler_session::{BuildRequest, Edit, EditEffect, Subject};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -52,8 +52,7 @@ impl WorkerRenderer {
         let build = if files.is_empty() {
             BuildRequest::open(name, None)
         } else {
-            let scene = juggler::loader().from_bundle(Bundle::from_iter(files), name);
-            BuildRequest::from_scene(scene.map_err(|error| error_text(&error.into()))?, name, None)
+            BuildRequest::open(name, None).with_files(Bundle::from_iter(files))
         };
         let subject = build.run().map_err(|error| error.text)?;
         let film = WorkerFilm::new(subject.picture(), self.share);

@@ -11,6 +11,7 @@
 
 mod access;
 mod common;
+mod drops;
 mod fuzz;
 mod limits;
 mod page;

@@ -110,6 +110,20 @@ impl Serving {
         self.request("GET", path, &lines.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
+    /// Uploads the body of a drop, as the page does.
+    pub fn upload(&self, body: &[u8]) -> Answer {
+        let mut stream = self.connect();
+        let cookie = self.cookie.iter().map(|cookie| format!("Cookie: {cookie}\r\n")).collect::<String>();
+        let host = self.host();
+        let head = format!(
+            "POST /drop HTTP/1.1\r\nConnection: close\r\nHost: {host}\r\nOrigin: http://{host}\r\n{cookie}Content-Length: {}\r\n\r\n",
+            body.len()
+        );
+        // The server may answer before it has read everything.
+        let _ = stream.write_all(&[head.as_bytes(), body].concat());
+        answer(&mut stream)
+    }
+
     /// Returns whether the server still delivers the page.
     pub fn is_alive(&self) -> bool {
         self.get("/").status == 200

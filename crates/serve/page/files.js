@@ -7,7 +7,7 @@ const MOST = 1 << 30;
 const OPENED = [".json", ".gltf", ".glb", ".obj", ".ply", ".stl"];
 
 /** All files of a drop, folders included, as { name, file }; names include the dropped folders. */
-export async function dropped(transfer) {
+async function dropped(transfer) {
   const files = [];
   // The browser discards the items at the first await.
   const entries = [...transfer.items].filter(({ kind }) => kind === "file").map((item) => {
@@ -31,6 +31,20 @@ async function walk(entry, files) {
     if (some.length === 0) return;
     for (const child of some) await walk(child, files);
   }
+}
+
+/** Passes the files of each drop on the page to `take`, and marks the page while files hover over it. */
+export function watchDrops(take) {
+  let inside = 0;
+  const mark = (by) => document.body.classList.toggle("dropping", (inside = Math.max(0, inside + by)) > 0);
+  addEventListener("dragenter", () => mark(1));
+  addEventListener("dragleave", () => mark(-1));
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", async (event) => {
+    event.preventDefault();
+    mark(-inside);
+    take(await dropped(event.dataTransfer));
+  });
 }
 
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
