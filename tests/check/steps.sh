@@ -157,7 +157,7 @@ start_windows() {
   heading "windows: the program that is driven"
   build_debug_program
   heading "windows: the window, the page and movies are driven"
-  drive "windows: the window" drive_window "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
+  drive "windows: the window" drive_window "xvfb xdotool imagemagick python3 libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import python3
   drive "windows: the page and movies" drive_page "chromium nodejs npm ffmpeg" chromium node npm
 }
 

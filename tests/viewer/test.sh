@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Drives the window of `juggler view` as a person would, on a virtual display: keys, drags, the
-# wheel, fields, and a file that is edited meanwhile. The window's title and screenshots show the
+# wheel, fields, dropped files, and a file that is edited meanwhile. The window's title and screenshots show the
 # effects.
 #   tests/viewer/test.sh PATH/TO/juggler [FOLDER FOR THE SCREENSHOTS]
-# Needs Xvfb, xdotool, ImageMagick's import, and the libraries of windows. On Debian:
+# Needs Xvfb, xdotool, ImageMagick's import, python3, and the libraries of windows. On Debian:
 #   apt-get install xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libx11-xcb1 libxcursor1 libxi6 \
 #     libxkbcommon-x11-0
 set -euo pipefail
@@ -12,8 +12,8 @@ juggler=$(realpath "$1")
 work=$(mktemp -d)
 shots=${2:-$work}
 mkdir -p "$shots"
-for tool in Xvfb xdotool import; do
-  command -v "$tool" >/dev/null || { echo "error: $tool is not installed (apt-get install xvfb xdotool imagemagick)" >&2; exit 1; }
+for tool in Xvfb xdotool import python3; do
+  command -v "$tool" >/dev/null || { echo "error: $tool is not installed (apt-get install xvfb xdotool imagemagick python3)" >&2; exit 1; }
 done
 
 viewer= server=
@@ -207,6 +207,18 @@ press g; unlike start chooser-picture; sleep 2; shoot chooser
 xdotool type --delay 40 pool; sleep 0.5; shoot chooser-pool; press Return
 until_true titled "juggler - scalablitz-pool - [0-9]*/*"; sleep 1; unlike start pool
 say "another scene: $(title)"
+
+cp "$here/../../scenes/models/robot.glb" .
+python3 "$here/drop.py" "$window" robot.glb
+until_true titled "juggler - robot - frame 0 - [1-9]*"; sleep 1; unlike pool dropped-glb-picture; shoot dropped-glb
+mkdir -p parts
+python3 "$here/split.py" robot.glb "parts/of a robot.gltf"
+python3 "$here/drop.py" "$window" "parts/of a robot.gltf"
+until_true titled "juggler - of a robot - frame 0 - [1-9]*"; sleep 1; unlike pool dropped-gltf-picture; shoot dropped-gltf
+head -c 100 robot.glb > broken.glb
+python3 "$here/drop.py" "$window" broken.glb
+until_true titled "* - error"; sleep 0.4; shoot dropped-broken
+say "models are dropped on the window, as one file and as several"
 
 press ctrl+q; ended
 say "Ctrl+Q: status 0"
