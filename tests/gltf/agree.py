@@ -12,6 +12,8 @@ models     every model: `check`, `info` and a small render; pictures on 1, 2 and
 encodings  rewrites by gltf-transform: the same numbers give pictures equal in every byte, lossy
            ones nearly the same picture (FLIP, which needs `juggler compare`)
 numbers    triangles and bounds against trimesh, poses at seven times against three.js
+meshes     OBJ with MTL, PLY and STL files in the folder above MODELS beside trimesh: triangles,
+           bounds, materials
 movie      a movie that is killed and resumed, or rendered in shards, is the same file
 extensions models of each extension: the same picture as the scene format's own material or nodes
 malformed  500 defective files: no panic, status 2, and the place of the defect in the message
@@ -158,6 +160,12 @@ def check_poses(program, model, clip, folder):
     report(f"poses of {model.name}", worst < 1e-5, f"{worst:.1e} of the diagonal")
 
 
+def check_meshes(program, models, folder):
+    """A17."""
+    from meshes import check
+    check(program, models.parent, folder, bounds_of, run, report)
+
+
 def check_movie(program, models, folder):
     """A12."""
     model = models / "Fox/glTF-Binary/Fox.glb"
@@ -220,8 +228,8 @@ def check_speed(program, models, folder):
         print(f"     {name}: {min(seconds):.2f} s, median {sorted(seconds)[2]:.2f} s")
 
 
-PARTS = {"models": check_models, "encodings": check_encodings, "numbers": check_numbers, "movie": check_movie,
-         "extensions": check_extensions, "malformed": check_malformed, "speed": check_speed}
+PARTS = {"models": check_models, "encodings": check_encodings, "numbers": check_numbers, "meshes": check_meshes,
+         "movie": check_movie, "extensions": check_extensions, "malformed": check_malformed, "speed": check_speed}
 
 
 def main():

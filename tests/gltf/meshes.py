@@ -1,0 +1,60 @@
+"""Mesh files (OBJ with MTL, PLY, STL) beside trimesh: triangles, bounds and materials in use."""
+
+import json
+from pathlib import Path
+
+ENDINGS = {".obj", ".ply", ".stl"}
+
+
+def meshes_of(folder):
+    """All mesh files below a folder."""
+    return sorted(path for path in folder.rglob("*") if path.suffix.lower() in ENDINGS)
+
+
+def defined(path):
+    """Names of the materials that the libraries of an OBJ define."""
+    libraries = [line.split(maxsplit=1)[1].strip() for line in lines(path) if line.startswith("mtllib ")]
+    files = [path.parent / name for name in libraries]
+    found = [line for file in files if file.is_file() for line in lines(file)]
+    return {line.split(maxsplit=1)[1].strip() for line in found if line.startswith("newmtl ")}
+
+
+def used(path):
+    """Names of the materials that faces of an OBJ use; None for faces without one."""
+    current, found = None, set()
+    for line in lines(path):
+        word, *rest = line.split(maxsplit=1)
+        if word == "usemtl":
+            current = rest[0].strip() if rest else None
+        elif word == "f":
+            found.add(current)
+    return found
+
+
+def lines(path):
+    """Stripped lines of a text that are not empty."""
+    return [line.strip() for line in path.read_text(errors="replace").splitlines() if line.strip()]
+
+
+def check(program, folder, scratch, bounds_of, run, report):
+    """A17."""
+    import numpy as np
+    import trimesh
+    for path in meshes_of(folder):
+        name = path.relative_to(folder)
+        is_model = path.suffix.lower() == ".obj" and any(line.startswith("mtllib ") for line in lines(path))
+        mesh = {"model": {"file": str(path)}} if is_model else {"shape": {"mesh": {"file": str(path)}}}
+        scene = Path(scratch) / "mesh.json"
+        scene.write_text(json.dumps({"version": 1, "objects": [mesh]}))
+        ours, triangles = bounds_of(program, scene)
+        theirs = trimesh.load(path, force="mesh", process=False)
+        report(f"triangles of {name}", triangles == len(theirs.faces), f"{triangles} {len(theirs.faces)}")
+        error = np.abs(np.array(ours) - theirs.bounds).max() / np.linalg.norm(theirs.extents)
+        report(f"bounds of {name}", error < 1e-5, f"{error:.1e}")
+        if is_model:
+            known = defined(path)
+            expected = {material if material in known else "default material" for material in used(path)}
+            models = json.loads(run(program, "info", path, "--json").stdout)["models"]
+            found = set(models[0]["materials"])
+            report(f"materials of {name}", found == expected, f"{sorted(found)} {sorted(expected)}")
+        run(program, "render", path, "--size", "64x48", "--samples", 1, "-o", Path(scratch) / "picture.png")
