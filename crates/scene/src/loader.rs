@@ -37,9 +37,11 @@ impl Loader {
         Scene::parse(text.into(), name, self.cache(Store::default()))
     }
 
-    /// Whether a file is in a model format that the loader knows, by its first bytes or its name.
+    /// Whether a file is a model in a format that the loader knows, by its first bytes or its name. A
+    /// file that holds nothing but a mesh is none.
     pub fn is_model(self, path: &Path) -> bool {
-        self.cache(Store::default()).is_model(path)
+        let cache = self.cache(Store::default());
+        cache.is_model(path) && !cache.is_plain_mesh(path)
     }
 
     fn cache(self, store: Store) -> AssetCache {

@@ -44,7 +44,7 @@ impl Info {
 
     fn answer(&self) -> Result<String, Failure> {
         let path = Path::new(&self.scene);
-        if import::Content::detect(path).is_mesh() {
+        if import::Content::detect(path).is_mesh() && !juggler::loader().is_model(path) {
             return Ok(mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();
