@@ -195,10 +195,10 @@ impl CausticCaster {
     /// Evaluates the sphere as seen from `to`. The weights are 0 if `to` lies inside the sphere, or
     /// the sphere below the horizon of `to`.
     #[inline]
-    fn view_from(&self, to: &LightSampleContext) -> CasterView {
+    fn view_from(&self, context: &LightSampleContext) -> CasterView {
         let SpecularSphere { center, radius } = self.sphere;
-        let is_below = to.normal != Vec3::ZERO && to.normal.dot(center - to.point) <= -radius;
-        let Some(end) = self.sphere.end_point(to.point).filter(|_| !is_below) else { return CasterView::NONE };
+        let is_below = context.normal != Vec3::ZERO && context.normal.dot(center - context.point) <= -radius;
+        let Some(end) = self.sphere.end_point(context.point).filter(|_| !is_below) else { return CasterView::NONE };
         let one_minus_cos = SpecularSphere::one_minus_cos(end.inverse_distance);
         CasterView {
             weights: self.material.strengths.map(|strength| strength * one_minus_cos),

@@ -72,35 +72,41 @@ impl EmissiveShape {
     pub fn sample(
         &self,
         materials: &MaterialTable,
-        to: &LightSampleContext,
+        context: &LightSampleContext,
         u: Vec2,
         probability: f32,
     ) -> Option<EmitterSample> {
-        let transform = self.motion.at(to.time);
-        let sample = self.shape.sample(transform.point_to_local(to.point), u)?;
-        let offset = transform.point(sample.point) - to.point;
+        let transform = self.motion.at(context.time);
+        let sample = self.shape.sample(transform.point_to_local(context.point), u)?;
+        let offset = transform.point(sample.point) - context.point;
         let distance = offset.length();
         let wi = offset / distance;
-        let pdf = sample.pdf * solid_angle_ratio(&transform, to.point, sample.point, sample.normal);
+        let pdf = sample.pdf * solid_angle_ratio(&transform, context.point, sample.point, sample.normal);
         if !(distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY) {
             return None;
         }
         let normal = transform.normal(sample.normal);
-        if to.is_coplanar(wi, distance, normal) {
+        if context.is_coplanar(wi, distance, normal) {
             return None;
         }
-        let radiance = self.radiance(materials, to, wi, normal)?;
+        let radiance = self.radiance(materials, context, wi, normal)?;
         Some(bsdf_sampled(EmitterId::Shape(self.shape_index), wi, distance, radiance, pdf * probability, normal))
     }
 
     /// Emitted radiance that arrives from the direction `wi`, at a point with outward normal
     /// `normal`; `None` if there is none.
-    pub fn radiance(&self, materials: &MaterialTable, to: &LightSampleContext, wi: Vec3, normal: Vec3) -> Option<Rgb> {
+    pub fn radiance(
+        &self,
+        materials: &MaterialTable,
+        context: &LightSampleContext,
+        wi: Vec3,
+        normal: Vec3,
+    ) -> Option<Rgb> {
         if let Some(radiance) = self.emission.radiance {
             return (self.is_two_sided() || normal.dot(wi) < 0.0).then_some(radiance);
         }
-        let transform = &self.motion.at(to.time);
-        let ray = transform.ray_to_local(&Ray { time: to.time, ..Ray::new(to.point, wi) });
+        let transform = &self.motion.at(context.time);
+        let ray = transform.ray_to_local(&Ray { time: context.time, ..Ray::new(context.point, wi) });
         let hit = self.shape.intersect(&ray)?;
         let surface = self.shape.surface(&ray, &hit).to_world(transform);
         let mesh = self.shape.mesh_point(hit.primitive, &surface);

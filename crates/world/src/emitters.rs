@@ -193,19 +193,19 @@ impl Emitters {
 
     /// Selects a finite emitter.
     #[inline]
-    fn pick(&self, to: &LightSampleContext, u: f32) -> Option<LightTreeSample> {
+    fn pick(&self, context: &LightSampleContext, u: f32) -> Option<LightTreeSample> {
         match self.finite.len() {
             1 => Some(LightTreeSample { index: 0, probability: 1.0, u_remapped: u }),
-            _ => self.tree.sample(to.point, to.normal, u),
+            _ => self.tree.sample(context.point, context.normal, u),
         }
     }
 
     /// Probability of selecting the finite emitter `index`.
     #[inline]
-    fn selection_probability(&self, to: &LightSampleContext, index: u32) -> f32 {
+    fn selection_probability(&self, context: &LightSampleContext, index: u32) -> f32 {
         match self.finite.len() {
             1 => 1.0,
-            _ => self.tree.probability(to.point, to.normal, index),
+            _ => self.tree.probability(context.point, context.normal, index),
         }
     }
 
@@ -243,7 +243,7 @@ impl World {
 
     /// Samples incident light at a point: selects an emitter by `u.x`, then a point on it.
     #[inline]
-    pub fn sample_light(&self, to: &LightSampleContext, u: Vec2) -> Option<EmitterSample> {
+    pub fn sample_light(&self, context: &LightSampleContext, u: Vec2) -> Option<EmitterSample> {
         let emitters = &self.emitters;
         let infinite = emitters.infinite_probability();
         // Sample an infinite light.
@@ -251,23 +251,23 @@ impl World {
             let (picked, probability, rest) = emitters.infinite.pick((u.x / infinite).min(1f32.next_down()))?;
             let (probability, rest) = (probability * infinite, Vec2::new(rest, u.y));
             return match picked {
-                InfiniteLight::Light(index) => self.sample_scene_light(index, to, rest, probability),
-                InfiniteLight::Background => self.sample_background(to, rest, probability),
+                InfiniteLight::Light(index) => self.sample_scene_light(index, context, rest, probability),
+                InfiniteLight::Background => self.sample_background(context, rest, probability),
             };
         }
         // Select a finite emitter by the light tree, and sample it.
         let finite = emitters.finite_probability();
-        let pick = emitters.pick(to, ((u.x - infinite) / finite).min(1f32.next_down()))?;
+        let pick = emitters.pick(context, ((u.x - infinite) / finite).min(1f32.next_down()))?;
         let (probability, rest) = (pick.probability * finite, Vec2::new(pick.u_remapped, u.y));
         match emitters.finite.get(pick.index as usize)? {
-            Emitter::Light(index) => self.sample_scene_light(*index, to, rest, probability),
+            Emitter::Light(index) => self.sample_scene_light(*index, context, rest, probability),
             Emitter::Area(area, shape) => {
-                let sample = area.sample(to.point, rest)?;
-                if to.is_coplanar(sample.wi, sample.distance, sample.normal) {
+                let sample = area.sample(context.point, rest)?;
+                if context.is_coplanar(sample.wi, sample.distance, sample.normal) {
                     return None;
                 }
                 let shape = &emitters.shapes.get(*shape as usize)?.shape;
-                let radiance = shape.radiance(&self.materials, to, sample.wi, sample.normal)?;
+                let radiance = shape.radiance(&self.materials, context, sample.wi, sample.normal)?;
                 let emitter = EmitterId::Shape(shape.shape_index);
                 Some(bsdf_sampled(
                     emitter,
@@ -279,7 +279,7 @@ impl World {
                 ))
             }
             Emitter::Shape(shape) => {
-                emitters.shapes.get(*shape as usize)?.shape.sample(&self.materials, to, rest, probability)
+                emitters.shapes.get(*shape as usize)?.shape.sample(&self.materials, context, rest, probability)
             }
         }
     }
@@ -287,11 +287,11 @@ impl World {
     fn sample_scene_light(
         &self,
         index: u32,
-        to: &LightSampleContext,
+        context: &LightSampleContext,
         u: Vec2,
         probability: f32,
     ) -> Option<EmitterSample> {
-        let sample = self.lights.get(index as usize)?.at(to.time).light.sample(to.point, u)?;
+        let sample = self.lights.get(index as usize)?.at(context.time).light.sample(context.point, u)?;
         Some(EmitterSample {
             wi: sample.wi,
             distance: sample.distance,
@@ -304,18 +304,18 @@ impl World {
     }
 
     /// Incident light at a point from a light of the scene without an extent.
-    pub fn point_light(&self, index: u32, to: &LightSampleContext) -> Option<LightSample> {
-        let light = &self.lights.get(index as usize)?.at(to.time).light;
-        light.is_delta().then(|| light.sample(to.point, Vec2::ZERO))?
+    pub fn point_light(&self, index: u32, context: &LightSampleContext) -> Option<LightSample> {
+        let light = &self.lights.get(index as usize)?.at(context.time).light;
+        light.is_delta().then(|| light.sample(context.point, Vec2::ZERO))?
     }
 
-    fn sample_background(&self, to: &LightSampleContext, u: Vec2, probability: f32) -> Option<EmitterSample> {
+    fn sample_background(&self, context: &LightSampleContext, u: Vec2, probability: f32) -> Option<EmitterSample> {
         let sample = self.background.sample(u)?;
         // Skip the lookup for directions below the horizon: environment maps are large.
-        if sample.wi.dot(to.normal) < 0.0 {
+        if sample.wi.dot(context.normal) < 0.0 {
             return None;
         }
-        let radiance = self.background.radiance(&Ray { time: to.time, ..Ray::new(to.point, sample.wi) });
+        let radiance = self.background.radiance(&Ray { time: context.time, ..Ray::new(context.point, sample.wi) });
         (!radiance.is_black()).then(|| {
             bsdf_sampled(
                 EmitterId::Background,

@@ -97,7 +97,8 @@ mod tests {
         World::new(Vec::new(), MaterialTable::default(), suns.iter().map(sun), background)
     }
 
-    const TO: LightSampleContext = LightSampleContext { point: Vec3::ZERO, error: 0.0, normal: Vec3::ZERO, time: 0.0 };
+    const CONTEXT: LightSampleContext =
+        LightSampleContext { point: Vec3::ZERO, error: 0.0, normal: Vec3::ZERO, time: 0.0 };
 
     #[test]
     fn infinite_lights_are_sampled_in_proportion_to_power() {
@@ -105,7 +106,7 @@ mod tests {
         let (world, mut random) = (world(&[1.0, 30.0], 1.0), Random::new(31));
         let (mut counts, count) = ([0.0f32; 3], 200_000);
         for _ in 0..count {
-            let light = world.sample_light(&TO, random.vec2()).unwrap();
+            let light = world.sample_light(&CONTEXT, random.vec2()).unwrap();
             counts[if let EmitterId::Light(index) = light.emitter { index as usize } else { 2 }] += 1.0 / count as f32;
             if light.emitter == EmitterId::Background {
                 assert!(close(light.pdf, world.background_pdf(light.wi), 1e-5));
@@ -123,7 +124,7 @@ mod tests {
         let (world, mut random) = (world(&[1.0, 9.0], 0.0), Random::new(32));
         let (mut sum, mut squares, count) = (0.0, 0.0, 100_000);
         for _ in 0..count {
-            let light = world.sample_light(&TO, random.vec2()).unwrap();
+            let light = world.sample_light(&CONTEXT, random.vec2()).unwrap();
             let value = f64::from(light.radiance.g / light.pdf);
             (sum, squares) = (sum + value, squares + value * value);
         }

@@ -6,7 +6,7 @@ use super::*;
 fn scattered_energy_never_exceeds_incident_energy() {
     for Example { name, bsdf, both_sides, white_within, .. } in examples() {
         // Layers conserve energy only on average over all directions.
-        let more = if name.contains("varnish") { 0.045 } else { MORE };
+        let more = if name.contains("varnish") { 0.045 } else { ENERGY_TOLERANCE };
         for wo in views(both_sides) {
             let energy = furnace(&bsdf, wo, 64);
             assert!(energy.max_channel() <= 1.0 + more, "{name} {wo}: {energy:?}");

@@ -18,14 +18,14 @@ use juggler_math::testing::Random;
 use juggler_math::{Rgb, Vec2, Vec3, portable, warp};
 
 /// Energy that errors of tables and sampling may add.
-const MORE: f32 = 0.02;
+const ENERGY_TOLERANCE: f32 = 0.02;
 
-/// Directions towards the viewer, from the normal to grazing; with `both`, also from below.
-fn views(both: bool) -> Vec<Vec3> {
+/// Directions towards the viewer, from the normal to grazing; with `both_sides`, also from below.
+fn views(both_sides: bool) -> Vec<Vec3> {
     let above = [(0.0, 0.0, 1.0), (0.4, 0.3, 0.8), (0.5, -0.6, 0.4), (-0.9, 0.3, 0.12), (0.7, 0.7, 0.02)];
     let above = above.map(|(x, y, z)| Vec3::new(x, y, z).normalize());
     let below = above.map(|w| Vec3::new(w.x, w.y, -w.z));
-    if both { above.into_iter().chain(below).collect() } else { above.to_vec() }
+    if both_sides { above.into_iter().chain(below).collect() } else { above.to_vec() }
 }
 
 /// Weight of a sample without the scale of radiance that crosses an interface: the energy that a

@@ -1,7 +1,7 @@
 //! Examples of the glTF material model, and its white furnaces.
 
 use super::examples::Example;
-use super::{MORE, furnace, views};
+use super::{ENERGY_TOLERANCE, furnace, views};
 use crate::{Bsdf, Principled};
 use juggler_math::Rgb;
 
@@ -105,7 +105,8 @@ fn white_principled_materials_pass_the_furnace_at_any_roughness() {
             let bsdf = lobes(&numbers, 1.5);
             for wo in views(numbers.transmission + numbers.diffuse_transmission > 0.0) {
                 let energy = furnace(&bsdf, wo, 64);
-                let more = if numbers.clearcoat > 0.0 || !numbers.sheen_color.is_black() { LAYERED } else { MORE };
+                let more =
+                    if numbers.clearcoat > 0.0 || !numbers.sheen_color.is_black() { LAYERED } else { ENERGY_TOLERANCE };
                 let near = energy.to_array().iter().all(|share| (least..=1.0 + more).contains(share));
                 assert!(near, "{name}, {roughness}, {wo}: {energy:?}");
             }

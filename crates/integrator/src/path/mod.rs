@@ -200,8 +200,8 @@ impl Integrator for Path {
         // Add emission, weighted against light sampling.
         if !shading.emission.is_black() {
             let light = || world.light_pdf(&path.history.light_sample_context(ray.time), vertex);
-            let bent = |to: &LightSampleContext, center_ray: &Ray| {
-                world.light_pdf(to, vertex) * caustic::emitter_cosine_ratio(center_ray, ray, vertex)
+            let bent = |context: &LightSampleContext, center_ray: &Ray| {
+                world.light_pdf(context, vertex) * caustic::emitter_cosine_ratio(center_ray, ray, vertex)
             };
             let end = HitEmitter::Surface(vertex.surface.point);
             let weight = self.emission_weight(world, path, ray, light, end, bent);

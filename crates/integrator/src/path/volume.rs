@@ -43,8 +43,9 @@ impl Path {
     fn scatter(&self, world: &World, ray: &Ray, path: &PathState, phase: HenyeyGreenstein, output: &mut VertexOutput) {
         let spawn_ray = |direction| Ray { time: ray.time, ..Ray::new(ray.origin, direction) };
         // Sample direct illumination.
-        let to = LightSampleContext { point: ray.origin, error: 0.0, normal: juggler_math::Vec3::ZERO, time: ray.time };
-        if let Some(light) = world.sample_light(&to, path.sampler.skipped(Dimension::Light as u32).next_2d()) {
+        let context =
+            LightSampleContext { point: ray.origin, error: 0.0, normal: juggler_math::Vec3::ZERO, time: ray.time };
+        if let Some(light) = world.sample_light(&context, path.sampler.skipped(Dimension::Light as u32).next_2d()) {
             let scattered = phase.eval(ray.direction.dot(light.wi));
             let mis_weight =
                 if light.can_be_bsdf_sampled { self.sampling.light_weight(light.pdf, scattered) } else { 1.0 };
@@ -59,9 +60,9 @@ impl Path {
         events.volume = events.volume.saturating_add(1);
         let pdf = phase.eval(ray.direction.dot(wi));
         let history = PathHistory {
-            from: to.point,
+            from: context.point,
             error: 0.0,
-            normal: to.normal,
+            normal: context.normal,
             pdf,
             light_samples: 1,
             pass_throughs: 0,
