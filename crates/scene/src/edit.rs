@@ -1,5 +1,6 @@
 //! Edits by JSON pointer, validated like documents.
 
+use crate::animate::SceneSources;
 use crate::description::{Description, Named, SourceSection, deserialize_scene};
 use crate::document::{Member, Members, Node, Value as Json, set_at_pointer};
 use crate::motion::{self, ItemSource};
@@ -53,8 +54,10 @@ impl Scene {
         let removes = self.description.remove(&path, &section, written);
         let Some(written) = written else { return self.check_names(removes) };
         let items = edited_sources(written, &path, &section);
-        let (head, sources) = (motion::head(&self.description), self.sources().clone());
-        let (stored, findings) = motion::replace_items(&mut self.description, &head, &sources, self.frame, &items);
+        let head = motion::head(&self.description);
+        let (texts, asset_cache) = (self.sources().clone(), self.asset_cache.clone());
+        let sources = SceneSources { texts: &texts, asset_cache: &asset_cache };
+        let (stored, findings) = motion::replace_items(&mut self.description, &head, sources, self.frame, &items);
         if stored { self.check_names(removes) } else { Err(findings) }
     }
 
@@ -80,7 +83,7 @@ impl Scene {
         self.check_paths()?;
         let items = self.description.templates(|_| true);
         let head = motion::head(&self.description);
-        let (parts, findings) = motion::read_items(&self.description, &head, self.sources(), self.frame, &items);
+        let (parts, findings) = motion::read_items(&self.description, &head, self.scene_sources(), self.frame, &items);
         parts.ok_or(findings)?.into_iter().for_each(|(path, part)| self.description.put(&path, part));
         self.description.update_time_dependence(&head);
         Ok(())
@@ -89,7 +92,7 @@ impl Scene {
     fn check_paths(&self) -> Result<(), Vec<Finding>> {
         let head = motion::head(&self.description);
         let (resolved, mut findings) =
-            animate::resolve_with(&head, self.sources(), &self.description.programs, self.frame);
+            animate::resolve_with(&head, self.scene_sources(), &self.description.programs, self.frame);
         let at = PathRef::Root.key("paths");
         let paths = resolved.get("paths");
         findings.extend(paths.into_iter().flat_map(|paths| {

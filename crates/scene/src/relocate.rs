@@ -36,8 +36,8 @@ fn walk(value: &mut Value, at: &mut ScenePath, files: &Files<'_>, folder: &Path)
 }
 
 fn rename(name: &mut String, at: &ScenePath, files: &Files<'_>, folder: &Path) {
-    let is_variable = matches!(at.steps(), [Step::Key(first), ..] if first == "variables");
-    // Variables may be called `file` too, but they are numbers and vectors.
+    // A variable may be called `file` too, but it is a number or a vector.
+    let is_variable = matches!(at.steps(), [Step::Key(first), _] if first == "variables");
     let is_asset = files.asset_cache.store().assets.path_of(name).is_some();
     if is_variable || is_asset || Path::new(name.as_str()).is_absolute() {
         return;

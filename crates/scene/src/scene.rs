@@ -1,6 +1,7 @@
 //! Scenes: reading, building, checking and compiling.
 
 use crate::SceneError;
+use crate::animate::SceneSources;
 use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files, light_files};
 use crate::description::{Description, deserialize_scene};
 use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_part};
@@ -119,7 +120,8 @@ impl Scene {
         let (mut document, mut findings) = Document::read(name, text, asset_cache.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
         let programs = animate::Programs::default();
-        let (resolved, wrong) = animate::resolve_with(&document.tree, &document.sources, &programs, 0.0);
+        let sources = SceneSources { texts: &document.sources, asset_cache: &asset_cache };
+        let (resolved, wrong) = animate::resolve_with(&document.tree, sources, &programs, 0.0);
         findings.extend(wrong);
         let found = deserialize_scene(&resolved, &mut findings);
         drop(resolved);
@@ -128,7 +130,7 @@ impl Scene {
         description.programs = programs;
         motion::attach(&mut description, &document.tree, &inline_names);
         for list in std::mem::take(&mut document.lists) {
-            findings.extend(read_list(&mut description, &list, &document.sources));
+            findings.extend(read_list(&mut description, &list, sources));
         }
         let is_valid = is_valid && !findings.iter().any(Finding::is_error);
         let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
@@ -158,7 +160,7 @@ impl Scene {
             return Ok(scene);
         }
         let head = motion::head(&edits_merged);
-        let (parts, findings) = motion::read_items(&edits_merged, &head, self.sources(), frame, &moving);
+        let (parts, findings) = motion::read_items(&edits_merged, &head, self.scene_sources(), frame, &moving);
         scene.description = edits_merged.clone().into_owned();
         match parts {
             Some(parts) => parts.into_iter().for_each(|(path, part)| scene.description.put(&path, part)),
@@ -236,7 +238,7 @@ impl Scene {
             return (Arc::clone(&known.tracks), known.findings.clone());
         }
         let edits_merged = self.edits_merged();
-        let (tracks, findings) = Tracks::sample(&edits_merged, self.sources(), self.frame);
+        let (tracks, findings) = Tracks::sample(&edits_merged, self.scene_sources(), self.frame);
         let tracks = Arc::new(tracks);
         let (scene, frame) = (self.description.clone(), self.frame);
         *known = Some(CachedTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
@@ -278,7 +280,7 @@ impl Scene {
 
     /// Lists what moves in the scene, for display.
     pub fn survey(&self) -> animate::Survey {
-        animate::survey(&self.to_value().into(), self.sources(), &self.description.programs)
+        animate::survey(&self.to_value().into(), self.scene_sources(), &self.description.programs)
     }
 
     /// Whether anything in the scene may differ between frames.
@@ -328,12 +330,16 @@ impl Scene {
 
     /// The description with the changes of programs merged into the templates of moving items.
     pub(crate) fn edits_merged(&self) -> Cow<'_, Description> {
-        motion::edits_merged(&self.description, self.sources(), self.frame)
+        motion::edits_merged(&self.description, self.scene_sources(), self.frame)
     }
 
     pub(crate) fn sources(&self) -> &Sources {
         static NONE: LazyLock<Sources> = LazyLock::new(Sources::default);
         self.origin.as_ref().map_or(&*NONE, |origin| &origin.document.sources)
+    }
+
+    pub(crate) fn scene_sources(&self) -> SceneSources<'_> {
+        SceneSources { texts: self.sources(), asset_cache: &self.asset_cache }
     }
 
     pub(crate) fn files(&self) -> Files<'_> {
@@ -345,7 +351,7 @@ impl Scene {
             return Problems::new(findings, self.sources().clone(), &|_| None);
         };
         let Document { tree, sources, .. } = &origin.document;
-        let (resolved, _) = animate::resolve(tree, sources, self.frame);
+        let (resolved, _) = animate::resolve_with(tree, self.scene_sources(), &self.description.programs, self.frame);
         Problems::new(findings, sources.clone(), &|path| Some(self.place_of(path, &resolved)))
     }
 

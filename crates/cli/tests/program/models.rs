@@ -67,6 +67,33 @@ fn flags_select_variant_clip_and_scene_of_a_model() {
 }
 
 #[test]
+fn a_scene_of_two_models_with_overrides_and_a_follower_is_the_same_when_written_anew() {
+    let folder = with_triangle();
+    let scene = |position: &str| {
+        format!(
+            r#"{{"version": 1, "render": {{"shutter": [0, 0.5]}}, "lights": [{{"ambient": {{}}}}], "materials": {{"clay": {{"diffuse": {{}}}}}},
+            "camera": {{"perspective": {{"eye": [1, 2, 9], "look_at": [1, 1, 0]}}}}, "objects": [
+            {{"model": {{"file": "triangle.gltf", "variant": "shiny"}}}},
+            {{"model": {{"file": "triangle.gltf", "animation": "none", "materials": {{"Dull": "clay"}}}}, "transform": [{{"translate": [2, 0, 0]}}]}},
+            {{"shape": {{"sphere": {{"radius": 0.25}}}}, "transform": [{{"translate": {position}}}]}}]}}"#
+        )
+    };
+    let posed = r#"{"posed": {"file": "triangle.gltf", "node": "Top", "animation": "Rise", "point": [0.5, 0.25, 0]}}"#;
+    let keys = r#"{"animate": {"keys": [[0, [0.5, 0.25, 0]], [1, [0.5, 2.25, 0]]], "repeat": "loop"}}"#;
+    fs::write(folder.path("a.json"), scene(posed)).unwrap();
+    fs::write(folder.path("keys.json"), scene(keys)).unwrap();
+    fs::create_dir(folder.path("inner")).unwrap();
+    folder.good("convert a.json inner/b.json");
+    let hash = |scene: &str| folder.hash(&format!("{scene} --frame 12 --size 32x24 --samples 4 -o a.png"));
+    assert_eq!(hash("inner/b.json"), hash("a.json"));
+    assert_eq!(hash("keys.json"), hash("a.json"));
+    assert!(folder.good("info a.json").stdout.contains("posed, triangle.gltf: Top"));
+    fs::write(folder.path("a.json"), scene(&posed.replace("Top", "Tip"))).unwrap();
+    let message = folder.bad("check a.json", 1);
+    assert!(message.contains("there is no node `Tip`; did you mean `Top`?"), "{message}");
+}
+
+#[test]
 fn broken_models_are_refused_with_file_and_place() {
     let folder = with_triangle();
     fs::write(folder.path("cut.glb"), b"glTF\x02\0\0\0").unwrap();

@@ -6,6 +6,7 @@ use super::limits::Limits;
 use super::open::Gltf;
 use super::translate::Content;
 use super::{is_binary, summary};
+use glam::DAffine3;
 use juggler_scene::model::{
     FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
@@ -80,6 +81,10 @@ impl ModelFile for GltfModel {
 
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
         self.content.parts(choice, prefix).map_err(|error| model_error(&error))
+    }
+
+    fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, ModelError> {
+        self.content.node_transform(node, choice).map_err(|error| model_error(&error))
     }
 
     fn summary(&self, choice: &ModelChoice) -> Result<ModelSummary, ModelError> {

@@ -9,11 +9,13 @@
 //! Order of evaluation: variables, each of which may refer to variables above it; paths, which
 //! variables may request earlier; all other values.
 
-use crate::document::{Members, Node, Sources, Value};
+use crate::compile::AssetCache;
+use crate::document::{Members, Node, SourceSpan, Sources, Value};
 use crate::path::PathRef;
 use crate::report::Finding;
 use crate::suggest;
 use juggler_expression::{Names, PointEvaluator, Program};
+use std::path::PathBuf;
 use std::sync::Arc;
 use tree_resolver::TreeResolver;
 
@@ -35,7 +37,8 @@ pub(crate) use resolver::Resolver;
 pub use survey::{FormSummary, Survey, depends_on_time};
 pub(crate) use survey::{TimeDependence, has_expressions};
 pub use tree_resolver::MAX_NESTING;
-pub use values::{Along, Animate, Extrapolation, Interpolation, Joint, Key, MAX_KEYS, ValueForm};
+pub(crate) use values::posed_files;
+pub use values::{Along, Animate, Extrapolation, Interpolation, Joint, Key, MAX_KEYS, Posed, ValueForm};
 
 /// Sections in which a string that begins with `=` is plain text, or that are evaluated first.
 const NOT_ANIMATED: [&str; 5] = ["title", "description", "animation", "variables", "paths"];
@@ -46,21 +49,46 @@ const PREDEFINED_NAMES: [&str; 4] = ["frame", "frames", "seconds", "pi"];
 /// Predefined names that change from frame to frame.
 const TIME_NAMES: [&str; 2] = ["frame", "seconds"];
 
-/// Evaluates a tree at a frame, which may be fractional. Returns the tree with plain values, and
-/// all errors in expressions and value forms. Nodes without any of these are shared with `tree`.
-pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding>) {
-    resolve_with(tree, sources, &Programs::default(), frame)
+/// Files that the evaluation of a scene needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneSources<'s> {
+    /// Source texts of the scene, for messages.
+    pub texts: &'s Sources,
+    /// Cache of loaded files, for the poses of models.
+    pub asset_cache: &'s AssetCache,
 }
 
-/// [`resolve`] with the scene's compiled expressions.
-pub(crate) fn resolve_with(tree: &Node, sources: &Sources, programs: &Programs, frame: f64) -> (Node, Vec<Finding>) {
+impl SceneSources<'_> {
+    /// Location of a file that the text at `place` names: the asset of that name, or a file relative
+    /// to the scene file that contains the text.
+    pub fn locate(&self, file: &str, place: Option<SourceSpan>) -> PathBuf {
+        let asset = self.asset_cache.store().assets.path_of(file);
+        asset.unwrap_or_else(|| self.texts.folder(place).join(file))
+    }
+}
+
+/// Evaluates a tree at a frame, which may be fractional. Returns the tree with plain values, and
+/// all errors in expressions and value forms. Nodes without any of these are shared with `tree`.
+/// Models cannot be read.
+pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding>) {
+    let asset_cache = AssetCache::default();
+    resolve_with(tree, SceneSources { texts: sources, asset_cache: &asset_cache }, &Programs::default(), frame)
+}
+
+/// [`resolve`] with the scene's files and compiled expressions.
+pub(crate) fn resolve_with(
+    tree: &Node,
+    sources: SceneSources<'_>,
+    programs: &Programs,
+    frame: f64,
+) -> (Node, Vec<Finding>) {
     let mut resolver = TreeResolver::new(tree, sources, programs, predefined_names(tree, frame));
     let resolved = resolved(&mut resolver, tree);
     (resolved, resolver.findings)
 }
 
 /// Surveys the value forms and time-dependent expressions of a tree.
-pub(crate) fn survey(tree: &Node, sources: &Sources, programs: &Programs) -> Survey {
+pub(crate) fn survey(tree: &Node, sources: SceneSources<'_>, programs: &Programs) -> Survey {
     let mut resolver = TreeResolver::new(tree, sources, programs, predefined_names(tree, 0.0)).surveying();
     resolved(&mut resolver, tree);
     Survey { forms: resolver.forms.unwrap_or_default(), expressions: survey::changing_expressions(tree, programs) }

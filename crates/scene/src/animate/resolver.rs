@@ -1,8 +1,8 @@
 //! Evaluates single values of a scene for one frame. Variables and paths are evaluated once.
 
 use super::tree_resolver::TreeResolver;
-use super::{Programs, predefined_names};
-use crate::document::{Node, Sources, Value};
+use super::{Programs, SceneSources, predefined_names};
+use crate::document::{Node, Value};
 use crate::path::PathRef;
 use crate::report::Finding;
 use crate::validate;
@@ -15,8 +15,8 @@ pub(crate) struct Resolver<'s> {
 
 impl<'s> Resolver<'s> {
     /// Creates a resolver for a frame. `head` holds the scene's `animation`, `variables` and
-    /// `paths`, `sources` their source texts, `programs` the scene's compiled expressions.
-    pub fn new(head: &'s Node, sources: &'s Sources, programs: &'s Programs, frame: f64) -> Self {
+    /// `paths`, `programs` the scene's compiled expressions.
+    pub fn new(head: &'s Node, sources: SceneSources<'s>, programs: &'s Programs, frame: f64) -> Self {
         let mut resolver = TreeResolver::new(head, sources, programs, predefined_names(head, frame));
         resolver.variables();
         if let Some(paths) = resolver.all_paths() {

@@ -33,6 +33,8 @@ pub struct FormSummary {
     pub repeat: Option<Extrapolation>,
     /// Name of the path that the form follows.
     pub along: Option<String>,
+    /// Model file and node that the form follows, such as "fox.glb: Head".
+    pub node: Option<String>,
 }
 
 impl TreeResolver<'_> {
@@ -156,7 +158,7 @@ impl<'t> TimeDependence<'t> {
     }
 }
 
-/// Whether a form is an `animate` without `at`, which evaluates its keys at the scene's time.
+/// Whether a form has no time of its own (`at`) and is evaluated at the scene's time.
 fn uses_scene_time(form: &Node) -> bool {
-    form.get("animate").is_some_and(|content| content.get("at").is_none())
+    ["animate", "posed"].iter().any(|kind| form.get(kind).is_some_and(|content| content.get("at").is_none()))
 }

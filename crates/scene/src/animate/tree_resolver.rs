@@ -3,8 +3,8 @@
 use super::paths::Paths;
 use super::survey::FormSummary;
 use super::values::{self, Kind};
-use super::{Programs, number, numbers};
-use crate::document::{Members, Node, SourceSpan, Sources, Value};
+use super::{Programs, SceneSources, number, numbers};
+use crate::document::{Members, Node, SourceSpan, Value};
 use crate::path::PathRef;
 use crate::report::Finding;
 use crate::validate;
@@ -24,7 +24,7 @@ pub(super) struct TreeResolver<'s> {
     /// Source JSON of the scene's variables.
     pub variables: Option<&'s Node>,
     pub paths: Paths<'s>,
-    sources: &'s Sources,
+    pub sources: SceneSources<'s>,
     programs: &'s Programs,
     evaluator: PointEvaluator,
     pub findings: Vec<Finding>,
@@ -35,7 +35,7 @@ pub(super) struct TreeResolver<'s> {
 }
 
 impl<'s> TreeResolver<'s> {
-    pub fn new(tree: &'s Node, sources: &'s Sources, programs: &'s Programs, names: Names) -> Self {
+    pub fn new(tree: &'s Node, sources: SceneSources<'s>, programs: &'s Programs, names: Names) -> Self {
         Self {
             names,
             variables: tree.get("variables"),
@@ -164,8 +164,11 @@ impl TreeResolver<'_> {
 
     /// Source location of an error inside a string, if the string has no escapes.
     fn error_span(&self, place: SourceSpan, text: &str, expression: &str, error: &ExpressionError) -> SourceSpan {
-        let written =
-            self.sources.get(place.file).and_then(|source| source.text.get(place.start as usize..place.end as usize));
+        let written = self
+            .sources
+            .texts
+            .get(place.file)
+            .and_then(|source| source.text.get(place.start as usize..place.end as usize));
         let literal = written.is_some_and(|written| written.len() == text.len() + 2);
         let before = 1 + text.len() - expression.len();
         let end = error.at.end.max(error.at.start + 1);

@@ -77,11 +77,7 @@ impl Model {
         ModelChoice {
             scene: self.scene.clone(),
             variant: self.variant.clone(),
-            animation: match &self.animation {
-                None => AnimationChoice::First,
-                Some(NameOrIndex::Name(name)) if name == "none" => AnimationChoice::None,
-                Some(clip) => AnimationChoice::Clip(clip.clone()),
-            },
+            animation: AnimationChoice::from_setting(self.animation.as_ref()),
             seconds: self.at.unwrap_or(scene_seconds),
             repeat: self.repeat,
             photometric: self.photometric,

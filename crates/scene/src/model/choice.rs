@@ -42,6 +42,18 @@ pub enum AnimationChoice {
     Clip(NameOrIndex),
 }
 
+impl AnimationChoice {
+    /// Choice by a setting: a clip, or the name `none` for the rest pose. Defaults to the first
+    /// clip.
+    pub fn from_setting(setting: Option<&NameOrIndex>) -> Self {
+        match setting {
+            None => Self::First,
+            Some(NameOrIndex::Name(name)) if name == "none" => Self::None,
+            Some(clip) => Self::Clip(clip.clone()),
+        }
+    }
+}
+
 /// What happens after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

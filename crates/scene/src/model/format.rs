@@ -1,6 +1,7 @@
 //! Formats of model files, which other crates implement (`juggler-import` implements glTF).
 
 use super::{Files, ModelChoice, ModelParts, ModelSummary};
+use glam::DAffine3;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -48,6 +49,18 @@ pub trait ModelFile: Debug + Send + Sync {
     ///
     /// The content is not valid, or the choice names something that the file does not have.
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError>;
+
+    /// Transform of a node to the space of the file, in the pose of a choice. `node` is the name of
+    /// the node, or a path of names such as "Root/Body/Head". Defaults to an error: the format has
+    /// no nodes.
+    ///
+    /// # Errors
+    ///
+    /// The file has no such node, several nodes have the name, or the choice names something that
+    /// the file does not have.
+    fn node_transform(&self, node: &str, _choice: &ModelChoice) -> Result<DAffine3, ModelError> {
+        Err(ModelError::new(format!("there is no node `{node}`: files of this format have no nodes")))
+    }
 
     /// Describes the file for people and programs.
     ///

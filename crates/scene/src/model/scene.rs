@@ -1,11 +1,13 @@
 //! Models of a scene: expansion on first use, and scenes around model files.
 
 use super::{Expansion, ModelSummary, SceneTime, describe_model_scene, expand, has_models};
+use crate::animate::posed_files;
 use crate::compile::{AssetCache, Files};
 use crate::description::{Description, Model, Object};
 use crate::item::Item;
 use crate::path::{Path as ScenePath, PathRef};
 use crate::{Scene, SceneError};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -86,7 +88,20 @@ impl Scene {
     pub(crate) fn model_paths(&self) -> Vec<PathBuf> {
         let models = self.models();
         let opened = models.iter().map(|(path, model)| self.opened(path, model));
-        opened.flat_map(|opened| opened.paths().cloned().collect::<Vec<_>>()).collect()
+        let followed = self.followed_models().into_iter().map(|path| self.asset_cache.model(&path));
+        opened.chain(followed).flat_map(|opened| opened.paths().cloned().collect::<Vec<_>>()).collect()
+    }
+
+    /// Locations of the model files whose nodes values follow (`posed`).
+    fn followed_models(&self) -> BTreeSet<PathBuf> {
+        let (scene, sources) = (&self.description, self.scene_sources());
+        let templates = scene.templates(|_| true);
+        let sections = [&scene.variables, &scene.paths].map(|section| section.node());
+        let mut found = Vec::new();
+        for node in templates.iter().map(|source| &source.template.node).chain(sections.into_iter().flatten()) {
+            posed_files(node, &mut found);
+        }
+        found.into_iter().map(|(file, node)| sources.locate(file, node.place)).collect()
     }
 
     /// Whether a model of the scene has an animation that shows.

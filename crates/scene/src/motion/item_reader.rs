@@ -2,9 +2,9 @@
 //! schema, and deserializes all items of the batch together.
 
 use super::{ItemValue, attach_items, with_path_ref};
-use crate::animate::Resolver;
+use crate::animate::{Resolver, SceneSources};
 use crate::description::{Description, Object, Objects};
-use crate::document::{Node, SourceSpan, Sources};
+use crate::document::{Node, SourceSpan};
 use crate::item::{Item, Template};
 use crate::path::{Path, PathRef, Step};
 use crate::report::Finding;
@@ -83,7 +83,7 @@ pub(crate) type ItemValues<'w> = Vec<(Cow<'w, Path>, ItemValue)>;
 pub(crate) fn read_items<'w>(
     scene: &Description,
     head: &Node,
-    sources: &Sources,
+    sources: SceneSources<'_>,
     frame: f64,
     items: &'w [ItemSource],
 ) -> (Option<ItemValues<'w>>, Vec<Finding>) {
@@ -97,7 +97,7 @@ pub(crate) fn read_items<'w>(
 pub(crate) fn replace_items(
     scene: &mut Description,
     head: &Node,
-    sources: &Sources,
+    sources: SceneSources<'_>,
     frame: f64,
     items: &[ItemSource],
 ) -> (bool, Vec<Finding>) {

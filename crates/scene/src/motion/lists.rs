@@ -2,8 +2,9 @@
 //! time.
 
 use super::{ItemSource, head, replace_items};
+use crate::animate::SceneSources;
 use crate::description::Description;
-use crate::document::{FileId, LongList, Node, Sources, finding};
+use crate::document::{FileId, LongList, Node, finding};
 use crate::path::Path;
 use crate::report::Finding;
 
@@ -12,8 +13,8 @@ const MAX_FINDINGS: usize = 200;
 
 /// Reads the items of a long list into a scene at frame 0, whose other sections are already read.
 /// Returns all findings; after an error the scene's list is empty.
-pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: &Sources) -> Vec<Finding> {
-    let text = sources.get(FileId::MAIN).map(|source| source.text.as_str()).unwrap_or_default();
+pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: SceneSources<'_>) -> Vec<Finding> {
+    let text = sources.texts.get(FileId::MAIN).map(|source| source.text.as_str()).unwrap_or_default();
     let head = head(scene);
     let mut findings = Vec::new();
     for (first, chunk) in list.chunks(text, FileId::MAIN) {
@@ -40,7 +41,7 @@ pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: &Sour
 fn read_chunk(
     scene: &mut Description,
     head: &Node,
-    sources: &Sources,
+    sources: SceneSources<'_>,
     key: &str,
     first: usize,
     nodes: Vec<Node>,

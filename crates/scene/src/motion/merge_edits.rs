@@ -2,9 +2,9 @@
 //! values that the program left alone stay animated.
 
 use super::{FormValue, ItemSource, read_items, write};
-use crate::animate::{TimeDependence, has_expressions, is_form};
+use crate::animate::{SceneSources, TimeDependence, has_expressions, is_form};
 use crate::description::Description;
-use crate::document::{Node, Sources, Value};
+use crate::document::{Node, Value};
 use crate::item::Template;
 use crate::path::{Path, Step};
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Returns the scene with all edits merged into its templates; borrows the scene if it has no such
 /// edits.
-pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: &Sources, frame: f64) -> Cow<'s, Description> {
+pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: SceneSources<'_>, frame: f64) -> Cow<'s, Description> {
     let mut changed: Vec<(Path, Arc<Template>, serde_json::Value)> = Vec::new();
     scene.each_item(&mut |at, item| {
         if let Some(template) = item.template().filter(|_| item.is_changed()) {
@@ -46,7 +46,7 @@ pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: &Sources, frame:
 fn value_before_edit(
     scene: &Description,
     head: &Node,
-    sources: &Sources,
+    sources: SceneSources<'_>,
     frame: f64,
     path: &Path,
     template: &Arc<Template>,

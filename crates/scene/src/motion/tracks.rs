@@ -2,9 +2,9 @@
 
 use super::{ItemSource, ItemValue, ItemValues, read_items, write};
 use crate::Object;
-use crate::animate::TimeDependence;
+use crate::animate::{SceneSources, TimeDependence};
 use crate::description::Description;
-use crate::document::{Node, Sources};
+use crate::document::Node;
 use crate::item::{Item, Template};
 use crate::path::Step;
 use crate::report::Finding;
@@ -46,7 +46,7 @@ pub enum ObjectTrack {
 impl Tracks {
     /// Samples all animated items of a scene at `frame` over its shutter interval. Returns empty
     /// tracks and the findings if a sample is invalid.
-    pub(crate) fn sample(scene: &Description, sources: &Sources, frame: f64) -> (Self, Vec<Finding>) {
+    pub(crate) fn sample(scene: &Description, sources: SceneSources<'_>, frame: f64) -> (Self, Vec<Finding>) {
         let [open, close] = scene.render.shutter;
         let is_open = open < close && open.is_finite() && close.is_finite();
         let items = if is_open { moving_items(scene) } else { Vec::new() };

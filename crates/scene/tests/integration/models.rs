@@ -1,5 +1,6 @@
 //! Models as objects and as scenes, with a small format that is made for these tests.
 
+use glam::{DAffine3, DQuat, DVec3};
 use indexmap::IndexMap;
 use juggler_camera::{AnyCamera, Perspective};
 use juggler_light::{AnyLight, Point};
@@ -29,7 +30,7 @@ struct Toy {
     is_lit: bool,
 }
 
-const LOADER: Loader = Loader::new(&[&ToyFormat]);
+pub const LOADER: Loader = Loader::new(&[&ToyFormat]);
 
 impl ModelFormat for ToyFormat {
     fn name(&self) -> &'static str {
@@ -111,6 +112,14 @@ impl ModelFile for Toy {
         })
     }
 
+    fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, ModelError> {
+        if node != "Head" {
+            return Err(ModelError::new(format!("no node {node}")));
+        }
+        let x = self.clip(choice)?.map_or(0.0, |_| choice.seconds);
+        Ok(DAffine3::from_scale_rotation_translation(DVec3::splat(2.0), DQuat::IDENTITY, DVec3::new(x, 2.0, 0.0)))
+    }
+
     fn summary(&self, choice: &ModelChoice) -> Result<ModelSummary, ModelError> {
         let clip = ModelClip { name: "Walk".into(), seconds: 2.0 };
         Ok(ModelSummary {
@@ -129,7 +138,7 @@ fn scene(objects: &str) -> Result<Scene, SceneError> {
     scene_with(objects, "")
 }
 
-fn scene_with(objects: &str, more: &str) -> Result<Scene, SceneError> {
+pub fn scene_with(objects: &str, more: &str) -> Result<Scene, SceneError> {
     let text = format!(r#"{{"version": 1, "objects": [{objects}]{more}}}"#);
     let files = [("a.json", text.as_str()), ("still.toy", "toy\nlit\n"), ("walk.toy", "toy\nclip\nlit\n")];
     let files = files.map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec()));

@@ -53,7 +53,7 @@ fn length(animation: &Animation) -> String {
 /// `animate, 4 keys, 0 to 2.5 s, smooth, loop`.
 fn track_text(track: &FormSummary) -> String {
     let mut parts = vec![track.kind.clone()];
-    parts.extend(track.along.clone());
+    parts.extend(track.along.clone().or_else(|| track.node.clone()));
     parts.extend(track.keys.map(|keys| counted(keys as u128, "key")));
     parts.extend(track.time_range.map(|[first, last]| format!("{} to {} s", rounded(first), rounded(last))));
     parts.extend(track.interpolation.map(|interpolation| word(&interpolation)));
@@ -66,6 +66,7 @@ fn as_json(track: &FormSummary) -> Value {
         "path": track.path.to_string(),
         "kind": track.kind,
         "along": track.along,
+        "node": track.node,
         "keys": track.keys,
         "span": track.time_range,
         "interpolation": track.interpolation,

@@ -116,6 +116,21 @@ impl Content {
         Ok(Posed { selection, nodes, pose, worlds, visible })
     }
 
+    /// Transform of a node to world space in the pose of a choice. `node` is a name or a path of
+    /// names; nodes of all scenes count.
+    ///
+    /// # Errors
+    ///
+    /// There is no such node, several nodes have the name, or the choice names something that the
+    /// file does not have.
+    pub fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, GltfError> {
+        let posed = self.posed(choice)?;
+        let nodes = self.tree.scene(&self.data.gltf.document, &self.names, None);
+        let found =
+            select::node(&self.names, &nodes, node).map_err(|fault| GltfError::new(&self.data.gltf.name, fault))?;
+        Ok(posed.worlds.get(found).copied().unwrap_or_default())
+    }
+
     /// View of a scene in a pose.
     pub fn view<'a>(&'a self, posed: &'a Posed, prefix: &'a str) -> View<'a> {
         let Posed { selection, nodes, pose, worlds, visible } = posed;

@@ -1,6 +1,8 @@
 //! The scene, the clip and the variant that a choice selects.
 
 use super::Content;
+use super::names::Names;
+use super::tree::SceneNode;
 use crate::gltf::error::Fault;
 use juggler_math::suggest::did_you_mean_or_list;
 use juggler_scene::model::{AnimationChoice, ModelChoice, NameOrIndex};
@@ -39,6 +41,26 @@ impl Selection {
         match (scene, clip, variant.transpose()) {
             (Ok(scene), Ok(clip), Ok(variant)) => Ok(Self { scene, clip, variant }),
             (scene, clip, variant) => Err([scene.err(), clip.err(), variant.err()].into_iter().flatten().collect()),
+        }
+    }
+}
+
+/// Index of the node with a path such as `Root/Body/Head`, or with a name that no other node has.
+pub fn node(names: &Names, nodes: &[SceneNode], wanted: &str) -> Result<usize, Fault> {
+    let name = |node: &SceneNode| names.nodes.get(node.index).map(String::as_str).unwrap_or_default();
+    let by_path: Vec<&SceneNode> = nodes.iter().filter(|node| node.path == wanted).collect();
+    let by_name = || nodes.iter().filter(|node| name(node) == wanted).collect();
+    let found: Vec<&SceneNode> = if by_path.is_empty() { by_name() } else { by_path };
+    match found.as_slice() {
+        [node] => Ok(node.index),
+        [] => {
+            let help = did_you_mean_or_list(wanted, nodes.iter().map(name));
+            let help = help.unwrap_or_else(|| "there are none".to_owned());
+            Err(Fault::at("/nodes", format!("there is no node `{wanted}`; {help}")))
+        }
+        [first, ..] => {
+            let text = format!("{} nodes are called `{wanted}`; write the path, such as `{}`", found.len(), first.path);
+            Err(Fault::at("/nodes", text))
         }
     }
 }

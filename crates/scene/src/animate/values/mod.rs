@@ -13,11 +13,14 @@ mod along;
 mod blend;
 mod joint;
 mod keys;
+mod posed;
 mod track;
 
 pub use along::Along;
 pub use joint::Joint;
 pub use keys::{Key, MAX_KEYS};
+pub use posed::Posed;
+pub(crate) use posed::posed_files;
 pub use track::{Animate, Extrapolation, Interpolation};
 
 /// Value form, which may replace a value, also in `variables` and inside other value forms, and
@@ -31,10 +34,13 @@ pub enum ValueForm {
     Along(Along),
     /// Position of the joint of two bones: three numbers.
     Joint(Joint),
+    /// Place of a node of a model (glTF) in a clip, in the space of the model file: three numbers, or
+    /// the 12 of a matrix. Lights, cameras and objects follow the node with it.
+    Posed(Posed),
 }
 
 /// All value forms.
-pub const KINDS: [Kind; 3] = [track::KIND, along::KIND, joint::KIND];
+pub const KINDS: [Kind; 4] = [track::KIND, along::KIND, joint::KIND, posed::KIND];
 
 /// Value form, as the traversal uses it.
 pub struct Kind {

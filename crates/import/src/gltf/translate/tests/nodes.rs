@@ -108,3 +108,24 @@ fn too_many_instances_are_a_fault() {
     let error = model.parts(&ModelChoice::default(), "").unwrap_err().to_string();
     assert_eq!(error, "a.glb: /nodes/1: the scene has more than 5 instances, the limit");
 }
+
+#[test]
+fn nodes_are_found_by_names_and_paths() {
+    let mut builder = triangle();
+    builder.member(
+        r#""scenes": [{"nodes": [0]}], "nodes": [{"name": "Root", "children": [1, 2], "translation": [1, 2, 3]},
+            {"name": "Arm", "children": [3], "scale": [2, 2, 2]}, {"name": "Leg", "children": [4]},
+            {"name": "Tip", "translation": [1, 0, 0]}, {"name": "Tip"}, {"name": "Other", "translation": [9, 0, 0]}]"#,
+    );
+    let model = open(&builder);
+    let origin = |node: &str| {
+        let found = model.node_transform(node, &ModelChoice::default());
+        found.map(|transform| transform.translation.to_array()).map_err(|error| error.to_string())
+    };
+    assert_eq!(origin("Arm"), Ok([1.0, 2.0, 3.0]));
+    assert_eq!(origin("Root/Arm/Tip"), Ok([3.0, 2.0, 3.0]));
+    assert_eq!(origin("Other"), Ok([9.0, 0.0, 0.0]), "nodes outside of the scene count");
+    let several = "a.glb: /nodes: 2 nodes are called `Tip`; write the path, such as `Root/Arm/Tip`";
+    assert_eq!(origin("Tip"), Err(several.into()));
+    assert_eq!(origin("Leh"), Err("a.glb: /nodes: there is no node `Leh`; did you mean `Leg`?".into()));
+}
