@@ -40,6 +40,7 @@ mod scene;
 pub mod schema;
 mod shared;
 mod store;
+mod unpack;
 mod update;
 pub mod validate;
 

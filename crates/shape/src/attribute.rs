@@ -102,6 +102,13 @@ pub struct MeshAttribute {
 }
 
 impl MeshAttribute {
+    /// Numbers of the value of a vertex or triangle, one per channel; 0 beyond the end.
+    pub fn numbers(&self, index: usize) -> impl Iterator<Item = f32> {
+        let channels = self.channels as usize;
+        let first = index.saturating_mul(channels);
+        (0..channels).map(move |channel| self.data.number(first.saturating_add(channel)))
+    }
+
     /// Checks the number of values and that all are finite; the error names the field.
     pub(crate) fn check(&self, name: &str, positions: usize, triangles: usize) -> Result<(), InvalidShape> {
         let field = |part: &str| format!("attributes.{name}.{part}");

@@ -1,11 +1,13 @@
 //! `juggler convert`: writes any readable scene as scene JSON, with its animation or at one frame;
-//! a mesh becomes a scene around it.
+//! a mesh becomes a scene around it, and a model a scene that refers to it or consists of its parts.
 
+use crate::console;
 use crate::failure::Failure;
 use crate::model_args::ModelArgs;
 use crate::output;
 use crate::source;
 use clap::Args;
+use juggler::scene::Scene;
 use std::path::Path;
 
 /// Flags of `juggler convert`.
@@ -14,7 +16,12 @@ pub struct Convert {
     /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene, or `-` for standard input
     scene: String,
     /// Output file, or `-` for standard output
-    output: String,
+    #[arg(required_unless_present = "unpack")]
+    output: Option<String>,
+    /// Write the scene to this folder with its models as objects and materials, their meshes as PLY
+    /// files and their pictures as files. Animations end: the scene is that of one frame
+    #[arg(long, value_name = "DIR", conflicts_with = "output")]
+    unpack: Option<String>,
     /// Evaluate the scene at this frame, without expressions and animations
     #[arg(long, value_name = "N")]
     frame: Option<u32>,
@@ -30,7 +37,24 @@ impl Convert {
             Some(frame) => scene.at_frame(f64::from(frame))?.still(),
             None => scene,
         };
-        let folder = Path::new(&self.output).parent().filter(|_| self.output != output::STANDARD_OUTPUT);
-        output::write_text(&self.output, &folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder)))
+        if let Some(folder) = &self.unpack {
+            return self.unpack(&scene, folder);
+        }
+        let output = self.output.as_deref().unwrap_or(output::STANDARD_OUTPUT);
+        let folder = Path::new(output).parent().filter(|_| output != output::STANDARD_OUTPUT);
+        output::write_text(output, &folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder)))
+    }
+
+    /// Writes the scene and all that its models contain to a folder.
+    fn unpack(&self, scene: &Scene, folder: &str) -> Result<(), Failure> {
+        let unpacked = scene.unpacked()?;
+        if self.frame.is_none() && scene.depends_on_time() {
+            console::print_message("note: the scene moves; this is frame 0, `--frame N` selects another");
+        }
+        std::fs::create_dir_all(folder).map_err(|error| Failure::file("create", folder, &error))?;
+        let stem = Path::new(&self.scene).file_stem().and_then(|stem| stem.to_str()).filter(|stem| *stem != "-");
+        let path = Path::new(folder).join(format!("{}.json", stem.unwrap_or("scene")));
+        unpacked.save(&path)?;
+        console::print_result(&path.display().to_string())
     }
 }

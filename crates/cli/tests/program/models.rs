@@ -3,6 +3,7 @@
 use crate::harness::Folder;
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 /// A triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) with a clip that raises it, and two materials of which
 /// a variant selects the second.
@@ -91,6 +92,26 @@ fn a_scene_of_two_models_with_overrides_and_a_follower_is_the_same_when_written_
     fs::write(folder.path("a.json"), scene(&posed.replace("Top", "Tip"))).unwrap();
     let message = folder.bad("check a.json", 1);
     assert!(message.contains("there is no node `Tip`; did you mean `Top`?"), "{message}");
+}
+
+#[test]
+fn unpacked_models_are_scenes_of_mesh_files_with_the_same_picture() {
+    let folder = with_triangle();
+    let hash = |scene: &str| folder.hash(&format!("{scene} --frame 15 --size 24x18 --samples 2 -o a.png"));
+    let printed = folder.good("convert triangle.gltf --variant shiny --frame 15 --unpack parts").stdout;
+    assert_eq!(Path::new(printed.trim_end()), Path::new("parts").join("triangle.json"));
+    fs::remove_file(folder.path("triangle.bin")).unwrap();
+    let mesh = fs::read(folder.path("parts/meshes/Top.ply")).unwrap();
+    assert!(mesh.starts_with(b"ply\nformat binary_little_endian 1.0\nelement vertex 3\n"));
+    let unpacked = hash("parts/triangle.json");
+    let folder = with_triangle();
+    assert_eq!(folder.hash("triangle.gltf --variant shiny --frame 15 --size 24x18 --samples 2 -o a.png"), unpacked);
+    let run = folder.run("convert triangle.gltf --unpack parts");
+    assert!(run.status == 0 && run.stderr.starts_with("note: the scene moves"), "{}", run.stderr);
+    folder.good("convert one-sphere --unpack parts");
+    folder.bad("convert triangle.gltf a.json --unpack parts", 2);
+    folder.bad("convert triangle.gltf", 2);
+    folder.bad("convert triangle.gltf --unpack triangle.gltf", 3);
 }
 
 #[test]

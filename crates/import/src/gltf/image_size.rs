@@ -17,6 +17,16 @@ pub fn image_size(bytes: &[u8]) -> Option<[u32; 2]> {
     ktx2::read_head(bytes).ok().map(|head| [head.width, head.height])
 }
 
+/// File name extension of a PNG, JPEG or WebP by its first bytes, with the dot; empty for others.
+pub fn picture_extension(bytes: &[u8]) -> &'static str {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => ".png",
+        [0xff, 0xd8, ..] => ".jpg",
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => ".webp",
+        _ => "",
+    }
+}
+
 /// Big-endian number of `count` bytes.
 fn number(bytes: &[u8], at: usize, count: usize) -> Option<u32> {
     let bytes = bytes.get(at..at.checked_add(count)?)?;

@@ -48,7 +48,7 @@ pub use container::is_binary;
 pub use data::GltfData;
 pub use error::{Fault, GltfError, Place};
 pub use format::GltfFormat;
-pub(crate) use image_size::image_size;
+pub(crate) use image_size::{image_size, picture_extension};
 pub use juggler_scene::model::{FileError, Files};
 pub use limits::Limits;
 pub use open::Gltf;

@@ -3,6 +3,7 @@
 use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
 use crate::gltf::Warnings;
+use crate::gltf::picture_extension;
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
 use juggler_scene::Asset;
 use juggler_scene::model::FileError;
@@ -171,7 +172,7 @@ fn add_picture(pictures: &mut Vec<Picture>, (file, bytes): (String, Vec<u8>)) ->
     if let Some(index) = pictures.iter().position(|picture| picture.file == file) {
         return index;
     }
-    let asset_name = format!("images/{}", pictures.len());
+    let asset_name = format!("images/{}{}", pictures.len(), picture_extension(&bytes));
     let asset = Asset::from_bytes(bytes);
     pictures.push(Picture { file, asset_name, asset, has_alpha: false, is_normal_map: false });
     pictures.len() - 1

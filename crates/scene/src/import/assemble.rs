@@ -16,6 +16,10 @@ pub(super) struct MeshParts {
     pub normals: Vec<Vec3>,
     /// Texture coordinates: empty, or one per position.
     pub uvs: Vec<Vec2>,
+    /// Second set of texture coordinates: empty, or one per position.
+    pub uvs1: Vec<Vec2>,
+    /// Tangents with the sign of the bitangent: empty, or one per position.
+    pub tangents: Vec<[f32; 4]>,
     /// Colors of the positions.
     pub vertex_colors: Colors,
     /// Colors of the triangles.
@@ -58,6 +62,7 @@ impl MeshParts {
             return Err(ImportErrorKind::NoTriangles { note });
         }
         let normals = clean_normals(self.normals, &mut warnings);
+        let tangents = clean_tangents(self.tangents, &mut warnings);
         let vertex_colors = self.vertex_colors.into_attribute(AttributeDomain::Vertex);
         let face_colors = self.face_colors.into_attribute(AttributeDomain::Face);
         // A mesh that has both keeps the colors of its faces under another name.
@@ -70,8 +75,9 @@ impl MeshParts {
             triangles,
             normals,
             uvs: self.uvs,
+            uvs1: self.uvs1,
+            tangents,
             attributes,
-            ..MeshData::default()
         };
         Ok(Imported { mesh, warnings })
     }
@@ -91,6 +97,20 @@ fn clean_normals(mut normals: Vec<Vec3>, warnings: &mut Vec<String>) -> Vec<Vec3
         warnings.push(format!("{missing} vertices have no normal and are shaded flat"));
     }
     normals
+}
+
+/// Returns no tangents unless each sign of a bitangent is 1 or -1. Tangents that are not finite become
+/// zero, which means no tangent.
+fn clean_tangents(mut tangents: Vec<[f32; 4]>, warnings: &mut Vec<String>) -> Vec<[f32; 4]> {
+    if tangents.iter().any(|[.., sign]| sign.abs() != 1.0) {
+        warnings.push("tangents are ignored: a sign of the bitangent (`tw`) is neither 1 nor -1".to_owned());
+        return Vec::new();
+    }
+    for tangent in tangents.iter_mut().filter(|tangent| !tangent.iter().all(|number| number.is_finite())) {
+        let [.., sign] = *tangent;
+        *tangent = [0.0, 0.0, 0.0, sign];
+    }
+    tangents
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(crate) use detect::head;
 pub use error::{FilePosition, ImportError, ImportErrorKind};
 pub use estimate::{Estimate, estimate};
 pub use obj::{ObjModel, ObjSection};
-pub(crate) use ply::texture_file;
+pub(crate) use ply::{ply_bytes, texture_file};
 pub use unsupported::UnsupportedFormat;
 
 use juggler_imaging::regular;

@@ -5,7 +5,8 @@
 //! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
 //! `vertex_index`), in any order and of any number type. Colors `red green blue` of vertices or
 //! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
-//! are linear. The comment `TextureFile` names a picture for a scene around the file
+//! are linear. The columns `u1 v1` are the second set of surface coordinates, and `tx ty tz tw` the
+//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile` names a picture for a scene around the file
 //! ([`texture_file`]). The reader ignores everything else with a warning that names it, including
 //! lines of the header that are neither declarations nor comments, such as `Created by Blender3D`.
 //! In a text, each line is one row of an element, as the header describes it.
@@ -19,8 +20,10 @@ mod header;
 #[cfg(test)]
 mod tests;
 mod vertices;
+mod write;
 
 use declared::{DeclaredCounts, declared};
+pub(crate) use write::ply_bytes;
 
 use super::error::ImportErrorKind;
 use super::estimate::{Counts, FACE, FileSampler, lines, scaled, words};

@@ -4,6 +4,7 @@ use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, Index, Texture};
 use crate::gltf::error::Fault;
 use crate::gltf::ktx2::{self, Ktx2Error, Ktx2Picture};
+use crate::gltf::picture_extension;
 use crate::gltf::warning::Warnings;
 use indexmap::{IndexMap, IndexSet};
 use juggler_scene::Asset;
@@ -67,15 +68,17 @@ impl<'a> Pictures<'a> {
 
     /// Adds an image at its first use.
     fn add(&mut self, image: Index) -> Result<Picture, Fault> {
-        let file = format!("{}images/{image}", self.prefix);
+        let at = format!("/images/{image}");
+        let missing = || Fault::at(&at, "the picture has not been read");
+        let asset = self.data.image_asset(image.get()).ok_or_else(missing)?;
+        let encoded = asset.bytes().filter(|bytes| bytes.starts_with(KTX2));
+        // A KTX2 picture becomes a PNG.
+        let extension = encoded.map_or_else(|| asset.bytes().map_or("", picture_extension), |_| ".png");
+        let file = format!("{}images/{image}{extension}", self.prefix);
         if !self.assets.contains_key(&file) {
-            let at = format!("/images/{image}");
-            let missing = || Fault::at(&at, "the picture has not been read");
-            let asset = self.data.image_asset(image.get()).ok_or_else(missing)?;
-            let encoded = asset.bytes().filter(|bytes| bytes.starts_with(KTX2));
             let decoded = encoded.map(|bytes| ktx2::decode(bytes, MAX_TEXELS).and_then(|picture| pixels(&picture)));
-            let asset = decoded.transpose().map_err(|error| Fault::at(&at, error))?.unwrap_or(asset);
-            self.assets.insert(file.clone(), asset);
+            let decoded = decoded.transpose().map_err(|error| Fault::at(&at, error))?;
+            self.assets.insert(file.clone(), decoded.unwrap_or(asset));
         }
         let name = self.names.get_index(image.get()).cloned().unwrap_or_default();
         Ok(Picture { file, name })

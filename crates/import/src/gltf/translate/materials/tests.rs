@@ -127,14 +127,14 @@ fn factors_multiply_textures_of_their_channels() {
     assert_eq!((product.factor, &product.attribute), (Some(Rgb::new(1.0, 0.5, 0.25)), &None));
     let base = image_named(&parts, product.texture_name().unwrap());
     assert_eq!((base.color_space, base.channel, base.factor), (ColorSpace::Srgb, Channel::Rgb, 1.0));
-    assert_eq!((base.file.as_str(), base.wrap, base.filter), ("m/images/0", Wrap::Repeat, Filter::Trilinear));
+    assert_eq!((base.file.as_str(), base.wrap, base.filter), ("m/images/0.png", Wrap::Repeat, Filter::Trilinear));
     let metallic = image(&parts, &material.metallic);
     assert_eq!((metallic.color_space, metallic.channel, metallic.factor), (ColorSpace::Linear, Channel::B, 0.5));
     assert_eq!((metallic.wrap, metallic.wrap_v, metallic.filter), (Wrap::Clamp, Some(Wrap::Mirror), Filter::Nearest));
     let roughness = image(&parts, &material.roughness);
     assert_eq!((roughness.channel, roughness.factor), (Channel::G, 0.25));
     assert_eq!(image_named(&parts, color_name(&material.emissive)).factor, 0.5);
-    assert_eq!(parts.assets.keys().collect::<Vec<_>>(), ["m/images/0"]);
+    assert_eq!(parts.assets.keys().collect::<Vec<_>>(), ["m/images/0.png"]);
     assert!(texts(&parts).is_empty(), "{:?}", texts(&parts));
 }
 
@@ -147,7 +147,7 @@ fn equal_textures_are_added_once_and_webp_comes_first() {
     );
     assert_eq!(parts.textures.keys().collect::<Vec<_>>(), ["m/Wood"]);
     let parts = self::parts(r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 3}}}"#, &LIT);
-    assert_eq!(image_named(&parts, "m/image 1").file, "m/images/1");
+    assert_eq!(image_named(&parts, "m/image 1").file, "m/images/1.png");
 }
 
 #[test]
@@ -375,7 +375,7 @@ fn compressed_pictures_give_way_to_plain_ones_unless_required() {
     let mut set = MaterialSet::new(&data.gltf.document, &data, "");
     set.material(Some(0), &LIT).unwrap();
     let parts = set.finish();
-    assert_eq!(parts.assets.keys().collect::<Vec<_>>(), ["images/0"]);
+    assert_eq!(parts.assets.keys().collect::<Vec<_>>(), ["images/0.png"]);
     assert!(texts(&parts)[0].contains("feature `ktx2`"), "{:?}", texts(&parts));
     let data = file(r#", "extensionsRequired": ["KHR_texture_basisu"]"#);
     let fault = MaterialSet::new(&data.gltf.document, &data, "").material(Some(0), &LIT).unwrap_err();

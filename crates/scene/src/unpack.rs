@@ -1,0 +1,115 @@
+//! Unpacking: models and arrays of a scene become objects, mesh files and pictures.
+
+use crate::asset::Asset;
+use crate::compile::AssetCache;
+use crate::description::{Object, Objects};
+use crate::import::ply_bytes;
+use crate::item::Item;
+use crate::report::Finding;
+use crate::{Scene, SceneError};
+use juggler_shape::{AnyShape, Mesh, MeshData};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Folder of the mesh files.
+const FOLDER: &str = "meshes";
+/// Maximum number of bytes of a name that a mesh file takes from its object.
+const MAX_NAME: usize = 80;
+
+impl Scene {
+    /// The scene at its frame, with the objects, materials and lights of its models in their place.
+    /// Meshes that are arrays become assets, PLY files, if a PLY file can hold them; the pictures of
+    /// models are assets, too. [`Scene::save`] writes all of them.
+    ///
+    /// # Errors
+    ///
+    /// A model cannot be read.
+    pub fn unpacked(&self) -> Result<Self, SceneError> {
+        let mut scene = self.still();
+        let Some(expansion) = self.expanded() else {
+            scene.unpack_meshes();
+            return Ok(scene);
+        };
+        if expansion.findings.iter().any(Finding::is_error) {
+            return Err(SceneError::Problems(self.report(expansion.findings.clone())));
+        }
+        scene.description = expansion.description.clone();
+        scene.description.make_static();
+        scene.asset_cache = expansion.asset_cache.clone();
+        scene.unpack_meshes();
+        Ok(scene)
+    }
+
+    fn unpack_meshes(&mut self) {
+        let mut unpacker =
+            Unpacker { asset_cache: &mut self.asset_cache, files: BTreeMap::new(), names: BTreeSet::new() };
+        for (name, objects) in self.description.groups.iter_mut() {
+            unpacker.list(objects, name);
+        }
+        unpacker.list(&mut self.description.objects, "");
+    }
+}
+
+struct Unpacker<'s> {
+    asset_cache: &'s mut AssetCache,
+    /// Names of the files by the addresses of the arrays that they contain, which the assets' meshes
+    /// keep alive; `None` for arrays that stay in the scene.
+    files: BTreeMap<usize, (Arc<MeshData>, Option<String>)>,
+    /// Names in lower case, as file systems may compare them.
+    names: BTreeSet<String>,
+}
+
+impl Unpacker<'_> {
+    /// Unpacks the meshes of a list of objects. `outer` is the name of the list or of its object.
+    fn list(&mut self, objects: &mut Objects, outer: &str) {
+        for object in objects.iter_mut().filter(|object| has_arrays(object)) {
+            let object = object.value_mut_unmarked();
+            let name = object.name.clone().unwrap_or_else(|| outer.to_owned());
+            if let Some(AnyShape::Mesh(mesh)) = &mut object.shape
+                && let Some(file) = self.file(mesh, &name)
+            {
+                let crease_angle_degrees = mesh.crease_angle_degrees;
+                *mesh = Mesh::from_file(file);
+                mesh.crease_angle_degrees = crease_angle_degrees;
+            }
+            object.objects.iter_mut().for_each(|objects| self.list(objects, &name));
+        }
+    }
+
+    /// File of the arrays of a mesh; `None` if they stay in the scene.
+    fn file(&mut self, mesh: &Mesh, name: &str) -> Option<String> {
+        if mesh.file.is_some() || !mesh.morphs.is_empty() {
+            return None;
+        }
+        let arrays = mesh.arrays();
+        let address = Arc::as_ptr(arrays) as usize;
+        if let Some((_, known)) = self.files.get(&address) {
+            return known.clone();
+        }
+        let file = ply_bytes(arrays).map(|bytes| {
+            let file = self.unique(name);
+            self.asset_cache.insert_asset(file.clone(), Asset::from_bytes(bytes));
+            file
+        });
+        self.files.insert(address, (Arc::clone(arrays), file.clone()));
+        file
+    }
+
+    /// Name of a new file after the last part of a name such as `car/Root/Wheel`.
+    fn unique(&mut self, name: &str) -> String {
+        let last = name.rsplit('/').next().unwrap_or_default();
+        let plain = |c: char| if c.is_alphanumeric() || "-_ ".contains(c) { c } else { '_' };
+        let stem: String = last.chars().map(plain).collect();
+        let stem = stem.get(..stem.floor_char_boundary(MAX_NAME)).unwrap_or_default().trim();
+        let stem = if stem.is_empty() { "mesh" } else { stem };
+        let numbered = (2..).map(|number: u64| format!("{FOLDER}/{stem}-{number}.ply"));
+        let mut candidates = std::iter::once(format!("{FOLDER}/{stem}.ply")).chain(numbered);
+        candidates.find(|file| self.names.insert(file.to_lowercase())).unwrap_or_default()
+    }
+}
+
+/// Whether an object or an object inside it is a mesh of arrays.
+fn has_arrays(object: &Item<Object>) -> bool {
+    let own = matches!(&object.shape, Some(AnyShape::Mesh(mesh)) if mesh.file.is_none());
+    own || object.inner().iter().any(has_arrays)
+}
