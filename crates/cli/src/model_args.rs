@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use juggler::scene::Scene;
 use juggler::scene::model::NameOrIndex;
+use juggler::scene::{Loader, Scene};
 
 /// Flags for model files (glTF).
 #[derive(Clone, Debug, Default, Args)]
@@ -19,6 +19,10 @@ pub struct ModelArgs {
     /// Scene of a model file, by name or index
     #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
     pub model_scene: Option<String>,
+
+    /// Show missing and broken pictures of models gray, with a warning, instead of refusing the model
+    #[arg(long, help_heading = "Models", hide_short_help = true)]
+    pub lenient: bool,
 }
 
 impl ModelArgs {
@@ -35,18 +39,26 @@ impl ModelArgs {
             Some((format!("/objects/0/model/{key}"), value))
         };
         let edits: Vec<_> = flags.into_iter().filter_map(edit).collect();
-        if !edits.is_empty() {
+        if self.lenient || !edits.is_empty() {
             crate::source::load_model(name, self, None)?;
         }
         Ok(edits)
+    }
+
+    /// Loader of scenes.
+    pub fn loader(&self) -> Loader {
+        if self.lenient { juggler::loader().lenient() } else { juggler::loader() }
     }
 
     /// Selects what the model shows.
     ///
     /// # Errors
     ///
-    /// A flag is given and the scene is not one model file.
+    /// A flag is given and the scene is not one model file, or has no models.
     pub fn apply(&self, name: &str, scene: &mut Scene) -> Result<(), Failure> {
+        if self.lenient && !scene.has_models() {
+            return Err(Failure::Invalid(format!("--lenient is for models; `{name}` has none")));
+        }
         let flags =
             [("--variant", &self.variant), ("--animation", &self.animation), ("--model-scene", &self.model_scene)];
         let Some((flag, _)) = flags.into_iter().find(|(_, value)| value.is_some()) else { return Ok(()) };

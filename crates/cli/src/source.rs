@@ -5,7 +5,7 @@ use crate::format::bytes;
 use crate::model_args::ModelArgs;
 use juggler::scene::document::{bytes_to_read, read_text};
 use juggler::scene::import::{Content, estimate};
-use juggler::scene::{Scene, named};
+use juggler::scene::{Loader, Scene, named};
 use std::io::Read;
 use std::path::Path;
 
@@ -19,10 +19,15 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Loads a scene file, a mesh file (in a default scene), or a built-in scene. Fails if reading the
 /// file needs more than `most` bytes of memory.
 pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
+    load_by(juggler::loader(), name, most)
+}
+
+/// Loads as [`load`], by a loader.
+fn load_by(loader: Loader, name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     if name == STANDARD_INPUT {
         let text = standard_input()?;
         check_memory(bytes_to_read(text.as_bytes()), STANDARD_INPUT_NAME, most)?;
-        return Ok(juggler::loader().from_json(text, STANDARD_INPUT_NAME)?);
+        return Ok(loader.from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
     if Content::detect(path).is_mesh() {
@@ -31,7 +36,7 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
-    Ok(juggler::loader().named(name)?)
+    Ok(loader.named(name)?)
 }
 
 /// Loads as [`load`], and selects what a model file shows.
@@ -40,7 +45,7 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
 ///
 /// As [`load`]; also if flags for models are given and the file is no model.
 pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Scene, Failure> {
-    let mut scene = load(name, most)?;
+    let mut scene = load_by(model.loader(), name, most)?;
     model.apply(name, &mut scene)?;
     Ok(scene)
 }

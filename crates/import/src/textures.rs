@@ -1,11 +1,29 @@
 //! Textures of a model's materials: each distinct texture is added once, under a unique name.
 
+use crate::gltf::picture_extension;
 use indexmap::IndexMap;
 use juggler_texture::{AnyTexture, Channel, Input, InputProduct, InputValue, TextureRef};
 use std::collections::BTreeMap;
+use std::fmt::Display;
+
+/// Gray in place of a picture that is missing or broken, for lenient readers.
+pub const LOST_PICTURE: f32 = 0.5;
 
 /// Name of the vertex colors among the attributes of meshes.
 pub const VERTEX_COLORS: &str = "color";
+
+/// Maximum number of bytes of the name of a picture's file in the name of its asset.
+const MAX_FILE_NAME: usize = 100;
+
+/// Name of the asset of a picture, without the prefix of the model: its index, and the name of its
+/// file or the extension of its format.
+pub fn picture_asset_name(index: impl Display, file: Option<&str>, bytes: &[u8]) -> String {
+    let last = file.and_then(|file| file.rsplit('/').next()).filter(|last| last.len() <= MAX_FILE_NAME);
+    match last {
+        Some(last) if !last.is_empty() => format!("images/{index}-{last}"),
+        _ => format!("images/{index}{}", picture_extension(bytes)),
+    }
+}
 
 /// Textures by name.
 #[derive(Debug, Default)]

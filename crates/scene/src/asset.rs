@@ -74,6 +74,12 @@ impl Asset {
     }
 }
 
+/// Name of a file for messages: that of the asset, if the path stands for one, otherwise the path.
+pub(crate) fn display_name(path: &Path) -> String {
+    let asset = path.to_str().and_then(|path| path.strip_prefix("asset ")?.split_once('/'));
+    asset.map_or_else(|| path.display().to_string(), |(_, name)| name.to_owned())
+}
+
 /// Assets of a scene by name. Clones share them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Assets(Arc<BTreeMap<String, Asset>>);
@@ -120,6 +126,8 @@ mod tests {
         assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"png"));
         let path = assets.path_of("car.glb#images/3").unwrap();
         assert_eq!(assets.at(&path), Some(&Asset::from_bytes(*b"png")));
+        assert_eq!(display_name(&path), "car.glb#images/3");
+        assert_eq!(display_name(Path::new("a/b.png")), "a/b.png");
         assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"other"));
         assert_eq!(assets.at(&path), None, "the name has another content now");
         assets.insert("/of the root".into(), Asset::from_bytes(*b"root"));

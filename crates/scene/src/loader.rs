@@ -1,7 +1,7 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::compile::AssetCache;
-use crate::model::ModelFormat;
+use crate::model::{ModelCache, ModelFormat};
 use crate::store::{Bundle, Store};
 use crate::{Scene, SceneError};
 use std::path::Path;
@@ -13,12 +13,20 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Loader {
     formats: &'static [&'static dyn ModelFormat],
+    is_lenient: bool,
 }
 
 impl Loader {
     /// Creates a loader that knows these formats.
     pub const fn new(formats: &'static [&'static dyn ModelFormat]) -> Self {
-        Self { formats }
+        Self { formats, is_lenient: false }
+    }
+
+    /// The same loader, which shows missing and broken pictures of models gray, with a warning,
+    /// instead of refusing these models.
+    #[must_use]
+    pub const fn lenient(self) -> Self {
+        Self { is_lenient: true, ..self }
     }
 
     /// Loads a file as [`Scene::load`] does. A model becomes a scene that shows it, with a light if
@@ -45,6 +53,6 @@ impl Loader {
     }
 
     fn cache(self, store: Store) -> AssetCache {
-        AssetCache::new(store).with_formats(self.formats)
+        AssetCache::new(store).with_models(ModelCache::new(self.formats, self.is_lenient))
     }
 }

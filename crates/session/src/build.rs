@@ -4,7 +4,7 @@ use crate::ModelStatus;
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
 use juggler::math::{Rgb, Vec3};
-use juggler::scene::{Bundle, Names, Scene, SceneError};
+use juggler::scene::{Bundle, Loader, Names, Scene, SceneError};
 use juggler::{Aov, Error, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -28,6 +28,8 @@ pub struct BuildRequest {
     pub(crate) given_values: Vec<(String, Value)>,
     /// Models of the scene; `None` if they may have changed.
     pub(crate) models: Option<Arc<[ModelStatus]>>,
+    /// Whether missing and broken pictures of models are shown gray.
+    pub(crate) lenient: bool,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
     pub(crate) size: Option<[u32; 2]>,
@@ -74,6 +76,7 @@ impl BuildRequest {
             values: Vec::new(),
             given_values: Vec::new(),
             models: None,
+            lenient: false,
             frame: 0.0,
             settings,
             size,
@@ -89,6 +92,12 @@ impl BuildRequest {
     #[must_use]
     pub fn with_files(self, files: Bundle) -> Self {
         Self { task: Task::OpenFiles(files), ..self }
+    }
+
+    /// The same request, in which missing and broken pictures of models are shown gray or are errors.
+    #[must_use]
+    pub fn with_lenient(self, lenient: bool) -> Self {
+        Self { lenient, ..self }
     }
 
     /// The same request with values of the scene that differ from its file; a reset keeps them.
@@ -127,8 +136,8 @@ impl BuildRequest {
 
     fn build(mut self) -> Result<Subject, Error> {
         let file = match self.task.clone() {
-            Task::Open => Arc::new(juggler::loader().named(&self.name)?),
-            Task::OpenFiles(files) => Arc::new(juggler::loader().from_bundle(files, &self.name)?),
+            Task::Open => Arc::new(self.loader().named(&self.name)?),
+            Task::OpenFiles(files) => Arc::new(self.loader().from_bundle(files, &self.name)?),
             Task::Reload(scene) => self.reload(&scene)?,
             Task::InMemory(scene) => scene,
         };
@@ -140,7 +149,7 @@ impl BuildRequest {
             picture = picture.with_view(View { camera: camera.clone(), ..picture.view() })?;
         }
         let models = self.models.unwrap_or_else(|| ModelStatus::of_scene(&scene).into());
-        let Self { name, values, given_values, frame, settings, size, camera, bookmarks, gains, .. } = self;
+        let Self { name, values, given_values, lenient, frame, settings, size, camera, bookmarks, gains, .. } = self;
         let chosen = self.interest.filter(|_| camera.is_some());
         let (picture, interest, interest_is_chosen) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
         let mut subject = Subject {
@@ -149,6 +158,7 @@ impl BuildRequest {
             scene,
             values,
             given_values,
+            lenient,
             models,
             frame,
             settings,
@@ -203,6 +213,10 @@ impl BuildRequest {
         }
     }
 
+    fn loader(&self) -> Loader {
+        if self.lenient { juggler::loader().lenient() } else { juggler::loader() }
+    }
+
     /// Reads the file again. Edited values and the camera are kept unless the file has changed
     /// there too.
     fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
@@ -210,7 +224,7 @@ impl BuildRequest {
             return Ok(Arc::clone(old));
         }
         let is_file = Path::new(&self.name).is_file();
-        let new = Arc::new(if is_file { old.reload(&self.name)? } else { juggler::loader().named(&self.name)? });
+        let new = Arc::new(if is_file { old.reload(&self.name)? } else { self.loader().named(&self.name)? });
         if !self.values.is_empty() {
             let [before, after] = [old, &new].map(|scene| scene.to_value());
             self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));

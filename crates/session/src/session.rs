@@ -20,6 +20,8 @@ pub struct SessionOptions {
     /// Values of the scene by JSON pointer that differ from its file, as by [`Edit::Set`]; a reset
     /// keeps them.
     pub values: Vec<(String, serde_json::Value)>,
+    /// Whether missing and broken pictures of models are shown gray, with a warning.
+    pub lenient: bool,
     /// Number of render threads, at most 1024; 0 uses all cores.
     pub threads: usize,
     /// Target duration of a frame while the camera moves, 30 ms by default. The session lowers the
@@ -31,7 +33,8 @@ pub struct SessionOptions {
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { size: None, values: Vec::new(), threads: 0, budget: Duration::from_millis(30), watch: false }
+        let (size, values, budget) = (None, Vec::new(), Duration::from_millis(30));
+        Self { size, values, lenient: false, threads: 0, budget, watch: false }
     }
 }
 
@@ -65,7 +68,8 @@ impl Session {
     /// Opens a scene file, or a built-in scene by name. Errors of the scene do not end the session;
     /// see [`Status::error`].
     pub fn open(name: &str, options: SessionOptions) -> Self {
-        let build = BuildRequest::open(name, options.size).with_values(options.values.clone());
+        let build = BuildRequest::open(name, options.size).with_lenient(options.lenient);
+        let build = build.with_values(options.values.clone());
         Self::start(build, name, options)
     }
 

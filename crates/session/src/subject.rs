@@ -30,6 +30,8 @@ pub struct Subject {
     pub(crate) values: Vec<(String, Value)>,
     /// Values that a reset keeps.
     pub(crate) given_values: Vec<(String, Value)>,
+    /// Whether missing and broken pictures of models are shown gray.
+    pub(crate) lenient: bool,
     /// Models of the scene.
     pub(crate) models: Arc<[ModelStatus]>,
     pub(crate) frame: f64,
@@ -180,7 +182,8 @@ impl Subject {
 
     /// Requests another scene with the same size and denoiser.
     fn open(&self, name: &str) -> BuildRequest {
-        let mut build = BuildRequest { size: self.size, ..BuildRequest::open(name, self.settings.size) };
+        let mut build =
+            BuildRequest { size: self.size, ..BuildRequest::open(name, self.settings.size).with_lenient(self.lenient) };
         build.settings.denoiser = self.settings.denoiser;
         build
     }
@@ -207,6 +210,7 @@ impl Subject {
             name: self.name.clone(),
             values: self.values.clone(),
             given_values: self.given_values.clone(),
+            lenient: self.lenient,
             frame: self.frame,
             settings: self.settings.clone(),
             size: self.size,

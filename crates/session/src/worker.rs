@@ -223,7 +223,7 @@ impl Worker {
             };
             return self.apply_to_subject(&edit);
         }
-        let request = BuildRequest::open(&name, self.options.size);
+        let request = BuildRequest::open(&name, self.options.size).with_lenient(self.options.lenient);
         let request = match files {
             Some(files) => request.with_files(files),
             None => request,

@@ -54,8 +54,9 @@ impl Serve {
         }
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values) = (self.size, self.model.edits(name)?);
-        let options = juggler_session::SessionOptions { size, values, threads, watch: true, ..Default::default() };
+        let (size, values, lenient) = (self.size, self.model.edits(name)?, self.model.lenient);
+        let options =
+            juggler_session::SessionOptions { size, values, lenient, threads, watch: true, ..Default::default() };
         let session = Session::open(name, options);
         let (address, allow_remote, token) = (self.addr, self.allow_remote, !self.no_token);
         let options = ServerOptions { address, allow_remote, token, scene: self.scene, ..ServerOptions::default() };

@@ -33,8 +33,8 @@ impl View {
         let name = self.scene.unwrap_or_else(|| FIRST.into());
         source::find(&name)?;
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values) = (self.size, self.model.edits(&name)?);
-        let options = SessionOptions { size, values, threads, watch: true, ..SessionOptions::default() };
+        let (size, values, lenient) = (self.size, self.model.edits(&name)?, self.model.lenient);
+        let options = SessionOptions { size, values, lenient, threads, watch: true, ..SessionOptions::default() };
         let session = Session::open(&name, options);
         Ok(juggler_viewer::run(session, juggler_viewer::ViewerOptions { choose })?)
     }

@@ -115,6 +115,37 @@ fn unpacked_models_are_scenes_of_mesh_files_with_the_same_picture() {
 }
 
 #[test]
+fn lost_pictures_are_gray_if_that_is_allowed() {
+    let folder = with_triangle();
+    let with_color = |pbr: &str, more: &str| {
+        let dull = format!(r#"{{"name": "Dull", "pbrMetallicRoughness": {{{pbr}}}, "doubleSided": true}}"#);
+        let model = TRIANGLE.replace(r#"{"name": "Dull", "doubleSided": true}"#, &dull);
+        model.replacen('{', &format!("{{{more}"), 1)
+    };
+    let textures = r#""textures": [{"source": 0}], "images": [{"uri": "wood.png"}],"#;
+    fs::write(folder.path("wood.gltf"), with_color(r#""baseColorTexture": {"index": 0}"#, textures)).unwrap();
+    fs::write(folder.path("gray.gltf"), with_color(r#""baseColorFactor": [0.5, 0.5, 0.5, 1]"#, "")).unwrap();
+    fs::write(folder.path("wood.obj"), "mtllib wood.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl w\nf 1 2 3\n").unwrap();
+    fs::write(folder.path("wood.mtl"), "newmtl w\nKd 1 1 1\nmap_Kd wood.png\n").unwrap();
+    for name in ["missing", "broken"] {
+        if name == "broken" {
+            fs::write(folder.path("wood.png"), b"no picture").unwrap();
+        }
+        for model in ["wood.gltf", "wood.obj"] {
+            let run = folder.run(&format!("check {model}"));
+            assert!(run.status != 0 && run.stderr.contains("wood.png"), "{name} {model}: {}", run.stderr);
+            let run = folder.run(&format!("check {model} --lenient"));
+            let says = run.stdout.clone() + &run.stderr;
+            assert!(run.status == 0 && says.contains("the picture is shown gray"), "{name} {model}: {says}");
+        }
+        let hash = |scene: &str| folder.hash(&format!("{scene} --size 24x18 --samples 2 -o a.png"));
+        assert_eq!(hash("wood.gltf --lenient"), hash("gray.gltf"));
+    }
+    let message = folder.bad("check ball.json --lenient", 2);
+    assert!(message.contains("--lenient is for models"), "{message}");
+}
+
+#[test]
 fn broken_models_are_refused_with_file_and_place() {
     let folder = with_triangle();
     fs::write(folder.path("cut.glb"), b"glTF\x02\0\0\0").unwrap();

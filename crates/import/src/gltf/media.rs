@@ -4,12 +4,22 @@ use super::Files;
 use super::data::GltfData;
 use super::document::{Document, Index};
 use super::error::{Fault, GltfError};
+use super::ktx2;
+use juggler_imaging::{Limits as ImageLimits, decode_raster};
 use juggler_scene::Asset;
+use std::io::Cursor;
+
+/// First bytes of a KTX2 file.
+pub const KTX2: &[u8] = b"\xabKTX 20\xbb";
+/// Maximum number of texels of a picture.
+pub const MAX_TEXELS: u64 = 1 << 28;
 
 /// Contents of pictures and light profiles by index; `None` where nothing uses them.
 #[derive(Debug, Default)]
 pub struct Media {
     images: Vec<Option<Asset>>,
+    /// Whether pictures may be missing although textures use them.
+    is_lenient: bool,
     profiles: Vec<Option<Asset>>,
 }
 
@@ -28,9 +38,10 @@ impl GltfData {
     /// # Errors
     ///
     /// A file is missing or too large, or a data URI is not valid. A picture may be missing if all
-    /// its textures have one in another format. All faults are reported at once.
+    /// its textures have one in another format, or if the files are lenient. All faults are reported
+    /// at once.
     pub fn load_media(&mut self, files: &dyn Files) -> Result<(), GltfError> {
-        let mut faults = Vec::new();
+        let (mut faults, mut lost, is_lenient) = (Vec::new(), Vec::new(), files.is_lenient());
         let mut keep = |result: Result<Asset, Fault>, is_replaceable: bool| match result {
             Ok(asset) => Some(asset),
             Err(fault) => {
@@ -45,7 +56,14 @@ impl GltfData {
         let images = uses.map(|(index, Use { is_used, is_replaceable })| {
             let index = Index::from(u32::try_from(index).ok()?);
             let read = || self.image(index, files).map(|bytes| Asset::from_bytes(bytes.into_owned()));
-            is_used.then(|| keep(read(), is_replaceable)).flatten()
+            if !is_used || !is_lenient {
+                return is_used.then(|| keep(read(), is_replaceable)).flatten();
+            }
+            let picture = read().and_then(|asset| {
+                let checked = check_picture(asset.bytes().unwrap_or_default());
+                checked.map(|()| asset).map_err(|error| Fault::at(format!("/images/{index}"), error))
+            });
+            picture.map_err(|fault| lost.push(fault)).ok()
         });
         let images = images.collect();
         let profiles = document.extensions.lights_ies.iter().flat_map(|lights| &lights.lights).enumerate();
@@ -60,7 +78,10 @@ impl GltfData {
             faults.truncate(self.gltf.limits.faults.max(1));
             return Err(GltfError { file: self.gltf.name.clone(), faults, omitted });
         }
-        self.media = Media { images, profiles };
+        self.media = Media { images, is_lenient, profiles };
+        for fault in lost {
+            self.gltf.warnings.add(fault.to_string(), "the picture is shown gray", 1);
+        }
         Ok(())
     }
 
@@ -69,10 +90,24 @@ impl GltfData {
         self.media.images.get(image).cloned().flatten()
     }
 
+    /// Whether a picture is missing or broken and lenient files allow it.
+    pub fn is_lost(&self, image: usize) -> bool {
+        self.media.is_lenient && self.media.images.get(image).is_some_and(Option::is_none)
+    }
+
     /// Content of a light profile that [`GltfData::load_media`] has read.
     pub fn profile_asset(&self, profile: usize) -> Option<Asset> {
         self.media.profiles.get(profile).cloned().flatten()
     }
+}
+
+/// Checks that a picture can be decoded.
+fn check_picture(bytes: &[u8]) -> Result<(), String> {
+    if bytes.starts_with(KTX2) {
+        return ktx2::decode(bytes, MAX_TEXELS).map(drop).map_err(|error| error.to_string());
+    }
+    let decoded = decode_raster("the picture", Cursor::new(bytes), &ImageLimits::default());
+    decoded.map(drop).map_err(|error| error.to_string())
 }
 
 /// Use of each picture.

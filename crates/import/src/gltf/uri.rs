@@ -64,6 +64,14 @@ pub enum Uri<'u> {
 }
 
 impl<'u> Uri<'u> {
+    /// First name of a file; `None` for data.
+    pub fn file_name(&self) -> Option<&str> {
+        match self {
+            Self::Data { .. } => None,
+            Self::File(names) => names.first().map(String::as_str),
+        }
+    }
+
     /// Classifies a URI.
     ///
     /// # Errors

@@ -23,6 +23,11 @@ impl<'f> Reader<'f> {
         Self { files, read: Vec::new(), bytes_left: MAX_BYTES }
     }
 
+    /// Whether pictures that are missing or broken are shown gray.
+    pub fn is_lenient(&self) -> bool {
+        self.files.is_lenient()
+    }
+
     /// Reads the file that `name`, as written in a file in `folder`, means. Returns its name and
     /// content; `None` if there is no such file. A warning at `place` tells when another name than
     /// the written one is used.

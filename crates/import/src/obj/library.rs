@@ -3,7 +3,7 @@
 use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
 use crate::gltf::Warnings;
-use crate::gltf::picture_extension;
+use crate::textures::picture_asset_name;
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
 use juggler_scene::Asset;
 use juggler_scene::model::FileError;
@@ -118,14 +118,14 @@ impl Library {
                     loaded.pictures.insert(word, *index);
                     continue;
                 }
-                let found = match reader.find(&folder, &map.file, &place, warnings) {
-                    Ok(Some(found)) => found,
-                    Ok(None) => {
-                        faults.push(format!("{place}: {}: {}", map.file, FileError::Missing));
+                let found = match read_picture(reader, &folder, &map.file, &place, warnings) {
+                    Ok(found) => found,
+                    Err(fault) if reader.is_lenient() => {
+                        warnings.add(fault, "the picture is shown gray", 1);
                         continue;
                     }
-                    Err(error) => {
-                        faults.push(format!("{place}: {}: {error}", map.file));
+                    Err(fault) => {
+                        faults.push(fault);
                         continue;
                     }
                 };
@@ -167,12 +167,29 @@ fn libraries(
     Ok(found)
 }
 
+/// Reads a picture; for lenient readers, checks that it can be decoded. The error names the place.
+fn read_picture(
+    reader: &mut Reader<'_>,
+    folder: &str,
+    file: &str,
+    place: &str,
+    warnings: &mut Warnings,
+) -> Result<(String, Vec<u8>), String> {
+    let found = reader.find(folder, file, place, warnings).and_then(|found| found.ok_or(FileError::Missing));
+    let (name, bytes) = found.map_err(|error| format!("{place}: {file}: {error}"))?;
+    if reader.is_lenient() {
+        let decoded = decode_raster(&name, Cursor::new(&bytes), &Limits::default());
+        decoded.map_err(|error| format!("{place}: {error}"))?;
+    }
+    Ok((name, bytes))
+}
+
 /// Adds a file as a picture, or finds it.
 fn add_picture(pictures: &mut Vec<Picture>, (file, bytes): (String, Vec<u8>)) -> usize {
     if let Some(index) = pictures.iter().position(|picture| picture.file == file) {
         return index;
     }
-    let asset_name = format!("images/{}{}", pictures.len(), picture_extension(&bytes));
+    let asset_name = picture_asset_name(pictures.len(), Some(&file), &bytes);
     let asset = Asset::from_bytes(bytes);
     pictures.push(Picture { file, asset_name, asset, has_alpha: false, is_normal_map: false });
     pictures.len() - 1

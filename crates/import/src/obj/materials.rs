@@ -78,12 +78,14 @@ impl Materials<'_> {
     }
 
     /// Color of a factor and a texture: their product. With a texture, a missing or black factor
-    /// counts as white, because programs write it so.
+    /// counts as white, because programs write it so. A texture without its picture is as if the
+    /// material stated nothing.
     fn color(&mut self, loaded: &Loaded, word: &str, map: &str, missing: [f32; 3], limit: f32) -> Input<Rgb> {
         let stated = loaded.mtl.colors.get(word).copied();
         let texture = self.image(loaded, map, Channel::Rgb, ColorSpace::Auto);
         let factor = match &texture {
             Some(_) => stated.filter(|color| *color != [0.0; 3]).unwrap_or([1.0; 3]),
+            None if loaded.mtl.maps.contains_key(map) => missing,
             None => stated.unwrap_or(missing),
         };
         let is_clamped = factor.iter().any(|channel| *channel > limit);

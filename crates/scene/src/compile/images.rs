@@ -2,6 +2,7 @@
 //! and copies of a scene.
 
 use super::meshes::{AssetCache, Files, file_stamp, import_error_message};
+use crate::asset::display_name;
 use crate::description::Description;
 use crate::import::Limits;
 use crate::item::Item;
@@ -92,10 +93,10 @@ impl ImageFile {
             Err(error) => return Self { digest: [0; 32], pixels: Err(import_error_message(&error)), stamp },
         };
         let digest = blake3::hash(&bytes).into();
-        let raster = decode_raster(&path.display().to_string(), Cursor::new(&*bytes), &IMAGE_LIMITS);
+        let raster = decode_raster(&display_name(path), Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
-            mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", path.display()))
+            mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", display_name(path)))
         });
         Self { digest, pixels, stamp }
     }
@@ -105,7 +106,7 @@ impl ImageFile {
     /// Creates an image from pixels in linear light; the color space of textures has no effect.
     fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
         let pixels = MipMap::from_floats([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
-        let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", path.display()));
+        let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", display_name(path)));
         Self { digest, pixels, stamp: None }
     }
 }

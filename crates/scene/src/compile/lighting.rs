@@ -3,6 +3,7 @@
 use super::file_cache::{CachedFile, FileCache};
 use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS};
 use super::meshes::{AssetCache, Files};
+use crate::asset::display_name;
 use crate::description::{BackgroundInput, Description};
 use crate::import::Limits;
 use crate::item::Item;
@@ -66,19 +67,19 @@ impl LightFiles {
 
 impl AssetCache {
     fn panorama(&self, path: &std::path::Path) -> Arc<CachedFile<Panorama>> {
-        let shown = path.display();
+        let shown = display_name(path);
         let panorama = |image| Panorama::new(image).map_err(|wrong| format!("`{shown}` {wrong}"));
         if let Some((image, digest)) = self.store().assets.image_at(path) {
             return self.light_files().panoramas.insert_asset(path, digest, || panorama(image.clone()));
         }
         self.light_files().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
-            let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &IMAGE_LIMITS);
+            let image = juggler_imaging::decode(&shown, Cursor::new(bytes), &IMAGE_LIMITS);
             panorama(image.map_err(|error| error.to_string())?)
         })
     }
 
     fn profile(&self, path: &std::path::Path) -> Arc<CachedFile<IesProfile>> {
-        let shown = path.display();
+        let shown = display_name(path);
         let limits = Limits { file_bytes: MAX_PROFILE_BYTES, ..Limits::default() };
         self.light_files().profiles.load(path, self.store(), &limits, |bytes| {
             // Decode lossily: old files contain names in local encodings, but the numbers are

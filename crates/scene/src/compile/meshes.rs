@@ -4,12 +4,12 @@
 
 use super::images::ImageCache;
 use super::lighting::LightFiles;
-use crate::asset::Asset;
+use crate::asset::{Asset, display_name};
 use crate::description::Description;
 use crate::document::Sources;
 use crate::import::{ImportError, ImportErrorKind, Limits, parse, texture_file};
 use crate::mesh_scene::MeshOverview;
-use crate::model::{ModelCache, ModelFormat, OpenedModel};
+use crate::model::{ModelCache, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
@@ -55,10 +55,10 @@ impl AssetCache {
         Self { store, ..Self::default() }
     }
 
-    /// Sets the formats of models that can be opened.
+    /// Sets the cache of model files.
     #[must_use]
-    pub fn with_formats(self, formats: &'static [&'static dyn ModelFormat]) -> Self {
-        Self { models: ModelCache::new(formats), ..self }
+    pub fn with_models(self, models: ModelCache) -> Self {
+        Self { models, ..self }
     }
 
     /// Model file.
@@ -178,7 +178,7 @@ impl Entry {
 }
 
 pub(crate) fn import_error_message(error: &ImportError) -> String {
-    let shown = error.path.display();
+    let shown = display_name(&error.path);
     match &error.kind {
         ImportErrorKind::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
         kind => format!("cannot read `{shown}`: {kind}"),

@@ -16,6 +16,8 @@ use std::time::SystemTime;
 #[derive(Clone, Debug, Default)]
 pub struct ModelCache {
     formats: &'static [&'static dyn ModelFormat],
+    /// Whether pictures that are missing or broken are shown gray.
+    is_lenient: bool,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<OpenedModel>>>>,
 }
 
@@ -37,9 +39,9 @@ impl OpenedModel {
 }
 
 impl ModelCache {
-    /// Cache of these formats.
-    pub fn new(formats: &'static [&'static dyn ModelFormat]) -> Self {
-        Self { formats, ..Self::default() }
+    /// Cache of these formats. With `is_lenient`, pictures that are missing or broken are shown gray.
+    pub fn new(formats: &'static [&'static dyn ModelFormat], is_lenient: bool) -> Self {
+        Self { formats, is_lenient, ..Self::default() }
     }
 
     /// Format of a file by its first bytes, or else by the extension of its name.
@@ -59,7 +61,7 @@ impl ModelCache {
         let entries = self.entries();
         let kept = entries.iter().filter(|(_, model)| same(model));
         let kept = kept.map(|(path, model)| (path.clone(), Arc::clone(model))).collect();
-        Self { formats: self.formats, entries: Arc::new(Mutex::new(kept)) }
+        Self { entries: Arc::new(Mutex::new(kept)), ..*self }
     }
 
     /// Opens a file without holding the lock, as for meshes.
@@ -83,7 +85,7 @@ impl ModelCache {
         let Some(format) = self.format(path, &bytes) else {
             return failed(format!("`{shown}` is in no known format of models"));
         };
-        let beside = FolderFiles { folder, store };
+        let beside = FolderFiles { folder, store, is_lenient: self.is_lenient };
         match format.open(&shown, bytes, &beside) {
             Ok(file) => {
                 let others = file.files().iter().map(|name| folder.join(name));
@@ -103,6 +105,7 @@ impl ModelCache {
 struct FolderFiles<'f> {
     folder: &'f Path,
     store: &'f Store,
+    is_lenient: bool,
 }
 
 impl Files for FolderFiles<'_> {
@@ -117,5 +120,9 @@ impl Files for FolderFiles<'_> {
                 kind => FileError::Read(kind.to_string()),
             }),
         }
+    }
+
+    fn is_lenient(&self) -> bool {
+        self.is_lenient
     }
 }

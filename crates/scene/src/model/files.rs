@@ -31,6 +31,12 @@ pub trait Files {
     /// The file does not exist, has more than `limit` bytes (known before memory is reserved), or
     /// cannot be read.
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError>;
+
+    /// Whether pictures that are missing or broken are shown gray, with a warning, instead of being
+    /// errors. Defaults to `false`.
+    fn is_lenient(&self) -> bool {
+        false
+    }
 }
 
 /// Files in memory by their names.

@@ -71,6 +71,11 @@ impl Scene {
         Ok(Self::around(description, asset_cache))
     }
 
+    /// Whether the scene contains models.
+    pub fn has_models(&self) -> bool {
+        has_models(&self.description)
+    }
+
     /// Whether the scene shows one model file that was given in place of a scene.
     pub fn is_around_model(&self) -> bool {
         self.sources().names().next().is_none()

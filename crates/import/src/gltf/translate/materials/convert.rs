@@ -46,7 +46,11 @@ pub fn material(
     if let Some(model) = &extensions.dispersion {
         surface::set_dispersion(textures, &mut principled, model.dispersion, at);
     }
-    principled.emissive = textures.color(material.emissive_factor, material.emissive_texture.as_ref())?;
+    // A lost picture would make all of the surface emit.
+    let emissive_texture = material.emissive_texture.as_ref();
+    let is_lost = emissive_texture.is_some_and(|info| textures.is_lost(info));
+    let emissive_factor = if is_lost { [0.0; 3] } else { material.emissive_factor };
+    principled.emissive = textures.color(emissive_factor, emissive_texture)?;
     let strength = extensions.emissive_strength.as_ref().map_or(1.0, |strength| strength.emissive_strength);
     principled.emissive_strength = strength.min(MAX_STRENGTH) as f32;
     (principled.opacity, principled.alpha_cutoff) = base.opacity(textures, material, surface)?;

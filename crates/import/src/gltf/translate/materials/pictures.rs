@@ -4,15 +4,13 @@ use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, Index, Texture};
 use crate::gltf::error::Fault;
 use crate::gltf::ktx2::{self, Ktx2Error, Ktx2Picture};
-use crate::gltf::picture_extension;
+use crate::gltf::media::{KTX2, MAX_TEXELS};
+use crate::gltf::uri::Uri;
 use crate::gltf::warning::Warnings;
+use crate::textures::picture_asset_name;
 use indexmap::{IndexMap, IndexSet};
 use juggler_scene::Asset;
 
-/// First bytes of a KTX2 file.
-const KTX2: &[u8] = b"\xabKTX 20\xbb";
-/// Maximum number of texels of a picture.
-const MAX_TEXELS: u64 = 1 << 28;
 const BASISU: &str = "KHR_texture_basisu";
 
 /// Pictures that textures use.
@@ -43,12 +41,23 @@ impl<'a> Pictures<'a> {
         Self { document, data, prefix, names, assets: IndexMap::new() }
     }
 
-    /// Picture of a texture: KTX2 before WebP before PNG and JPEG. `None` if the texture has none.
+    /// Whether the picture of a texture is missing or broken and lenient files allow it.
+    pub fn is_lost(&self, texture: &Texture) -> bool {
+        let basisu = texture.extensions.basisu.and_then(|basisu| basisu.source);
+        let webp = texture.extensions.webp.and_then(|webp| webp.source);
+        basisu.or(webp).or(texture.source).is_some_and(|image| self.data.is_lost(image.get()))
+    }
+
+    /// Picture of a texture: KTX2 before WebP before PNG and JPEG. `None` if the texture has none,
+    /// or if it is lost.
     ///
     /// # Errors
     ///
     /// The picture cannot be read, and the texture has no other, or the document requires it.
     pub fn picture(&mut self, texture: &Texture, warnings: &mut Warnings) -> Result<Option<Picture>, Fault> {
+        if self.is_lost(texture) {
+            return Ok(None);
+        }
         let webp = texture.extensions.webp.and_then(|webp| webp.source);
         let plain = webp.or(texture.source);
         let Some(basisu) = texture.extensions.basisu.and_then(|basisu| basisu.source) else {
@@ -72,9 +81,11 @@ impl<'a> Pictures<'a> {
         let missing = || Fault::at(&at, "the picture has not been read");
         let asset = self.data.image_asset(image.get()).ok_or_else(missing)?;
         let encoded = asset.bytes().filter(|bytes| bytes.starts_with(KTX2));
+        let names = self.document.images.get(image.get()).and_then(|image| Uri::parse(image.uri.as_deref()?).ok());
+        let name = names.as_ref().and_then(Uri::file_name);
+        let name = picture_asset_name(image, name, asset.bytes().unwrap_or_default());
         // A KTX2 picture becomes a PNG.
-        let extension = encoded.map_or_else(|| asset.bytes().map_or("", picture_extension), |_| ".png");
-        let file = format!("{}images/{image}{extension}", self.prefix);
+        let file = format!("{}{name}{}", self.prefix, if encoded.is_some() { ".png" } else { "" });
         if !self.assets.contains_key(&file) {
             let decoded = encoded.map(|bytes| ktx2::decode(bytes, MAX_TEXELS).and_then(|picture| pixels(&picture)));
             let decoded = decoded.transpose().map_err(|error| Fault::at(&at, error))?;

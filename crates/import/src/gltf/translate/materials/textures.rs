@@ -6,7 +6,7 @@ use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, MagFilter, MinFilter, Sampler, TextureInfo, TextureTransform, Wrap};
 use crate::gltf::error::Fault;
 use crate::gltf::warning::Warnings;
-use crate::textures::{NamedTextures, channel_suffix};
+use crate::textures::{LOST_PICTURE, NamedTextures, channel_suffix};
 use juggler_math::{Rgb, portable};
 use juggler_texture::{
     Channel, ColorSpace, Direction, Filter, Image, Input, Mapping, Mix, MixMode, Wrap as Continuation,
@@ -60,7 +60,13 @@ impl<'a> TextureSet<'a> {
         Self { document, prefix, textures, pictures: Pictures::new(document, data, prefix), warnings }
     }
 
-    /// Product of a color and a texture; the color alone without a texture.
+    /// Whether the picture of a texture is missing or broken and lenient files allow it.
+    pub fn is_lost(&self, info: &TextureInfo) -> bool {
+        self.document.textures.get(info.index.get()).is_some_and(|texture| self.pictures.is_lost(texture))
+    }
+
+    /// Product of a color and a texture; the color alone without a texture. A lost picture counts
+    /// as gray.
     ///
     /// # Errors
     ///
@@ -71,7 +77,9 @@ impl<'a> TextureSet<'a> {
         let Some(info) = info.filter(|_| constant != Rgb::BLACK) else { return Ok(constant.into()) };
         let [r, g, b] = factor;
         let gray = if r == g && g == b { r } else { 1.0 };
-        let Some(texture) = self.image(info, Reading::COLOR, gray)? else { return Ok(constant.into()) };
+        let Some(texture) = self.image(info, Reading::COLOR, gray)? else {
+            return Ok((constant * if self.is_lost(info) { LOST_PICTURE } else { 1.0 }).into());
+        };
         Ok(if r == g && g == b { Input::Texture(texture) } else { Input::product(texture, constant) })
     }
 
@@ -142,7 +150,8 @@ impl<'a> TextureSet<'a> {
         let Some(texture) = document.textures.get(info.index.get()) else { return Ok(None) };
         let at = format!("/textures/{}", info.index);
         let Some(picture) = self.pictures.picture(texture, &mut self.warnings)? else {
-            self.warnings.add(at, "has no image and counts as white", 1);
+            let is_lost = self.pictures.is_lost(texture);
+            self.warnings.add(at, "has no image and counts as white", u64::from(!is_lost));
             return Ok(None);
         };
         let sampler = texture.sampler.and_then(|sampler| document.samplers.get(sampler.get()));
