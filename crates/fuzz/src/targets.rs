@@ -9,13 +9,16 @@ use juggler::light::IesProfile;
 use juggler::memory::Memory;
 use juggler::scene::Scene;
 use juggler::scene::import::{self, parse};
+use juggler::scene::model::{ModelChoice, ModelFormat};
 use juggler::{AovSet, Settings};
 use juggler_expression::{Names, PointEvaluator, Program, Quantity};
 use juggler_import::gltf::document::ComponentType;
 use juggler_import::gltf::draco::{self, DracoAttribute};
 use juggler_import::gltf::ktx2::{self, Ktx2Error};
 use juggler_import::gltf::meshopt;
+use juggler_import::stl::StlFormat;
 use juggler_math::Rgb;
+use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -39,7 +42,7 @@ pub const TARGETS: [Target; 20] = [
     Target { name: "obj", read: |bytes| mesh("a.obj", bytes) & obj::read_model(bytes) },
     Target { name: "mtl", read: obj::read_library },
     Target { name: "ply", read: |bytes| mesh("a.ply", bytes) },
-    Target { name: "stl", read: |bytes| mesh("a.stl", bytes) },
+    Target { name: "stl", read: |bytes| mesh("a.stl", bytes) & stl_model(bytes) },
     Target { name: "png", read: picture },
     Target { name: "jpeg", read: picture },
     Target { name: "exr", read: picture },
@@ -89,6 +92,18 @@ fn mesh(name: &str, bytes: &[u8]) -> bool {
     let count = found.mesh.positions.len();
     assert!(found.mesh.triangles.iter().flatten().all(|index| (*index as usize) < count), "an index is out of range");
     assert!(found.mesh.positions.iter().all(|position| position.is_finite()), "a position is not finite");
+    true
+}
+
+/// Reads an STL as a model, which must accept what the reader of meshes accepts.
+fn stl_model(bytes: &[u8]) -> bool {
+    let plain = parse(Path::new("a.stl"), bytes, &import::Limits::default());
+    let opened = StlFormat.open("a.stl", bytes.to_vec(), &BTreeMap::new());
+    assert_eq!(plain.is_ok(), opened.is_ok(), "the readers disagree about the file");
+    let (Ok(plain), Ok(model)) = (plain, opened) else { return false };
+    let summary = model.summary(&ModelChoice::default()).ok();
+    let triangles = summary.map(|summary| summary.drawn_triangles);
+    assert_eq!(triangles, Some(plain.mesh.triangles.len() as u64), "solids lose triangles");
     true
 }
 

@@ -5,4 +5,5 @@
 
 pub mod gltf;
 pub mod obj;
+pub mod stl;
 mod textures;

@@ -2,11 +2,12 @@
 
 use juggler_import::gltf::GltfFormat;
 use juggler_import::obj::ObjFormat;
+use juggler_import::stl::StlFormat;
 use juggler_scene::Loader;
 use juggler_scene::model::ModelFormat;
 
 /// All formats of model files.
-pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }, &ObjFormat];
+pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }, &ObjFormat, &StlFormat];
 
 /// Loader of scenes that knows all formats of model files.
 ///

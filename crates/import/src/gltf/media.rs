@@ -2,7 +2,7 @@
 
 use super::Files;
 use super::data::GltfData;
-use super::document::{Document, Index};
+use super::document::{Document, IesProfile, Index};
 use super::error::{Fault, GltfError};
 use super::ktx2;
 use juggler_imaging::{Limits as ImageLimits, decode_raster};
@@ -59,20 +59,15 @@ impl GltfData {
             if !is_used || !is_lenient {
                 return is_used.then(|| keep(read(), is_replaceable)).flatten();
             }
-            let picture = read().and_then(|asset| {
-                let checked = check_picture(asset.bytes().unwrap_or_default());
-                checked.map(|()| asset).map_err(|error| Fault::at(format!("/images/{index}"), error))
+            let picture = read().and_then(|asset| match check_picture(asset.bytes().unwrap_or_default()) {
+                Ok(()) => Ok(asset),
+                Err(error) => Err(Fault::at(format!("/images/{index}"), error)),
             });
             picture.map_err(|fault| lost.push(fault)).ok()
         });
         let images = images.collect();
         let profiles = document.extensions.lights_ies.iter().flat_map(|lights| &lights.lights).enumerate();
-        let profiles = profiles.map(|(index, profile)| {
-            let at = format!("/extensions/EXT_lights_ies/lights/{index}");
-            let bytes = self.data(&at, profile.uri.as_deref(), profile.buffer_view, files);
-            keep(bytes.map(|bytes| Asset::from_bytes(bytes.into_owned())), false)
-        });
-        let profiles = profiles.collect();
+        let profiles = profiles.map(|(index, profile)| keep(self.profile(index, profile, files), false)).collect();
         if !faults.is_empty() {
             let omitted = faults.len().saturating_sub(self.gltf.limits.faults);
             faults.truncate(self.gltf.limits.faults.max(1));
@@ -83,6 +78,13 @@ impl GltfData {
             self.gltf.warnings.add(fault.to_string(), "the picture is shown gray", 1);
         }
         Ok(())
+    }
+
+    /// Reads a light profile.
+    fn profile(&self, index: usize, profile: &IesProfile, files: &dyn Files) -> Result<Asset, Fault> {
+        let at = format!("/extensions/EXT_lights_ies/lights/{index}");
+        let bytes = self.data(&at, profile.uri.as_deref(), profile.buffer_view, files)?;
+        Ok(Asset::from_bytes(bytes.into_owned()))
     }
 
     /// Content of a picture that [`GltfData::load_media`] has read.

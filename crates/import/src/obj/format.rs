@@ -18,7 +18,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Name of the material of faces without a known material.
-const DEFAULT_MATERIAL: &str = "default material";
+pub const DEFAULT_MATERIAL: &str = "default material";
 
 /// The format Wavefront OBJ with libraries of materials (MTL): `.obj`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,12 +37,20 @@ impl ModelFormat for ObjFormat {
         false
     }
 
-    /// Whether no statement `mtllib` names a library of materials.
+    /// Whether no statement `mtllib` names a library of materials, and no smoothing group decides
+    /// normals.
     fn is_plain_mesh(&self, bytes: &[u8]) -> bool {
-        let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r'));
-        !lines
-            .map(<[u8]>::trim_ascii_start)
-            .any(|line| line.strip_prefix(b"mtllib").and_then(<[u8]>::first).is_some_and(u8::is_ascii_whitespace))
+        let (mut is_smooth, mut has_normals) = (false, false);
+        for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii_start) {
+            let rest =
+                |word: &[u8]| line.strip_prefix(word).filter(|rest| rest.first().is_some_and(u8::is_ascii_whitespace));
+            if rest(b"mtllib").is_some() {
+                return false;
+            }
+            is_smooth |= rest(b"s").is_some_and(|group| !matches!(group.trim_ascii(), b"off" | b"0" | b""));
+            has_normals |= rest(b"vn").is_some();
+        }
+        has_normals || !is_smooth
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
@@ -140,7 +148,7 @@ impl ModelFile for ObjFile {
             textures: translated.textures.by_name,
             materials,
             objects,
-            warnings: texts(&translated.warnings),
+            warnings: warning_texts(&translated.warnings),
             ..ModelParts::default()
         })
     }
@@ -176,7 +184,7 @@ impl ObjFile {
 }
 
 /// Warnings as texts.
-fn texts(warnings: &Warnings) -> Vec<String> {
+pub fn warning_texts(warnings: &Warnings) -> Vec<String> {
     let further = (warnings.omitted() > 0).then(|| format!("{} further warnings", warnings.omitted()));
     warnings.list().iter().map(ToString::to_string).chain(further).collect()
 }

@@ -20,4 +20,6 @@ mod mtl;
 mod pieces;
 
 pub use format::ObjFormat;
+pub(crate) use format::{DEFAULT_MATERIAL, warning_texts};
+pub(crate) use materials::gray;
 pub use mtl::{MtlMap, MtlMaterial, parse_mtl};

@@ -39,6 +39,12 @@ pub trait ModelFile: Debug + Send + Sync {
     /// Names of the files that the file names, relative to its folder.
     fn files(&self) -> &[String];
 
+    /// Whether the z axis of the file points up. A scene around the file rotates it. Defaults to
+    /// `false`: y points up.
+    fn is_z_up(&self) -> bool {
+        false
+    }
+
     /// Translates the file to parts of a scene. The names of all parts begin with `prefix`.
     ///
     /// The time of the choice changes values only: the numbers, the order and the names of objects,

@@ -5,7 +5,7 @@ use crate::description::{Animation, BackgroundInput, Description, Model, Object,
 use juggler_imaging::{AnyCurve, Tone};
 use juggler_integrator::Path as PathIntegrator;
 use juggler_light::background::Studio;
-use juggler_math::Rgb;
+use juggler_math::{Rgb, Vec3};
 use std::path::Path;
 
 /// Frames per second of a model's movie.
@@ -40,7 +40,9 @@ pub fn describe_model_scene(file: &str, model: &dyn ModelFile) -> Description {
         background: (!summary.is_lit).then(|| background().into()),
         ..Description::default()
     };
-    scene.objects.push(Object::model(Model::new(file)).named(title).into());
+    let object = Object::model(Model::new(file)).named(title);
+    let object = if model.is_z_up() { object.rotated(Vec3::X, -90.0) } else { object };
+    scene.objects.push(object.into());
     scene
 }
 
