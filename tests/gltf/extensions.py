@@ -3,8 +3,11 @@
 Both must give pictures equal in every byte: the extension means what the scene format says.
 """
 
+import base64
 import json
 import math
+import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -153,16 +156,77 @@ def node_cases(folder):
                [{"file": path, "animation": "none", "materials": override}])
 
 
+def png(rgba):
+    """A PNG file of one color, 4×4 pixels."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 6, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress((b"\0" + bytes(rgba) * 4) * 4)) + chunk(b"IEND", b"")
+
+
+def panorama(colors, height):
+    """A PFM file of a cube map of constant faces +x, -x, +y, -y, +z, -z that a quarter about y rotates."""
+    def samples(count):
+        return (np.repeat(np.arange(count), 2) + np.tile([0.25, 0.75], count)) / count
+    v, u = np.meshgrid(samples(height), samples(height * 2), indexing="ij")
+    x, y, z = np.sin(np.pi * v) * np.sin(2 * np.pi * u), np.cos(np.pi * v), -np.sin(np.pi * v) * np.cos(2 * np.pi * u)
+    x, z = -z, x
+    size = np.abs([x, y, z])
+    axis = size.argmax(0)
+    face = 2 * axis + (np.take_along_axis(np.stack([x, y, z]), axis[None], 0)[0] < 0)
+    found = np.float32(colors)[face].reshape(height, 2, height * 2, 2, 3)
+    # In the order of the program: the rows of the first column, then those of the second.
+    image = (found[:, 0, :, 0] + found[:, 1, :, 0] + found[:, 0, :, 1] + found[:, 1, :, 1]) * np.float32(0.25)
+    return b"PF\n%d %d\n-1.0\n" % (height * 2, height) + image[::-1].astype("<f4").tobytes()
+
+
+def light_cases(folder):
+    """Pairs of scenes without background: image-based lights and light profiles."""
+    bright = placed(model())
+    levels = [[255, 0, 0, 128], [0, 255, 0, 255], [0, 0, 255, 51], [255, 255, 0, 255], [255, 255, 255, 85], [0, 255, 255, 255]]
+    bright.json["images"] = [{"uri": "data:image/png;base64," + base64.b64encode(png(level)).decode()} for level in levels]
+    light = {"intensity": 0.5, "rotation": [0, math.sqrt(0.5), 0, math.sqrt(0.5)], "specularImageSize": 4,
+             "specularImages": [list(range(6))], "irradianceCoefficients": [[0, 0, 0]] * 9}
+    bright.json["extensions"] = {"EXT_lights_image_based": {"lights": [light]}}
+    bright.json["scenes"][0]["extensions"] = {"EXT_lights_image_based": {"light": 0}}
+    use(bright, "EXT_lights_image_based")
+    path = bright.write(folder / "image-based.glb")
+    colors = [[np.float32((level > 0) / (alpha / 255)) for level in color] for *color, alpha in levels]
+    (folder / "image-based.pfm").write_bytes(panorama(colors, 8))
+    environment = {"environment": {"file": "image-based.pfm", "scale": 0.5}}
+    objects = [{"model": {"file": path}}]
+    yield ("lights_image_based", {"objects": objects},
+           {"objects": [{"model": {"file": path, "lights": False}}], "background": environment})
+
+    profile = ("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 5 1 1 1 0 0 0\n1 1 100\n0 22.5 45 67.5 90\n0\n"
+               "100 80 60 20 5\n")
+    (folder / "lamp.ies").write_text(profile)
+    for multiplier, color in ((1, [1, 1, 1]), (0.25, [1, 0.5, 0.25])):
+        lamp = placed(model())
+        uri = "data:application/octet-stream;base64," + base64.b64encode(profile.encode()).decode()
+        lamp.json["extensions"] = {"EXT_lights_ies": {"lights": [{"uri": uri}]}}
+        lamp.node(translation=[0, 3, 0], rotation=[-math.sqrt(0.5), 0, 0, math.sqrt(0.5)],
+                  extensions={"EXT_lights_ies": {"light": 0, "multiplier": multiplier, "color": color}})
+        use(lamp, "EXT_lights_ies")
+        path = lamp.write(folder / f"ies{multiplier}.glb")
+        point = {"position": [0, 3, 0], "color": color, "intensity": multiplier,
+                 "ies": {"file": "lamp.ies", "direction": [0, -1, 0], "absolute": True}}
+        yield (f"lights_ies {multiplier}", {"objects": [{"model": {"file": path}}], "background": {"solid": {"color": 0}}},
+               {"objects": [{"model": {"file": path, "lights": False}}], "background": {"solid": {"color": 0}},
+                "lights": [{"point": point}]})
+
+
 def cases(folder):
     """Names and pairs of scene files whose pictures must be equal."""
     folder = Path(folder)
-    pairs = [(name, [one], [other]) for name, one, other in material_cases(folder)] + list(node_cases(folder))
-    for number, (name, *sides) in enumerate(pairs):
+    studio = {"background": {"studio": {}}}
+    listed = [(name, [one], [other]) for name, one, other in material_cases(folder)] + list(node_cases(folder))
+    pairs = [(name, *(studio | {"objects": [{"model": one} for one in side]} for side in sides)) for name, *sides in listed]
+    for number, (name, *sides) in enumerate(pairs + list(light_cases(folder))):
         files = []
-        for side, models in zip("ab", sides):
-            scene = {"version": 1, "render": {"integrator": "path"}, "background": {"studio": {}},
-                     "camera": {"perspective": {"eye": [1, 1.5, 5], "look_at": [0, 0, 0], "vertical_fov_degrees": 35}},
-                     "objects": [{"model": one} for one in models]}
+        for side, parts in zip("ab", sides):
+            scene = {"version": 1, "render": {"integrator": "path"}, **parts,
+                     "camera": {"perspective": {"eye": [1, 1.5, 5], "look_at": [0, 0, 0], "vertical_fov_degrees": 35}}}
             files.append(folder / f"{number}{side}.json")
             files[-1].write_text(json.dumps(scene))
         yield name, *files

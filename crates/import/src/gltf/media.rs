@@ -133,5 +133,8 @@ fn uses(document: &Document) -> Vec<Use> {
         add(first, false);
         others.for_each(|other| add(Some(other), true));
     }
+    let lights = document.extensions.lights_image_based.iter().flat_map(|lights| &lights.lights);
+    let faces = lights.filter_map(|light| light.specular_images.first()).flatten();
+    faces.for_each(|face| add(Some(*face), false));
     uses
 }

@@ -11,7 +11,7 @@ use juggler_math::Rgb;
 use juggler_scene::Asset;
 
 /// Luminous efficacy in lumens per watt, by which photometric intensities are divided.
-const EFFICACY: f64 = 683.0;
+pub const EFFICACY: f64 = 683.0;
 /// Largest intensity of a light.
 const MAX_INTENSITY: f64 = 1e30;
 

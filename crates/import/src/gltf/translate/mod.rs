@@ -11,11 +11,13 @@
 //! | `objects`, `instances` | nodes to objects and groups |
 //! | `materials` | materials with their textures |
 //! | `cameras`, `lights` | cameras and lights of nodes |
+//! | `image_based` | image-based lights of scenes |
 
 mod cameras;
 mod clips;
 mod deformed;
 mod faults;
+mod image_based;
 mod instances;
 mod lights;
 mod materials;
@@ -42,6 +44,7 @@ use super::warning::Warnings;
 use deformed::Skins;
 use faults::Faults;
 use glam::DAffine3;
+use image_based::ImageBased;
 use instances::Instances;
 use juggler_scene::model::{ModelChoice, ModelParts};
 use materials::MaterialSet;
@@ -66,6 +69,7 @@ pub(super) struct Content {
     tree: NodeTree,
     skins: Skins,
     instances: Instances,
+    image_based: ImageBased,
 }
 
 /// A scene of a file in a pose.
@@ -96,7 +100,8 @@ impl Content {
             return Err(faults.into_error(&data.gltf.name));
         }
         let (meshes, skins, instances) = (Meshes::new(document), Skins::new(document), Instances::new(document));
-        Ok(Self { names, clips, warnings, meshes, tree, skins, instances, data })
+        let image_based = ImageBased::new(document);
+        Ok(Self { names, clips, warnings, meshes, tree, skins, instances, image_based, data })
     }
 
     /// The scene, in the pose of a choice.
@@ -156,6 +161,9 @@ impl Content {
         let mut objects = Objects::new(view, MaterialSet::new(&document, &self.data, prefix));
         objects.add_all(&mut findings);
         let lights = lights::lights(&view, &document, choice.photometric);
+        let efficacy = if choice.photometric { lights::EFFICACY } else { 1.0 };
+        let environment = self.image_based.environment(&view, &document, efficacy);
+        let environment = findings.faults.take(environment).flatten();
         let Objects { materials, groups, objects, .. } = objects;
         let materials = materials.finish();
         findings.warnings.append(materials.warnings);
@@ -164,6 +172,10 @@ impl Content {
         }
         let mut assets = materials.assets;
         assets.extend(lights.assets);
+        let background = environment.map(|(background, file, picture)| {
+            assets.insert(file, picture);
+            background
+        });
         Ok(ModelParts {
             assets,
             textures: materials.textures,
@@ -172,7 +184,7 @@ impl Content {
             cameras: cameras::cameras(&view, &document),
             lights: lights.lights,
             objects,
-            background: None,
+            background,
             warnings: texts(&findings.warnings),
         })
     }
