@@ -184,10 +184,10 @@ def check_tangents(program, models, folder):
         ours, theirs = ply_tangents(meshes[0]), np.array(found["tangents"]).reshape(-1, 4)
         name = found["name"].removeprefix(f"{models}/")
         if report(f"corners of {name}", len(meshes) == 1 and ours.shape == theirs.shape, f"{ours.shape} {theirs.shape}"):
-            # The package loses digits in corners of nearly 180 degrees: there (9 corners of 18,000 of
-            # LightsPunctualLamp) the same sums in double precision agree with the program to 1.3e-6.
+            # The package loses digits in corners of nearly 180 degrees: in the 9 corners of 18,000 of
+            # LightsPunctualLamp, the same sums in double precision agree with the program to 1.3e-6.
             error = np.abs(ours - theirs).max(1)
-            wrong = (error >= 1e-6).sum()
+            wrong = (error >= 1e-5).sum()
             report(f"tangents of {name}", error.max() < 2e-4 and wrong <= 0.002 * len(error), f"{error.max():.1e}, {wrong} corners")
 
 
@@ -260,7 +260,8 @@ def check_speed(program, models, folder):
 
 
 PARTS = {"models": check_models, "encodings": check_encodings, "numbers": check_numbers,
-         "tangents": check_tangents, "meshes": check_meshes, "movie": check_movie, "extensions": check_extensions, "malformed": check_malformed, "speed": check_speed}
+         "tangents": check_tangents, "meshes": check_meshes, "movie": check_movie,
+         "extensions": check_extensions, "malformed": check_malformed, "speed": check_speed}
 
 
 def main():
