@@ -13,8 +13,7 @@ use crate::model::{ModelCache, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
-use juggler_math::Vec3;
-use juggler_shape::{InvalidShape, Mesh, MeshData, Shape};
+use juggler_shape::{InvalidShape, Mesh, MeshData, MorphArrays, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -242,20 +241,29 @@ impl Files<'_> {
     fn data(&self, mesh: &Mesh, path: &PathRef<'_>, findings: &mut Vec<Finding>) -> Option<MeshData> {
         let mut base = self.base(mesh, path, findings)?;
         base.morphs.clone_from(&mesh.morphs);
-        let mut targets: Vec<Vec<Vec3>> = Vec::new();
+        let mut files: Vec<Option<Mesh>> = Vec::new();
         for (i, morph) in mesh.morphs.iter().enumerate() {
             let path = Path::from(path).key("morphs").index(i);
-            if morph.file.is_some() && !morph.positions.is_empty() {
-                let message = "a morph has either `file` or `positions`, not both";
+            let MorphArrays { positions, normals, tangents } = morph.arrays();
+            if morph.file.is_some() && !(positions.is_empty() && normals.is_empty() && tangents.is_empty()) {
+                let message = "a morph has either `file` or arrays (`positions`, `normals`, `tangents`), not both";
                 findings.push(Finding::error(message).at(&path));
                 return None;
             }
-            targets.push(match &morph.file {
-                None => morph.positions.clone(),
-                Some(file) => self.file(file, &path.key("file"), findings)?.data()?.positions.clone(),
+            files.push(match &morph.file {
+                None => None,
+                Some(file) => Some(self.file(file, &path.key("file"), findings)?),
             });
         }
-        match base.blended(&targets.iter().map(Vec::as_slice).collect::<Vec<_>>()) {
+        let targets = mesh.morphs.iter().zip(&files).filter_map(|(morph, file)| match file {
+            None => Some(morph.arrays()),
+            Some(mesh) => mesh.data().map(|MeshData { positions, normals, tangents, .. }| MorphArrays {
+                positions,
+                normals,
+                tangents,
+            }),
+        });
+        match base.blended(&targets.collect::<Vec<_>>()) {
             Ok(data) => Some(data),
             Err(invalid) => {
                 findings.push(Finding::error(invalid.message).at(Path::from(path).join(&invalid.field)));

@@ -117,6 +117,8 @@ pub(super) fn scaled(count: u64, whole: u64, part: u64) -> u64 {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sample {
     positions: u64,
+    /// Number of positions with a color.
+    colors: u64,
     uvs: u64,
     normals: u64,
     triangles: u64,
@@ -152,10 +154,11 @@ impl FileSampler {
             sampled_bytes += whole.len() as u64 + 1;
             found.count(whole);
         }
-        let Sample { positions, uvs, normals, triangles, corners, facets, distinct } = found;
-        let [positions, uvs, normals, triangles, corners, facets] =
-            [positions, uvs, normals, triangles, corners, facets].map(|count| scaled(count, size, sampled_bytes));
-        Ok(Sample { positions, uvs, normals, triangles, corners, facets, distinct })
+        let Sample { positions, colors, uvs, normals, triangles, corners, facets, distinct } = found;
+        let [positions, colors, uvs, normals, triangles, corners, facets] =
+            [positions, colors, uvs, normals, triangles, corners, facets]
+                .map(|count| scaled(count, size, sampled_bytes));
+        Ok(Sample { positions, colors, uvs, normals, triangles, corners, facets, distinct })
     }
 }
 
@@ -165,7 +168,10 @@ impl Sample {
         for line in lines(text) {
             let mut words = words(line);
             match words.next() {
-                Some("v") => self.positions += 1,
+                Some("v") => {
+                    self.positions += 1;
+                    self.colors += u64::from(words.count() >= 6);
+                }
                 Some("vt") => self.uvs += 1,
                 Some("vn") => self.normals += 1,
                 Some("facet") => self.facets += 1,
@@ -189,8 +195,11 @@ impl Sample {
     pub fn obj_counts(&self) -> Counts {
         let [corners, positions] = self.distinct;
         let vertices = scaled(self.positions, corners, positions.min(corners)).min(self.corners);
-        let attribute_bytes = if self.normals > 0 { 12 } else { 0 } + if self.uvs > 0 { 8 } else { 0 };
-        let lists = self.positions * 12 + self.uvs * 8 + self.normals * 12;
+        // Colors of some positions are white colors of all others.
+        let colors = if self.colors > 0 { self.positions } else { 0 };
+        let attribute_bytes =
+            if self.normals > 0 { 12 } else { 0 } + if self.uvs > 0 { 8 } else { 0 } + if colors > 0 { 12 } else { 0 };
+        let lists = (self.positions + colors) * 12 + self.uvs * 8 + self.normals * 12;
         let polygons = if self.corners > self.triangles * 3 { self.triangles * 16 } else { 0 };
         Counts {
             face_bytes: 0,
@@ -248,6 +257,8 @@ mod tests {
         let found = of("a.obj", small.as_bytes());
         // There are seven distinct corners, more than positions.
         assert_eq!((found.triangles, found.resident_bytes), (3, 7 * 24 + 3 * (FACE + BUILT)));
+        let colored = "v 0 0 0 1 0 0\nv 1 0 0 1 1 0\nv 1 1 0\nf 1 2 3\n";
+        assert_eq!(of("a.obj", colored.as_bytes()).resident_bytes, 3 * 24 + FACE + BUILT);
         // A long text is only sampled.
         let long: String = (0..50_000).map(|i| format!("v {i} {} 0\n", i / 7)).collect();
         let faces: String = (0..40_000).map(|i| format!("f {} {} {} {}\n", i + 1, i + 2, i + 3, i + 4)).collect();

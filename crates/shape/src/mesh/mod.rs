@@ -39,7 +39,7 @@ mod prepared;
 mod rare;
 
 pub use data::MeshData;
-pub use morph::MorphTarget;
+pub use morph::{MorphArrays, MorphTarget};
 pub use point::MeshPoint;
 
 /// A triangle mesh, from a file or from arrays. The corners of a triangle run counter-clockwise
@@ -201,12 +201,12 @@ impl Mesh {
         Ok(())
     }
 
-    /// The arrays with positions blended by `morphs`, the target positions for each of
-    /// [`Mesh::morphs`]. The error names the field at fault.
-    pub fn blended(&self, morphs: &[&[Vec3]]) -> Result<MeshData, InvalidShape> {
+    /// The arrays blended with `targets`, the arrays for each of [`Mesh::morphs`]. The error names the
+    /// field at fault.
+    pub fn blended(&self, targets: &[MorphArrays<'_>]) -> Result<MeshData, InvalidShape> {
         let mut data = MeshData::clone(&self.arrays);
-        let targets: Vec<(&[Vec3], f32)> =
-            morphs.iter().zip(&self.morphs).map(|(positions, morph)| (*positions, morph.weight)).collect();
+        let targets: Vec<(MorphArrays<'_>, f32)> =
+            targets.iter().zip(&self.morphs).map(|(target, morph)| (*target, morph.weight)).collect();
         morph::blend(&mut data, &targets)?;
         Ok(data)
     }
@@ -248,11 +248,12 @@ impl Mesh {
         &self.arrays
     }
 
-    /// Drops corners, triangles and the positions of morphs, so that the rest can be inspected
-    /// alone.
+    /// Drops corners, triangles and the arrays of morphs, so that the rest can be inspected alone.
     pub fn clear_arrays(&mut self) {
         (self.arrays, self.prepared, self.memo) = Default::default();
-        self.morphs.iter_mut().for_each(|morph| morph.positions.clear());
+        for morph in &mut self.morphs {
+            (morph.positions, morph.normals, morph.tangents) = Default::default();
+        }
     }
 
     /// The arrays for modification; drops the prepared data, which is then out of date.
@@ -275,7 +276,7 @@ impl Shape for Mesh {
         }
         let mut arrays = Arc::clone(&self.arrays);
         if !self.morphs.is_empty() {
-            let morphs: Vec<(&[Vec3], f32)> = self.morphs.iter().map(|m| (m.positions.as_slice(), m.weight)).collect();
+            let morphs: Vec<_> = self.morphs.iter().map(|morph| (morph.arrays(), morph.weight)).collect();
             morph::blend(Arc::make_mut(&mut arrays), &morphs)?;
         }
         if let Some(angle) = self.crease_angle_degrees.filter(|_| arrays.normals.is_empty()) {

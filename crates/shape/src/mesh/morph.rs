@@ -8,55 +8,116 @@ use juggler_math::{DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Morph target (blend shape) of a mesh: target positions of its corners and a weight. The mesh's
-/// shading normals are computed anew from the blended surface.
+/// Morph target (blend shape) of a mesh: target positions of its corners and a weight. Normals and
+/// tangents of the mesh are blended with those of the targets. If a target has no normals, the
+/// mesh's are computed anew from the blended surface; if it has no tangents, the mesh's stay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(rename = "Morph")]
 pub struct MorphTarget {
     /// Model file with as many corners as the mesh, relative to the scene file, instead of
-    /// `positions`.
+    /// `positions`, `normals` and `tangents`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Target positions in scene units, one for each of the mesh's.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f32; 3]>", extend("x-unit" = "scene units"))]
     pub positions: Vec<Vec3>,
+    /// Target normals, one for each position, of any length. By default the mesh's normals are
+    /// computed anew from the blended surface.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<[f32; 3]>")]
+    pub normals: Vec<Vec3>,
+    /// Target tangents, one for each position: x, y, z and a sign, which is not used. By default the
+    /// mesh's tangents stay.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tangents: Vec<[f32; 4]>,
     /// Weight of the displacement from the mesh to the target, -100 to 100: 0 has no effect, 1
     /// reaches the target, and values outside 0 to 1 extrapolate.
     #[schemars(range(min = -100, max = 100))]
     pub weight: f32,
 }
 
-/// Blends the positions of a mesh with target positions and their weights, and computes its normals
-/// anew. The error names the field at fault.
-pub fn blend(data: &mut MeshData, morphs: &[(&[Vec3], f32)]) -> Result<(), InvalidShape> {
-    for (i, (positions, weight)) in morphs.iter().enumerate() {
-        if positions.len() != data.positions.len() {
-            let field = format!("morphs[{i}]");
-            let message = format!(
-                "a mesh of {} positions cannot become one of {}: both must have the same vertices in the same order",
-                data.positions.len(),
-                positions.len()
-            );
-            return Err(invalid(field, message));
-        }
-        if !weight.is_finite() {
-            return Err(invalid(format!("morphs[{i}].weight"), "`weight` must be finite"));
-        }
-        positions.iter().try_for_each(|at| check::point(&format!("morphs[{i}]"), *at))?;
+/// Arrays of a morph target. Normals and tangents may be empty.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MorphArrays<'a> {
+    /// Target positions, one for each of the mesh's.
+    pub positions: &'a [Vec3],
+    /// Target normals.
+    pub normals: &'a [Vec3],
+    /// Target tangents.
+    pub tangents: &'a [[f32; 4]],
+}
+
+impl MorphTarget {
+    /// Arrays of a target that has no file.
+    pub fn arrays(&self) -> MorphArrays<'_> {
+        MorphArrays { positions: &self.positions, normals: &self.normals, tangents: &self.tangents }
     }
-    if morphs.iter().all(|(_, weight)| *weight == 0.0) {
+}
+
+/// Blends a mesh with targets and their weights. The error names the field at fault.
+pub fn blend(data: &mut MeshData, morphs: &[(MorphArrays<'_>, f32)]) -> Result<(), InvalidShape> {
+    for (i, (target, weight)) in morphs.iter().enumerate() {
+        check_target(data, i, target, *weight)?;
+    }
+    let used: Vec<(MorphArrays<'_>, f32)> = morphs.iter().copied().filter(|(_, weight)| *weight != 0.0).collect();
+    if used.is_empty() {
         return Ok(());
     }
+    let sum = |base: Vec3, target: &dyn Fn(&MorphArrays<'_>) -> Option<Vec3>| {
+        used.iter().fold(base, |sum, (arrays, weight)| sum + (target(arrays).unwrap_or(base) - base) * *weight)
+    };
     for (corner, position) in data.positions.iter_mut().enumerate() {
-        let base = *position;
-        for (positions, weight) in morphs {
-            *position += (positions.get(corner).copied().unwrap_or(base) - base) * *weight;
+        *position = sum(*position, &|target| target.positions.get(corner).copied());
+    }
+    if used.iter().any(|(target, _)| target.normals.is_empty()) {
+        if !data.normals.is_empty() {
+            data.normals = normals(data);
+        }
+    } else {
+        for (corner, normal) in data.normals.iter_mut().enumerate() {
+            *normal = sum(*normal, &|target| target.normals.get(corner).copied()).normalize_or(*normal);
         }
     }
-    if !data.normals.is_empty() {
-        data.normals = normals(data);
+    if used.iter().all(|(target, _)| !target.tangents.is_empty()) {
+        for (corner, tangent) in data.tangents.iter_mut().enumerate() {
+            let [x, y, z, sign] = *tangent;
+            let target =
+                |target: &MorphArrays<'_>| target.tangents.get(corner).map(|[x, y, z, _]| Vec3::new(*x, *y, *z));
+            let [x, y, z] = sum(Vec3::new(x, y, z), &target).to_array();
+            *tangent = [x, y, z, sign];
+        }
+    }
+    Ok(())
+}
+
+/// Checks the weight and the arrays of a target.
+fn check_target(data: &MeshData, i: usize, target: &MorphArrays<'_>, weight: f32) -> Result<(), InvalidShape> {
+    let count = data.positions.len();
+    if target.positions.len() != count {
+        let message = format!(
+            "a mesh of {count} positions cannot become one of {}: both must have the same vertices in the same order",
+            target.positions.len()
+        );
+        return Err(invalid(format!("morphs[{i}]"), message));
+    }
+    if !weight.is_finite() {
+        return Err(invalid(format!("morphs[{i}].weight"), "`weight` must be finite"));
+    }
+    for (name, length) in [("normals", target.normals.len()), ("tangents", target.tangents.len())] {
+        if length != 0 && length != count {
+            let message =
+                format!("`{name}` has {length} elements; it must be empty or have one for each of {count} positions");
+            return Err(invalid(format!("morphs[{i}].{name}"), message));
+        }
+    }
+    target.positions.iter().try_for_each(|at| check::point(&format!("morphs[{i}]"), *at))?;
+    if !target.normals.iter().all(|normal| normal.is_finite()) {
+        return Err(invalid(format!("morphs[{i}].normals"), "`normals` must be finite"));
+    }
+    if !target.tangents.iter().flatten().all(|number| number.is_finite()) {
+        return Err(invalid(format!("morphs[{i}].tangents"), "`tangents` must be finite"));
     }
     Ok(())
 }

@@ -120,7 +120,8 @@ fn morph_targets_blend_positions_and_recompute_normals() {
     let base = globe(24, 12, 1.0, Vec3::ZERO);
     let wide: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p * Vec3::new(3.0, 1.0, 1.0)).collect();
     let high: Vec<Vec3> = base.arrays.positions.iter().map(|p| *p + Vec3::Y).collect();
-    let morph = |positions: &Vec<Vec3>, weight| MorphTarget { file: None, positions: positions.clone(), weight };
+    let morph =
+        |positions: &Vec<Vec3>, weight| MorphTarget { positions: positions.clone(), weight, ..MorphTarget::default() };
     let mut mesh = Mesh { morphs: vec![morph(&wide, 0.5), morph(&high, 2.0)], ..base.clone() };
     mesh.prepare().unwrap();
     let bounds = mesh.bounds();
@@ -132,6 +133,29 @@ fn morph_targets_blend_positions_and_recompute_normals() {
     assert!(surface.shading_normal.dot(exact) > 0.995, "{surface:?} {exact}");
     let mut few = Mesh { morphs: vec![morph(&wide[1..].to_vec(), 0.5)], ..base };
     assert_eq!(few.prepare().unwrap_err().field, "morphs[0]");
+}
+
+#[test]
+fn normals_and_tangents_of_morph_targets_are_blended() {
+    let mut data = floor([Vec3::Y; 3]);
+    data.tangents = vec![[1.0, 0.0, 0.0, -1.0]; 3];
+    let plain = MorphTarget { positions: data.positions.clone(), weight: 0.5, ..MorphTarget::default() };
+    let target =
+        MorphTarget { normals: vec![Vec3::X * 3.0; 3], tangents: vec![[0.0, 0.0, 2.0, 1.0]; 3], ..plain.clone() };
+    let prepared = |morphs: Vec<MorphTarget>| {
+        let mut mesh = Mesh { morphs, ..Mesh::from(data.clone()) };
+        mesh.prepare().map(|()| mesh.data().unwrap().clone())
+    };
+    let blended = prepared(vec![target.clone()]).unwrap();
+    assert_eq!(blended.normals, [Vec3::new(1.5, 0.5, 0.0).normalize(); 3]);
+    assert_eq!(blended.tangents, [[0.5, 0.0, 1.0, -1.0]; 3], "the sign is that of the mesh");
+    // Normals are computed anew if a target that counts has none; its tangents stay.
+    let anew = prepared(vec![target.clone(), plain.clone()]).unwrap();
+    assert_eq!((anew.normals[0].abs(), anew.tangents[0]), (Vec3::Y, [1.0, 0.0, 0.0, -1.0]));
+    let unused = MorphTarget { weight: 0.0, ..plain };
+    assert_eq!(prepared(vec![target.clone(), unused]).unwrap().normals, blended.normals);
+    let few = MorphTarget { normals: vec![Vec3::X], ..target };
+    assert_eq!(prepared(vec![few]).unwrap_err().field, "morphs[0].normals");
 }
 
 #[test]

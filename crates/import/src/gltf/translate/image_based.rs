@@ -252,7 +252,9 @@ mod tests {
             "irradianceCoefficients": [[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]],
             "specularImages": [[0, 1, 2, 3, 4, 5]]}"#;
         builder.member(format!(r#""extensions": {{"EXT_lights_image_based": {{"lights": [{light}]}}}}"#));
-        builder.member(r#""nodes": [{}], "scenes": [{"nodes": [0], "extensions": {"EXT_lights_image_based": {"light": 0}}}]"#);
+        builder.member(
+            r#""nodes": [{}], "scenes": [{"nodes": [0], "extensions": {"EXT_lights_image_based": {"light": 0}}}]"#,
+        );
         builder.member(r#""scene": 0"#);
         builder
     }

@@ -40,8 +40,8 @@ fn rare_arrays_follow_creases_and_morphs() {
     let data = folded();
     assert_values(&data);
     let mut mesh = Mesh { crease_angle_degrees: Some(30.0), ..data.clone().into() };
-    mesh.morphs =
-        vec![MorphTarget { positions: data.positions.iter().map(|p| *p * 3.0).collect(), weight: 0.5, file: None }];
+    let positions = data.positions.iter().map(|p| *p * 3.0).collect();
+    mesh.morphs = vec![MorphTarget { positions, weight: 0.5, ..MorphTarget::default() }];
     mesh.prepare().unwrap();
     assert_eq!(mesh.arrays().positions.len(), 6, "the edge is split");
     assert_values(mesh.arrays());
