@@ -200,17 +200,17 @@ def light_cases(folder):
 
     profile = ("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 5 1 1 1 0 0 0\n1 1 100\n0 22.5 45 67.5 90\n0\n"
                "100 80 60 20 5\n")
-    (folder / "lamp.ies").write_text(profile)
+    (folder / "profile.ies").write_text(profile)
     for multiplier, color in ((1, [1, 1, 1]), (0.25, [1, 0.5, 0.25])):
-        lamp = placed(model())
+        lit = placed(model())
         uri = "data:application/octet-stream;base64," + base64.b64encode(profile.encode()).decode()
-        lamp.json["extensions"] = {"EXT_lights_ies": {"lights": [{"uri": uri}]}}
-        lamp.node(translation=[0, 3, 0], rotation=[-math.sqrt(0.5), 0, 0, math.sqrt(0.5)],
-                  extensions={"EXT_lights_ies": {"light": 0, "multiplier": multiplier, "color": color}})
-        use(lamp, "EXT_lights_ies")
-        path = lamp.write(folder / f"ies{multiplier}.glb")
+        lit.json["extensions"] = {"EXT_lights_ies": {"lights": [{"uri": uri}]}}
+        lit.node(translation=[0, 3, 0], rotation=[-math.sqrt(0.5), 0, 0, math.sqrt(0.5)],
+                 extensions={"EXT_lights_ies": {"light": 0, "multiplier": multiplier, "color": color}})
+        use(lit, "EXT_lights_ies")
+        path = lit.write(folder / f"ies{multiplier}.glb")
         point = {"position": [0, 3, 0], "color": color, "intensity": multiplier,
-                 "ies": {"file": "lamp.ies", "direction": [0, -1, 0], "absolute": True}}
+                 "ies": {"file": "profile.ies", "direction": [0, -1, 0], "absolute": True}}
         yield (f"lights_ies {multiplier}", {"objects": [{"model": {"file": path}}], "background": {"solid": {"color": 0}}},
                {"objects": [{"model": {"file": path, "lights": False}}], "background": {"solid": {"color": 0}},
                 "lights": [{"point": point}]})

@@ -32,7 +32,6 @@ pub struct Subject {
     pub(crate) given_values: Vec<(String, Value)>,
     /// Whether missing and broken pictures of models are shown gray.
     pub(crate) lenient: bool,
-    /// Models of the scene.
     pub(crate) models: Arc<[ModelStatus]>,
     pub(crate) frame: f64,
     pub(crate) settings: Settings,
@@ -182,9 +181,8 @@ impl Subject {
 
     /// Requests another scene with the same size and denoiser.
     fn open(&self, name: &str) -> BuildRequest {
-        let mut build =
-            BuildRequest { size: self.size, ..BuildRequest::open(name, self.settings.size).with_lenient(self.lenient) };
-        build.settings.denoiser = self.settings.denoiser;
+        let mut build = BuildRequest::open(name, self.settings.size).with_lenient(self.lenient);
+        (build.size, build.settings.denoiser) = (self.size, self.settings.denoiser);
         build
     }
 

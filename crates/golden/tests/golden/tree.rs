@@ -109,6 +109,7 @@ const OPENERS: &[&str] = &[
     "fuzz/src/seeds.rs",
     "imaging/src/regular.rs",
     "juggler/benches/edits.rs",
+    "juggler/benches/models.rs",
 ];
 
 /// Opening a named pipe blocks until another program writes to it, so readers open their input by
