@@ -11,6 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.pop(0)  # Blender has an add-on `cycles`, which the script of this name would replace.
 import bpy
 import mathutils
 import numpy as np
@@ -79,8 +80,7 @@ def set_cycles(job, scene):
     cycles.caustics_reflective = cycles.caustics_refractive = True
     bounces = job["max_depth"] - 2
     for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max", "volume"):
-        name = kind if kind == "transparent_max" else kind
-        setattr(cycles, f"{name}_bounces", bounces)
+        setattr(cycles, f"{kind}_bounces", bounces)
     scene.view_settings.view_transform = "Raw"
     settings = render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"

@@ -35,6 +35,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 EXPOSURE = -1
 MAX_DEPTH = 34
+FIELD_OF_VIEW = 40
 MEDIAN, LIMIT = 0.05, 0.08
 MODELS = ["AlphaBlendModeTest", "AnimatedMorphCube", "Avocado", "BoxVertexColors", "ClearCoatCarPaint",
           "EmissiveStrengthTest", "Fox", "GlassVaseFlowers", "LightsPunctualLamp", "MetalRoughSpheresNoTextures",
@@ -63,25 +64,27 @@ def file_of(assets, model):
     return found[0]
 
 
-def framing(options, model):
-    """Camera that Juggler selects for a model, which looks at it from the front right above."""
-    scene = options.folder / f"{model}.framing.json"
-    extra = [] if model in FILES else ["--animation", "none"]
-    run(options.program, "convert", file_of(options.assets, model), scene, *extra)
-    camera = next(iter(json.loads(scene.read_text())["cameras"].values()))["perspective"]
-    return {key: camera[key] for key in ("eye", "look_at")} | {"vertical_fov_degrees": camera["vertical_fov_degrees"]}
+def camera_of(options, model):
+    """Juggler's default camera for a model in a square picture, from the bounds that `info` reports."""
+    file = options.folder / f"{model}.bounds.json"
+    scene = scene_of(options, model, {}, {})
+    del scene["cameras"]
+    file.write_text(json.dumps(scene))
+    lower, upper = np.array(json.loads(run(options.program, "info", file, "--json"))["bounds"])
+    center, radius = (lower + upper) / 2, np.linalg.norm(upper - lower) / 2
+    towards = np.array([0.35, 0.35, 1]) / np.linalg.norm([0.35, 0.35, 1])
+    eye = center + towards * radius * 1.05 / np.sin(np.radians(FIELD_OF_VIEW / 2))
+    return {"eye": eye.round(9).tolist(), "look_at": center.round(9).tolist(), "vertical_fov_degrees": FIELD_OF_VIEW}
 
 
-def scene_of(options, model, camera, change):
+def scene_of(options, model, camera, change, seed=0):
     """Juggler's scene of a model."""
     file = str(file_of(options.assets, model))
     shown = {"model": {"file": file, "animation": "none"} | change}
     scene = {"version": 1, "cameras": {"main": {"perspective": camera}}, "objects": [shown],
              "background": {"environment": {"file": str(options.assets / "env/studio.hdr")}},
-             "render": {"size": [options.size] * 2, "samples": options.samples,
+             "render": {"size": [options.size] * 2, "samples": options.samples, "seed": seed,
                         "integrator": {"path": {"max_depth": MAX_DEPTH}}}}
-    if model in FILES and file.endswith(".obj"):
-        del shown["model"]["animation"]
     if model in TEXTURES:
         image = {"file": str(options.assets / TEXTURES[model])}
         scene["textures"] = {"image": {"image": image}}
@@ -103,8 +106,8 @@ def rendered(options, name, job, command):
 
 def by_juggler(options, model, camera, change, label="", seed=0):
     """Picture by Juggler."""
-    return rendered(options, f"{model}{label}.juggler", scene_of(options, model, camera, change) | {"name": str(seed)},
-                    lambda scene, picture: run(options.program, "render", scene, "-o", picture, "--seed", seed))
+    return rendered(options, f"{model}{label}.juggler", scene_of(options, model, camera, change, seed),
+                    lambda scene, picture: run(options.program, "render", scene, "-o", picture))
 
 
 def by_cycles(options, model, camera, changes, label=""):
@@ -161,7 +164,7 @@ def compared(options, name, ours, theirs):
 
 def compare_model(options, model):
     """Mean FLIP of a model, without and with the changes of its causes."""
-    camera = framing(options, model)
+    camera = camera_of(options, model)
     ours = by_juggler(options, model, camera, {})
     if options.noise:
         other = by_juggler(options, model, camera, {}, ".noise", seed=1)
@@ -190,7 +193,7 @@ def main():
     parser.add_argument("--samples", type=int, default=256)
     parser.add_argument("--causes", action="store_true")
     parser.add_argument("--noise", action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     print(f"{'model':28} {'FLIP':6} {'ratio':>6}")
     flips = {model: compare_model(options, model) for model in options.models}
