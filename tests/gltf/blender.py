@@ -119,7 +119,36 @@ def opaque():
         principled.inputs["Alpha"].default_value = 1.0
 
 
-CHANGES = {"cull_backs": cull_backs, "opaque": opaque, "radiometric": lambda: None}
+def single_scattering():
+    """Leaves out light that scatters several times between microfacets."""
+    for _, principled in materials():
+        principled.distribution = "GGX"
+
+
+def default_material():
+    """Gives primitives without material the metal of the glTF specification."""
+    for material, principled in materials():
+        if material.name == "DefaultMaterial":
+            principled.inputs["Metallic"].default_value = principled.inputs["Roughness"].default_value = 1.0
+
+
+def tint_interfaces():
+    """Squares the base color of glass, whose square root Cycles takes for each interface."""
+    for _, principled in materials():
+        color = principled.inputs["Base Color"]
+        if principled.inputs["Transmission Weight"].default_value > 0 and not color.links:
+            color.default_value = [channel**2 for channel in color.default_value]
+
+
+def half_specular():
+    """Halves the specular level of MTL materials, of which Cycles takes 0.5 for a reflectance of 0.04."""
+    for _, principled in materials():
+        principled.inputs["Specular IOR Level"].default_value *= 0.5
+
+
+CHANGES = {function.__name__: function for function in
+           (cull_backs, opaque, single_scattering, default_material, tint_interfaces, half_specular)}
+CHANGES["radiometric"] = lambda: None  # by import_model
 
 
 def texture_model(file):

@@ -33,7 +33,7 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-EXPOSURE = -1
+EXPOSURE = -2
 MAX_DEPTH = 34
 FIELD_OF_VIEW = 40
 MEDIAN, LIMIT = 0.05, 0.08
@@ -44,8 +44,22 @@ MODELS = ["AlphaBlendModeTest", "AnimatedMorphCube", "Avocado", "BoxVertexColors
 # Models that are not named after their folder, and the texture of an OBJ file without materials.
 FILES = {"shaderball": "gltf/shaderball.glb", "spot": "obj/spot/spot_triangulated.obj", "fuze": "obj/fuze/fuze.obj"}
 TEXTURES = {"spot": "obj/spot/spot_texture.png"}
-# Changes that prove a cause: functions of blender.py, and settings of the object `model` in Juggler.
-CAUSES = {}
+# Changes that prove a cause: functions of blender.py, settings of Juggler's principled materials.
+SINGLE = {"what": "single scattering between microfacets in both",
+          "cycles": ["single_scattering"], "juggler": {"energy_compensation": False}}
+CULLED = {"what": "no backs of one-sided surfaces in Cycles", "cycles": ["cull_backs"]}
+CAUSES = {
+    "AlphaBlendModeTest": [CULLED, SINGLE],
+    "BoxVertexColors": [{"what": "the default material of the specification in Cycles",
+                         "cycles": ["default_material"]}],
+    "ClearCoatCarPaint": [SINGLE],
+    "GlassVaseFlowers": [CULLED],
+    "LightsPunctualLamp": [{"what": "candela not divided by 683 in Cycles", "cycles": ["radiometric"]}],
+    "NormalTangentTest": [SINGLE],
+    "OrientationTest": [SINGLE],
+    "TransmissionRoughnessTest": [{"what": "base color at each interface in Cycles", "cycles": ["tint_interfaces"]}],
+    "fuze": [{"what": "half the specular level in Cycles", "cycles": ["half_specular"]}],
+}
 
 
 def run(*command):
@@ -67,7 +81,7 @@ def file_of(assets, model):
 def camera_of(options, model):
     """Juggler's default camera for a model in a square picture, from the bounds that `info` reports."""
     file = options.folder / f"{model}.bounds.json"
-    scene = scene_of(options, model, {}, {})
+    scene = scene_of(options, model, {})
     del scene["cameras"]
     file.write_text(json.dumps(scene))
     lower, upper = np.array(json.loads(run(options.program, "info", file, "--json"))["bounds"])
@@ -77,10 +91,10 @@ def camera_of(options, model):
     return {"eye": eye.round(9).tolist(), "look_at": center.round(9).tolist(), "vertical_fov_degrees": FIELD_OF_VIEW}
 
 
-def scene_of(options, model, camera, change, seed=0):
+def scene_of(options, model, camera, seed=0):
     """Juggler's scene of a model."""
     file = str(file_of(options.assets, model))
-    shown = {"model": {"file": file, "animation": "none"} | change}
+    shown = {"model": {"file": file, "animation": "none"}}
     scene = {"version": 1, "cameras": {"main": {"perspective": camera}}, "objects": [shown],
              "background": {"environment": {"file": str(options.assets / "env/studio.hdr")}},
              "render": {"size": [options.size] * 2, "samples": options.samples, "seed": seed,
@@ -104,9 +118,34 @@ def rendered(options, name, job, command):
     return picture
 
 
+def with_materials(options, model, scene, change):
+    """The scene with settings of all its principled materials changed; its model becomes objects and materials."""
+    folder = options.folder / f"{model}.parts"
+    packed = options.folder / f"{model}.packed.json"
+    packed.write_text(json.dumps(scene))
+    unpacked = Path(run(options.program, "convert", packed, "--unpack", folder).strip())
+    scene = json.loads(unpacked.read_text())
+    for material in scene["materials"].values():
+        if "principled" in material:
+            material["principled"] |= change
+    return absolute(scene, folder)
+
+
+def absolute(value, folder):
+    """A scene whose files have absolute paths."""
+    if isinstance(value, list):
+        return [absolute(item, folder) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {key: str(folder / item) if key == "file" else absolute(item, folder) for key, item in value.items()}
+
+
 def by_juggler(options, model, camera, change, label="", seed=0):
     """Picture by Juggler."""
-    return rendered(options, f"{model}{label}.juggler", scene_of(options, model, camera, change, seed),
+    scene = scene_of(options, model, camera, seed)
+    if change:
+        scene = with_materials(options, model, scene, change)
+    return rendered(options, f"{model}{label}.juggler", scene,
                     lambda scene, picture: run(options.program, "render", scene, "-o", picture))
 
 
