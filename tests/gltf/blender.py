@@ -146,8 +146,15 @@ def half_specular():
         principled.inputs["Specular IOR Level"].default_value *= 0.5
 
 
+def plain_normals():
+    """Turns the correction of shading normals off, which bends them until they reflect outwards."""
+    for material, _ in materials():
+        material.cycles.use_bump_map_correction = False
+
+
 CHANGES = {function.__name__: function for function in
-           (cull_backs, opaque, single_scattering, default_material, tint_interfaces, half_specular)}
+           (cull_backs, opaque, single_scattering, default_material, tint_interfaces, half_specular,
+            plain_normals)}
 CHANGES["radiometric"] = lambda: None  # by import_model
 
 

@@ -47,15 +47,17 @@ TEXTURES = {"spot": "obj/spot/spot_texture.png"}
 # Changes that prove a cause: functions of blender.py, settings of Juggler's principled materials.
 SINGLE = {"what": "single scattering between microfacets in both",
           "cycles": ["single_scattering"], "juggler": {"energy_compensation": False}}
+PLAIN = {"what": "no correction of shading normals in Cycles", "cycles": ["plain_normals"]}
 CULLED = {"what": "no backs of one-sided surfaces in Cycles", "cycles": ["cull_backs"]}
 CAUSES = {
     "AlphaBlendModeTest": [CULLED, SINGLE],
     "BoxVertexColors": [{"what": "the default material of the specification in Cycles",
                          "cycles": ["default_material"]}],
-    "ClearCoatCarPaint": [SINGLE],
-    "GlassVaseFlowers": [CULLED],
+    "ClearCoatCarPaint": [SINGLE, PLAIN],
+    "GlassVaseFlowers": [CULLED, PLAIN],
+    "Avocado": [PLAIN],
     "LightsPunctualLamp": [{"what": "candela not divided by 683 in Cycles", "cycles": ["radiometric"]}],
-    "NormalTangentTest": [SINGLE],
+    "NormalTangentTest": [PLAIN, SINGLE],
     "OrientationTest": [SINGLE],
     "TransmissionRoughnessTest": [{"what": "base color at each interface in Cycles", "cycles": ["tint_interfaces"]}],
     "fuze": [{"what": "half the specular level in Cycles", "cycles": ["half_specular"]}],
