@@ -152,9 +152,28 @@ def plain_normals():
         material.cycles.use_bump_map_correction = False
 
 
+def without_coat():
+    """Leaves out clear coats."""
+    for _, principled in materials():
+        principled.inputs["Coat Weight"].default_value = 0.0
+
+
+def without_normal_maps():
+    """Shows surfaces without normal maps."""
+    for material, principled in materials():
+        for link in list(principled.inputs["Normal"].links):
+            material.node_tree.links.remove(link)
+
+
+def metal():
+    """Makes all surfaces metal, which has one layer."""
+    for _, principled in materials():
+        principled.inputs["Metallic"].default_value = 1.0
+
+
 CHANGES = {function.__name__: function for function in
            (cull_backs, opaque, single_scattering, default_material, tint_interfaces, half_specular,
-            plain_normals)}
+            plain_normals, without_coat, without_normal_maps, metal)}
 CHANGES["radiometric"] = lambda: None  # by import_model
 
 

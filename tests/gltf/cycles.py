@@ -44,20 +44,26 @@ MODELS = ["AlphaBlendModeTest", "AnimatedMorphCube", "Avocado", "BoxVertexColors
 # Models that are not named after their folder, and the texture of an OBJ file without materials.
 FILES = {"shaderball": "gltf/shaderball.glb", "spot": "obj/spot/spot_triangulated.obj", "fuze": "obj/fuze/fuze.obj"}
 TEXTURES = {"spot": "obj/spot/spot_texture.png"}
-# Changes that prove a cause: functions of blender.py, settings of Juggler's principled materials.
+# Changes that prove a cause: functions of blender.py, settings of kinds of materials in Juggler.
 SINGLE = {"what": "single scattering between microfacets in both",
-          "cycles": ["single_scattering"], "juggler": {"energy_compensation": False}}
+          "cycles": ["single_scattering"], "juggler": {"principled": {"energy_compensation": False}}}
 PLAIN = {"what": "no correction of shading normals in Cycles", "cycles": ["plain_normals"]}
 CULLED = {"what": "no backs of one-sided surfaces in Cycles", "cycles": ["cull_backs"]}
+BARE = {"what": "no coats and normal maps in both", "cycles": ["without_coat", "without_normal_maps"],
+        "juggler": {"principled": {"clearcoat": 0}, "normal_map": {"strength": 0}}}
+METAL = {"what": "and metal of one layer instead of a dielectric in both",
+         "cycles": [*BARE["cycles"], *SINGLE["cycles"], "metal"],
+         "juggler": BARE["juggler"] | {"principled": {"clearcoat": 0, "metallic": 1, "energy_compensation": False}}}
 CAUSES = {
-    "AlphaBlendModeTest": [CULLED, SINGLE],
-    "BoxVertexColors": [{"what": "the default material of the specification in Cycles",
-                         "cycles": ["default_material"]}],
-    "ClearCoatCarPaint": [SINGLE, PLAIN],
-    "GlassVaseFlowers": [CULLED, PLAIN],
-    "Avocado": [PLAIN],
+    "AlphaBlendModeTest": [SINGLE],
+    "AnimatedMorphCube": [METAL],
+    "BoxVertexColors": [{"what": "the default material of the specification in Cycles", "cycles": ["default_material"]},
+                        SINGLE | {"what": "and single scattering between microfacets in both",
+                                  "cycles": ["default_material", "single_scattering"]}],
+    "ClearCoatCarPaint": [BARE, METAL],
+    "GlassVaseFlowers": [CULLED, PLAIN | {"cycles": ["cull_backs", "plain_normals"], "what": f"and {PLAIN['what']}"}],
     "LightsPunctualLamp": [{"what": "candela not divided by 683 in Cycles", "cycles": ["radiometric"]}],
-    "NormalTangentTest": [PLAIN, SINGLE],
+    "NormalTangentTest": [BARE],
     "OrientationTest": [SINGLE],
     "TransmissionRoughnessTest": [{"what": "base color at each interface in Cycles", "cycles": ["tint_interfaces"]}],
     "fuze": [{"what": "half the specular level in Cycles", "cycles": ["half_specular"]}],
@@ -121,25 +127,24 @@ def rendered(options, name, job, command):
 
 
 def with_materials(options, model, scene, change):
-    """The scene with settings of all its principled materials changed; its model becomes objects and materials."""
+    """The scene with settings of all its materials changed; its model becomes objects and materials."""
     folder = options.folder / f"{model}.parts"
     packed = options.folder / f"{model}.packed.json"
     packed.write_text(json.dumps(scene))
     unpacked = Path(run(options.program, "convert", packed, "--unpack", folder).strip())
-    scene = json.loads(unpacked.read_text())
-    for material in scene["materials"].values():
-        if "principled" in material:
-            material["principled"] |= change
-    return absolute(scene, folder)
+    return changed(json.loads(unpacked.read_text()), change, folder)
 
 
-def absolute(value, folder):
-    """A scene whose files have absolute paths."""
+def changed(value, change, folder):
+    """A scene with settings of materials of some kinds changed, whose files have absolute paths."""
     if isinstance(value, list):
-        return [absolute(item, folder) for item in value]
+        return [changed(item, change, folder) for item in value]
     if not isinstance(value, dict):
         return value
-    return {key: str(folder / item) if key == "file" else absolute(item, folder) for key, item in value.items()}
+    result = {key: str(folder / item) if key == "file" else changed(item, change, folder) for key, item in value.items()}
+    for kind in change.keys() & result.keys():
+        result[kind] |= change[kind]
+    return result
 
 
 def by_juggler(options, model, camera, change, label="", seed=0):
