@@ -111,14 +111,6 @@ def cull_backs():
         tree.links.new(mix.outputs[0], output.inputs["Surface"])
 
 
-def opaque():
-    """Ignores the opacity of materials."""
-    for material, principled in materials():
-        for link in list(principled.inputs["Alpha"].links):
-            material.node_tree.links.remove(link)
-        principled.inputs["Alpha"].default_value = 1.0
-
-
 def single_scattering():
     """Leaves out light that scatters several times between microfacets."""
     for _, principled in materials():
@@ -171,9 +163,18 @@ def metal():
         principled.inputs["Metallic"].default_value = 1.0
 
 
+def thin_walls():
+    """Makes glass without a volume a thin wall, as the glTF specification has it."""
+    for material, principled in materials():
+        output = next(node for node in material.node_tree.nodes if node.type == "OUTPUT_MATERIAL")
+        transmission = principled.inputs["Transmission Weight"]
+        if not output.inputs["Volume"].links and (transmission.links or transmission.default_value > 0):
+            principled.inputs["Thin Wall"].default_value = True
+
+
 CHANGES = {function.__name__: function for function in
-           (cull_backs, opaque, single_scattering, default_material, tint_interfaces, half_specular,
-            plain_normals, without_coat, without_normal_maps, metal)}
+           (cull_backs, single_scattering, default_material, tint_interfaces, half_specular,
+            plain_normals, without_coat, without_normal_maps, metal, thin_walls)}
 CHANGES["radiometric"] = lambda: None  # by import_model
 
 
