@@ -65,6 +65,7 @@ CAUSES = {
                           {"what": "and glass without volume as thin walls", "cycles": ["radiometric", "thin_walls"]}],
     "NormalTangentTest": [BARE],
     "OrientationTest": [SINGLE],
+    "TextureTransformTest": [CULLED],
     "TransmissionRoughnessTest": [{"what": "base color at each interface in Cycles", "cycles": ["tint_interfaces"]}],
     "fuze": [{"what": "half the specular level in Cycles", "cycles": ["half_specular"]}],
 }
