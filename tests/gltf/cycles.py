@@ -142,7 +142,8 @@ def changed(value, change, folder):
         return [changed(item, change, folder) for item in value]
     if not isinstance(value, dict):
         return value
-    result = {key: str(folder / item) if key == "file" else changed(item, change, folder) for key, item in value.items()}
+    result = {key: str(folder / item) if key == "file" else changed(item, change, folder)
+              for key, item in value.items()}
     for kind in change.keys() & result.keys():
         result[kind] |= change[kind]
     return result
