@@ -94,19 +94,33 @@ def check_encodings(program, models, folder):
         original = picture(program, models / model, folder)
         for name in names["plain"]:
             report(f"{model} as {name}", picture(program, target / name, folder) == original)
+        for name, decoded in names["decoded"].items():
+            ours, theirs = (arrays(program, target / file, target / f"{file}-unpacked") for file in (name, decoded))
+            report(f"{model} as {name}: arrays of the other decoder", ours == theirs and len(ours) > 0)
         check_lossy(program, models / model, [target / name for name in names["lossy"]], folder)
 
 
+def arrays(program, model, folder):
+    """Contents of the mesh files of an unpacked model."""
+    run(program, "convert", model, "--unpack", folder)
+    return sorted(path.read_bytes() for path in folder.glob("**/*.ply"))
+
+
 def check_lossy(program, model, encodings, folder):
-    """FLIP of encodings that round numbers; both pictures have the same random numbers."""
+    """FLIP and silhouettes of encodings that round numbers; both pictures have the same random numbers."""
+    import numpy as np
+
     def render(scene, path):
-        run(program, "render", scene, "-o", path, "--size", "128x128", "--samples", 16)
-        return path
-    original = render(model, Path(folder) / "original.exr")
+        run(program, "render", scene, "-o", path, "--size", "128x128", "--samples", 16, "--aov", "depth",
+            "--aov-output", Path(folder) / "{}.npy")
+        return path, np.isfinite(np.load(Path(folder) / "depth.npy"))
+    original, covered = render(model, Path(folder) / "original.exr")
     for encoding in encodings:
-        other = render(encoding, Path(folder) / "encoded.exr")
+        other, covers = render(encoding, Path(folder) / "encoded.exr")
         flip = json.loads(run(program, "compare", other, original, "--stats", "-", check=False).stdout)["flip"]["mean"]
-        report(f"{model.stem} as {encoding.name}: FLIP", flip <= 0.01, f"{flip:.4f}")
+        overlap = (covers & covered).sum() / (covers | covered).sum()
+        report(f"{model.stem} as {encoding.name}: FLIP, overlap of silhouettes", flip <= 0.01 and overlap >= 0.99,
+               f"{flip:.4f} {overlap:.4f}")
 
 
 def bounds_of(program, scene):

@@ -3,15 +3,19 @@
 //     node rewrites.mjs MODEL FOLDER
 //
 // The encodings in `plain` hold the same numbers as the model; those in `lossy` hold nearly the
-// same. Each name is the path of a file below FOLDER. Prints both lists as JSON.
+// same. `decoded` maps encodings to files of what the decoders of this script, draco3dgltf and
+// meshoptimizer, make of them. Each name is the path of a file below FOLDER. Prints all as JSON.
 
+import { execFileSync } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { Format, NodeIO, VertexLayout } from "@gltf-transform/core";
 import { ALL_EXTENSIONS } from "@gltf-transform/extensions";
-import { draco, meshopt, quantize, sparse } from "@gltf-transform/functions";
+import { draco, meshopt, quantize, sparse, textureCompress } from "@gltf-transform/functions";
 import draco3d from "draco3dgltf";
+import { ktx2 } from "ktx2-encoder/gltf-transform";
 import { MeshoptDecoder, MeshoptEncoder } from "meshoptimizer";
+import sharp from "sharp";
 
 const [model, folder] = process.argv.slice(2);
 await Promise.all([MeshoptDecoder.ready, MeshoptEncoder.ready]);
@@ -44,6 +48,11 @@ const embedded = async (document, path) => {
   writeFileSync(path, JSON.stringify(json));
 };
 
+const imageDecoder = async (bytes) => {
+  const { data, info } = await sharp(bytes).ensureAlpha().raw().toBuffer({ resolveWithObject: true });
+  return { data: new Uint8Array(data), width: info.width, height: info.height };
+};
+
 const separate = (document) => io.setVertexLayout(VertexLayout.SEPARATE) && document;
 const plain = {
   "binary.glb": [],
@@ -62,6 +71,12 @@ const lossy = {
   "meshopt-high.glb": [meshopt({ encoder: MeshoptEncoder, level: "high" })],
   "quantized.glb": [quantize()],
 };
+const pictures = {
+  "webp.glb": [textureCompress({ encoder: sharp, targetFormat: "webp", lossless: true })],
+  "uastc.glb": [ktx2({ isUASTC: true, generateMipmap: false, imageDecoder })],
+  "etc1s.glb": [ktx2({ isUASTC: false, qualityLevel: 255, generateMipmap: false, imageDecoder })],
+};
+const COMPRESSED = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 // Encoders join buffers, which .glb files need.
 const oneBuffer = (document) => {
@@ -70,6 +85,8 @@ const oneBuffer = (document) => {
   others.forEach((buffer) => buffer.dispose());
 };
 
+const hasPictures = (await io.read(model)).getRoot().listTextures().length > 0;
+if (hasPictures) Object.assign(lossy, pictures);
 for (const [name, steps] of [...Object.entries(plain), ...Object.entries(lossy)]) {
   const document = await io.read(model);
   document.setLogger({ debug() {}, info() {}, warn() {}, error: console.error });
@@ -81,4 +98,17 @@ for (const [name, steps] of [...Object.entries(plain), ...Object.entries(lossy)]
   if (name === "embedded.gltf") await embedded(document, path);
   else await io.write(path, document);
 }
-console.log(JSON.stringify({ plain: Object.keys(plain), lossy: Object.keys(lossy) }));
+const gltfpack = new URL("node_modules/.bin/gltfpack", import.meta.url).pathname;
+execFileSync(gltfpack, ["-i", model, "-o", join(folder, "gltfpack.glb"), "-cc", "-mi"]);
+lossy["gltfpack.glb"] = [];
+
+const decoded = {};
+for (const name of Object.keys(lossy)) {
+  const document = await io.read(join(folder, name));
+  const used = document.getRoot().listExtensionsUsed().filter((one) => COMPRESSED.includes(one.extensionName));
+  if (used.length === 0) continue;
+  used.forEach((one) => one.dispose());
+  decoded[name] = `decoded-${name}`;
+  await io.write(join(folder, decoded[name]), document);
+}
+console.log(JSON.stringify({ plain: Object.keys(plain), lossy: Object.keys(lossy), decoded }));
