@@ -214,7 +214,7 @@ def check_meshes(program, models, folder):
 def check_movie(program, models, folder):
     """A12."""
     model = models / "Fox/glTF-Binary/Fox.glb"
-    options = ["--animation", "Run", "--size", "160x120", "--samples", 8]
+    options = ["--animation", "Run", "--size", "320x240", "--samples", 64]
     whole, resumed = (Path(folder) / name for name in ("whole.mp4", "resumed.mp4"))
     run(program, "render", model, "-o", whole, *options)
     command = list(map(str, [program, "render", model, "-o", resumed, *options]))
