@@ -122,7 +122,7 @@ fn range_falloff(distance: f32, range: f32) -> f32 {
 }
 
 /// Factor by which a light's `range`, if it has one, dims it at `from`.
-#[inline]
+#[inline(never)]
 pub(super) fn range_factor(range: Option<f32>, center: Vec3, from: Vec3) -> f32 {
     range.map_or(1.0, |range| range_falloff((center - from).length(), range))
 }

@@ -278,7 +278,7 @@ impl World {
 
     /// Writes the result of [`World::shade`] to `shading`, which must be black. The structure is
     /// too large to return by value cheaply.
-    #[inline]
+    #[inline(always)]
     pub fn shade_into(&self, vertex: &Vertex, wo: Vec3, outside_ior: f32, u_choice: f32, shading: &mut Shading) {
         let tangents = vertex.tangents.as_ref();
         let mesh = self.mesh_point(vertex);
