@@ -24,13 +24,13 @@ brings a model that is above 0.08 below it (without --causes, if a model is abov
 import argparse
 import json
 import statistics
-import struct
 import subprocess
 import sys
-import zlib
 from pathlib import Path
 
 import numpy as np
+
+import png
 
 HERE = Path(__file__).resolve().parent
 EXPOSURE = -2
@@ -185,27 +185,18 @@ def shown(linear):
     return (curve * 255 + 0.5).astype(np.uint8)
 
 
-def write_png(path, pixels):
-    """Writes 8-bit pixels."""
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    height, width, _ = pixels.shape
-    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
-    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
-
-
 def compared(options, name, ours, theirs):
     """Mean FLIP of two pictures and the ratio of their mean radiance; writes both beside each other."""
     linear = [read_pfm(path) for path in (ours, theirs)]
     files = [options.folder / f"{name}.{side}.png" for side in ("juggler", "cycles")]
     for file, pixels in zip(files, linear):
-        write_png(file, shown(pixels))
+        file.write_bytes(png.encode(shown(pixels)))
     difference, stats = options.folder / f"{name}.flip.pfm", options.folder / f"{name}.stats.json"
     subprocess.run(list(map(str, [options.program, "compare", *files, "--difference", difference, "--stats", stats])),
                    capture_output=True, check=False)
     map_of_flip = (np.clip(read_pfm(difference), 0, 1) ** (1 / 2.2) * 255).astype(np.uint8)
-    write_png(options.folder / f"{name}.png", np.concatenate([*map(shown, linear), map_of_flip], 1))
+    beside = np.concatenate([*map(shown, linear), map_of_flip], 1)
+    (options.folder / f"{name}.png").write_bytes(png.encode(beside))
     ratio = np.divide(*(np.clip(pixels * 2.0**EXPOSURE, 0, 1).mean() for pixels in linear))
     return json.loads(stats.read_text())["flip"]["mean"], float(ratio)
 

@@ -6,12 +6,11 @@ Both must give pictures equal in every byte: the extension means what the scene 
 import base64
 import json
 import math
-import struct
-import zlib
 from pathlib import Path
 
 import numpy as np
 
+import png
 from large import Model
 
 # The material of all models, in glTF and in the scene format.
@@ -156,14 +155,6 @@ def node_cases(folder):
                [{"file": path, "animation": "none", "materials": override}])
 
 
-def png(rgba):
-    """A PNG file of one color, 4×4 pixels."""
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    head = chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 6, 0, 0, 0))
-    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress((b"\0" + bytes(rgba) * 4) * 4)) + chunk(b"IEND", b"")
-
-
 def panorama(colors, height):
     """A PFM file of a cube map of constant faces +x, -x, +y, -y, +z, -z that a quarter about y rotates."""
     def samples(count):
@@ -184,7 +175,8 @@ def light_cases(folder):
     """Pairs of scenes without background: image-based lights and light profiles."""
     bright = placed(model())
     levels = [[255, 0, 0, 128], [0, 255, 0, 255], [0, 0, 255, 51], [255, 255, 0, 255], [255, 255, 255, 85], [0, 255, 255, 255]]
-    bright.json["images"] = [{"uri": "data:image/png;base64," + base64.b64encode(png(level)).decode()} for level in levels]
+    faces = [base64.b64encode(png.encode(np.full((4, 4, 4), level, np.uint8))).decode() for level in levels]
+    bright.json["images"] = [{"uri": f"data:image/png;base64,{face}"} for face in faces]
     light = {"intensity": 0.5, "rotation": [0, math.sqrt(0.5), 0, math.sqrt(0.5)], "specularImageSize": 4,
              "specularImages": [list(range(6))], "irradianceCoefficients": [[0, 0, 0]] * 9}
     bright.json["extensions"] = {"EXT_lights_image_based": {"lights": [light]}}

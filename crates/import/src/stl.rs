@@ -2,7 +2,7 @@
 //! [`import::parse`].
 
 use crate::gltf::Warnings;
-use crate::obj::{DEFAULT_MATERIAL, gray, warning_texts};
+use crate::obj::{DEFAULT_MATERIAL, gray};
 use indexmap::IndexMap;
 use juggler_scene::Object;
 use juggler_scene::import;
@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Maximum number of solids that become objects. Those of a file with more are one object.
+/// Maximum number of solids that become objects. The solids of a file with more are one object.
 const MAX_SOLIDS: usize = 65_536;
 /// Maximum number of bytes of the name of a solid.
 const MAX_NAME: usize = 1024;
@@ -137,7 +137,7 @@ impl ModelFile for StlModel {
         Ok(ModelParts {
             materials: IndexMap::from([(material.clone(), gray(false))]),
             objects: self.objects.iter().map(object).collect(),
-            warnings: warning_texts(&self.warnings),
+            warnings: self.warnings.texts(),
             ..ModelParts::default()
         })
     }

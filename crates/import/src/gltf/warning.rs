@@ -57,6 +57,12 @@ impl Warnings {
         &self.list
     }
 
+    /// The warnings as texts, the last of which counts those that are not kept.
+    pub fn texts(&self) -> Vec<String> {
+        let further = (self.omitted > 0).then(|| format!("{} further warnings", self.omitted));
+        self.list.iter().map(ToString::to_string).chain(further).collect()
+    }
+
     /// Number of further warnings, whose texts are not kept.
     pub fn omitted(&self) -> u64 {
         self.omitted

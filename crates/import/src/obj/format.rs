@@ -148,7 +148,7 @@ impl ModelFile for ObjFile {
             textures: translated.textures.by_name,
             materials,
             objects,
-            warnings: warning_texts(&translated.warnings),
+            warnings: translated.warnings.texts(),
             ..ModelParts::default()
         })
     }
@@ -181,10 +181,4 @@ impl ObjFile {
         let faults: Vec<String> = faults.map(|(kind, _)| format!("{}: an OBJ has no {kind}", self.name)).collect();
         if faults.is_empty() { Ok(()) } else { Err(ModelError { faults }) }
     }
-}
-
-/// Warnings as texts.
-pub fn warning_texts(warnings: &Warnings) -> Vec<String> {
-    let further = (warnings.omitted() > 0).then(|| format!("{} further warnings", warnings.omitted()));
-    warnings.list().iter().map(ToString::to_string).chain(further).collect()
 }

@@ -19,7 +19,7 @@ mod materials;
 mod mtl;
 mod pieces;
 
+pub(crate) use format::DEFAULT_MATERIAL;
 pub use format::ObjFormat;
-pub(crate) use format::{DEFAULT_MATERIAL, warning_texts};
 pub(crate) use materials::gray;
 pub use mtl::{MtlMap, MtlMaterial, parse_mtl};

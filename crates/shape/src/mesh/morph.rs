@@ -8,9 +8,10 @@ use juggler_math::{DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Morph target (blend shape) of a mesh: target positions of its corners and a weight. Normals and
-/// tangents of the mesh are blended with those of the targets. If a target has no normals, the
-/// mesh's are computed anew from the blended surface; if it has no tangents, the mesh's stay.
+/// Morph target (blend shape) of a mesh: target positions of its corners and a weight. The mesh's
+/// normals and tangents are blended with the target's normals and tangents. If a target has no
+/// normals, new normals are computed from the blended surface; if a target has no tangents, the
+/// mesh keeps its tangents.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(rename = "Morph")]

@@ -185,13 +185,7 @@ impl Content {
             lights: lights.lights,
             objects,
             background,
-            warnings: texts(&findings.warnings),
+            warnings: findings.warnings.texts(),
         })
     }
-}
-
-/// Warnings as texts.
-fn texts(warnings: &Warnings) -> Vec<String> {
-    let further = (warnings.omitted() > 0).then(|| format!("{} further warnings", warnings.omitted()));
-    warnings.list().iter().map(ToString::to_string).chain(further).collect()
 }
