@@ -47,9 +47,12 @@ impl<T: Pod> Pages<T> {
         if !fits || align_of::<T>() > HUGE {
             return None;
         }
-        // Only advice: without huge pages, small ones serve.
+        // Only advice: without huge pages, small ones serve. A rest of less than half a huge page would
+        // waste the other half.
         #[cfg(target_os = "linux")]
-        let _ = map.advise(memmap2::Advice::HugePage);
+        let huge = ((bytes + HUGE / 2) / HUGE * HUGE).min(map.len() - start);
+        #[cfg(target_os = "linux")]
+        let _ = map.advise_range(memmap2::Advice::HugePage, start, huge);
         let first = NonNull::new(map.as_mut_ptr().wrapping_add(start).cast())?;
         Some(Self { elements: NonNull::slice_from_raw_parts(first, len), map: Some(map) })
     }

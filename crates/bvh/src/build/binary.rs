@@ -5,6 +5,7 @@ use crate::pages::Pages;
 use bytemuck::{Pod, Zeroable};
 use juggler_math::Aabb;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// A leaf of `count` items from position `first`, or, if `count` is zero, an inner node whose
 /// children are at `first` and `first + 1`.
@@ -54,31 +55,48 @@ impl BinaryNode {
 /// A tree under construction in pieces that are concatenated later. Inside the pieces, child
 /// indices are relative to the node's own position; the root's are relative to the begin of the
 /// first piece.
-pub(super) struct Subtree {
+pub(super) struct Subtree<'a> {
     root: BinaryNode,
-    pieces: Vec<Vec<BinaryNode>>,
+    pieces: Vec<Cow<'a, [BinaryNode]>>,
 }
 
-impl Subtree {
+impl<'a> Subtree<'a> {
     /// Constructs a subtree from a root and nodes whose child indices are absolute positions in the
     /// list.
     pub fn new(root: BinaryNode, mut nodes: Vec<BinaryNode>) -> Self {
         for (position, node) in nodes.iter_mut().enumerate() {
             *node = node.moved(-(position as isize));
         }
-        Self { root, pieces: vec![nodes] }
+        Self { root, pieces: vec![nodes.into()] }
+    }
+
+    /// The subtree with its single piece in memory that is no longer needed, if it fits.
+    pub fn moved_to(mut self, memory: &'a mut [BinaryNode]) -> Self {
+        if let [piece] = &mut self.pieces[..]
+            && let Some(place) = memory.get_mut(..piece.len())
+        {
+            place.copy_from_slice(piece);
+            *piece = Cow::Borrowed(place);
+        }
+        self
+    }
+
+    /// The subtree with memory of its own.
+    pub fn into_owned(self) -> Subtree<'static> {
+        let pieces = self.pieces.into_iter().map(|piece| Cow::Owned(piece.into_owned()));
+        Subtree { root: self.root, pieces: pieces.collect() }
     }
 
     pub fn join(bounds: SimdBox, left: Self, right: Self) -> Self {
         let right_start = 2 + left.len() as isize;
-        let mut pieces = vec![vec![left.root.moved(2), right.root.moved(right_start - 1)]];
+        let mut pieces = vec![vec![left.root.moved(2), right.root.moved(right_start - 1)].into()];
         pieces.extend(left.pieces);
         pieces.extend(right.pieces);
         Self { root: BinaryNode::new(bounds, 0, 0), pieces }
     }
 
     fn len(&self) -> usize {
-        self.pieces.iter().map(Vec::len).sum()
+        self.pieces.iter().map(|piece| piece.len()).sum()
     }
 
     /// Concatenates the pieces, root first, with absolute child indices.
@@ -95,7 +113,7 @@ impl Subtree {
             jobs.push((target, piece, position));
         }
         jobs.into_par_iter().for_each(|(target, piece, start)| {
-            for ((place, node), position) in target.iter_mut().zip(piece).zip(start..) {
+            for ((place, node), position) in target.iter_mut().zip(&*piece).zip(start..) {
                 *place = node.moved(position);
             }
         });

@@ -40,22 +40,18 @@ impl Settings {
 /// Builds the binary tree, empty without items, and the item indices in leaf order.
 pub(super) fn build(mut items: Items, settings: &Settings) -> (Pages<BinaryNode>, Vec<u32>) {
     let extents = items.extents;
-    let items = items.list();
-    if items.is_empty() {
+    if items.count == 0 {
         return (Pages::zeroed(0), Vec::new());
     }
-    let mut buffer = Pages::zeroed(if items.len() > TASK { items.len() } else { 0 });
-    let mut order = vec![0; items.len()];
-    let set = Set { items, buffer: &mut buffer, order: &mut order, first: 0, extents, depth: 0 };
+    let mut order = vec![0; items.count];
+    let set = Set { items: items.list(), order: &mut order, first: 0, extents, depth: 0 };
     (subtree(set, settings).into_nodes(), order)
 }
 
-/// A set of items to build a subtree over: the items, a buffer of equal length to partition into,
-/// the output for item indices in leaf order, the position of the first item in leaf order, bounds,
-/// and depth.
+/// A set of items to build a subtree over: the items, the output for item indices in leaf order, the
+/// position of the first item in leaf order, bounds, and depth.
 pub(super) struct Set<'a> {
     pub items: &'a mut [Item],
-    pub buffer: &'a mut [Item],
     pub order: &'a mut [u32],
     pub first: usize,
     pub extents: SetBounds,
@@ -63,41 +59,34 @@ pub(super) struct Set<'a> {
 }
 
 impl<'a> Set<'a> {
-    /// Splits the set after the items were partitioned into `buffer`.
+    /// Splits the set after the items were partitioned.
     fn halves(self, left: usize, extents: [SetBounds; 2]) -> [Self; 2] {
-        let (items, buffer) = (self.buffer.split_at_mut(left), self.items.split_at_mut(left));
-        let order = self.order.split_at_mut(left);
+        let (items, order) = (self.items.split_at_mut(left), self.order.split_at_mut(left));
         let (depth, [a, b]) = (self.depth + 1, extents);
         [
-            Set { items: items.0, buffer: buffer.0, order: order.0, first: self.first, extents: a, depth },
-            Set { items: items.1, buffer: buffer.1, order: order.1, first: self.first + left, extents: b, depth },
+            Set { items: items.0, order: order.0, first: self.first, extents: a, depth },
+            Set { items: items.1, order: order.1, first: self.first + left, extents: b, depth },
         ]
     }
 }
 
 /// Builds the subtree over a set of at least one item.
-pub(super) fn subtree(set: Set<'_>, settings: &Settings) -> Subtree {
+pub(super) fn subtree<'a>(set: Set<'a>, settings: &Settings) -> Subtree<'a> {
     if set.items.len() <= TASK {
         return build_sequentially(set, settings);
     }
     let bounds = set.extents.bounds;
-    let (left, extents) = split_large(&mut *set.items, &mut *set.buffer, &set.extents, set.depth, settings);
+    let (left, extents) = split_large(&mut *set.items, &set.extents, set.depth, settings);
     let [left, right] = set.halves(left, extents);
     let (left, right) = rayon::join(|| subtree(left, settings), || subtree(right, settings));
     Subtree::join(bounds, left, right)
 }
 
-/// Partitions the items into `buffer`, left side first. Returns the size of the left side and the
-/// bounds of both sides.
-fn split_large(
-    items: &mut [Item],
-    buffer: &mut [Item],
-    extents: &SetBounds,
-    depth: usize,
-    settings: &Settings,
-) -> (usize, [SetBounds; 2]) {
+/// Partitions the items, left side first. Returns the size of the left side and the bounds of both
+/// sides.
+fn split_large(items: &mut [Item], extents: &SetBounds, depth: usize, settings: &Settings) -> (usize, [SetBounds; 2]) {
     let mapping = Mapping::new(extents.centers, items.len()).filter(|_| depth < SAH_DEPTH);
-    let split = mapping.and_then(|mapping| {
+    let found = mapping.and_then(|mapping| {
         let bins = |items| {
             let mut bins = Bins::EMPTY;
             bins.fill(&mapping, items);
@@ -107,16 +96,12 @@ fn split_large(
         let mut all = Bins::EMPTY;
         chunks.iter().for_each(|bins| all.merge(bins, &mapping));
         let split = all.best(&mapping, extents.bounds, settings.block)?;
-        let lefts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(&split)).collect();
-        let (left, [a, b]) = all.sides(&mapping, &split);
-        let [c, d] = partition::into(items, buffer, CHUNK, &lefts, &SideTest::new(&mapping, &split));
-        Some((left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }]))
+        Some((mapping, all, split))
     });
-    split.unwrap_or_else(|| {
-        let halves = split_at_median(items, extents);
-        buffer.copy_from_slice(items);
-        halves
-    })
+    let Some((mapping, bins, split)) = found else { return split_at_median(items, extents) };
+    let [a, b] = bins.sides(&mapping, &split);
+    let (left, [c, d]) = partition::in_place_parallel(items, CHUNK, &SideTest::new(&mapping, &split));
+    (left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }])
 }
 
 /// Splits at the median center along the longest axis; equal centers are ordered by item index.
@@ -137,13 +122,14 @@ fn split_in_order(items: &[Item]) -> (usize, [SetBounds; 2]) {
     (left.len(), [SetBounds::from_items(left), SetBounds::from_items(right)])
 }
 
-fn build_sequentially(set: Set<'_>, settings: &Settings) -> Subtree {
+fn build_sequentially<'a>(set: Set<'a>, settings: &Settings) -> Subtree<'a> {
     let Set { items, order, first, extents, depth, .. } = set;
     let mut task = Task::new(settings);
     task.nodes.reserve(items.len() / 2);
     let root = task.grow(items, first, &extents, depth);
     write_order(order, items);
-    Subtree::new(root, task.nodes)
+    // The items are no longer needed.
+    Subtree::new(root, task.nodes).moved_to(bytemuck::cast_slice_mut(items))
 }
 
 /// Writes the item indices in leaf order.
@@ -208,8 +194,8 @@ impl<'a> Task<'a> {
         found: Option<(Mapping, ObjectSplit)>,
     ) -> (usize, [SetBounds; 2]) {
         let Some((mapping, split)) = found else { return split_at_median(items, extents) };
-        let (left, [a, b]) = self.bins.sides(&mapping, &split);
-        let [c, d] = partition::in_place(items, &SideTest::new(&mapping, &split));
+        let [a, b] = self.bins.sides(&mapping, &split);
+        let (left, [c, d]) = partition::in_place(items, &SideTest::new(&mapping, &split));
         (left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }])
     }
 

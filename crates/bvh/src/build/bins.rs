@@ -156,15 +156,11 @@ impl Bins {
         [&x[position], &y[position], &z[position]]
     }
 
-    /// Number of items to the left of the split, and the bounds of both sides.
-    pub fn sides(&self, mapping: &Mapping, split: &ObjectSplit) -> (usize, [SimdBox; 2]) {
+    /// Bounds of the items on both sides of the split.
+    pub fn sides(&self, mapping: &Mapping, split: &ObjectSplit) -> [SimdBox; 2] {
         let boxes = |bins: &[Bin]| bins.iter().fold(SimdBox::EMPTY, |all, bin| all.union(bin.0));
         let (left, right) = self.0[split.axis][..mapping.count].split_at(split.at);
-        (self.left_count(split), [boxes(left), boxes(right)])
-    }
-
-    pub fn left_count(&self, split: &ObjectSplit) -> usize {
-        self.0[split.axis][..split.at].iter().map(|bin| bin.count() as usize).sum()
+        [boxes(left), boxes(right)]
     }
 
     /// Finds the split of the lowest SAH cost with items on both sides. Areas are relative to the

@@ -22,42 +22,18 @@ pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) ->
     }
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
     let collapser = Collapser { binary, plan: Plan::new(binary, leaf_size, block) };
-    let subtree = collapser.subtree(0, levels);
-    let nodes = flatten(subtree.pieces);
+    let size = collapser.size(0, levels);
+    let mut nodes = Pages::zeroed(size.nodes);
+    let stats = collapser.write(0, &size, &mut nodes, 0);
     let sah_cost = sah_cost(&nodes, block);
-    let stats = BuildStats { nodes: nodes.len(), sah_cost, block, ..subtree.stats };
+    let stats = BuildStats { nodes: nodes.len(), sah_cost, block, ..stats };
     (nodes, stats)
 }
 
-/// Concatenates the pieces and makes child indices absolute; before, they are relative to the
-/// node's own position.
-fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
-    let mut nodes = Pages::zeroed(pieces.iter().map(Vec::len).sum());
-    let (mut rest, mut start) = (&mut nodes[..], 0);
-    let mut jobs = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        let (target, after) = rest.split_at_mut(piece.len());
-        rest = after;
-        let position = start;
-        start += piece.len();
-        jobs.push((target, piece, position));
-    }
-    jobs.into_par_iter().for_each(|(target, piece, start)| {
-        for ((place, mut node), position) in target.iter_mut().zip(piece).zip(start..) {
-            for child in node.children[..node.count as usize].iter_mut().filter(|child| !child.is_leaf()) {
-                *child = Child::node(child.0 as usize + position);
-            }
-            *place = node;
-        }
-    });
-    nodes
-}
-
-/// A wide subtree, root first.
-struct Subtree {
-    pieces: Vec<Vec<Node>>,
-    /// Depth, stack size and leaf sizes.
-    stats: BuildStats,
+/// Number of wide nodes of a subtree, and those of its inner children if these are parallel tasks.
+struct Size {
+    nodes: usize,
+    below: Vec<Size>,
 }
 
 struct Collapser<'a> {
@@ -66,37 +42,59 @@ struct Collapser<'a> {
 }
 
 impl Collapser<'_> {
-    /// Collapses the subtree at a binary node; children down to `levels` are parallel tasks.
-    fn subtree(&self, binary: usize, levels: usize) -> Subtree {
+    /// Size of the subtree at a binary node; children down to `levels` are parallel tasks.
+    fn size(&self, binary: usize, levels: usize) -> Size {
         if levels == 0 {
-            let mut nodes = Vec::new();
-            let stats = self.emit(binary, &mut nodes);
-            return Subtree { pieces: vec![nodes], stats };
+            return Size { nodes: self.count(binary), below: Vec::new() };
         }
-        let (mut node, members) = self.node(binary);
-        let inner: Vec<(usize, usize)> = self.inner(&members).collect();
-        let below: Vec<Subtree> = inner.par_iter().map(|&(_, member)| self.subtree(member, levels - 1)).collect();
-        let (mut pieces, mut size) = (vec![Vec::new()], 1);
-        let mut stats = self.alone(&members);
-        for ((slot, _), subtree) in inner.iter().zip(below) {
-            node.children[*slot] = Child::node(size);
-            size += subtree.pieces.iter().map(Vec::len).sum::<usize>();
-            pieces.extend(subtree.pieces);
-            add_child(&mut stats, &subtree.stats, members.count);
-        }
-        pieces[0].push(node);
-        Subtree { pieces, stats }
+        let inner: Vec<usize> = self.inner(&self.members(binary)).map(|(_, member)| member).collect();
+        let below: Vec<Size> = inner.into_par_iter().map(|member| self.size(member, levels - 1)).collect();
+        Size { nodes: 1 + below.iter().map(|size| size.nodes).sum::<usize>(), below }
     }
 
-    /// Appends the wide nodes of the subtree at a binary node.
-    fn emit(&self, binary: usize, nodes: &mut Vec<Node>) -> BuildStats {
-        let place = nodes.len();
+    /// Number of wide nodes of the subtree at a binary node.
+    fn count(&self, binary: usize) -> usize {
+        let mut count = 1;
+        let inner = |member: usize| if self.plan.leaf(member).is_none() { self.count(member) } else { 0 };
+        self.plan.children(binary, &mut |member| count += inner(member));
+        count
+    }
+
+    /// Writes the wide nodes of the subtree at a binary node into `nodes`, the first of which has
+    /// the index `first` in the tree.
+    fn write(&self, binary: usize, size: &Size, nodes: &mut [Node], first: usize) -> BuildStats {
+        if size.below.is_empty() {
+            return self.write_sequentially(binary, nodes, first, &mut 0);
+        }
+        let (mut node, members) = self.node(binary);
+        let (root, mut rest) = nodes.split_at_mut(1);
+        let (mut jobs, mut start) = (Vec::with_capacity(size.below.len()), first + 1);
+        for ((slot, member), size) in self.inner(&members).zip(&size.below) {
+            node.children[slot] = Child::node(start);
+            let (target, after) = rest.split_at_mut(size.nodes);
+            rest = after;
+            jobs.push((member, size, target, start));
+            start += size.nodes;
+        }
+        root[0] = node;
+        let write = |(member, size, target, start)| self.write(member, size, target, start);
+        let below: Vec<BuildStats> = jobs.into_par_iter().map(write).collect();
+        let mut stats = self.alone(&members);
+        below.iter().for_each(|child| add_child(&mut stats, child, members.count));
+        stats
+    }
+
+    /// [`Collapser::write`] by one thread, from position `next` of the nodes, which moves behind
+    /// the subtree.
+    fn write_sequentially(&self, binary: usize, nodes: &mut [Node], first: usize, next: &mut usize) -> BuildStats {
+        let place = *next;
+        *next += 1;
         let (node, members) = self.node(binary);
-        nodes.push(node);
+        nodes[place] = node;
         let mut stats = self.alone(&members);
         for (slot, member) in self.inner(&members) {
-            nodes[place].children[slot] = Child::node(nodes.len() - place);
-            add_child(&mut stats, &self.emit(member, nodes), members.count);
+            nodes[place].children[slot] = Child::node(first + *next);
+            add_child(&mut stats, &self.write_sequentially(member, nodes, first, next), members.count);
         }
         stats
     }

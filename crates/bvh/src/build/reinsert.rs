@@ -18,6 +18,8 @@ const ROUNDS: usize = 4;
 const STEPS: usize = 2000;
 /// Depth above which the optimized tree is discarded: traversal supports 72 wide levels.
 const MAX_DEPTH: usize = 72;
+/// Number of levels whose depths are measured in parallel.
+const TASK_LEVELS: usize = 10;
 
 /// Returns the optimized tree, or the original one if the former is too deep. Leaves keep their
 /// items. Each round considers one of `share` nodes, the largest ones.
@@ -32,8 +34,23 @@ pub(super) fn optimize((nodes, order): (Pages<BinaryNode>, Vec<u32>), share: usi
         let moves = tree.find_moves(least);
         tree.apply(&moves);
     }
-    let (listed, items, depth) = relist(&better, &order);
-    if depth <= MAX_DEPTH { (listed, items) } else { (nodes, order) }
+    drop(tree);
+    if depth(&better, 0, TASK_LEVELS) > MAX_DEPTH {
+        return (nodes, order);
+    }
+    drop(nodes);
+    relist(&better, &order)
+}
+
+/// Number of levels of the subtree at a node; the upper `levels` are parallel tasks.
+fn depth(nodes: &[BinaryNode], number: usize, levels: usize) -> usize {
+    let node = &nodes[number];
+    if node.is_leaf() {
+        return 1;
+    }
+    let below = |child: usize| depth(nodes, node.first as usize + child, levels.saturating_sub(1));
+    let (left, right) = if levels > 0 { rayon::join(|| below(0), || below(1)) } else { (below(0), below(1)) };
+    1 + left.max(right)
 }
 
 /// A reinsertion of node `from` as a sibling of node `to`.
@@ -192,24 +209,23 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Lists the nodes depth first, with items in leaf order; also returns the depth.
-pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>, usize) {
+/// Lists the nodes depth first, with items in leaf order.
+pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>) {
     let mut pages = Pages::zeroed(nodes.len());
     let listed = &mut pages[..];
     let mut items = Vec::with_capacity(order.len());
-    let (mut end, mut deepest, mut stack) = (1, 0, vec![(0, 0, 1)]);
-    while let Some((number, place, depth)) = stack.pop() {
+    let (mut end, mut stack) = (1, vec![(0, 0)]);
+    while let Some((number, place)) = stack.pop() {
         let node: BinaryNode = nodes[number];
         let first = node.first as usize;
-        deepest = deepest.max(depth);
         if node.is_leaf() {
             listed[place] = BinaryNode { first: items.len() as u32, ..node };
             items.extend_from_slice(&order[first..first + node.count as usize]);
         } else {
             listed[place] = BinaryNode { first: end as u32, ..node };
-            stack.extend([(first + 1, end + 1, depth + 1), (first, end, depth + 1)]);
+            stack.extend([(first + 1, end + 1), (first, end)]);
             end += 2;
         }
     }
-    (pages, items, deepest)
+    (pages, items)
 }

@@ -52,8 +52,7 @@ pub(super) fn build(
     let set = Set { items, budget, order: &mut order, first: 0, extents, depth: 0 };
     let nodes = builder.subtree(set).into_nodes();
     // Close the gaps where subtrees used fewer references than their budget.
-    let (nodes, order, _) = relist(&nodes, &order);
-    (nodes, order)
+    relist(&nodes, &order)
 }
 
 /// References to build a subtree over: `budget` is the number that may be added, `order` the output
@@ -121,7 +120,7 @@ struct Builder<'a, D> {
 
 impl<D: ItemSplitter> Builder<'_, D> {
     /// Builds the subtree over a set of at least one reference.
-    fn subtree(&self, set: Set<'_>) -> Subtree {
+    fn subtree(&self, set: Set<'_>) -> Subtree<'static> {
         let mut task = Task::new(self.settings);
         if set.items.len() <= TASK {
             let root = self.grow(set, &mut task);
@@ -129,9 +128,8 @@ impl<D: ItemSplitter> Builder<'_, D> {
         }
         if set.budget == 0 {
             let Set { mut items, order, first, extents, depth, .. } = set;
-            let mut buffer = Pages::zeroed(items.len());
-            let set = binned::Set { items: &mut items, buffer: &mut buffer, order, first, extents, depth };
-            return binned::subtree(set, self.settings);
+            let set = binned::Set { items: &mut items, order, first, extents, depth };
+            return binned::subtree(set, self.settings).into_owned();
         }
         let (bounds, leaf) = (set.extents.bounds, set.leaf());
         match self.split(set, &mut task) {
@@ -194,7 +192,7 @@ impl<D: ItemSplitter> Builder<'_, D> {
             return None;
         }
         let (mapping, split) = found?;
-        let (_, [left, right]) = task.bins.sides(mapping, split);
+        let [left, right] = task.bins.sides(mapping, split);
         if half_area(left.intersection(right)) <= half_area(set.extents.bounds) * OVERLAP {
             return None;
         }

@@ -22,6 +22,31 @@ fn hash_of(bytes: &[u8]) -> u32 {
     words.fold(0, hash::combine)
 }
 
+#[test]
+fn both_partitions_separate_the_sides() {
+    let boxes = boxes(2_000);
+    for (count, chunk) in [(2_000, 64), (2_000, 1_999), (1_000, 7), (65, 64), (64, 64), (2, 1)] {
+        let Ok(mut items) = Items::new(count, |i| Ok::<_, Infallible>(SimdBox::raw(&boxes[i])));
+        let mapping = bins::Mapping::new(items.extents.centers, count).unwrap();
+        let mut bins = bins::Bins::EMPTY;
+        bins.fill(&mapping, items.list());
+        let split = bins.best(&mapping, items.extents.bounds, BlockShift(0)).unwrap();
+        let side_test = bins::SideTest::new(&mapping, &split);
+        let expected: Vec<usize> = items.list().iter().map(|item| usize::from(side_test.is_left(item))).collect();
+        let mut copy = items.list().to_vec();
+        let (left, centers) = partition::in_place(&mut copy, &side_test);
+        let (parallel, parallel_centers) = partition::in_place_parallel(items.list(), chunk, &side_test);
+        assert_eq!((left, parallel), (expected.iter().sum(), left), "{count} items in chunks of {chunk}");
+        assert_eq!(centers.map(SimdBox::aabb), parallel_centers.map(SimdBox::aabb));
+        for list in [&copy[..], items.list()] {
+            let mut numbers: Vec<u32> = list.iter().map(item::Item::number).collect();
+            let sides = numbers.iter().enumerate().all(|(i, &item)| expected[item as usize] == usize::from(i < left));
+            numbers.sort_unstable();
+            assert!(sides && numbers.iter().copied().eq(0..count as u32), "{count} items in chunks of {chunk}");
+        }
+    }
+}
+
 fn in_pool<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
 }
