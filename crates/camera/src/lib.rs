@@ -11,7 +11,7 @@
 //!     "move": {"right": 0, "up": 0, "forward": 0}}
 //! ```
 
-use juggler_math::{UVec2, Vec3};
+use juggler_math::{Transform, UVec2, Vec3};
 
 pub mod aov;
 mod field_of_view;
@@ -59,6 +59,14 @@ pub trait Camera: Send + Sync {
     /// Moves the camera to `eye`, looking along `direction` with its top towards `up`, and resets
     /// all other fields of the pose.
     fn set_pose(&mut self, eye: Vec3, direction: Vec3, up: Vec3);
+    /// Transforms the pose, which then has a direction in place of a target.
+    fn transform(&mut self, transform: &Transform) {
+        // A camera without valid axes is refused later.
+        if let Ok(axes) = self.axes() {
+            let [direction, up] = [axes.forward, axes.up].map(|v| transform.vector(v).normalize_or(v));
+            self.set_pose(transform.point(axes.eye), direction, up);
+        }
+    }
     /// Point given by `look_at`; `None` if the scene gives a direction, or after
     /// [`Self::set_pose`].
     fn target(&self) -> Option<Vec3>;

@@ -170,10 +170,7 @@ mod tests {
         let model = StlFormat.open("parts/a.stl", text.as_bytes().to_vec(), &BTreeMap::new()).unwrap();
         assert!(model.is_z_up() && model.files().is_empty());
         let parts = model.parts(&ModelChoice::default(), "a/").unwrap();
-        let triangles = |object: &Object| match &object.shape {
-            Some(juggler_shape::AnyShape::Mesh(mesh)) => mesh.arrays().triangles.len(),
-            _ => 0,
-        };
+        let triangles = |object: &Object| object.mesh().map_or(0, |mesh| mesh.arrays().triangles.len());
         parts.objects.iter().map(|object| (object.name.clone().unwrap(), triangles(object))).collect()
     }
 

@@ -223,6 +223,14 @@ impl Light for Area {
         self.light_group.as_deref()
     }
 
+    fn light_group_mut(&mut self) -> Option<&mut Option<String>> {
+        Some(&mut self.light_group)
+    }
+
+    fn area(&self) -> Option<&Area> {
+        Some(self)
+    }
+
     fn power(&self, _world_radius: f32) -> f32 {
         PI * self.shape.area() * self.radiance().luminance()
     }

@@ -9,7 +9,7 @@
 //! same radiance, and the irradiance does not depend on the angle.
 
 use super::{InvalidLight, Light, LightSample, check_color, check_direction, in_range};
-use juggler_math::{Frame, Rgb, Vec2, Vec3, warp};
+use juggler_math::{Frame, Rgb, Transform, Vec2, Vec3, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +58,14 @@ impl Default for Directional {
 impl Light for Directional {
     fn light_group(&self) -> Option<&str> {
         self.light_group.as_deref()
+    }
+
+    fn light_group_mut(&mut self) -> Option<&mut Option<String>> {
+        Some(&mut self.light_group)
+    }
+
+    fn transform(&mut self, transform: &Transform) {
+        self.direction = super::transformed_direction(transform, self.direction);
     }
 
     fn check(&self) -> Result<(), InvalidLight> {

@@ -1,7 +1,7 @@
 //! Lights, backgrounds and emitters, and the sampling of their light at a point.
 
 use crate::emitter::LightBounds;
-use juggler_math::{Rgb, Vec2, Vec3, range};
+use juggler_math::{Rgb, Transform, Vec2, Vec3, range};
 use strength::Strength;
 
 mod ambient;
@@ -90,6 +90,16 @@ pub trait Light: Send + Sync {
     fn light_group(&self) -> Option<&str> {
         None
     }
+    /// The field of [`Light::light_group`].
+    fn light_group_mut(&mut self) -> Option<&mut Option<String>> {
+        None
+    }
+    /// The light as a surface that the scene places, with its description; `None` for other lights.
+    fn area(&self) -> Option<&Area> {
+        None
+    }
+    /// Transforms position and direction. Intensities stay.
+    fn transform(&mut self, _transform: &Transform) {}
     /// Ambient radiance, which arrives at every point from all directions without occlusion.
     fn ambient(&self) -> Rgb {
         Rgb::BLACK
@@ -110,6 +120,11 @@ juggler_math::closed_set! {
         point::Point,
         spot::Spot,
     }
+}
+
+/// Unit direction after a transform; unchanged if it vanishes.
+fn transformed_direction(transform: &Transform, direction: Vec3) -> Vec3 {
+    transform.vector(direction).normalize_or(direction)
 }
 
 /// Rejects numbers outside `low..=high` and NaN.

@@ -15,7 +15,7 @@ use super::finite_light::{self, Attenuation, Extent};
 use super::strength::Strength;
 use super::{Ies, InvalidLight, Light, LightSample};
 use crate::emitter::LightBounds;
-use juggler_math::{Rgb, Vec2, Vec3};
+use juggler_math::{Rgb, Transform, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
@@ -105,6 +105,14 @@ impl Point {
 impl Light for Point {
     fn light_group(&self) -> Option<&str> {
         self.light_group.as_deref()
+    }
+
+    fn light_group_mut(&mut self) -> Option<&mut Option<String>> {
+        Some(&mut self.light_group)
+    }
+
+    fn transform(&mut self, transform: &Transform) {
+        self.position = transform.point(self.position);
     }
 
     fn check(&self) -> Result<(), InvalidLight> {

@@ -22,7 +22,7 @@ use super::spot_falloff::SpotFalloff;
 use super::strength::Strength;
 use super::{Ies, InvalidLight, Light, LightSample, check_direction, in_range};
 use crate::emitter::LightBounds;
-use juggler_math::{Rgb, Vec2, Vec3, portable};
+use juggler_math::{Rgb, Transform, Vec2, Vec3, portable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -160,6 +160,15 @@ impl Spot {
 impl Light for Spot {
     fn light_group(&self) -> Option<&str> {
         self.light_group.as_deref()
+    }
+
+    fn light_group_mut(&mut self) -> Option<&mut Option<String>> {
+        Some(&mut self.light_group)
+    }
+
+    fn transform(&mut self, transform: &Transform) {
+        self.position = transform.point(self.position);
+        self.direction = super::transformed_direction(transform, self.direction);
     }
 
     fn check(&self) -> Result<(), InvalidLight> {

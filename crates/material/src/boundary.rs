@@ -27,6 +27,10 @@ impl Material for Boundary {
         let medium = compile_medium(&self.medium)?;
         Ok(CompiledMaterial::Boundary(Interior { ior: 1.0, dispersion: 0.0, priority: self.priority, medium }))
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.medium.scale_distances(factor);
+    }
 }
 
 /// Checks a medium and converts its `color` to absorption.

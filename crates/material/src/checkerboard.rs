@@ -71,6 +71,11 @@ impl Material for Checkerboard {
     fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
         vec![("even", &self.even), ("odd", &self.odd)]
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.even.scale_distances(factor);
+        self.odd.scale_distances(factor);
+    }
 }
 
 impl CompiledCheckerboard {

@@ -114,6 +114,10 @@ impl Material for Dielectric {
         let is_ineffective = self.thin && self.dispersion > 0.0;
         is_ineffective.then_some(IneffectiveSetting { field: "dispersion", replaced_by: "thin" }).into_iter().collect()
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.medium.scale_distances(factor);
+    }
 }
 
 impl ScatteringMaterial for CompiledDielectric {

@@ -91,6 +91,10 @@ impl Material for Emissive {
         self.material.iter().map(|material| ("material", material)).collect()
     }
 
+    fn scale_distances(&mut self, factor: f32) {
+        self.material.iter_mut().for_each(|material| material.scale_distances(factor));
+    }
+
     fn is_area_light(&self) -> bool {
         true
     }

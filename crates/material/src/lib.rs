@@ -66,6 +66,15 @@ pub enum MaterialRef {
     Inline(Box<AnyMaterial>),
 }
 
+impl MaterialRef {
+    /// [`Material::scale_distances`] of a material in place; a named one keeps its distances.
+    fn scale_distances(&mut self, factor: f32) {
+        if let Self::Inline(material) = self {
+            material.scale_distances(factor);
+        }
+    }
+}
+
 impl Default for MaterialRef {
     fn default() -> Self {
         Phong::default().into()
@@ -133,6 +142,9 @@ pub trait Material: Send + Sync {
     fn ineffective_settings(&self) -> Vec<IneffectiveSetting> {
         Vec::new()
     }
+
+    /// Multiplies the distances of media by a factor, those of nested materials in place too.
+    fn scale_distances(&mut self, _factor: f32) {}
 
     /// Whether the material emits light in path tracers by design, nested materials not counted.
     /// The emission of a classic material does not count.

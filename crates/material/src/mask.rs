@@ -55,6 +55,10 @@ impl Material for Mask {
     fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
         vec![("material", &self.material)]
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.material.scale_distances(factor);
+    }
 }
 
 impl CompiledMask {

@@ -47,6 +47,11 @@ impl Material for Mix {
     fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
         vec![("a", &self.a), ("b", &self.b)]
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.a.scale_distances(factor);
+        self.b.scale_distances(factor);
+    }
 }
 
 impl CompiledMix {

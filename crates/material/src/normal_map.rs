@@ -62,6 +62,10 @@ impl Material for NormalMap {
     fn nested_materials(&self) -> Vec<(&'static str, &MaterialRef)> {
         vec![("material", &self.material)]
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.material.scale_distances(factor);
+    }
 }
 
 impl CompiledNormalMap {

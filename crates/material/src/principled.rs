@@ -208,6 +208,10 @@ impl Material for Principled {
     fn is_area_light(&self) -> bool {
         self.emissive_strength > 0.0 && self.emissive.constant() != Some(Rgb::BLACK)
     }
+
+    fn scale_distances(&mut self, factor: f32) {
+        self.medium.scale_distances(factor);
+    }
 }
 
 impl Principled {

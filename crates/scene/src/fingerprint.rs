@@ -15,7 +15,6 @@ use crate::shared::Shared;
 use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
 use juggler_integrator::AnyIntegrator;
-use juggler_shape::AnyShape;
 use serde::{Deserialize, Serialize};
 use serde_json::ser::Formatter;
 use std::collections::{BTreeMap, BTreeSet};
@@ -198,7 +197,7 @@ pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<Pat
 
 fn collect(objects: &[Item<Object>], path: &Path, files: &Files<'_>, found: &mut BTreeSet<PathBuf>) {
     for (i, object) in objects.iter().enumerate() {
-        if let Some(AnyShape::Mesh(mesh)) = &object.shape {
+        if let Some(mesh) = object.mesh() {
             let path = path.index(i).key("shape").key("mesh");
             found.extend(mesh.file.iter().map(|file| files.locate(&path.key("file"), file)));
             for (i, morph) in mesh.morphs.iter().enumerate() {

@@ -5,7 +5,6 @@ use crate::description::{BackgroundInput, Description, Object};
 use crate::item::Item;
 use crate::path::{Path, PathRef};
 use juggler_integrator::{AnyIntegrator, Classic};
-use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::{AnyMaterial, MaterialRef};
 use std::fmt;
@@ -113,9 +112,9 @@ impl IntegratorRequirements {
             found.sky =
                 Some(IntegratorRequirement { path: Path::root().key("background"), kind: kind.name(), is_light: true });
         }
-        if let Some(i) = scene.lights.iter().position(|light| matches!(**light, AnyLight::Area(_))) {
-            found.area =
-                Some(IntegratorRequirement { path: Path::root().key("lights").index(i), kind: "area", is_light: true });
+        if let Some((i, light)) = scene.lights.iter().enumerate().find(|(_, light)| light.is_surface()) {
+            let path = Path::root().key("lights").index(i);
+            found.area = Some(IntegratorRequirement { path, kind: light.name(), is_light: true });
         }
         let materials = PathRef::Root.key("materials");
         scene.materials.iter().for_each(|(name, material)| found.material(material, &materials.key(name)));

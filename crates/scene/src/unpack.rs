@@ -7,7 +7,7 @@ use crate::import::ply_bytes;
 use crate::item::Item;
 use crate::report::Finding;
 use crate::{Scene, SceneError};
-use juggler_shape::{AnyShape, Mesh, MeshData};
+use juggler_shape::{Mesh, MeshData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -65,7 +65,7 @@ impl Unpacker<'_> {
         for object in objects.iter_mut().filter(|object| has_arrays(object)) {
             let object = object.value_mut_unmarked();
             let name = object.name.clone().unwrap_or_else(|| outer.to_owned());
-            if let Some(AnyShape::Mesh(mesh)) = &mut object.shape
+            if let Some(mesh) = object.shape.as_mut().and_then(|shape| shape.mesh_mut())
                 && let Some(file) = self.file(mesh, &name)
             {
                 let crease_angle_degrees = mesh.crease_angle_degrees;
@@ -110,6 +110,6 @@ impl Unpacker<'_> {
 
 /// Whether an object or an object inside it is a mesh of arrays.
 fn has_arrays(object: &Item<Object>) -> bool {
-    let own = matches!(&object.shape, Some(AnyShape::Mesh(mesh)) if mesh.file.is_none());
+    let own = object.mesh().is_some_and(|mesh| mesh.file.is_none());
     own || object.inner().iter().any(has_arrays)
 }

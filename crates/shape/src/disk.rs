@@ -11,7 +11,7 @@ use super::arithmetic::{azimuth_turns, in_range};
 use super::derivatives::{SurfaceDerivatives, disk_derivatives};
 use super::plane::intersect_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SolidAngleShape, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, portable};
 use schemars::JsonSchema;
@@ -86,6 +86,10 @@ impl Shape for Disk {
 
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
         area_pdf(from, at, self.area())
+    }
+
+    fn solid_angle_shape(&self) -> Option<SolidAngleShape> {
+        (self.inner_radius == 0.0).then_some(SolidAngleShape::Disk { radius: self.radius })
     }
 }
 

@@ -66,6 +66,31 @@ pub struct SurfacePoint {
     pub primitive: u32,
 }
 
+/// Shape whose solid angle has a closed form, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolidAngleShape {
+    /// A sphere around the origin.
+    Sphere {
+        /// Radius.
+        radius: f32,
+    },
+    /// A disk around the origin, in the plane y = 0.
+    Disk {
+        /// Radius.
+        radius: f32,
+    },
+    /// A rectangle around the origin, in the plane y = 0.
+    Rectangle {
+        /// Edge lengths along x and z.
+        size: [f32; 2],
+    },
+    /// A triangle.
+    Triangle {
+        /// Corners.
+        vertices: [Vec3; 3],
+    },
+}
+
 /// Error of an invalid shape: the field at fault and the values that are allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
@@ -105,6 +130,27 @@ pub trait Shape: Send + Sync {
     /// Density per steradian, seen from `from`, of [`Shape::sample`] at this point of the surface;
     /// 0 for a point that it never samples from there.
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32;
+    /// The shape as one whose points lights can sample by solid angle; `None` if there is no closed
+    /// form.
+    fn solid_angle_shape(&self) -> Option<SolidAngleShape> {
+        None
+    }
+    /// The shape as a sphere around the origin.
+    fn sphere(&self) -> Option<&Sphere> {
+        None
+    }
+    /// The shape as a mesh.
+    fn mesh(&self) -> Option<&Mesh> {
+        None
+    }
+    /// The shape as a mesh that can be changed.
+    fn mesh_mut(&mut self) -> Option<&mut Mesh> {
+        None
+    }
+    /// Whether the shape is the whole plane y = 0.
+    fn is_plane(&self) -> bool {
+        false
+    }
     /// Number of triangles; 0 for exact shapes.
     fn triangles(&self) -> usize {
         0

@@ -66,6 +66,10 @@ impl Shape for Plane {
     fn pdf(&self, _from: Vec3, _at: &SurfacePoint) -> f32 {
         0.0
     }
+
+    fn is_plane(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(any(test, feature = "testing"))]

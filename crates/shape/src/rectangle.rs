@@ -11,7 +11,7 @@ use super::SurfaceDerivatives;
 use super::arithmetic::in_range;
 use super::plane::intersect_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SolidAngleShape, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -80,6 +80,10 @@ impl Shape for Rectangle {
 
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
         area_pdf(from, at, self.area())
+    }
+
+    fn solid_angle_shape(&self) -> Option<SolidAngleShape> {
+        Some(SolidAngleShape::Rectangle { size: self.size })
     }
 }
 

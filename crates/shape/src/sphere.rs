@@ -16,7 +16,7 @@
 use super::arithmetic::{azimuth_turns, in_range, root_fractions, roots, to_f64};
 use super::derivatives::{SurfaceDerivatives, dpdu_about_y};
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SolidAngleShape, SurfacePoint, check};
 use crate::surface::{Footprint, Surface};
 use juggler_math::{Aabb, DVec3, Frame, Ray, Vec2, Vec3, portable, robust, warp};
 use schemars::JsonSchema;
@@ -176,6 +176,14 @@ impl Shape for Sphere {
             Some(_) => 0.0,
             None => area_pdf(from, at, self.area()),
         }
+    }
+
+    fn solid_angle_shape(&self) -> Option<SolidAngleShape> {
+        Some(SolidAngleShape::Sphere { radius: self.radius })
+    }
+
+    fn sphere(&self) -> Option<&Sphere> {
+        Some(self)
     }
 }
 

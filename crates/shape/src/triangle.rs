@@ -14,7 +14,7 @@ use super::SurfaceDerivatives;
 use super::arithmetic::clamp_to_f32_range;
 use super::solid_angle::{area_pdf, area_sample};
 use super::triangle_geometry::TriangleGeometry;
-use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
+use super::{Hit, InvalidShape, Shape, ShapeSample, SolidAngleShape, SurfacePoint, check};
 use crate::surface::Surface;
 use juggler_bvh::intersect_triangle;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
@@ -102,6 +102,10 @@ impl Shape for Triangle {
 
     fn triangles(&self) -> usize {
         1
+    }
+
+    fn solid_angle_shape(&self) -> Option<SolidAngleShape> {
+        Some(SolidAngleShape::Triangle { vertices: self.vertices })
     }
 }
 

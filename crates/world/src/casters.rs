@@ -113,7 +113,7 @@ impl CausticCaster {
                 .or_insert_with(|| SpecularMaterial::from_material(id, materials))
                 .is_some()
         };
-        let is_specular_sphere = |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && is_specular(id);
+        let is_specular_sphere = |shape: &AnyShape, id| shape.sphere().is_some() && is_specular(id);
         let spheres = collect_shapes(top, MAX_CANDIDATES, &is_specular_sphere);
         let specular_materials = specular_materials.into_inner();
         let material = |sphere: &WorldShape| specular_materials.get(&sphere.material)?.as_ref();
@@ -161,10 +161,8 @@ impl CausticCaster {
     }
 
     fn new(world_shape: &WorldShape, material: &SpecularMaterial) -> Option<Self> {
-        let (AnyShape::Sphere(sphere), Motion::Still(transform)) = (&*world_shape.shape, &world_shape.motion) else {
-            return None;
-        };
-        let radius = sphere.radius * transform.uniform_scale()?;
+        let Motion::Still(transform) = &world_shape.motion else { return None };
+        let radius = world_shape.shape.sphere()?.radius * transform.uniform_scale()?;
         let sphere = SpecularSphere { center: transform.origin(), radius };
         Some(Self { sphere, shapes: vec![world_shape.shape_index], material: material.clone() })
     }

@@ -2,7 +2,7 @@
 
 use juggler_light::emitter::{AreaEmitter, DiskEmitter, RectangleEmitter, SphereEmitter, TriangleEmitter};
 use juggler_math::{Transform, Vec3};
-use juggler_shape::{AnyShape, Disk, MeshData, Rectangle};
+use juggler_shape::{AnyShape, MeshData, SolidAngleShape};
 
 /// Maximum number of triangles for a mesh that is sampled per surface. Larger ones are one emitter,
 /// whose points are sampled by area.
@@ -23,21 +23,22 @@ impl EmissiveSurfaces {
     /// Splits a shape into surfaces; `None` if it can only be sampled as a whole.
     pub fn from_shape(shape: &AnyShape, transform: &Transform) -> Option<Self> {
         let one = |surface: AreaEmitter| Some(Self { surfaces: vec![surface], surface_indices: Vec::new() });
-        match shape {
-            AnyShape::Sphere(sphere) => {
-                let radius = sphere.radius * transform.uniform_scale()?;
+        if let Some(mesh) = shape.mesh() {
+            return Self::from_mesh(mesh.data()?, transform);
+        }
+        match shape.solid_angle_shape()? {
+            SolidAngleShape::Sphere { radius } => {
+                let radius = radius * transform.uniform_scale()?;
                 one(SphereEmitter::new(transform.origin(), radius)?.into())
             }
-            AnyShape::Disk(Disk { radius, inner_radius: 0.0 }) => {
+            SolidAngleShape::Disk { radius } => {
                 let radius = radius * transform.uniform_scale()?;
                 one(DiskEmitter::new(transform.origin(), transform.normal(Vec3::Y), radius)?.into())
             }
-            AnyShape::Rectangle(rectangle) => one(rectangle_to_world(rectangle, transform)?.into()),
-            AnyShape::Triangle(triangle) => {
-                one(TriangleEmitter::new(corners_to_world(triangle.vertices, transform))?.into())
+            SolidAngleShape::Rectangle { size } => one(rectangle_to_world(size, transform)?.into()),
+            SolidAngleShape::Triangle { vertices } => {
+                one(TriangleEmitter::new(corners_to_world(vertices, transform))?.into())
             }
-            AnyShape::Mesh(mesh) => Self::from_mesh(mesh.data()?, transform),
-            _ => None,
         }
     }
 
@@ -78,8 +79,7 @@ fn corners_to_world(corners: [Vec3; 3], transform: &Transform) -> [Vec3; 3] {
     if transform.matrix().determinant() < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
-fn rectangle_to_world(rectangle: &Rectangle, transform: &Transform) -> Option<RectangleEmitter> {
-    let [width, depth] = rectangle.size;
+fn rectangle_to_world([width, depth]: [f32; 2], transform: &Transform) -> Option<RectangleEmitter> {
     let corner = transform.point(Vec3::new(-0.5 * width, 0.0, 0.5 * depth));
     let edges = [transform.vector(Vec3::X * width), transform.vector(Vec3::NEG_Z * depth)];
     let is_front = edges[0].cross(edges[1]).dot(transform.normal(Vec3::Y)) >= 0.0;

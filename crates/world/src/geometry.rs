@@ -9,7 +9,7 @@ use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Ray, Transform, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_shape::{AnyShape, Hit, MeshPoint, SurfaceDerivatives};
+use juggler_shape::{Hit, Mesh, MeshPoint, SurfaceDerivatives};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ impl Geometry {
         let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
         let moves = objects.iter().any(Object::moves);
         let has_mesh_attributes = objects.iter().any(|object| match &object.content {
-            Content::Shape(shape) => matches!(&**shape, AnyShape::Mesh(mesh) if mesh.has_attributes()),
+            Content::Shape(shape) => shape.mesh().is_some_and(Mesh::has_attributes),
             Content::Geometry(geometry) => geometry.has_mesh_attributes,
         });
         let objects = objects.into_iter().map(Instance::new).collect();
@@ -150,7 +150,7 @@ impl Geometry {
             match &mut instance.content {
                 Content::Geometry(below) => *below = Arc::new(below.at_simd_level(simd)),
                 Content::Shape(shape) => {
-                    if let AnyShape::Mesh(mesh) = &**shape {
+                    if let Some(mesh) = shape.mesh() {
                         *shape = Arc::new(mesh.with_simd_level(simd).into());
                     }
                 }

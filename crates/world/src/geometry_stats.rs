@@ -2,7 +2,7 @@
 
 use super::merged_meshes::MergedMeshes;
 use super::{Content, Geometry};
-use juggler_shape::AnyShape;
+use juggler_shape::{AnyShape, Mesh};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -76,8 +76,7 @@ impl StoredShapes {
             return;
         }
         self.bytes += size_of::<AnyShape>();
-        if let AnyShape::Mesh(mesh) = &**shape
-            && let Some(data) = mesh.data()
+        if let Some(data) = shape.mesh().and_then(Mesh::data)
             && !self.arrays.insert(std::ptr::from_ref(data).addr())
         {
             return;

@@ -6,7 +6,7 @@ use juggler_material::MaterialId;
 use juggler_math::motion::{key_interval, lerp};
 use juggler_math::{Motion, Ray, Transform, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_shape::{AnyShape, Hit, Shape, intersect_sphere, longitude_latitude, sphere_surface};
+use juggler_shape::{AnyShape, Hit, Shape, Sphere, intersect_sphere, longitude_latitude, sphere_surface};
 use std::sync::Arc;
 
 /// An object with precomputed data. The fields that intersection reads come first, in one cache
@@ -28,6 +28,8 @@ pub struct Instance {
 enum SphereKeys {
     /// The object is no sphere in the geometry's space.
     None,
+    /// A sphere that becomes an ellipsoid in the geometry's space.
+    Ellipsoid(Sphere),
     /// Center and radius.
     Still(Vec3, f32),
     /// Centers and radii at the keys of the motion.
@@ -38,11 +40,11 @@ impl SphereKeys {
     /// Converts an object that is a sphere and stays one at every key of its motion.
     fn from_object(object: &Object) -> Self {
         let Content::Shape(shape) = &object.content else { return Self::None };
-        let AnyShape::Sphere(sphere) = &**shape else { return Self::None };
+        let Some(sphere) = shape.sphere() else { return Self::None };
         let at_key = |key: &Transform| Some((key.origin(), sphere.radius * key.uniform_scale()?));
         let keys: Option<Vec<(Vec3, f32)>> = object.motion.keys().iter().map(at_key).collect();
         match keys.as_deref() {
-            None | Some([]) => Self::None,
+            None | Some([]) => Self::Ellipsoid(sphere.clone()),
             Some([(center, radius)]) => Self::Still(*center, *radius),
             Some(keys) => Self::Moving(keys.into()),
         }
@@ -52,7 +54,7 @@ impl SphereKeys {
     #[inline(always)]
     fn at(&self, time: f32) -> Option<(Vec3, f32)> {
         match self {
-            Self::None => None,
+            Self::None | Self::Ellipsoid(_) => None,
             Self::Still(center, radius) => Some((*center, *radius)),
             Self::Moving(keys) => {
                 let (key, fraction) = key_interval(keys.len(), time);
@@ -91,10 +93,10 @@ impl Instance {
     pub fn closest(&self, ray: &mut Ray, shape_index: u32, best: &mut WorldHit) {
         let hit = match (&self.content, self.sphere.at(ray.time)) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
-            (Content::Shape(shape), None) => match &**shape {
-                // Avoid a virtual call for ellipsoids, which are spheres under nonuniform scaling.
-                AnyShape::Sphere(sphere) => sphere.intersect(&self.ray_to_object(ray)),
-                shape => self.intersect(&**shape, ray),
+            (Content::Shape(shape), None) => match &self.sphere {
+                // Avoid a virtual call.
+                SphereKeys::Ellipsoid(sphere) => sphere.intersect(&self.ray_to_object(ray)),
+                _ => self.intersect(&***shape, ray),
             },
             (Content::Geometry(geometry), _) => {
                 let mut local = self.ray_to_object(ray);
@@ -134,10 +136,10 @@ impl Instance {
     pub fn occludes(&self, ray: &Ray) -> bool {
         match (&self.content, self.sphere.at(ray.time)) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
-            (Content::Shape(shape), None) => match &**shape {
-                AnyShape::Sphere(sphere) => sphere.intersect(&self.ray_to_object(ray)).is_some(),
-                shape if self.is_identity => shape.occludes(ray),
-                shape => shape.occludes(&self.to_object_space(ray)),
+            (Content::Shape(shape), None) => match &self.sphere {
+                SphereKeys::Ellipsoid(sphere) => sphere.intersect(&self.ray_to_object(ray)).is_some(),
+                _ if self.is_identity => shape.occludes(ray),
+                _ => shape.occludes(&self.to_object_space(ray)),
             },
             (Content::Geometry(geometry), _) => geometry.occludes(&self.ray_to_object(ray)),
         }
@@ -174,7 +176,7 @@ fn ray_to_object_at(motion: &Motion, ray: &Ray) -> Ray {
 #[inline(never)]
 fn with_texture_coordinates(shape: &AnyShape, surface: Surface, transform: &Transform) -> Surface {
     let outwards = transform.vector_to_local(surface.normal).normalize();
-    let AnyShape::Sphere(sphere) = shape else { return surface };
+    let Some(sphere) = shape.sphere() else { return surface };
     Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, local_normal: outwards, ..surface }
 }
 

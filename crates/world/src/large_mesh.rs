@@ -5,7 +5,7 @@
 use super::instance::Instance;
 use super::{Content, Object, WorldHit};
 use juggler_math::{Aabb, Ray};
-use juggler_shape::{AnyShape, Mesh, Shape};
+use juggler_shape::{Mesh, Shape};
 
 /// Minimum number of triangles of a large mesh.
 const MIN_TRIANGLES: usize = 1024;
@@ -100,9 +100,6 @@ impl LargeMesh {
 
 impl Content {
     fn mesh(&self) -> Option<&Mesh> {
-        match &**self.as_shape()? {
-            AnyShape::Mesh(mesh) => Some(mesh),
-            _ => None,
-        }
+        self.as_shape()?.mesh()
     }
 }

@@ -48,6 +48,15 @@ pub struct Medium {
     pub distance: f32,
 }
 
+impl Medium {
+    /// Multiplies the distances over which the medium absorbs and scatters by a positive factor.
+    pub fn scale_distances(&mut self, factor: f32) {
+        self.absorption = self.absorption / factor;
+        self.scattering = self.scattering / factor;
+        self.distance *= factor;
+    }
+}
+
 impl Default for Medium {
     fn default() -> Self {
         let (absorption, scattering) = (Rgb::BLACK, Rgb::BLACK);

@@ -20,10 +20,7 @@ pub type PlacedEntries = (Vec<Object>, Vec<u32>);
 
 /// Area lights of a list, with their indices in it.
 pub fn iter(lights: &[Item<AnyLight>]) -> impl Iterator<Item = (usize, &Area)> {
-    lights.iter().enumerate().filter_map(|(i, light)| match &**light {
-        AnyLight::Area(area) => Some((i, area)),
-        _ => None,
-    })
+    lights.iter().enumerate().filter_map(|(i, light)| Some((i, light.area()?)))
 }
 
 /// Adds the scene's area lights to its objects and names their entries `lights[i]`. Lights with
@@ -75,10 +72,7 @@ fn emissive(area: &Area) -> MaterialRef {
 
 /// Motion of a light over the shutter interval; `None` for a static light.
 fn motion(tracks: &Tracks, light: usize) -> Option<Motion> {
-    let place = |at: &Item<AnyLight>| match &**at {
-        AnyLight::Area(area) => area.shape_and_transform().map(|(_, place)| place),
-        _ => None,
-    };
+    let place = |at: &Item<AnyLight>| at.area()?.shape_and_transform().map(|(_, place)| place);
     let keys: Option<Vec<Transform>> = tracks.lights.get(&light)?.iter().map(place).collect();
     Motion::from_keys(keys?)
 }

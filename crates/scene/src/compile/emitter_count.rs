@@ -7,7 +7,6 @@ use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use juggler_material::{AnyMaterial, MaterialRef};
-use juggler_shape::AnyShape;
 use std::collections::BTreeMap;
 
 /// Number of emitters of a scene without recursive groups: emissive shapes, and all triangles of
@@ -56,9 +55,9 @@ impl<'s> EmitterCounter<'s> {
             return 0;
         }
         let emits = object.material.as_ref().map_or(inherited, |material| self.emits(material));
-        let mut count = match &object.shape {
+        let mut count = match object.mesh() {
             _ if !emits => 0,
-            Some(AnyShape::Mesh(mesh)) => (mesh.arrays().triangles.len() as u64).max(1),
+            Some(mesh) => (mesh.arrays().triangles.len() as u64).max(1),
             _ => shapes(object),
         };
         if let Some(group) = &object.group {

@@ -9,7 +9,7 @@ use crate::report::Finding;
 use juggler_camera::AnyCamera;
 use juggler_material::{MaterialId, MaterialTable, Sides};
 use juggler_math::{Aabb, Motion, Ray, Transform, Vec3};
-use juggler_shape::AnyShape;
+use juggler_shape::SolidAngleShape;
 use juggler_world::{Content, Object};
 
 /// Maximum number of emitters that are checked.
@@ -47,10 +47,10 @@ pub struct SceneObjects<'s> {
 impl Emitter {
     fn of(place: usize, number: u32, object: &Object, materials: &MaterialTable) -> Option<Self> {
         let (Content::Shape(shape), Motion::Still(transform)) = (&object.content, &object.motion) else { return None };
-        let (kind, x, z) = match &**shape {
-            AnyShape::Rectangle(rectangle) => ("rectangle", 0.5 * rectangle.size[0], 0.5 * rectangle.size[1]),
-            AnyShape::Disk(disk) if disk.inner_radius == 0.0 => ("disk", disk.radius, disk.radius),
-            _ => return None,
+        let (kind, x, z) = match shape.solid_angle_shape()? {
+            SolidAngleShape::Rectangle { size } => ("rectangle", 0.5 * size[0], 0.5 * size[1]),
+            SolidAngleShape::Disk { radius } => ("disk", radius, radius),
+            SolidAngleShape::Sphere { .. } | SolidAngleShape::Triangle { .. } => return None,
         };
         materials.emission(object.material?).filter(|emission| emission.sides == Sides::Front)?;
         let (x, z) = (Vec3::X * x, Vec3::Z * z);
@@ -176,9 +176,7 @@ impl SceneObjects<'_> {
 /// Transform of a static object that is an infinite plane.
 fn plane(object: &Object) -> Option<&Transform> {
     match (&object.content, &object.motion) {
-        (Content::Shape(shape), Motion::Still(transform)) => {
-            matches!(&**shape, AnyShape::Plane(_)).then_some(transform)
-        }
+        (Content::Shape(shape), Motion::Still(transform)) => shape.is_plane().then_some(transform),
         _ => None,
     }
 }

@@ -11,7 +11,6 @@ use crate::item::Item;
 use crate::path::PathRef;
 use juggler_light::background::Panorama;
 use juggler_material::{AnyMaterial, MaterialRef};
-use juggler_shape::AnyShape;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -74,7 +73,7 @@ impl Needs {
             if let Some(MaterialRef::Inline(material)) = &object.material {
                 self.material(material);
             }
-            if let Some(AnyShape::Mesh(mesh)) = &object.shape {
+            if let Some(mesh) = object.mesh() {
                 self.triangles = self.triangles.saturating_add(mesh.arrays().triangles.len() as u64);
                 let path = path.key("shape").key("mesh").join("file");
                 let file = mesh.file.as_ref().map(|file| files.locate(&path, file));

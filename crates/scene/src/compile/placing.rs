@@ -168,9 +168,9 @@ impl Preparer<'_> {
     /// Prepares a shape. A mesh that differs `at` other times deforms; a changing radius of a
     /// sphere is part of its motion.
     fn shape(&mut self, shape: &AnyShape, at: &[&AnyShape], path: &PathRef<'_>) -> Option<AnyShape> {
-        let mut shape = match shape {
-            AnyShape::Mesh(mesh) => self.mesh(mesh, at, &path.key("mesh"))?.into(),
-            shape => shape.clone(),
+        let mut shape = match shape.mesh() {
+            Some(mesh) => self.mesh(mesh, at, &path.key("mesh"))?.into(),
+            None => shape.clone(),
         };
         match shape.prepare() {
             Ok(()) => Some(shape),
@@ -182,10 +182,8 @@ impl Preparer<'_> {
     }
 
     fn mesh(&mut self, mesh: &Mesh, at: &[&AnyShape], path: &PathRef<'_>) -> Option<Mesh> {
-        let moment = |at: &&'_ AnyShape| if let AnyShape::Mesh(mesh) = at { Some(mesh.clone()) } else { None };
-        let moments: Option<Vec<Mesh>> = at.iter().map(moment).collect();
-        let moments = moments.unwrap_or_default();
-        match self.files.moving(&moments.iter().collect::<Vec<_>>(), path, self.findings) {
+        let moments: Option<Vec<&Mesh>> = at.iter().map(|shape| shape.mesh()).collect();
+        match self.files.moving(&moments.unwrap_or_default(), path, self.findings) {
             None => self.files.mesh(mesh, path, self.findings),
             Some(Ok(moving)) => Some(moving),
             Some(Err(invalid)) => self.fail(invalid.message, Path::from(path).join(&invalid.field)),
@@ -271,11 +269,9 @@ fn composed(steps: &[TransformStep]) -> Option<Transform> {
 
 /// Motion of a sphere whose radius changes, as a scaling.
 fn sphere_scaling(shape: &AnyShape, others: Vec<&AnyShape>) -> Motion {
-    let AnyShape::Sphere(sphere) = shape else { return Transform::IDENTITY.into() };
-    let keys = others.into_iter().map(|other| match other {
-        AnyShape::Sphere(other) => Transform::scale(Vec3::splat(other.radius / sphere.radius)),
-        _ => None,
-    });
+    let Some(sphere) = shape.sphere() else { return Transform::IDENTITY.into() };
+    let scaling = |other: &Sphere| Transform::scale(Vec3::splat(other.radius / sphere.radius));
+    let keys = others.into_iter().map(|other| other.sphere().and_then(scaling));
     let keys: Option<Vec<Transform>> = keys.collect();
     keys.and_then(Motion::from_keys).unwrap_or(Transform::IDENTITY.into())
 }

@@ -9,7 +9,7 @@ use super::{Chain, Instances, Limb, Model, Objects, Rotate, ScaleFactors, Transf
 use crate::item::Item;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_math::Vec3;
-use juggler_shape::AnyShape;
+use juggler_shape::{AnyShape, Mesh};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -125,6 +125,11 @@ impl Object {
     /// nor counted.
     pub fn is_visible(&self) -> bool {
         self.visible.0
+    }
+
+    /// Mesh of the object, if its shape is one.
+    pub fn mesh(&self) -> Option<&Mesh> {
+        self.shape.as_ref()?.mesh()
     }
 
     /// Number of times that the object is placed for each placement of its list.

@@ -2,7 +2,6 @@
 //! their own.
 
 use super::expand::{Expander, InModel};
-use super::placed::{placed_camera, placed_light, scaled_media, set_light_group};
 use super::{ModelChoice, ModelParts, OpenedModel};
 use crate::description::{BackgroundInput, Model, Object};
 use crate::item::Item;
@@ -160,8 +159,10 @@ impl Expander<'_> {
         for (name, texture) in textures {
             self.description.textures.insert(name, texture.into());
         }
-        for (name, material) in materials {
-            self.description.materials.insert(name, scaled_media(material, place.length_scale()).into());
+        let scale = Some(place.length_scale()).filter(|&scale| scale != 1.0 && scale > 0.0 && scale.is_finite());
+        for (name, mut material) in materials {
+            scale.iter().for_each(|scale| material.scale_distances(*scale));
+            self.description.materials.insert(name, material.into());
         }
         for (name, objects) in groups {
             self.description.groups.insert(name, objects.into_iter().map(Item::from).collect());
@@ -186,8 +187,11 @@ impl Expander<'_> {
         };
         let key = |i: usize| (Path::from(path).to_string(), i);
         for (i, (_, light)) in parts.lights.iter().enumerate().filter(|_| model.lights && !place.is_hidden) {
-            let mut value = placed_light(light, &transform);
-            set_light_group(&mut value, place.light_group);
+            let mut value = light.clone();
+            value.transform(&transform);
+            if let Some(group @ None) = value.light_group_mut() {
+                *group = place.light_group.map(str::to_owned);
+            }
             match self.lights.get_mut(&key(i)) {
                 Some(light) => light.keys.push(value),
                 None if place.is_moment => {}
@@ -196,7 +200,8 @@ impl Expander<'_> {
         }
         // A scene has either one camera or named cameras.
         for (i, (name, camera)) in parts.cameras.iter().enumerate().filter(|_| self.files.scene.camera.is_none()) {
-            let value = placed_camera(camera, &transform);
+            let mut value = camera.clone();
+            value.transform(&transform);
             match self.cameras.get_mut(&key(i)) {
                 Some((_, camera)) => camera.keys.push(value),
                 None if place.is_moment => {}

@@ -8,7 +8,6 @@ mod format;
 mod instance;
 mod model_scene;
 mod parts;
-mod placed;
 mod scene;
 mod summary;
 

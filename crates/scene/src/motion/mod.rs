@@ -40,7 +40,6 @@ use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
 use juggler_light::AnyLight;
 use juggler_material::AnyMaterial;
-use juggler_shape::AnyShape;
 use juggler_texture::AnyTexture;
 use serde::Serialize;
 use std::sync::Arc;
@@ -112,7 +111,7 @@ impl ItemContent for AnyLight {}
 impl ItemContent for Object {
     fn json_without_arrays(&self) -> serde_json::Value {
         let mut json_without_arrays = self.clone();
-        if let Some(AnyShape::Mesh(mesh)) = &mut json_without_arrays.shape {
+        if let Some(mesh) = json_without_arrays.shape.as_mut().and_then(|shape| shape.mesh_mut()) {
             mesh.clear_arrays();
         }
         // Child objects are validated by themselves.

@@ -348,6 +348,14 @@ impl Shape for Mesh {
     fn bvh_bytes(&self) -> usize {
         self.prepared.as_ref().map_or(0, |p| p.bvh_bytes())
     }
+
+    fn mesh(&self) -> Option<&Mesh> {
+        Some(self)
+    }
+
+    fn mesh_mut(&mut self) -> Option<&mut Mesh> {
+        Some(self)
+    }
 }
 
 #[cfg(any(test, feature = "testing"))]
