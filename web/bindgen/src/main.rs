@@ -12,6 +12,7 @@ fn main() -> ExitCode {
     };
     let mut bindgen = Bindgen::new();
     // The name of the files: `juggler.js`, `juggler_bg.wasm`.
+    bindgen.remove_name_section(true).remove_producers_section(true);
     let ready = bindgen.input_path(module).out_name("juggler").typescript(false).web(true);
     match ready.and_then(|bindgen| bindgen.generate(folder)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -24,11 +24,13 @@ pub(super) struct Json<'t> {
 /// The text is not valid JSON or exceeds a limit, or a property has the wrong type.
 pub(super) fn parse(json: Json<'_>, limits: &Limits) -> Result<Document, Fault> {
     scan(json, limits)?;
-    // Reading with the path of each value takes longer, so only errors pay for it.
-    match serde_json::from_slice(json.text) {
-        Ok(document) => Ok(document),
-        Err(error) => Err(json.version_fault().unwrap_or_else(|| json.fault(&error))),
-    }
+    let mut deserializer = serde_json::Deserializer::from_slice(json.text);
+    let document = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let fault = || json.fault(error.inner(), Some(error.path()));
+        json.version_fault().unwrap_or_else(fault)
+    })?;
+    deserializer.end().map_err(|error| json.fault(&error, None))?;
+    Ok(document)
 }
 
 impl Json<'_> {
@@ -49,14 +51,10 @@ impl Json<'_> {
     }
 
     /// Fault of an error, at the property that caused it if the JSON is valid.
-    fn fault(self, error: &serde_json::Error) -> Fault {
-        if error.classify() != Category::Data {
-            return Fault::new(self.place(error.line(), error.column()), without_position(error));
-        }
-        let mut deserializer = serde_json::Deserializer::from_slice(self.text);
-        match serde_path_to_error::deserialize::<_, Document>(&mut deserializer) {
-            Ok(_) => Fault::new(self.place(error.line(), error.column()), without_position(error)),
-            Err(located) => Fault::at(pointer(located.path()), without_position(located.inner())),
+    fn fault(self, error: &serde_json::Error, property: Option<&Path>) -> Fault {
+        match property.filter(|_| error.classify() == Category::Data) {
+            Some(property) => Fault::at(pointer(property), without_position(error)),
+            None => Fault::new(self.place(error.line(), error.column()), without_position(error)),
         }
     }
 
