@@ -15,6 +15,7 @@ mod assets;
 mod building;
 mod changes;
 mod cryptomatte;
+mod edits;
 mod gallery;
 mod instances;
 mod motion;
