@@ -132,6 +132,12 @@ fn hundred_thousand_spheres() -> Result<(), Error> {
         edited.description.objects[7].visible.0 = false;
         Ok(edited)
     })?;
+    let (picture, settings) = (Picture::new(&scene, &Settings::default())?, Settings::default());
+    timed("one sphere of a copy at another place, ready to render", 5, || {
+        let mut edited = scene.clone();
+        edited.description.objects[7] = Object::new(Sphere { radius: 0.4 }).at(0.5, 0.3, 0.0).into();
+        picture.rebuild(&scene, &edited, &settings)
+    })?;
     let moving = scene.with_value("/objects/7/transform", json!([{"translate": ["=frame", 0, 0]}]))?;
     timed("another frame, when one sphere moves", RUNS, || Ok(moving.at_frame(3.0)?))?;
     timed("compiled with an open shutter, all still", 5, || Ok(scene.compile()?))?;
