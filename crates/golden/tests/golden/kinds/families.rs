@@ -59,7 +59,8 @@ pub const FAMILIES: &[Addition] = &[
         family: "shape",
         folder: "crates/shape/src",
         files: (Some("disk.rs"), "slab.rs"),
-        words: &[("Disk", "Slab"), ("disk", "slab")],
+        // Its solid angle is still that of a disk.
+        words: &[("Disk", "Slab"), ("disk", "slab"), ("SolidAngleShape::Slab", "SolidAngleShape::Disk")],
         module: ("lib.rs", "mod slab; <- mod disk;"),
         entry: ("lib.rs", "slab::Slab, <- disk::Disk,"),
         in_json: Some(("\"disk\"", "\"slab\"")),
