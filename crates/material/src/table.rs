@@ -243,17 +243,20 @@ impl MaterialTable {
 
     /// Fills in the BSDF of a scattering material, with its frame.
     fn fill_scattering(&self, material: &dyn ScatteringMaterial, view: &ShadingView, shading: &mut Shading) {
+        let surface = view.surface;
         let mut normal = facing_normal(view, view.normal);
-        let is_mapped = view.normal != view.surface.shading_normal;
+        // Light inside of glass meets its surface many times, so what smooth normals lose would add up.
+        let is_perturbed = view.normal != surface.shading_normal
+            || (material.is_transmissive() && surface.shading_normal != surface.normal);
         if material.interior().is_some() {
             let outwards = if view.is_outside() { normal } else { -normal };
-            normal = if is_mapped { outwards } else { view.normal };
+            normal = if is_perturbed { outwards } else { view.normal };
         }
         shading.frame = tangent::frame(view, normal, material.rotation_turns(&self.textures, view));
         material.add_lobes(&self.textures, view, &shading.frame, &mut shading.bsdf);
         shading.transmissive = material.is_transmissive();
-        if is_mapped {
-            shading.set_geometric_normal(view.surface.normal);
+        if is_perturbed {
+            shading.set_geometric_normal(surface.normal);
         }
     }
 

@@ -11,13 +11,11 @@ use juggler_math::testing::family_wise_deviations;
 const NEAR: f64 = 0.002;
 /// Pixels of a picture of a sphere of radius 1 at the origin, which fills it.
 fn sphere(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
-    let camera = if is_within {
-        WITHIN
-    } else {
-        r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#
-    };
-    sphere_by(camera, Scene::new(), material, edge, samples)
+    sphere_by(if is_within { WITHIN } else { OUTSIDE }, Scene::new(), material, edge, samples)
 }
+
+/// A camera that sees nothing but the sphere.
+const OUTSIDE: &str = r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#;
 
 /// A camera inside the sphere.
 pub const WITHIN: &str =
@@ -25,7 +23,12 @@ pub const WITHIN: &str =
 
 /// Pixels of a picture of that sphere by `camera`; the material may name textures of the scene.
 pub fn sphere_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
-    let world = scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
+    picture(camera, scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material), edge, samples)
+}
+
+/// Pixels of a picture of a scene in white light.
+fn picture(camera: &str, scene: Scene, edge: u32, samples: u32) -> Vec<f64> {
+    let world = scene.in_light(1.0).world();
     // Light may be trapped for long; Russian roulette would only add noise.
     let integrator = path(r#""max_depth": 1000"#);
     square(&world, &read::<AnyCamera>(camera), &*integrator, edge, samples)
@@ -133,6 +136,48 @@ fn glass_with_a_normal_map_vanishes_in_a_furnace() {
         let samples = if is_deep() { 512 } else { 256 };
         let pixels: Vec<f64> =
             sphere(&material, *is_within, 32, samples).into_iter().map(|value| value / scale).collect();
+        wrong.extend(check(&format!("{material}, from within: {is_within}"), &pixels, all.len()).err());
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A mesh of a sphere of radius 1, with the normals of the sphere: they lean by up to 18 degrees.
+fn coarse_sphere() -> String {
+    const RINGS: usize = 8;
+    const SEGMENTS: usize = 12;
+    let angle = |step: usize, steps: usize| std::f64::consts::PI * step as f64 / steps as f64;
+    let vertex = |ring: usize, segment: usize| {
+        let ((sin, cos), (sin_around, cos_around)) =
+            (angle(ring, RINGS).sin_cos(), angle(2 * segment, SEGMENTS).sin_cos());
+        [sin * cos_around, cos, sin * sin_around]
+    };
+    let places =
+        |rings: std::ops::Range<usize>| rings.flat_map(|ring| (0..SEGMENTS).map(move |segment| (ring, segment)));
+    let vertices: Vec<[f64; 3]> = places(0..RINGS + 1).map(|(ring, segment)| vertex(ring, segment)).collect();
+    let index = |ring: usize, segment: usize| ring * SEGMENTS + segment % SEGMENTS;
+    let triangles: Vec<[usize; 3]> = places(0..RINGS)
+        .flat_map(|(ring, segment)| {
+            let [a, b] = [index(ring, segment), index(ring, segment + 1)];
+            let [c, d] = [index(ring + 1, segment), index(ring + 1, segment + 1)];
+            [[a, b, c], [b, d, c]]
+        })
+        .collect();
+    serde_json::json!({"mesh": {"positions": vertices, "normals": vertices, "triangles": triangles}}).to_string()
+}
+
+/// Smooth normals of a mesh lose no light inside of glass, as maps do not.
+#[test]
+fn glass_meshes_with_smooth_normals_vanish_in_a_furnace() {
+    let shape = coarse_sphere();
+    let few = [(1.5, 0.0, false), (1.5, 0.2, false), (1.5, 0.2, true), (1.2, 0.5, true)];
+    let more = [(2.0, 0.0, false), (2.0, 0.3, false), (2.0, 0.3, true), (1.5, 0.9, true)];
+    let all: Vec<(f64, f64, bool)> = few.into_iter().chain(more.into_iter().filter(|_| is_deep())).collect();
+    let mut wrong = Vec::new();
+    for (ior, roughness, is_within) in &all {
+        let material = format!(r#"{{"dielectric": {{"ior": {ior}, "roughness": {roughness}}}}}"#);
+        let (camera, scale) = if *is_within { (WITHIN, ior * ior) } else { (OUTSIDE, 1.0) };
+        let scene = Scene::new().with(&shape, Vec3::ZERO, &material);
+        let pixels: Vec<f64> = picture(camera, scene, 32, 256).into_iter().map(|value| value / scale).collect();
         wrong.extend(check(&format!("{material}, from within: {is_within}"), &pixels, all.len()).err());
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
