@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// One item of a scene: a value at the scene's frame, shared by the scene's copies until it is
 /// changed.
@@ -26,6 +27,19 @@ struct Inner<T> {
     /// Source location.
     place: Option<SourceSpan>,
     state: ValidationState,
+    passed: Passed,
+}
+
+/// [`Description::names_hash`](crate::Description::names_hash) of the scene in which a changed value
+/// passed validation; 0 for none.
+#[derive(Debug, Default)]
+struct Passed(AtomicU64);
+
+impl Clone for Passed {
+    /// The clone of an item is about to be changed.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// Validation state of an item.
@@ -103,12 +117,24 @@ impl<T> Item<T> {
         self.0.state == ValidationState::Changed
     }
 
+    /// Whether the value has passed validation in a scene whose names have this hash.
+    pub(crate) fn has_passed(&self, names: u64) -> bool {
+        self.0.passed.0.load(Relaxed) == names
+    }
+
+    /// Remembers that the value has passed validation in a scene whose names have this hash.
+    pub(crate) fn set_passed(&self, names: u64) {
+        self.0.passed.0.store(names, Relaxed);
+    }
+
     /// Mutable access that keeps the validation state.
     pub(crate) fn value_mut_unmarked(&mut self) -> &mut T
     where
         T: Clone,
     {
-        &mut Arc::make_mut(&mut self.0).value
+        let inner = Arc::make_mut(&mut self.0);
+        inner.passed = Passed::default();
+        &mut inner.value
     }
 
     /// Unwraps the value.
@@ -128,7 +154,8 @@ impl<T> Clone for Item<T> {
 
 impl<T> From<T> for Item<T> {
     fn from(value: T) -> Self {
-        Self(Arc::new(Inner { value, template: None, place: None, state: ValidationState::Changed }))
+        let state = ValidationState::Changed;
+        Self(Arc::new(Inner { value, template: None, place: None, state, passed: Passed::default() }))
     }
 }
 
@@ -149,7 +176,7 @@ impl<T> Deref for Item<T> {
 impl<T: Clone> DerefMut for Item<T> {
     fn deref_mut(&mut self) -> &mut T {
         let inner = Arc::make_mut(&mut self.0);
-        inner.state = ValidationState::Changed;
+        (inner.state, inner.passed) = (ValidationState::Changed, Passed::default());
         &mut inner.value
     }
 }

@@ -19,6 +19,7 @@ use juggler_texture::AnyTexture;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 mod animation;
 mod bones;
@@ -242,16 +243,34 @@ impl Description {
         validate(&serde_json::to_value(&head).unwrap_or_default().into()).all()
     }
 
-    /// Findings of schema validation in the items that satisfy a predicate.
+    /// Findings of schema validation in the items that satisfy a predicate. Items that have passed
+    /// before, in a scene with the same names, are not validated again.
     pub(crate) fn item_findings(&self, predicate: impl Fn(&dyn AnyItem) -> bool) -> Vec<Finding> {
-        let mut findings = Vec::new();
+        let (mut findings, names) = (Vec::new(), self.names_hash());
         self.each_item(&mut |at, item| {
-            if predicate(item) {
-                findings.extend(
-                    validate::item(&item.json_without_arrays().into(), &at.into(), at, NameScope::Scene(self)).all(),
-                );
+            if predicate(item) && !item.has_passed(names) {
+                let json = item.json_without_arrays().into();
+                let found = validate::item(&json, &at.into(), at, NameScope::Scene(self)).all();
+                if found.is_empty() {
+                    item.set_passed(names);
+                }
+                findings.extend(found);
             }
         });
         findings
+    }
+
+    /// Hash of the names that references are checked against; never 0.
+    fn names_hash(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for names in [
+            self.materials.keys().collect::<Vec<_>>(),
+            self.textures.keys().collect(),
+            self.groups.keys().collect(),
+            self.cameras.keys().collect(),
+        ] {
+            names.hash(&mut hasher);
+        }
+        hasher.finish().max(1)
     }
 }

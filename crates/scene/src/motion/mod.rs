@@ -81,6 +81,10 @@ pub(crate) trait AnyItem {
     fn place(&self) -> Option<SourceSpan>;
     /// As [`Item::is_changed`].
     fn is_changed(&self) -> bool;
+    /// As [`Item::has_passed`].
+    fn has_passed(&self, names: u64) -> bool;
+    /// As [`Item::set_passed`].
+    fn set_passed(&self, names: u64);
     /// JSON of the value.
     fn json(&self) -> serde_json::Value;
     /// JSON of the value without mesh arrays, for validation; arrays are checked when a mesh is
@@ -131,6 +135,14 @@ impl<T: ItemContent> AnyItem for Item<T> {
 
     fn is_changed(&self) -> bool {
         self.is_changed()
+    }
+
+    fn has_passed(&self, names: u64) -> bool {
+        self.has_passed(names)
+    }
+
+    fn set_passed(&self, names: u64) {
+        self.set_passed(names);
     }
 
     fn json(&self) -> serde_json::Value {

@@ -155,6 +155,25 @@ fn programmatic_edits_are_validated() {
     );
 }
 
+/// Items that have passed validation are validated again when they or the names of the scene change.
+#[test]
+fn validated_items_are_validated_again_after_changes() {
+    let object = Object::new(Sphere::default()).material_named("paint");
+    let scene = Scene::new().material("paint", Phong::default()).add(object);
+    assert!(scene.compile().is_ok() && scene.compile().is_ok());
+    let mut unnamed = scene.clone();
+    unnamed.description.materials.shift_remove("paint");
+    assert!(unnamed.compile().is_err() && scene.compile().is_ok());
+    let mut renamed = unnamed.clone();
+    renamed.description.materials.insert("paint".into(), AnyMaterial::from(Phong::default()).into());
+    assert!(renamed.compile().is_ok());
+    let mut edited = scene.clone();
+    edited.description.objects[0].shape = Some(Sphere { radius: -1.0 }.into());
+    assert!(edited.compile().is_err() && scene.compile().is_ok());
+    edited.description.objects[0].shape = Some(Sphere::default().into());
+    assert!(edited.compile().is_ok());
+}
+
 #[test]
 fn copies_share_unchanged_items() {
     let scene = moving();
