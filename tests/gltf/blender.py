@@ -138,12 +138,6 @@ def half_specular():
         principled.inputs["Specular IOR Level"].default_value *= 0.5
 
 
-def plain_normals():
-    """Turns the correction of shading normals off, which bends them until they reflect outwards."""
-    for material, _ in materials():
-        material.cycles.use_bump_map_correction = False
-
-
 def without_coat():
     """Leaves out clear coats."""
     for _, principled in materials():
@@ -174,7 +168,7 @@ def thin_walls():
 
 CHANGES = {function.__name__: function for function in
            (cull_backs, single_scattering, default_material, tint_interfaces, half_specular,
-            plain_normals, without_coat, without_normal_maps, metal, thin_walls)}
+            without_coat, without_normal_maps, metal, thin_walls)}
 CHANGES["radiometric"] = lambda: None  # by import_model
 
 
