@@ -4,6 +4,7 @@ use super::files::Reader;
 use super::library::Library;
 use super::materials::{Materials, gray};
 use super::pieces::{MAX_OBJECTS, Piece, pieces};
+use super::printable;
 use crate::gltf::{Warnings, image_size};
 use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
@@ -130,7 +131,7 @@ impl ModelFile for ObjFile {
             let known = piece.material.as_deref().and_then(|name| self.library.materials.get(name));
             if let Some(name) = piece.material.as_deref().filter(|_| known.is_none()) {
                 let text = "faces of a material that no library defines are shown gray";
-                translated.warnings.add(format!("{}: usemtl {name}", self.name), text, 1);
+                translated.warnings.add(format!("{}: usemtl {}", self.name, printable(name)), text, 1);
             }
             let name = format!("{prefix}{}", known.map_or(DEFAULT_MATERIAL, |loaded| &loaded.mtl.name));
             if !materials.contains_key(&name) {

@@ -2,6 +2,7 @@
 
 use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
+use super::printable;
 use crate::gltf::Warnings;
 use crate::textures::picture_asset_name;
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
@@ -150,7 +151,7 @@ fn libraries(
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut find = |name: &str, warnings: &mut Warnings| {
         let found = reader.find("", name, obj, warnings);
-        found.map_err(|error| format!("{name}: {error}"))
+        found.map_err(|error| format!("{}: {error}", printable(name)))
     };
     if let Some(found) = find(statement.trim_matches('"'), warnings)? {
         return Ok(vec![found]);
@@ -161,6 +162,7 @@ fn libraries(
         found.extend(find(name, warnings)?);
     }
     if found.is_empty() {
+        let statement = printable(statement);
         let text = format!("the library of materials `{statement}` is missing; its materials are shown gray");
         warnings.add(obj, text, 1);
     }
@@ -176,7 +178,7 @@ fn read_picture(
     warnings: &mut Warnings,
 ) -> Result<(String, Vec<u8>), String> {
     let found = reader.find(folder, file, place, warnings).and_then(|found| found.ok_or(FileError::Missing));
-    let (name, bytes) = found.map_err(|error| format!("{place}: {file}: {error}"))?;
+    let (name, bytes) = found.map_err(|error| format!("{place}: {}: {error}", printable(file)))?;
     if reader.is_lenient() {
         let decoded = decode_raster(&name, Cursor::new(&bytes), &Limits::default());
         decoded.map_err(|error| format!("{place}: {error}"))?;

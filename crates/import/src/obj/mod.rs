@@ -23,3 +23,29 @@ pub(crate) use format::DEFAULT_MATERIAL;
 pub use format::ObjFormat;
 pub(crate) use materials::gray;
 pub use mtl::{MtlMap, MtlMaterial, parse_mtl};
+
+/// Maximum number of characters of a file that a message repeats.
+const LONGEST: usize = 200;
+
+/// Part of a file for a message: short, without control characters.
+fn printable(text: &str) -> String {
+    text.chars().take(LONGEST).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_scene::model::ModelFormat;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn messages_repeat_no_control_characters() {
+        let obj = b"mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n".to_vec();
+        let files = |mtl: &str| BTreeMap::from([("a.mtl".to_owned(), mtl.as_bytes().to_vec())]);
+        let error = ObjFormat.open("a.obj", obj.clone(), &files("newmtl a\nmap_Kd a\u{1b}[2J.png\n")).err().unwrap();
+        assert_eq!(error.faults, ["a.obj: a.mtl:2: a\u{fffd}[2J.png: no such file"]);
+        let warned = ObjFormat.open("a.obj", obj, &files("newmtl a\n\u{1b}[2J 1\n")).unwrap();
+        let parts = warned.parts(&Default::default(), "").unwrap();
+        assert!(!parts.warnings.is_empty() && parts.warnings.iter().all(|text| !text.contains('\u{1b}')));
+    }
+}

@@ -1,6 +1,7 @@
 //! Libraries of materials of OBJ files: MTL ("Advanced Visualizer" manual, Wavefront Technologies
 //! 1995), with the words for physically based materials that Clara.io added.
 
+use super::printable;
 use crate::gltf::Warnings;
 use std::collections::BTreeMap;
 
@@ -179,8 +180,7 @@ impl MtlMaterial {
                 return Err(format!("the option `{option}` of textures is ignored"));
             }
         } else if !SILENT.contains(&word) {
-            let shown: String = word.chars().take(40).flat_map(char::escape_debug).collect();
-            return Err(format!("`{shown}` is ignored"));
+            return Err(format!("`{}` is ignored", printable(word)));
         }
         Ok(())
     }
