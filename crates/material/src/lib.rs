@@ -143,7 +143,8 @@ pub trait Material: Send + Sync {
         Vec::new()
     }
 
-    /// Multiplies the distances of media by a factor, those of nested materials in place too.
+    /// Multiplies the distances over which the material's media absorb and scatter by a positive
+    /// factor, also those of nested materials that are written in place.
     fn scale_distances(&mut self, _factor: f32) {}
 
     /// Whether the material emits light in path tracers by design, nested materials not counted.

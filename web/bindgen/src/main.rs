@@ -11,8 +11,9 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let mut bindgen = Bindgen::new();
-    // The name of the files: `juggler.js`, `juggler_bg.wasm`.
+    // The page does not need the names of functions.
     bindgen.remove_name_section(true).remove_producers_section(true);
+    // The name of the files: `juggler.js`, `juggler_bg.wasm`.
     let ready = bindgen.input_path(module).out_name("juggler").typescript(false).web(true);
     match ready.and_then(|bindgen| bindgen.generate(folder)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -57,7 +57,7 @@ impl Warnings {
         &self.list
     }
 
-    /// The warnings as texts, the last of which counts those that are not kept.
+    /// Texts of the warnings; the last text counts the warnings that are not kept.
     pub fn texts(&self) -> Vec<String> {
         let further = (self.omitted > 0).then(|| format!("{} further warnings", self.omitted));
         self.list.iter().map(ToString::to_string).chain(further).collect()
