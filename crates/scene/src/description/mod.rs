@@ -18,6 +18,7 @@ use juggler_math::Rgb;
 use juggler_texture::AnyTexture;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::cell::LazyCell;
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -246,13 +247,14 @@ impl Description {
     /// Findings of schema validation in the items that satisfy a predicate. Items that have passed
     /// before, in a scene with the same names, are not validated again.
     pub(crate) fn item_findings(&self, predicate: impl Fn(&dyn AnyItem) -> bool) -> Vec<Finding> {
-        let (mut findings, names) = (Vec::new(), self.names_hash());
+        // Items read from a file need no hash.
+        let (mut findings, names) = (Vec::new(), LazyCell::new(|| self.names_hash()));
         self.each_item(&mut |at, item| {
-            if predicate(item) && !item.has_passed(names) {
+            if predicate(item) && !item.has_passed(*names) {
                 let json = item.json_without_arrays().into();
                 let found = validate::item(&json, &at.into(), at, NameScope::Scene(self)).all();
                 if found.is_empty() {
-                    item.set_passed(names);
+                    item.set_passed(*names);
                 }
                 findings.extend(found);
             }
