@@ -9,7 +9,7 @@ use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Ray, Transform, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_shape::{Hit, Mesh, MeshPoint, SurfaceDerivatives};
+use juggler_shape::{Hit, MeshPoint, SurfaceDerivatives};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -106,25 +106,22 @@ impl Geometry {
         let merged_meshes = MergedMeshes::new(&objects, small_meshes, shape_index);
         let separate: BTreeSet<u32> = large_meshes.iter().chain(small_meshes).copied().collect();
         let indices = (0..objects.len() as u32).filter(|object_index| !separate.contains(object_index));
-        let (bounded, unbounded): (Vec<u32>, Vec<u32>) = indices.partition(|i| objects[*i as usize].is_bounded());
-        let boxes: Vec<Aabb> = bounded.iter().map(|object_index| objects[*object_index as usize].bounds()).collect();
+        let all_boxes: Vec<Aabb> = objects.iter().map(Object::bounds).collect();
+        let bounds = all_boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+        let (bounded, unbounded): (Vec<u32>, Vec<u32>) =
+            indices.partition(|i| objects[*i as usize].is_bounded_by(&all_boxes[*i as usize]));
+        let boxes: Vec<Aabb> = bounded.iter().map(|object_index| all_boxes[*object_index as usize]).collect();
+        drop(all_boxes);
         let bvh = Bvh::build(&boxes, Quality::Balanced);
+        drop(boxes);
         let leaf_order = bvh.order().iter().map(|position| bounded[*position as usize]);
         let items = leaf_order
             .map(|object_index| LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index)))
             .collect();
-        let large_meshes = large_meshes
-            .iter()
-            .map(|object_index| {
-                LargeMesh::new(&objects[*object_index as usize], *object_index, shape_index(*object_index))
-            })
-            .collect();
-        let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
+        let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);
-        let has_mesh_attributes = objects.iter().any(|object| match &object.content {
-            Content::Shape(shape) => shape.mesh().is_some_and(Mesh::has_attributes),
-            Content::Geometry(geometry) => geometry.has_mesh_attributes,
-        });
+        let has_mesh_attributes = objects.iter().any(|object| object.content.has_mesh_attributes());
         let objects = objects.into_iter().map(Instance::new).collect();
         Self {
             objects,

@@ -3,7 +3,7 @@
 use super::Geometry;
 use juggler_material::MaterialId;
 use juggler_math::{Aabb, Motion};
-use juggler_shape::AnyShape;
+use juggler_shape::{AnyShape, Mesh};
 use std::sync::Arc;
 
 /// A shape or an instance of a geometry.
@@ -35,6 +35,14 @@ impl Content {
             Self::Geometry(_) => None,
         }
     }
+
+    /// Whether any mesh has attributes or a second set of surface coordinates.
+    pub(super) fn has_mesh_attributes(&self) -> bool {
+        match self {
+            Self::Shape(shape) => shape.mesh().is_some_and(Mesh::has_attributes),
+            Self::Geometry(geometry) => geometry.has_mesh_attributes,
+        }
+    }
 }
 
 impl Object {
@@ -45,11 +53,14 @@ impl Object {
 
     /// Whether the object has a finite extent.
     pub fn is_bounded(&self) -> bool {
+        self.is_bounded_by(&self.bounds())
+    }
+
+    /// Whether the object, whose [`Object::bounds`] are `bounds`, has a finite extent.
+    pub(super) fn is_bounded_by(&self, bounds: &Aabb) -> bool {
         match &self.content {
-            Content::Shape(_) => !self.bounds().is_empty(),
-            Content::Geometry(geometry) => {
-                geometry.is_bounded() && self.bounds().is_empty() == geometry.bounds().is_empty()
-            }
+            Content::Shape(_) => !bounds.is_empty(),
+            Content::Geometry(geometry) => geometry.is_bounded() && bounds.is_empty() == geometry.bounds().is_empty(),
         }
     }
 

@@ -70,13 +70,13 @@ impl<'a> Subtree<'a> {
         Self { root, pieces: vec![nodes.into()] }
     }
 
-    /// The subtree with its single piece in memory that is no longer needed, if it fits.
+    /// The subtree with as much of its single piece as fits in memory that is no longer needed.
     pub fn moved_to(mut self, memory: &'a mut [BinaryNode]) -> Self {
-        if let [piece] = &mut self.pieces[..]
-            && let Some(place) = memory.get_mut(..piece.len())
-        {
-            place.copy_from_slice(piece);
-            *piece = Cow::Borrowed(place);
+        if let [piece] = &self.pieces[..] {
+            let (moved, rest) = piece.split_at(piece.len().min(memory.len()));
+            let (place, _) = memory.split_at_mut(moved.len());
+            place.copy_from_slice(moved);
+            self.pieces = vec![Cow::Borrowed(place), Cow::Owned(rest.to_vec())];
         }
         self
     }

@@ -338,9 +338,12 @@ impl Placer<'_> {
             let material = object.material.or(inherited);
             match &object.instances {
                 None => self.place_content(&object.content, motion, material, found),
-                Some(instances) => instances.iter().for_each(|instance| {
-                    self.place_content(&object.content, instance.then(&motion), material, found);
-                }),
+                Some(instances) => {
+                    found.reserve(instances.len());
+                    for instance in instances {
+                        self.place_content(&object.content, instance.then(&motion), material, found);
+                    }
+                }
             }
         }
     }
