@@ -180,25 +180,37 @@ impl MaterialTable {
     /// value.
     #[inline]
     pub fn shade_into(&self, id: MaterialId, view: &ShadingView, shading: &mut Shading) {
-        let (mut id, first, mut view) = (id, view, *view);
-        // The loop ends, since nested materials have smaller ids.
-        while let Some(compiled) = self.materials.get(id.0 as usize) {
-            id = match compiled {
-                CompiledMaterial::Phong(phong) => {
-                    Self::fill_classic(&phong.eval(&self.textures, || view.lookup()), &view, shading);
-                    return;
-                }
-                CompiledMaterial::Scattering(scattering) => {
-                    self.fill_scattering(&**scattering, &view, shading);
-                    return;
-                }
-                layer => match self.apply_layer(layer, &mut view, shading) {
-                    Some(nested) => nested,
-                    None => break,
-                },
-            };
+        if !self.fill(id, view, shading) {
+            self.fill_layered(id, *view, shading);
         }
-        shading.frame = Frame::around(facing_normal(first, first.normal));
+    }
+
+    /// Fills in the shading of a material that has a BSDF of its own; returns false for any other.
+    #[inline(always)]
+    fn fill(&self, id: MaterialId, view: &ShadingView, shading: &mut Shading) -> bool {
+        match self.compiled(id) {
+            Some(CompiledMaterial::Phong(phong)) => {
+                Self::fill_classic(&phong.eval(&self.textures, || view.lookup()), view, shading);
+            }
+            Some(CompiledMaterial::Scattering(scattering)) => self.fill_scattering(&**scattering, view, shading),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Fills in the shading of a material around others.
+    #[inline(never)]
+    fn fill_layered(&self, mut id: MaterialId, mut view: ShadingView, shading: &mut Shading) {
+        let first = view;
+        // The loop ends, since nested materials have smaller ids.
+        while let Some(layer) = self.compiled(id) {
+            match self.apply_layer(layer, &mut view, shading) {
+                Some(nested) if self.fill(nested, &view, shading) => return,
+                Some(nested) => id = nested,
+                None => break,
+            }
+        }
+        shading.frame = Frame::around(facing_normal(&first, first.normal));
     }
 
     /// Applies a material without a BSDF of its own. Returns the material inside it, which comes
@@ -245,16 +257,16 @@ impl MaterialTable {
     fn fill_scattering(&self, material: &dyn ScatteringMaterial, view: &ShadingView, shading: &mut Shading) {
         let surface = view.surface;
         let mut normal = facing_normal(view, view.normal);
+        shading.transmissive = material.is_transmissive();
         // Light inside of glass meets its surface many times, so what smooth normals lose would add up.
-        let is_perturbed = view.normal != surface.shading_normal
-            || (material.is_transmissive() && surface.shading_normal != surface.normal);
+        let is_perturbed =
+            view.normal != surface.shading_normal || (shading.transmissive && surface.shading_normal != surface.normal);
         if material.interior().is_some() {
             let outwards = if view.is_outside() { normal } else { -normal };
             normal = if is_perturbed { outwards } else { view.normal };
         }
         shading.frame = tangent::frame(view, normal, material.rotation_turns(&self.textures, view));
         material.add_lobes(&self.textures, view, &shading.frame, &mut shading.bsdf);
-        shading.transmissive = material.is_transmissive();
         if is_perturbed {
             shading.set_geometric_normal(surface.normal);
         }
