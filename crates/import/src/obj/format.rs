@@ -4,11 +4,11 @@ use super::files::Reader;
 use super::library::Library;
 use super::materials::{Materials, gray};
 use super::pieces::{MAX_OBJECTS, Piece, pieces};
-use super::printable;
 use crate::gltf::{Warnings, image_size};
 use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
 use juggler_math::Aabb;
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use juggler_scene::Object;
 use juggler_scene::import::{self, parse_obj};
 use juggler_scene::model::{
@@ -131,7 +131,7 @@ impl ModelFile for ObjFile {
             let known = piece.material.as_deref().and_then(|name| self.library.materials.get(name));
             if let Some(name) = piece.material.as_deref().filter(|_| known.is_none()) {
                 let text = "faces of a material that no library defines are shown gray";
-                translated.warnings.add(format!("{}: usemtl {}", self.name, printable(name)), text, 1);
+                translated.warnings.add(format!("{}: usemtl {}", self.name, excerpt(name, MAX_QUOTE)), text, 1);
             }
             let name = format!("{prefix}{}", known.map_or(DEFAULT_MATERIAL, |loaded| &loaded.mtl.name));
             if !materials.contains_key(&name) {

@@ -2,10 +2,10 @@
 
 use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
-use super::printable;
 use crate::gltf::Warnings;
 use crate::textures::picture_asset_name;
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use juggler_scene::Asset;
 use juggler_scene::model::FileError;
 use std::collections::{BTreeMap, BTreeSet};
@@ -151,7 +151,7 @@ fn libraries(
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut find = |name: &str, warnings: &mut Warnings| {
         let found = reader.find("", name, obj, warnings);
-        found.map_err(|error| format!("{}: {error}", printable(name)))
+        found.map_err(|error| format!("{}: {error}", excerpt(name, MAX_QUOTE)))
     };
     if let Some(found) = find(statement.trim_matches('"'), warnings)? {
         return Ok(vec![found]);
@@ -162,7 +162,7 @@ fn libraries(
         found.extend(find(name, warnings)?);
     }
     if found.is_empty() {
-        let statement = printable(statement);
+        let statement = excerpt(statement, MAX_QUOTE);
         let text = format!("the library of materials `{statement}` is missing; its materials are shown gray");
         warnings.add(obj, text, 1);
     }
@@ -178,7 +178,7 @@ fn read_picture(
     warnings: &mut Warnings,
 ) -> Result<(String, Vec<u8>), String> {
     let found = reader.find(folder, file, place, warnings).and_then(|found| found.ok_or(FileError::Missing));
-    let (name, bytes) = found.map_err(|error| format!("{place}: {}: {error}", printable(file)))?;
+    let (name, bytes) = found.map_err(|error| format!("{place}: {}: {error}", excerpt(file, MAX_QUOTE)))?;
     if reader.is_lenient() {
         let decoded = decode_raster(&name, Cursor::new(&bytes), &Limits::default());
         decoded.map_err(|error| format!("{place}: {error}"))?;

@@ -24,14 +24,6 @@ pub use format::ObjFormat;
 pub(crate) use materials::gray;
 pub use mtl::{MtlMap, MtlMaterial, parse_mtl};
 
-/// Maximum number of characters of a file that a message repeats.
-const LONGEST: usize = 200;
-
-/// Part of a file for a message: short, without control characters.
-fn printable(text: &str) -> String {
-    text.chars().take(LONGEST).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

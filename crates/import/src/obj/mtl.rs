@@ -1,8 +1,8 @@
 //! Libraries of materials of OBJ files: MTL ("Advanced Visualizer" manual, Wavefront Technologies
 //! 1995), with the words for physically based materials that Clara.io added.
 
-use super::printable;
 use crate::gltf::Warnings;
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use std::collections::BTreeMap;
 
 /// Maximum number of materials of a library.
@@ -180,7 +180,7 @@ impl MtlMaterial {
                 return Err(format!("the option `{option}` of textures is ignored"));
             }
         } else if !SILENT.contains(&word) {
-            return Err(format!("`{}` is ignored", printable(word)));
+            return Err(format!("`{}` is ignored", excerpt(word, MAX_QUOTE)));
         }
         Ok(())
     }
