@@ -52,6 +52,10 @@ impl BinaryNode {
     }
 }
 
+/// Number of nodes from which a piece is moved to memory that is no longer needed. Moving saves
+/// memory, but costs another parallel task when the pieces are concatenated.
+const MOVED: usize = 1 << 10;
+
 /// A tree under construction in pieces that are concatenated later. Inside the pieces, child
 /// indices are relative to the node's own position; the root's are relative to the begin of the
 /// first piece.
@@ -70,13 +74,20 @@ impl<'a> Subtree<'a> {
         Self { root, pieces: vec![nodes.into()] }
     }
 
-    /// The subtree with as much of its single piece as fits in memory that is no longer needed.
+    /// The subtree with as much of its single piece as fits in memory that is no longer needed. Of
+    /// small pieces, nothing is moved.
     pub fn moved_to(mut self, memory: &'a mut [BinaryNode]) -> Self {
-        if let [piece] = &self.pieces[..] {
+        if let [piece] = &self.pieces[..]
+            && piece.len() >= MOVED
+        {
             let (moved, rest) = piece.split_at(piece.len().min(memory.len()));
             let (place, _) = memory.split_at_mut(moved.len());
             place.copy_from_slice(moved);
-            self.pieces = vec![Cow::Borrowed(place), Cow::Owned(rest.to_vec())];
+            let rest = rest.to_vec();
+            self.pieces = vec![Cow::Borrowed(place)];
+            if !rest.is_empty() {
+                self.pieces.push(Cow::Owned(rest));
+            }
         }
         self
     }
