@@ -143,8 +143,8 @@ pub trait Material: Send + Sync {
         Vec::new()
     }
 
-    /// Multiplies the distances over which the material's media absorb and scatter by a positive
-    /// factor, also those of nested materials that are written in place.
+    /// Multiplies the distances over which the media of the material, and of nested materials that
+    /// are written in place, absorb and scatter by a positive factor.
     fn scale_distances(&mut self, _factor: f32) {}
 
     /// Whether the material emits light in path tracers by design, nested materials not counted.

@@ -30,8 +30,8 @@ pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) ->
     (nodes, stats)
 }
 
-/// Number of wide nodes of a subtree. `below` has the sizes of its inner children's subtrees if these
-/// are parallel tasks.
+/// Number of wide nodes of a subtree. `below` has the sizes of its inner children's subtrees if
+/// these are parallel tasks.
 struct Size {
     nodes: usize,
     below: Vec<Size>,

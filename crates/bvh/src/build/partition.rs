@@ -35,8 +35,8 @@ fn centers(items: &[Item]) -> SimdBox {
 }
 
 /// Partitions in place with several threads: chunks of `chunk` items are partitioned one by one, then
-/// the items that lie on the wrong side of the whole set are swapped. Returns the size of the left side and
-/// the bounds of the centers. The result depends on `chunk`, not on the number of threads.
+/// the items that lie on the wrong side of the whole set are swapped. Returns the size of the left
+/// side and the bounds of the centers. The result depends on `chunk`, not on the number of threads.
 pub(super) fn in_place_parallel(items: &mut [Item], chunk: usize, side_test: &SideTest) -> (usize, Centers) {
     let sides: Vec<(usize, Centers)> = items.par_chunks_mut(chunk).map(|items| in_place(items, side_test)).collect();
     let lefts: Vec<usize> = sides.iter().map(|(left, _)| *left).collect();
