@@ -47,7 +47,7 @@ pub use lobe::{Deltas, ScatteringLobe};
 pub use phong::{ConeSampling, Highlight, PhongParameters};
 pub use plastic::Plastic;
 pub use principled::Principled;
-pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};
+pub use sum::{Bsdf, MAX_LOBES};
 pub use thin_film::ThinFilm;
 
 juggler_math::closed_set! {

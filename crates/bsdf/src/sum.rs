@@ -23,9 +23,6 @@ use juggler_math::{Rgb, Vec2, Vec3};
 /// Maximum number of lobes of a [`Bsdf`].
 pub const MAX_LOBES: usize = 9;
 
-/// Maximum number of deltas of a [`Bsdf`]: two for each lobe.
-pub const MAX_DELTAS: usize = 2 * MAX_LOBES;
-
 /// BSDF at one point of a surface: the sum of its lobes.
 #[derive(Clone, Debug, Default)]
 pub struct Bsdf {
@@ -290,8 +287,12 @@ impl Bsdf {
         (value, density)
     }
 
-    /// Attenuation of a lobe by the layers over it.
+    /// Attenuation of a lobe by the layers over it; 1 for the first lobe.
+    #[inline]
     fn layer_attenuation(&self, index: usize, wo: Vec3, wi: Vec3) -> f32 {
+        if index == 0 {
+            return 1.0;
+        }
         let over = self.lobes.iter().take(index);
         let (transmittance_o, transmittance_i) =
             over.fold((1.0, 1.0), |(o, i), one| (o * one.transmittance(wo), i * one.transmittance(wi)));
@@ -355,17 +356,15 @@ impl Bsdf {
     }
 
     /// Every delta with its full weight, not divided by a probability; `pdf` is 1.
-    pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
-        let mut deltas = ArrayVec::new();
-        for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.is_specular()) {
-            for delta in self.deltas_of_one(one, wo) {
+    #[inline]
+    pub fn deltas(&self, wo: Vec3) -> impl Iterator<Item = BsdfSample> {
+        let lobes = self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.is_specular());
+        lobes.flat_map(move |(index, one)| {
+            self.deltas_of_one(one, wo).into_iter().map(move |delta| {
                 let weight = one.weight * self.layer_attenuation(index, wo, delta.wi);
-                let delta = self.delta_above(BsdfSample { weight: delta.weight * weight, ..delta });
-                let full = deltas.try_push(delta);
-                debug_assert!(full.is_ok(), "more than {MAX_DELTAS} deltas");
-            }
-        }
-        deltas
+                self.delta_above(BsdfSample { weight: delta.weight * weight, ..delta })
+            })
+        })
     }
 }
 

@@ -31,7 +31,8 @@ impl Classic {
     ) {
         let mut sampler = path.sampler.skipped(1);
         let choices = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(0).next_2d() };
-        let shading = world.shade(vertex, -ray.direction, 1.0, choices.x);
+        let mut shading = Shading::black();
+        world.shade_into(vertex, -ray.direction, 1.0, choices.x, &mut shading);
         let room = path.depth < self.max_depth;
         // Pass through by opacity.
         if shading.opacity < 1.0 && choices.y >= shading.opacity {
@@ -47,7 +48,10 @@ impl Classic {
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { point.shading.bsdf.albedo(wo) * ambient };
         output.record_shading(world, ray, vertex, &shading);
-        output.add(point.shading.emission + reflected, world.shape_group(vertex.shape));
+        let emitted = point.shading.emission + reflected;
+        if !emitted.is_black() {
+            output.add(emitted, world.shape_group(vertex.shape));
+        }
         // Add direct illumination.
         if !point.shading.bsdf.is_specular() {
             for (number, light) in (0..).zip(world.lights()) {
@@ -63,16 +67,17 @@ impl Classic {
 
     /// Traces one ray for each specular lobe, and one for all glossy lobes.
     fn reflect(&self, point: &ShadingPoint, path: &PathState, mut sampler: Sampler, output: &mut VertexOutput) {
-        let deltas = point.shading.bsdf.deltas(point.wo);
-        for (child, sample) in (0..).zip(&deltas) {
-            self.trace_sample(point, path, sample, child, output);
+        let mut child = 0;
+        for sample in point.shading.bsdf.deltas(point.wo) {
+            self.trace_sample(point, path, &sample, child, output);
+            child += 1;
         }
         if !point.shading.bsdf.is_glossy() {
             return;
         }
         let sample = point.shading.bsdf.sample(point.wo, sampler.next_2d(), sampler.next_1d());
         if let Some(glossy) = sample.filter(|sample| sample.scatter == Scatter::Glossy) {
-            self.trace_sample(point, path, &glossy, deltas.len() as u32, output);
+            self.trace_sample(point, path, &glossy, child, output);
         }
     }
 
