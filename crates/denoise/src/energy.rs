@@ -21,8 +21,7 @@
 //! Between the fine and the coarse levels, pixels are limited by their halves (`upper_bound`) and by
 //! their surroundings (`highlights`).
 
-use crate::prepare::is_known;
-use crate::{Noisy, blur, highlights, upper_bound};
+use crate::{Noisy, blur, highlights, noise, upper_bound};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -63,13 +62,14 @@ type Energy = [f64; 3];
 
 /// Restores the local and global means of the input.
 pub(crate) fn conserve(noisy: &Noisy, pixels: &mut [Rgb]) {
-    let input: Vec<Rgb> = (0..pixels.len()).into_par_iter().map(|i| input(noisy, i).unwrap_or(pixels[i])).collect();
-    let noise: Vec<f32> = (0..pixels.len()).into_par_iter().map(|i| variance(noisy, i)).collect();
+    let input: Vec<Rgb> = (0..pixels.len()).into_par_iter().map(|i| noisy.mean(i).unwrap_or(pixels[i])).collect();
+    let variances: Vec<f32> = (0..pixels.len()).into_par_iter().map(|i| variance(noisy, i)).collect();
     let (fine, coarse): (Vec<Level>, Vec<Level>) = LEVELS.into_iter().partition(|level| level.is_wiener);
-    scale_by(&fine, noisy, &input, &noise, pixels);
-    upper_bound::dim(noisy, pixels);
-    highlights::limit(noisy, pixels);
-    scale_by(&coarse, noisy, &input, &noise, pixels);
+    scale_by(&fine, noisy, &input, &variances, pixels);
+    let differences = noise::typical_differences(noisy);
+    upper_bound::dim(noisy, &differences, pixels);
+    highlights::limit(noisy, &differences, pixels);
+    scale_by(&coarse, noisy, &input, &variances, pixels);
     let (expected, filtered) = (total(&input), total(pixels));
     let factor = each(|k| {
         let factor = expected[k] / filtered[k];
@@ -89,18 +89,9 @@ fn scale_by(levels: &[Level], noisy: &Noisy, input: &[Rgb], noise: &[f32], pixel
     }
 }
 
-/// Input of a pixel: the mean of the known halves.
-fn input(noisy: &Noisy, i: usize) -> Option<Rgb> {
-    let [a, b] = noisy.halves.map(|half| half.get(i).copied().filter(is_known));
-    match (a, b) {
-        (Some(a), Some(b)) => Some((a + b) * 0.5),
-        (a, b) => a.or(b),
-    }
-}
-
 /// Variance of the input, summed over the channels; zero where a half is unknown.
 fn variance(noisy: &Noisy, i: usize) -> f32 {
-    match noisy.halves.map(|half| half.get(i).copied().filter(is_known)) {
+    match noisy.known(i) {
         [Some(a), Some(b)] => {
             let square = (a - b) * (a - b) * 0.25;
             square.r + square.g + square.b

@@ -1,9 +1,11 @@
 //! Limit of single bright pixels, relative to their surroundings.
 //!
 //! After the scaling of neighborhoods, a pixel may be several times as bright as each of the 48
-//! pixels around it. A viewer takes such a pixel for a firefly, unless both halves of the input
-//! agree on it, as on a light smaller than a pixel. The coarse grids of [`energy`](crate::energy)
-//! restore the energy.
+//! pixels around it. A viewer takes such a pixel for a firefly. Agreement of both halves of the
+//! input is no proof of a highlight: where few of the samples hit a small light, both halves often
+//! have the same number of hits. A true highlight seldom ends at the edges of a pixel. So the pixels
+//! next to it first get their input back, which the filter has taken for noise, and then the pixel
+//! is limited. The coarse grids of [`energy`](crate::energy) restore the energy.
 
 use crate::prepare::brightness;
 use crate::speckles::WINDOW_RADIUS;
@@ -15,24 +17,57 @@ use rayon::prelude::*;
 /// Maximum brightness of a pixel, relative to the brightest pixel in its window. The factor is less
 /// than 3, because the coarse grids scale neighboring pixels by slightly different factors.
 const FACTOR: f32 = 2.75;
+/// Maximum typical difference of the halves around a highlight that stays, relative to the
+/// brightest pixel in its window. In pictures with so little noise, both halves prove a highlight,
+/// such as a star.
+const MAX_NOISE: f32 = 0.0025;
 
-/// Limits single bright pixels. Pixels with black surroundings stay as they are.
-pub(crate) fn limit(noisy: &Noisy, pixels: &mut [Rgb]) {
+/// Limits single bright pixels. Pixels with black surroundings stay as they are. `differences` are
+/// those of [`typical_differences`](crate::noise::typical_differences).
+pub(crate) fn limit(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
     let brightness: Vec<f32> = pixels.par_iter().map(|color| brightness(*color)).collect();
-    pixels.par_iter_mut().enumerate().for_each(|(i, pixel)| {
-        let own = brightness[i];
+    let single = |i: usize| {
         // Skip the search of the window in the common case: a direct neighbor is bright enough.
-        if own <= FACTOR * brightest(noisy.width, &brightness, i, 1) {
-            return;
+        if brightness[i] <= FACTOR * brightest(noisy.width, &brightness, i, 1) {
+            return None;
         }
         let around = brightest(noisy.width, &brightness, i, WINDOW_RADIUS);
-        if around > 0.0 {
-            let limit = (FACTOR * around).max(speckles::confirmed_brightness(noisy, i));
-            if own > limit {
-                *pixel = *pixel * (limit / own);
+        (around > 0.0 && brightness[i] > FACTOR * around).then_some((i, around))
+    };
+    let limited = |(i, around): (usize, f32)| {
+        let is_certain = differences[i] <= MAX_NOISE * around;
+        changes(noisy, pixels[i], i, around, is_certain)
+    };
+    // Single bright pixels are more than 3 pixels apart, so their changes do not overlap.
+    let changes: Vec<_> = (0..pixels.len()).into_par_iter().filter_map(single).flat_map_iter(limited).collect();
+    for (i, color) in changes {
+        pixels[i] = color;
+    }
+}
+
+/// New colors of single bright pixel `i` and of pixels next to it. `around` is the brightness of the
+/// brightest pixel in its window. If `is_certain`, a highlight that both halves confirm stays.
+fn changes(noisy: &Noisy, pixel: Rgb, i: usize, around: f32, is_certain: bool) -> Vec<(usize, Rgb)> {
+    let own = brightness(pixel);
+    let confirmed = speckles::confirmed_brightness(noisy, i).min(own);
+    let (mut changes, mut limit) = (Vec::new(), FACTOR * around);
+    if confirmed > limit {
+        for at in neighbors(noisy.width, noisy.width * noisy.height, i, 1) {
+            let input = noisy.mean(at).unwrap_or(Rgb::BLACK);
+            let restored = brightness(input).min(confirmed / FACTOR);
+            if restored > around {
+                changes.push((at, input * (restored / brightness(input))));
+                limit = limit.max(FACTOR * restored);
             }
         }
-    });
+        if is_certain {
+            limit = limit.max(confirmed);
+        }
+    }
+    if own > limit {
+        changes.push((i, pixel * (limit / own)));
+    }
+    changes
 }
 
 /// Brightness of the brightest other pixel of a window, at least 0.
@@ -44,21 +79,31 @@ fn brightest(width: usize, brightness: &[f32], i: usize, radius: usize) -> f32 {
 mod tests {
     use super::*;
     use crate::Features;
+    use crate::noise::typical_differences;
 
     const WIDTH: usize = 20;
 
-    /// Limits pixel `at` of a wall of this brightness, with the given halves and filtered
-    /// brightness; returns its brightness.
-    fn limited(at: usize, wall: f32, halves: [f32; 2], filtered: f32) -> f32 {
-        let pixels = |bright: f32| {
-            let mut pixels = vec![Rgb::splat(wall); WIDTH * WIDTH];
-            pixels[at] = Rgb::splat(bright);
-            pixels
-        };
-        let (halves, mut filtered) = (halves.map(pixels), pixels(filtered));
+    /// Limits the filtered pixels, given the halves.
+    fn limited(halves: &[Vec<Rgb>; 2], mut filtered: Vec<Rgb>) -> Vec<Rgb> {
         let noisy = Noisy::new(WIDTH, WIDTH, [&halves[0], &halves[1]], Features::default()).unwrap();
-        limit(&noisy, &mut filtered);
-        assert!((0..filtered.len()).all(|i| i == at || filtered[i] == Rgb::splat(wall)));
+        limit(&noisy, &typical_differences(&noisy), &mut filtered);
+        filtered
+    }
+
+    /// Wall of this brightness and noise, a different one in each half, and with these pixels.
+    fn wall(brightness: f32, noise: f32, half: usize, pixels: &[(usize, f32)]) -> Vec<Rgb> {
+        let noise = |i: usize| noise * if (i + i / WIDTH + half).is_multiple_of(2) { 0.5 } else { -0.5 };
+        let mut wall: Vec<Rgb> = (0..WIDTH * WIDTH).map(|i| Rgb::splat(brightness + noise(i))).collect();
+        pixels.iter().for_each(|&(at, brightness)| wall[at] = Rgb::splat(brightness));
+        wall
+    }
+
+    /// Limits pixel `at` of a wall of this brightness and noise, with the given halves and filtered
+    /// brightness; returns its brightness.
+    fn limited_pixel(at: usize, [brightness, noise]: [f32; 2], halves: [f32; 2], filtered: f32) -> f32 {
+        let halves = [0, 1].map(|half| wall(brightness, noise, half, &[(at, halves[half])]));
+        let filtered = limited(&halves, wall(brightness, 0.0, 0, &[(at, filtered)]));
+        assert!((0..filtered.len()).all(|i| i == at || filtered[i] == Rgb::splat(brightness)));
         filtered[at].r
     }
 
@@ -67,36 +112,55 @@ mod tests {
 
     #[test]
     fn firefly_of_one_half_is_limited() {
-        for at in PLACES {
-            let found = limited(at, 0.5, [20.0, 0.5], 8.0);
+        for (at, noise) in PLACES.into_iter().flat_map(|at| [(at, 0.0), (at, 0.1)]) {
+            let found = limited_pixel(at, [0.5, noise], [20.0, 0.5], 8.0);
             assert!((found - 0.5 * FACTOR).abs() < 1e-5, "{found}");
-            assert!((limited(at, 0.5, [f32::NAN, 20.0], 8.0) - 0.5 * FACTOR).abs() < 1e-5);
+            assert!((limited_pixel(at, [0.5, noise], [f32::NAN, 20.0], 8.0) - 0.5 * FACTOR).abs() < 1e-5);
         }
     }
 
     #[test]
-    fn light_smaller_than_a_pixel_stays() {
+    fn firefly_of_both_halves_of_a_noisy_picture_is_limited() {
         for at in PLACES {
-            assert_eq!(limited(at, 0.5, [20.0, 20.0], 19.0), 19.0);
-            assert_eq!(limited(at, 0.5, [20.0, 21.0], 12.0), 12.0);
+            let found = limited_pixel(at, [0.5, 0.1], [20.0, 20.0], 19.0);
+            assert!((found - 0.5 * FACTOR).abs() < 1e-5, "{found}");
+        }
+    }
+
+    #[test]
+    fn light_smaller_than_a_pixel_stays_where_there_is_no_noise() {
+        for at in PLACES {
+            assert_eq!(limited_pixel(at, [0.5, 0.0], [20.0, 20.0], 19.0), 19.0);
+            assert_eq!(limited_pixel(at, [0.5, 0.0], [20.0, 20.2], 12.0), 12.0);
+        }
+    }
+
+    #[test]
+    fn pixels_next_to_a_highlight_get_their_input_back() {
+        let at = PLACES[0];
+        for (input, restored) in [(3.0, 3.0), (12.0, 15.0 / FACTOR)] {
+            let pixels = |half: usize| [(at, 16.0), (at + 1, 2.0 * input * half as f32), (at - WIDTH, 1.0)];
+            let halves = [0, 1].map(|half| wall(0.5, 0.1, half, &pixels(half)));
+            let found = limited(&halves, wall(0.5, 0.0, 0, &[(at, 15.0)]));
+            assert!((found[at + 1].r - restored).abs() < 1e-5, "{:?}", found[at + 1]);
+            assert!((found[at].r - (FACTOR * restored).min(15.0)).abs() < 1e-5, "{:?}", found[at]);
+            assert_eq!(found[at - WIDTH].r, 1.0);
+            assert_eq!(found[at - 1].r, 0.5);
         }
     }
 
     #[test]
     fn stars_on_black_and_pixels_within_the_limit_stay() {
         for at in PLACES {
-            assert_eq!(limited(at, 0.0, [3.0, 0.0], 1.0), 1.0);
-            assert_eq!(limited(at, 0.5, [3.0, 0.0], 1.3), 1.3);
+            assert_eq!(limited_pixel(at, [0.0, 0.0], [3.0, 0.0], 1.0), 1.0);
+            assert_eq!(limited_pixel(at, [0.5, 0.1], [3.0, 0.0], 1.3), 1.3);
         }
     }
 
     #[test]
     fn two_bright_neighbors_stay() {
-        let mut pixels = vec![Rgb::splat(0.5); WIDTH * WIDTH];
-        (pixels[205], pixels[207]) = (Rgb::splat(9.0), Rgb::splat(8.0));
-        let (before, black) = (pixels.clone(), vec![Rgb::BLACK; WIDTH * WIDTH]);
-        let noisy = Noisy::new(WIDTH, WIDTH, [&black, &black], Features::default()).unwrap();
-        limit(&noisy, &mut pixels);
-        assert_eq!(pixels, before);
+        let filtered = wall(0.5, 0.0, 0, &[(205, 9.0), (207, 8.0)]);
+        let halves = [0, 1].map(|half| wall(0.5, 0.1, half, &[]));
+        assert_eq!(limited(&halves, filtered.clone()), filtered);
     }
 }

@@ -20,7 +20,8 @@
 //!    unchanged.
 //! 5. Clamp single bright pixels that remain (`speckles`), and restore the mean of the input in
 //!    every neighborhood and in the whole picture (`energy`). In between, dim pixels that are
-//!    brighter than both halves allow (`upper_bound`).
+//!    brighter than both halves allow (`upper_bound`), and limit single bright pixels again
+//!    (`highlights`).
 
 mod blend;
 mod blur;
@@ -28,6 +29,7 @@ mod energy;
 mod features;
 mod grid;
 mod highlights;
+mod noise;
 mod outliers;
 mod prepare;
 mod regression;

@@ -6,7 +6,7 @@
 
 use crate::Noisy;
 use crate::features::{FEATURES, Feature, pixel_features};
-use crate::prepare::{brightness, is_known};
+use crate::prepare::brightness;
 use crate::window::neighbors;
 use juggler_math::Rgb;
 use rayon::prelude::*;
@@ -59,10 +59,7 @@ fn features(noisy: &Noisy, i: usize) -> Feature {
 
 /// Brightness that both halves of the input confirm, 0 if one is unknown.
 pub(crate) fn confirmed_brightness(noisy: &Noisy, i: usize) -> f32 {
-    match noisy.halves.map(|half| half.get(i).copied().filter(is_known).map(brightness)) {
-        [Some(a), Some(b)] => (a + b) * 0.5 - (a - b).abs() * CONFIDENCE,
-        _ => 0.0,
-    }
+    noisy.brightness(i).map_or(0.0, |[a, b]| (a + b) * 0.5 - (a - b).abs() * CONFIDENCE)
 }
 
 /// Brightness of the second brightest pixel in the window around pixel `i`.

@@ -261,8 +261,10 @@ fn an_outlier_of_one_half_leaves_no_blotch_and_a_highlight_of_both_stays() {
     let mut walls = Walls::new(96, 64, 0.2);
     let (outlier, highlight) = (20 * 96 + 20, 40 * 96 + 70);
     walls.halves[0][outlier] = Rgb::splat(100.0);
-    walls.halves[0][highlight] = Rgb::splat(304.0);
-    walls.halves[1][highlight] = Rgb::splat(306.0);
+    for at in [highlight, highlight + 1] {
+        walls.halves[0][at] = Rgb::splat(304.0);
+        walls.halves[1][at] = Rgb::splat(306.0);
+    }
     let noisy = walls.noisy(walls.features());
     let run = |cut_outliers| {
         let settings = Settings { cut_outliers, ..Settings::default() };
@@ -273,10 +275,27 @@ fn an_outlier_of_one_half_leaves_no_blotch_and_a_highlight_of_both_stays() {
         let found = pixels[y * 96 + x].r / walls.truth[y * 96 + x].r;
         assert!((found - 1.0).abs() < 0.2, "{x} {y}: {found}");
     }
-    assert!((pixels[highlight].g / 305.0 - 1.0).abs() < 0.06, "{:?}", pixels[highlight]);
+    for at in [highlight, highlight + 1] {
+        assert!((pixels[at].g / 305.0 - 1.0).abs() < 0.06, "{:?}", pixels[at]);
+    }
     let all = walls.halves.iter().flatten().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
     assert!((moved_energy / (300.0 / all) - 1.0).abs() < 0.03, "{moved_energy}");
     assert_eq!(run(false).moved_energy, 0.0);
+}
+
+#[test]
+fn a_single_bright_pixel_of_both_halves_stands_out_less_than_three_times() {
+    let mut walls = Walls::new(96, 64, 0.2);
+    let firefly = 40 * 96 + 70;
+    for half in &mut walls.halves {
+        half[firefly] = Rgb::splat(6.0);
+    }
+    let pixels = denoise(&walls.noisy(walls.features()), &Settings::default());
+    let brightness = |i: usize| pixels[i].r + pixels[i].g + pixels[i].b;
+    let around = crate::window::neighbors(96, pixels.len(), firefly, 3).map(brightness).fold(0.0, f32::max);
+    assert!(brightness(firefly) <= 3.0 * around, "{} {around}", brightness(firefly));
+    let [found, expected] = [&pixels, &walls.input()].map(|all| all.iter().map(|c| f64::from(c.g)).sum::<f64>());
+    assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
 }
 
 #[test]

@@ -5,8 +5,8 @@
 //! therefore at most as bright as its brighter half, with a margin for the noise around it. The
 //! coarse grids of [`energy`](crate::energy) restore the energy.
 
-use crate::prepare::{brightness, is_known};
-use crate::{Noisy, blur};
+use crate::Noisy;
+use crate::prepare::brightness;
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -14,35 +14,25 @@ use rayon::prelude::*;
 const FACTOR: f32 = 1.2;
 /// Margin for noise, in typical differences of the halves around the pixel.
 const MARGIN: f32 = 4.0;
-/// Radius of the typical difference, in pixels.
-const RADIUS: usize = 3;
 
-/// Dims pixels that exceed the bound.
-pub(crate) fn dim(noisy: &Noisy, pixels: &mut [Rgb]) {
-    let halves: Vec<Option<[f32; 2]>> = (0..pixels.len()).into_par_iter().map(|i| halves(noisy, i)).collect();
-    // Average square roots, on which a few large differences have little influence.
-    let roots: Vec<f32> = halves.par_iter().map(|pair| pair.map_or(0.0, |[a, b]| (a - b).abs().sqrt())).collect();
-    let roots = blur::mean(noisy.width, &roots, RADIUS);
-    pixels.par_iter_mut().zip(&halves).zip(&roots).for_each(|((pixel, halves), root)| {
-        let Some([a, b]) = halves else { return };
+/// Dims pixels that exceed the bound. `differences` are those of
+/// [`typical_differences`](crate::noise::typical_differences).
+pub(crate) fn dim(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
+    pixels.par_iter_mut().zip(differences).enumerate().for_each(|(i, (pixel, difference))| {
+        let Some([a, b]) = noisy.brightness(i) else { return };
         let own = brightness(*pixel);
-        let limit = FACTOR * a.max(*b).max(0.0) + MARGIN * root * root;
+        let limit = FACTOR * a.max(b).max(0.0) + MARGIN * difference;
         if own > limit {
             *pixel = *pixel * (limit / own);
         }
     });
 }
 
-/// Brightness of a pixel in both halves; `None` unless both are known.
-fn halves(noisy: &Noisy, i: usize) -> Option<[f32; 2]> {
-    let [a, b] = noisy.halves.map(|half| half.get(i).copied().filter(is_known).map(brightness));
-    Some([a?, b?])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Features;
+    use crate::noise::typical_differences;
 
     const WIDTH: usize = 20;
     const AT: usize = 10 * WIDTH + 10;
@@ -58,7 +48,7 @@ mod tests {
         let noisy = Noisy::new(WIDTH, WIDTH, [&halves[0], &halves[1]], Features::default()).unwrap();
         let mut pixels = vec![Rgb::splat(0.1); WIDTH * WIDTH];
         pixels[AT] = Rgb::splat(filtered);
-        dim(&noisy, &mut pixels);
+        dim(&noisy, &typical_differences(&noisy), &mut pixels);
         assert!((0..pixels.len()).all(|i| i == AT || pixels[i] == Rgb::splat(0.1)));
         pixels[AT].r
     }
@@ -84,7 +74,7 @@ mod tests {
         let halves = [half(0), half(2)];
         let noisy = Noisy::new(WIDTH, WIDTH, [&halves[0], &halves[1]], Features::default()).unwrap();
         let mut pixels = vec![Rgb::splat(0.75); WIDTH * WIDTH];
-        dim(&noisy, &mut pixels);
+        dim(&noisy, &typical_differences(&noisy), &mut pixels);
         assert!(pixels.iter().all(|pixel| *pixel == Rgb::splat(0.75)));
     }
 }
