@@ -21,7 +21,7 @@
 //! Between the fine and the coarse levels, pixels are limited by their halves (`upper_bound`) and by
 //! their surroundings (`highlights`).
 
-use crate::{Noisy, blur, highlights, noise, upper_bound};
+use crate::{Noisy, Settings, blur, highlights, noise, upper_bound};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -61,14 +61,16 @@ const GLOBAL_FACTOR: [f64; 2] = [0.1, 10.0];
 type Energy = [f64; 3];
 
 /// Restores the local and global means of the input.
-pub(crate) fn conserve(noisy: &Noisy, pixels: &mut [Rgb]) {
+pub(crate) fn conserve(noisy: &Noisy, settings: &Settings, pixels: &mut [Rgb]) {
     let input: Vec<Rgb> = (0..pixels.len()).into_par_iter().map(|i| noisy.mean(i).unwrap_or(pixels[i])).collect();
     let variances: Vec<f32> = (0..pixels.len()).into_par_iter().map(|i| variance(noisy, i)).collect();
     let (fine, coarse): (Vec<Level>, Vec<Level>) = LEVELS.into_iter().partition(|level| level.is_wiener);
     scale_by(&fine, noisy, &input, &variances, pixels);
     let differences = noise::typical_differences(noisy);
     upper_bound::dim(noisy, &differences, pixels);
-    highlights::limit(noisy, &differences, pixels);
+    if settings.cut_outliers {
+        highlights::limit(noisy, &differences, pixels);
+    }
     scale_by(&coarse, noisy, &input, &variances, pixels);
     let (expected, filtered) = (total(&input), total(pixels));
     let factor = each(|k| {
@@ -270,7 +272,7 @@ mod tests {
     fn conserved(input: &[Rgb], filtered: &[Rgb]) -> Vec<Rgb> {
         let noisy = Noisy::new(WIDTH, HEIGHT, [input, input], Features::default()).unwrap();
         let mut pixels = filtered.to_vec();
-        conserve(&noisy, &mut pixels);
+        conserve(&noisy, &Settings::default(), &mut pixels);
         pixels
     }
 
@@ -305,7 +307,7 @@ mod tests {
         half[60 * WIDTH + 40] = Rgb::splat(6000.0);
         let noisy = Noisy::new(WIDTH, HEIGHT, [&half, &wall], Features::default()).unwrap();
         let mut pixels = wall.clone();
-        conserve(&noisy, &mut pixels);
+        conserve(&noisy, &Settings::default(), &mut pixels);
         let (least, most) = pixels.iter().fold((f32::MAX, 0.0_f32), |(a, b), c| (a.min(c.r), b.max(c.r)));
         assert!(most / least < 1.05, "{least} {most}");
         let expected = (total(&half)[0] + total(&wall)[0]) / 2.0;

@@ -39,7 +39,7 @@ pub(crate) fn denoise(
     if settings.cut_outliers {
         pixels = speckles::clamp(noisy, &pixels);
     }
-    energy::conserve(noisy, &mut pixels);
+    energy::conserve(noisy, settings, &mut pixels);
     let moved_energy = if before > 0.0 { (1.0 - after / before).max(0.0) } else { 0.0 };
     Some(Denoised { pixels, moved_energy })
 }
