@@ -23,7 +23,7 @@ const FACTOR: f32 = 2.75;
 const MAX_NOISE: f32 = 0.0025;
 
 /// Limits single bright pixels. Pixels with black surroundings stay as they are. `differences` are
-/// those of [`typical_differences`](crate::noise::typical_differences).
+/// the [typical differences](crate::noise::typical_differences) of the halves.
 pub(crate) fn limit(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
     let brightness: Vec<f32> = pixels.par_iter().map(|color| brightness(*color)).collect();
     let single = |i: usize| {

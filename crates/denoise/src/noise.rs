@@ -1,4 +1,4 @@
-//! Values and noise of single pixels of the input, without those that are unknown.
+//! Known colors of the pixels of the input, and the noise around each pixel.
 
 use crate::prepare::{brightness, is_known};
 use crate::{Noisy, blur};

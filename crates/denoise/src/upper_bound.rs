@@ -15,8 +15,8 @@ const FACTOR: f32 = 1.2;
 /// Margin for noise, in typical differences of the halves around the pixel.
 const MARGIN: f32 = 4.0;
 
-/// Dims pixels that exceed the bound. `differences` are those of
-/// [`typical_differences`](crate::noise::typical_differences).
+/// Dims pixels that exceed the bound. `differences` are the
+/// [typical differences](crate::noise::typical_differences) of the halves.
 pub(crate) fn dim(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
     pixels.par_iter_mut().zip(differences).enumerate().for_each(|(i, (pixel, difference))| {
         let Some([a, b]) = noisy.brightness(i) else { return };
