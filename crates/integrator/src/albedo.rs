@@ -7,7 +7,7 @@
 use super::{Integrator, PathState, VertexOutput};
 use juggler_camera::aov::LightGroup;
 use juggler_math::Ray;
-use juggler_world::{Vertex, World};
+use juggler_world::{Member, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,9 +18,8 @@ pub struct Albedo {}
 
 impl Integrator for Albedo {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        if output.pass_cut_out(world, ray, vertex) {
-            return;
-        }
+        let Some(Member { vertex, t }) = output.skip_cut_outs(world, ray, vertex) else { return };
+        let (ray, vertex) = (&ray.with_t_max(t), &vertex);
         output.record_surface(world, ray, vertex);
         let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
         let albedo = diffuse.unwrap_or_else(|| {

@@ -7,7 +7,7 @@
 use super::{Integrator, PathState, VertexOutput};
 use juggler_camera::aov::LightGroup;
 use juggler_math::{Frame, Ray, Rgb, warp};
-use juggler_world::{Vertex, World};
+use juggler_world::{Member, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -24,9 +24,8 @@ pub struct AmbientOcclusion {
 
 impl Integrator for AmbientOcclusion {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        if output.pass_cut_out(world, ray, vertex) {
-            return;
-        }
+        let Some(Member { vertex, t }) = output.skip_cut_outs(world, ray, vertex) else { return };
+        let (ray, vertex) = (&ray.with_t_max(t), &vertex);
         output.record_surface(world, ray, vertex);
         // Trace a shadow ray in a cosine-weighted direction on the viewer's side.
         let surface = &vertex.surface;

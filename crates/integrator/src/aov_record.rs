@@ -24,8 +24,6 @@ pub struct AovRecord {
     color: Option<usize>,
     /// Filter weight of each sample.
     weights: Vec<f32>,
-    /// Distance that each camera ray has traveled through surfaces with opacity, in scene units.
-    pass_distance: Vec<f32>,
     /// Whether the denoising features of each sample are recorded.
     has_features: Vec<bool>,
     /// AOV values, `aovs.planes.len()` per sample.
@@ -57,7 +55,6 @@ impl AovRecord {
             groups,
             color,
             weights: Vec::new(),
-            pass_distance: Vec::new(),
             has_features: Vec::new(),
             planes: Vec::new(),
             hit_ids: Vec::new(),
@@ -74,8 +71,6 @@ impl AovRecord {
     pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
         self.weights.clear();
         self.weights.extend(weights);
-        self.pass_distance.clear();
-        self.pass_distance.resize(self.weights.len(), 0.0);
         self.has_features.clear();
         self.has_features.resize(self.weights.len(), false);
         self.planes.clear();
@@ -113,7 +108,7 @@ impl AovRecord {
                 FilmAov::Albedo => albedo,
                 FilmAov::Normal => to_rgb(normal),
                 FilmAov::GeometricNormal => to_rgb(surface.normal),
-                FilmAov::Depth => Rgb::new(self.pass_distance[slot] + ray.t_max, 1.0, 0.0),
+                FilmAov::Depth => Rgb::new(ray.t_max, 1.0, 0.0),
                 FilmAov::Position => to_rgb(surface.point),
                 FilmAov::Motion(which) => {
                     match self
@@ -203,13 +198,6 @@ impl VertexOutput<'_> {
     #[inline]
     pub fn is_recording(&self) -> bool {
         self.buffers.record.is_some()
-    }
-
-    /// Records that the path passes straight through a surface.
-    pub fn record_pass_through(&mut self, ray: &Ray) {
-        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.is_camera_ray()) {
-            record.pass_distance[self.path.slot as usize] += ray.t_max;
-        }
     }
 
     /// Records that the ray left the world.

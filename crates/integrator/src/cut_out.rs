@@ -3,7 +3,7 @@
 
 use super::{PathHistory, PathState, VertexOutput, path};
 use juggler_math::Ray;
-use juggler_world::{Vertex, World};
+use juggler_world::{Cluster, Member, Vertex, World};
 
 impl PathState {
     /// Whether the path is still a camera ray: it has passed straight through all surfaces so far.
@@ -16,16 +16,27 @@ impl PathState {
 }
 
 impl VertexOutput<'_> {
-    /// Continues the camera ray behind a surface of opacity 0. Returns `false` at any other surface.
-    pub(crate) fn pass_cut_out(&mut self, world: &World, ray: &Ray, vertex: &Vertex) -> bool {
-        let is_cut_out = world.is_cut_out(vertex, -ray.direction, || self.path.sampler.skipped(0).next_1d());
-        if is_cut_out {
-            // Keep the origin of the first ray, from which depth is measured.
-            let history = self.path.history;
-            let from = if history.pass_throughs == 0 { ray.origin } else { history.from };
-            let path = PathState { history: PathHistory { from, ..history }, ..*self.path };
-            path::pass_through(world, ray, &path, vertex, self);
+    /// Skips surfaces of opacity 0. Returns the first other surface at the place of `vertex`; if
+    /// there is none, continues the camera ray behind them.
+    pub(crate) fn skip_cut_outs(&mut self, world: &World, ray: &Ray, vertex: &Vertex) -> Option<Member> {
+        let first = Member { vertex: *vertex, t: ray.t_max };
+        let is_cut_out =
+            |path: &PathState, vertex: &Vertex| world.is_cut_out(vertex, -ray.direction, || path.sampler.skipped(0).next_1d());
+        if !is_cut_out(self.path, vertex) {
+            return Some(first);
         }
-        is_cut_out
+        let mut cluster = Cluster::new(world, ray, vertex);
+        let (mut path, mut member) = (*self.path, first);
+        while is_cut_out(&path, &member.vertex) {
+            path = path::passed(world, ray, &path, &member.vertex, None)?;
+            match cluster.next() {
+                Some(next) => member = next,
+                None => {
+                    self.continue_straight(cluster.ray_behind(), &path);
+                    return None;
+                }
+            }
+        }
+        Some(member)
     }
 }

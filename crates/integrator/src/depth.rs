@@ -7,7 +7,7 @@
 use super::{Integrator, PathState, VertexOutput};
 use juggler_camera::aov::LightGroup;
 use juggler_math::{Ray, Rgb};
-use juggler_world::{Vertex, World};
+use juggler_world::{Member, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,14 +23,11 @@ pub struct Depth {
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        if output.pass_cut_out(world, ray, vertex) {
-            return;
-        }
+    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        let Some(Member { vertex, t }) = output.skip_cut_outs(world, ray, vertex) else { return };
+        let (ray, vertex) = (&ray.with_t_max(t), &vertex);
         output.record_surface(world, ray, vertex);
-        let is_first = path.history.pass_throughs == 0;
-        let distance = if is_first { ray.t_max } else { (vertex.surface.point - path.history.from).length() };
-        output.add(Rgb::splat(distance / self.far.unwrap_or(1.0)), LightGroup::REST);
+        output.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
     }
 
     fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {

@@ -7,7 +7,7 @@
 use super::{Integrator, PathState, VertexOutput};
 use juggler_camera::aov::LightGroup;
 use juggler_math::{Ray, Rgb};
-use juggler_world::{Vertex, World};
+use juggler_world::{Member, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,9 +18,8 @@ pub struct Normals {}
 
 impl Integrator for Normals {
     fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        if output.pass_cut_out(world, ray, vertex) {
-            return;
-        }
+        let Some(Member { vertex, t }) = output.skip_cut_outs(world, ray, vertex) else { return };
+        let (ray, vertex) = (&ray.with_t_max(t), &vertex);
         output.record_surface(world, ray, vertex);
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
         output.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);

@@ -264,18 +264,16 @@ impl<'a> VertexOutput<'a> {
         self.buffers.next.push(ray, path);
     }
 
-    /// Traces `ray` as the only branch of a ray tree at a vertex that it passes through.
-    pub fn trace_through(&mut self, ray: Ray) {
-        let pass_throughs = self.path.history.pass_throughs.saturating_add(1);
-        let path = PathState {
-            depth: self.path.depth + 1,
-            sampler: self.path.sampler.branch(0),
-            history: PathHistory { pass_throughs, ..self.path.history },
-            beta: self.beta,
-            cone: self.cone,
-            ..*self.path
-        };
-        self.buffers.next.push(ray, path);
+    /// Output of the same vertex for another state of its path, behind a surface at the same place.
+    #[inline]
+    pub fn at<'b>(&'b mut self, path: &'b PathState) -> VertexOutput<'b> {
+        VertexOutput { buffers: self.buffers, path, beta: path.beta, cone: self.cone }
+    }
+
+    /// Continues the ray of the path behind surfaces that it passes straight through. `path` is its
+    /// state there.
+    pub fn continue_straight(&mut self, ray: Ray, path: &PathState) {
+        self.buffers.next.push(ray, PathState { cone: self.cone, ..*path });
     }
 
     /// Continues the path by `ray`, with the throughput times `weight`. `steps` is the increase of

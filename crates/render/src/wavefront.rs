@@ -289,7 +289,7 @@ fn shade_ray(
     hit: &WorldHit,
 ) -> Option<Vertex> {
     let Job { world, integrator, .. } = job;
-    let mut output = VertexOutput::new(buffers, path, ray.t_max);
+    let mut output = VertexOutput::new(buffers, path, ray.t_max - ray.t_min);
     if !hit.is_some() {
         integrator.escape(world, ray, path, &mut output);
         return None;

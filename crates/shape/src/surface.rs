@@ -128,6 +128,13 @@ impl Surface {
         Ray { time, ..Ray::new(origin, direction) }
     }
 
+    /// Enlarges the error of this surface, which `own` states exactly, so that rays that leave it start
+    /// beyond `other`, a surface at the same place.
+    pub fn grow_error(&mut self, own: &Self, other: &Self) {
+        let offset = own.normal.dot(other.point - own.point).abs();
+        self.position_error = self.position_error.max(2.0 * (own.position_error + offset + other.position_error));
+    }
+
     /// Ray from this point to another, `distance` away (or at infinity), that ends just before it
     /// and so does not hit the surface of the other point. That holds for rays at more than some 12
     /// degrees to that surface; flatter ones may hit it, since the error of a rounded direction

@@ -1,6 +1,6 @@
 //! Solids that contain a point: those whose surface encloses it in most of several directions.
 
-use super::World;
+use super::{Cluster, Member, World};
 use juggler_material::medium::{InteriorId, Interiors};
 use juggler_math::{Ray, Vec3};
 
@@ -57,25 +57,35 @@ impl World {
         let mut ray = Ray { time, ..Ray::new(point, direction.normalize()) };
         let (mut test_ray, mut open) = (TestRay::default(), Vec::new());
         for _ in 0..MAX_SURFACES {
-            let mut probe = ray;
-            let hit = self.closest(&mut probe);
+            let hit = self.closest(&mut ray);
             if !hit.is_some() {
                 return Some(test_ray);
             }
-            let vertex = self.vertex(&probe, &hit);
-            if let Some(id) = self.interior(&vertex) {
-                if vertex.surface.normal.dot(ray.direction) < 0.0 {
-                    open.push(id);
-                    test_ray.entered.push(id);
-                } else if let Some(at) = open.iter().rposition(|one| *one == id) {
-                    open.remove(at);
-                } else {
-                    test_ray.left.push(id);
+            let first = Member { vertex: self.vertex(&ray, &hit), t: ray.t_max };
+            let mut cluster = Cluster::new(self, &ray, &first.vertex);
+            for member in std::iter::once(first).chain(&mut cluster) {
+                if let Some(id) = self.interior(&member.vertex) {
+                    test_ray.cross(id, member.is_entered(&ray), &mut open);
                 }
             }
-            ray = vertex.surface.spawn_ray(ray.direction, time);
+            ray = cluster.ray_behind();
         }
         None
+    }
+}
+
+impl TestRay {
+    /// Records that the ray enters or leaves a solid. `open` lists the solids that it entered and has
+    /// not left.
+    fn cross(&mut self, id: InteriorId, inwards: bool, open: &mut Vec<InteriorId>) {
+        if inwards {
+            open.push(id);
+            self.entered.push(id);
+        } else if let Some(at) = open.iter().rposition(|one| *one == id) {
+            open.remove(at);
+        } else {
+            self.left.push(id);
+        }
     }
 }
 

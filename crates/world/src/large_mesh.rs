@@ -28,9 +28,9 @@ pub enum RayCoherence {
 #[derive(Clone, Debug)]
 pub struct LargeMesh {
     /// Bounding box in the geometry's space.
-    bounds: Aabb,
-    object_index: u32,
-    shape_index: u32,
+    pub(super) bounds: Aabb,
+    pub(super) object_index: u32,
+    pub(super) shape_index: u32,
 }
 
 /// Indices of the bounded objects that are large meshes; empty if there are more than

@@ -13,6 +13,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 mod casters;
+mod closest_after;
+mod cluster;
 mod differential;
 mod emissive_shape;
 mod emissive_surfaces;
@@ -39,6 +41,8 @@ mod precision;
 mod tests;
 
 pub use casters::{CasterId, CausticCaster, VisibleCasters};
+pub use closest_after::HitKey;
+pub use cluster::{Cluster, Member};
 pub use differential::SurfaceDifferential;
 pub use emitters::{EmitterId, EmitterSample, LightSampleContext};
 pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
@@ -287,6 +291,12 @@ impl World {
         self.materials.shade_into(vertex.material, &view, shading);
     }
 
+    /// Whether light may pass straight through any surface in classic pictures.
+    #[inline]
+    pub fn has_transparency(&self) -> bool {
+        self.has_transparency
+    }
+
     /// Whether shading the vertex needs no random choice among materials.
     #[inline]
     pub fn is_simple(&self, vertex: &Vertex) -> bool {
@@ -301,9 +311,32 @@ impl World {
     /// Whether rays from the side of `wo` pass straight through the surface at this point, because
     /// its opacity is 0. `u_choice`, in [0, 1), selects among mixed materials.
     pub fn is_cut_out(&self, vertex: &Vertex, wo: Vec3, u_choice: impl FnOnce() -> f32) -> bool {
-        self.has_opacity
-            && self.materials.has_opacity(vertex.material)
-            && self.shade(vertex, wo, 1.0, u_choice()).opacity == 0.0
+        self.may_be_open(vertex) && self.shade(vertex, wo, 1.0, u_choice()).opacity == 0.0
+    }
+
+    /// Whether a ray from the side of `wo` passes straight through the surface at this point, because
+    /// of its opacity or because it is unlit. Unlit surfaces exist only for rays that `sees_unlit`.
+    /// `choice` selects among mixed materials and decides by opacity.
+    pub fn is_open(&self, vertex: &Vertex, wo: Vec3, sees_unlit: bool, choice: impl FnOnce() -> Vec2) -> bool {
+        if !self.may_be_open(vertex) {
+            return false;
+        }
+        let choice = choice();
+        let shading = self.shade(vertex, wo, 1.0, choice.x);
+        shading.opacity < 1.0 && choice.y >= shading.opacity || shading.is_unlit && !sees_unlit
+    }
+
+    /// Whether a ray may pass the surface: into the interior of a solid, or straight through.
+    #[inline]
+    pub fn may_pass(&self, vertex: &Vertex) -> bool {
+        self.interior(vertex).is_some() || self.may_be_open(vertex)
+    }
+
+    /// Whether the material has an opacity below 1, or is absent for some rays.
+    #[inline]
+    fn may_be_open(&self, vertex: &Vertex) -> bool {
+        self.has_opacity && self.materials.has_opacity(vertex.material)
+            || self.has_absence && self.materials.has_absence(vertex.material)
     }
 
     /// Interior of the solid that the surface bounds; `None` if the material transmits no light

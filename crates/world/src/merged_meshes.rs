@@ -3,6 +3,7 @@
 //! index, and within a mesh to the lower triangle.
 
 use super::large_mesh::RayCoherence;
+use super::closest_after::HitKey;
 use super::{Object, WorldHit};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
 use juggler_math::{Motion, Ray, Transform, Vec2, Vec3};
@@ -87,12 +88,27 @@ impl MergedMeshes {
         }
         for ((ray, best), hit) in rays.iter_mut().zip(hits).zip(found) {
             if let Some(hit) = hit {
-                let owner = self.owners.partition_point(|(first, _)| *first <= hit.index) - 1;
-                let (start, shape_index) = self.owners[owner];
-                let hit = Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), primitive: hit.index - start };
+                let (hit, shape_index) = self.owned(&hit);
                 best.keep_nearer(hit, shape_index, ray);
             }
         }
+    }
+
+    /// Nearest hit behind `key`, with the index of its shape.
+    pub fn closest_after(&self, ray: &Ray, key: &HitKey) -> Option<(Hit, u32)> {
+        let accepts = |_: usize, hit: &TriangleHit| {
+            let (hit, shape) = self.owned(hit);
+            HitKey { t: hit.t, shape, primitive: hit.primitive } > *key
+        };
+        let hit = self.bvh.filtered(accepts).closest(&clamp_to_f32_range(ray))?;
+        Some(self.owned(&hit))
+    }
+
+    /// Hit of a mesh, with the index of its shape, for a hit of the merged hierarchy.
+    fn owned(&self, hit: &TriangleHit) -> (Hit, u32) {
+        let owner = self.owners.partition_point(|(first, _)| *first <= hit.index) - 1;
+        let (start, shape_index) = self.owners[owner];
+        (Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), primitive: hit.index - start }, shape_index)
     }
 
     /// Marks the rays that a mesh occludes.

@@ -2,7 +2,7 @@
 
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::RayCoherence;
-use super::{Content, Geometry, Vertex, World, WorldHit};
+use super::{Cluster, Content, Geometry, Vertex, World, WorldHit};
 use arrayvec::ArrayVec;
 use juggler_bvh::{Leaf, PACKET};
 use juggler_material::TexturedPoint;
@@ -27,6 +27,9 @@ const MAX_FILTERS: u32 = 64;
 /// Maximum number of consecutive surfaces that a ray may cross because of their opacity, or because
 /// a solid of higher priority hides them.
 pub const MAX_PASS_THROUGHS: u16 = 1000;
+
+/// Maximum number of surfaces at one place that filter a shadow ray.
+const MAX_PLACE: usize = 16;
 
 /// Up to this number of active rays of a packet traverse an instance one by one.
 const MAX_SINGLE_RAYS: u32 = 2;
@@ -230,7 +233,7 @@ impl World {
     /// Visibility along a ray: 1 if all surfaces on it are absent for shadow rays, else 0.
     fn visibility(&self, ray: Ray) -> Rgb {
         let filter = |vertex: &Vertex| Rgb::splat(f32::from(self.is_absent(vertex, -ray.direction)));
-        self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), |_| Rgb::WHITE, filter)
+        self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), filter)
     }
 
     /// Whether opacity or media may attenuate shadow rays, so that [`World::transmittance_inside`]
@@ -265,11 +268,10 @@ impl World {
             let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
             self.materials.shadow_transmittance(vertex.material, at, -ray.direction)
         };
-        self.transmittance_through(ray, MAX_FILTERS - 1, |_| Rgb::WHITE, filter)
+        self.transmittance_through(ray, MAX_FILTERS - 1, filter)
     }
 
-    /// Transmittance through opacity and media. Solids of higher priority hide the surfaces inside
-    /// them.
+    /// Transmittance through opacity and media.
     fn physical_transmittance(&self, ray: Ray, inside: Interiors) -> Rgb {
         let inside = Cell::new(inside);
         let interiors = self.materials.interiors();
@@ -277,45 +279,74 @@ impl World {
             Some(interior) => interior.medium.transmittance(distance),
             None => Rgb::WHITE,
         };
-        let transparency = |vertex: &Vertex| {
-            if let Some(id) = self.materials.interior(vertex.material) {
-                let (enters, now) = (vertex.surface.normal.dot(ray.direction) < 0.0, inside.get());
-                inside.set(now.crossed(id, enters));
-                if now.hides_interface(id, enters, interiors) {
-                    return Rgb::WHITE;
-                }
-            }
+        let transparency = |place: &[Vertex]| {
+            let (transmittance, behind) = self.straight_transmittance(&ray, inside.get(), place);
+            inside.set(behind);
+            Rgb::splat(transmittance)
+        };
+        self.transmittance_along(ray, MAX_PASS_THROUGHS.into(), medium_transmittance, transparency)
+    }
+
+    /// Share of light that passes straight through the surfaces at one place, and the solids behind
+    /// them. The interfaces of solids act as one: they block no light if the medium before them is
+    /// the medium behind them.
+    fn straight_transmittance(&self, ray: &Ray, inside: Interiors, place: &[Vertex]) -> (f32, Interiors) {
+        let interiors = self.materials.interiors();
+        let of_surface = |vertex: &Vertex| {
             let mesh = self.mesh_point(vertex);
             let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
-            Rgb::splat(self.materials.straight_transmittance(vertex.material, at, -ray.direction))
+            self.materials.straight_transmittance(vertex.material, at, -ray.direction)
         };
-        self.transmittance_through(ray, MAX_PASS_THROUGHS.into(), medium_transmittance, transparency)
+        let (mut behind, mut transmittance) = (inside, 1.0);
+        for vertex in place {
+            match self.interior(vertex) {
+                Some(id) => behind = behind.crossed(id, vertex.surface.normal.dot(ray.direction) < 0.0),
+                None => transmittance *= of_surface(vertex),
+            }
+        }
+        if transmittance > 0.0 && inside.top_id(interiors) != behind.top_id(interiors) {
+            let interfaces = place.iter().filter(|vertex| self.interior(vertex).is_some());
+            transmittance = interfaces.fold(transmittance, |product, vertex| product * of_surface(vertex));
+        }
+        (transmittance, behind)
+    }
+
+    /// Transmittance along a ray: the product of `filter` for each surface.
+    fn transmittance_through(&self, ray: Ray, max_surfaces: u32, filter: impl Fn(&Vertex) -> Rgb) -> Rgb {
+        let all = |place: &[Vertex]| place.iter().fold(Rgb::WHITE, |product, vertex| product * filter(vertex));
+        self.transmittance_along(ray, max_surfaces, |_| Rgb::WHITE, all)
     }
 
     /// Transmittance along a ray: the product of `segment` for the length of each segment
-    /// and of `filter` for each surface. The ray is blocked after `max_surfaces` surfaces.
-    fn transmittance_through(
+    /// and of `filter` for the surfaces at each place. The ray is blocked after `max_places` places.
+    fn transmittance_along(
         &self,
         ray: Ray,
-        max_surfaces: u32,
+        max_places: u32,
         segment: impl Fn(f32) -> Rgb,
-        filter: impl Fn(&Vertex) -> Rgb,
+        filter: impl Fn(&[Vertex]) -> Rgb,
     ) -> Rgb {
         let (mut rest, mut transmittance) = (ray, Rgb::WHITE);
-        for _ in 0..=max_surfaces {
-            let mut probe = rest;
-            let hit = self.closest(&mut probe);
-            transmittance *= segment(probe.t_max);
+        for _ in 0..=max_places {
+            let start = rest.t_min;
+            let hit = self.closest(&mut rest);
+            transmittance *= segment(rest.t_max - start);
             if !hit.is_some() {
                 return transmittance;
             }
-            let vertex = self.vertex(&rest, &hit);
-            transmittance *= filter(&vertex);
+            let first = self.vertex(&rest, &hit);
+            let mut place: ArrayVec<Vertex, MAX_PLACE> = ArrayVec::new();
+            place.push(first);
+            let mut cluster = Cluster::new(self, &rest, &first).up_to(ray.t_max);
+            place.extend(cluster.by_ref().map(|member| member.vertex).take(MAX_PLACE - 1));
+            transmittance *= filter(&place);
             if transmittance.is_black() {
                 return transmittance;
             }
-            let remaining = rest.t_max - hit.hit.t;
-            rest = vertex.surface.spawn_ray(rest.direction, rest.time).with_t_max(remaining);
+            rest = cluster.ray_behind().with_t_max(ray.t_max);
+            if rest.t_min > rest.t_max {
+                return transmittance;
+            }
         }
         Rgb::BLACK
     }

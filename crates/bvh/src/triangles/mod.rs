@@ -62,6 +62,13 @@ impl TriangleHit {
             None => true,
         }
     }
+
+    /// Whether this hit follows a distance and triangle: it is behind the distance, or at it and its
+    /// index is above the triangle's, if there is one.
+    #[inline(always)]
+    pub fn is_after(&self, (t, triangle): (f32, Option<u32>)) -> bool {
+        self.t > t || self.t == t && triangle.is_none_or(|triangle| self.index > triangle)
+    }
 }
 
 /// Reason why a build or refit was rejected.

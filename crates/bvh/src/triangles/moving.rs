@@ -61,8 +61,18 @@ impl MovingTriangleBvh {
     /// Returns the closest hit at the ray's time; among hits at equal distance the one with the
     /// smallest triangle index.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.closest_behind(ray, None)
+    }
+
+    /// [`MovingTriangleBvh::closest`] for the hits that follow the distance and triangle `after`:
+    /// hits before the distance do not count, nor those at it of triangles up to that index.
+    pub fn closest_after(&self, ray: &Ray, after: (f32, Option<u32>)) -> Option<TriangleHit> {
+        self.closest_behind(ray, Some(after))
+    }
+
+    fn closest_behind(&self, ray: &Ray, after: Option<(f32, Option<u32>)>) -> Option<TriangleHit> {
         dispatch!(self.tree.bvh.level, simd => {
-            let mut leaf = MovingVisitor::new(simd, self, ray);
+            let mut leaf = MovingVisitor { after, ..MovingVisitor::new(simd, self, ray) };
             self.tree.closest_one(simd, &mut { *ray }, &mut leaf);
             leaf.hit
         })
@@ -108,6 +118,8 @@ struct MovingVisitor<'a, S> {
     /// Normalized shutter time of the ray, 0 to 1.
     time: f32,
     shear: Shear,
+    /// Distance and triangle up to which hits do not count.
+    after: Option<(f32, Option<u32>)>,
     hit: Option<TriangleHit>,
 }
 
@@ -116,7 +128,7 @@ impl<'a, S: Lanes> MovingVisitor<'a, S> {
     fn new(simd: S, bvh: &'a MovingTriangleBvh, ray: &Ray) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
         let shear = Shear::new(ray, slabs.exact_inverse, slabs.signs);
-        Self { simd, blocks: &bvh.blocks, time: bvh.tree.shutter_fraction(ray), shear, hit: None }
+        Self { simd, blocks: &bvh.blocks, time: bvh.tree.shutter_fraction(ray), shear, after: None, hit: None }
     }
 
     /// Interpolates the block to the ray's time. Returns it with a bit mask of the lanes that the
@@ -134,7 +146,8 @@ impl<'a, S: Lanes> MovingVisitor<'a, S> {
     #[inline(always)]
     fn intersect(&self, ray: &Ray, block: &Block, lane: usize) -> Option<TriangleHit> {
         let hit = block.hit(&self.shear, ray, lane)?;
-        has_area(block.permuted(lane, [0, 1, 2]).map(Vec3::from)).then_some(hit)
+        let counts = self.after.is_none_or(|after| hit.is_after(after));
+        (counts && has_area(block.permuted(lane, [0, 1, 2]).map(Vec3::from))).then_some(hit)
     }
 }
 

@@ -8,6 +8,7 @@
 //! {"classic": {"max_depth": 10, "min_weight": 0.004, "occlusion_distance": 100}}
 //! ```
 
+mod crossing;
 mod physical;
 
 use super::{Integrator, PathState, SurfaceHit, VertexOutput};
@@ -19,6 +20,7 @@ use juggler_shape::surface::Surface;
 use juggler_world::{SceneLight, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Classic recursive ray tracing: Phong illumination from lights, mirrors and glass, without
 /// indirect diffuse light. Fast, with little noise.
@@ -62,7 +64,43 @@ struct ShadingPoint<'a> {
 
 impl Integrator for Classic {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        let Some(phong) = world.phong(vertex) else { return self.physical(world, ray, path, vertex, output) };
+        let phong = world.phong(vertex);
+        if world.has_transparency() && phong.as_deref().is_none_or(|phong| !phong.transparency.is_black()) {
+            return self.cross_surfaces(world, ray, path, vertex, output);
+        }
+        self.interact(world, ray, path, vertex, phong, output);
+    }
+
+    fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
+        output.record_miss(ray);
+        let radiance =
+            if path.is_camera_ray() { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
+        output.add(radiance, world.background_group());
+    }
+}
+
+impl<'a> ShadingPoint<'a> {
+    fn new(ray: &Ray, surface: &'a Surface, phong: &'a PhongParameters) -> Self {
+        let wo = -ray.direction;
+        let outside = surface.normal.dot(wo) >= 0.0;
+        let normal = if outside { surface.shading_normal } else { -surface.shading_normal };
+        Self { surface, phong, wo, normal, outside, time: ray.time }
+    }
+}
+
+impl Classic {
+    /// Shades a vertex, by its classic material if it has one, and traces shadow rays and secondary
+    /// rays. Returns `false` if opacity lets the ray pass.
+    fn interact(
+        &self,
+        world: &World,
+        ray: &Ray,
+        path: &PathState,
+        vertex: &Vertex,
+        phong: Option<Cow<PhongParameters>>,
+        output: &mut VertexOutput,
+    ) -> bool {
+        let Some(phong) = phong else { return self.physical(world, ray, path, vertex, output) };
         let point = ShadingPoint::new(ray, &vertex.surface, &phong);
         let mut sampler = path.sampler;
         // Record AOVs of the surface.
@@ -84,26 +122,9 @@ impl Integrator for Classic {
         if path.depth < self.max_depth {
             self.trace_secondary_rays(path, &point, &sampler, output);
         }
+        true
     }
 
-    fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
-        output.record_miss(ray);
-        let radiance =
-            if path.is_camera_ray() { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
-        output.add(radiance, world.background_group());
-    }
-}
-
-impl<'a> ShadingPoint<'a> {
-    fn new(ray: &Ray, surface: &'a Surface, phong: &'a PhongParameters) -> Self {
-        let wo = -ray.direction;
-        let outside = surface.normal.dot(wo) >= 0.0;
-        let normal = if outside { surface.shading_normal } else { -surface.shading_normal };
-        Self { surface, phong, wo, normal, outside, time: ray.time }
-    }
-}
-
-impl Classic {
     /// Adds emission and ambient light. One ray, uniform over the hemisphere, decides about the
     /// fraction that is subject to occlusion.
     fn ambient(

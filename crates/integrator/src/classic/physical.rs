@@ -20,7 +20,8 @@ struct ShadingPoint<'a> {
 }
 
 impl Classic {
-    /// Shades a vertex whose material is not the classic one.
+    /// Shades a vertex whose material is not the classic one. Returns `false` if opacity lets the ray
+    /// pass.
     pub(super) fn physical(
         &self,
         world: &World,
@@ -28,19 +29,14 @@ impl Classic {
         path: &PathState,
         vertex: &Vertex,
         output: &mut VertexOutput,
-    ) {
+    ) -> bool {
         let mut sampler = path.sampler.skipped(1);
         let choices = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(0).next_2d() };
         let mut shading = Shading::black();
         world.shade_into(vertex, -ray.direction, 1.0, choices.x, &mut shading);
         let room = path.depth < self.max_depth;
-        // Pass through by opacity.
         if shading.opacity < 1.0 && choices.y >= shading.opacity {
-            output.record_pass_through(ray);
-            if room {
-                output.trace_through(vertex.surface.spawn_ray(ray.direction, ray.time));
-            }
-            return;
+            return false;
         }
         let wo = shading.frame.to_local(-ray.direction);
         let point = ShadingPoint { vertex, shading: &shading, wo, time: ray.time };
@@ -63,6 +59,7 @@ impl Classic {
         if room {
             self.reflect(&point, path, sampler, output);
         }
+        true
     }
 
     /// Traces one ray for each specular lobe, and one for all glossy lobes.

@@ -17,10 +17,12 @@ use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, Worl
 pub use sampling::Sampling;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use crossing::Interface;
+pub use crossing::passed;
 use surface::ShadingPoint;
-pub use surface::pass_through;
 
 mod caustic;
+mod crossing;
 mod sampling;
 mod surface;
 mod volume;
@@ -170,50 +172,48 @@ impl Default for Path {
     }
 }
 
-impl Integrator for Path {
-    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        // Sample a collision in the medium before the surface.
-        if self.sample_medium(world, ray, ray.t_max, path, output) {
-            return;
-        }
-        // Skip interfaces that a medium of higher priority hides.
-        let interior = world.interior(vertex);
-        if interior.is_some_and(|id| surface::is_hidden(world, ray, path, vertex, id)) {
-            return pass_through(world, ray, path, vertex, output);
-        }
+impl Path {
+    /// Shades a vertex, adds emission and direct illumination and continues the path. Returns the
+    /// history of the path if the surface is absent for it, so that the path passes straight through.
+    #[inline(always)]
+    fn interact(
+        &self,
+        world: &World,
+        ray: &Ray,
+        path: &PathState,
+        vertex: &Vertex,
+        interface: &Interface,
+        output: &mut VertexOutput,
+    ) -> Option<PathHistory> {
         // Choose a wavelength at the first dispersive surface.
-        let dispersed = self.disperse(world, path, interior, output);
+        let dispersed = self.disperse(world, path, interface.interior, output);
         let path = dispersed.as_ref().unwrap_or(path);
         // Evaluate the material.
         let mut shading = Shading::black();
-        let u_opacity = surface::shade_into(world, ray, path, vertex, interior, &mut shading);
-        // Pass through by opacity.
-        if shading.opacity < 1.0 && u_opacity >= shading.opacity {
-            return pass_through(world, ray, path, vertex, output);
-        }
-        // Unlit surfaces exist only for camera rays and their specular continuations.
-        if shading.is_unlit {
-            return surface::add_unlit(world, ray, path, vertex, &shading, output);
+        let u_opacity = surface::shade_into(world, ray, path, vertex, interface, &mut shading);
+        // Pass through by opacity. Unlit surfaces exist only for camera rays and their specular
+        // continuations.
+        let is_absent = shading.opacity < 1.0 && u_opacity >= shading.opacity;
+        if !interface.is_present && is_absent || shading.is_unlit && !path.history.events.is_only_specular() {
+            return Some(path.history);
         }
         // Record AOVs of the surface.
         output.record_shading(world, ray, vertex, &shading);
+        if shading.is_unlit {
+            output.add(shading.emission, world.shape_group(vertex.shape));
+            return None;
+        }
         // Add emission, weighted against light sampling.
         if !shading.emission.is_black() {
-            let light = || world.light_pdf(&path.history.light_sample_context(ray.time), vertex);
-            let bent = |context: &LightSampleContext, center_ray: &Ray| {
-                world.light_pdf(context, vertex) * caustic::emitter_cosine_ratio(center_ray, ray, vertex)
-            };
-            let end = HitEmitter::Surface(vertex.surface.point);
-            let weight = self.emission_weight(world, path, ray, light, end, bent);
-            output.add(shading.emission * weight, world.shape_group(vertex.shape));
+            self.add_emission(world, ray, path, vertex, &shading, output);
         }
         if path.depth + 1 >= self.max_depth {
-            return;
+            return None;
         }
         // Remove lobes whose limit is reached.
         self.limit_lobes(&mut shading.bsdf, path);
         let mut visible_casters = VisibleCasters::empty();
-        let mut point = ShadingPoint::new(ray, vertex, &shading, interior);
+        let mut point = ShadingPoint::new(ray, vertex, &shading, interface);
         // Sample direct illumination, also through specular spheres.
         if !point.shading.bsdf.is_specular() {
             point.find_visible_casters(world, &mut visible_casters);
@@ -222,6 +222,40 @@ impl Integrator for Path {
         }
         // Sample the BSDF and continue the path.
         self.continue_path(&point, world, vertex.shape, path, output);
+        None
+    }
+
+    /// Adds the emission of a surface, weighted against light sampling.
+    #[inline(always)]
+    fn add_emission(
+        &self,
+        world: &World,
+        ray: &Ray,
+        path: &PathState,
+        vertex: &Vertex,
+        shading: &Shading,
+        output: &mut VertexOutput,
+    ) {
+        let light = || world.light_pdf(&path.history.light_sample_context(ray.time), vertex);
+        let bent = |context: &LightSampleContext, center_ray: &Ray| {
+            world.light_pdf(context, vertex) * caustic::emitter_cosine_ratio(center_ray, ray, vertex)
+        };
+        let end = HitEmitter::Surface(vertex.surface.point);
+        let weight = self.emission_weight(world, path, ray, light, end, bent);
+        output.add(shading.emission * weight, world.shape_group(vertex.shape));
+    }
+}
+
+impl Integrator for Path {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
+        // Sample a collision in the medium before the surface.
+        if self.sample_medium(world, ray, ray.t_max - ray.t_min, path, output) {
+            return;
+        }
+        if world.may_pass(vertex) || !path.history.interiors.is_empty() {
+            return self.cross_surfaces(world, ray, path, vertex, output);
+        }
+        self.interact(world, ray, path, vertex, &Interface::OPAQUE, output);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {

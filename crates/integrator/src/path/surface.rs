@@ -1,13 +1,14 @@
 //! Path vertices on surfaces: light sampling and BSDF sampling.
 
-use super::super::{CausticState, PathHistory, PathState, ScatterCounts, VertexOutput};
+use super::super::{PathHistory, PathState, ScatterCounts, VertexOutput};
+use super::crossing::Interface;
 use super::{Dimension, Path, Sampling};
 use juggler_bsdf::{Bsdf, BsdfSample, Scatter};
 use juggler_material::Shading;
-use juggler_material::medium::{InteriorId, Interiors};
+use juggler_material::medium::Interiors;
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_world::{EmitterId, EmitterSample, LightSampleContext, MAX_PASS_THROUGHS, Vertex, VisibleCasters, World};
+use juggler_world::{EmitterId, EmitterSample, LightSampleContext, Vertex, VisibleCasters, World};
 
 /// A shading point: a vertex with its evaluated material and the direction of view.
 pub struct ShadingPoint<'a> {
@@ -17,96 +18,35 @@ pub struct ShadingPoint<'a> {
     wo: Vec3,
     pub local: Vec3,
     pub time: f32,
-    interior: Option<InteriorId>,
+    interface: &'a Interface,
     /// Specular spheres visible from the vertex; `None` where the path samples no light through
     /// them.
     pub visible_casters: Option<&'a VisibleCasters>,
 }
 
-/// Continues the path straight through the surface. Shadow rays through specular spheres pass only
-/// surfaces that are absent for them, so only those keep the state of the path through a sphere.
-pub fn pass_through(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-    if path.history.pass_throughs < MAX_PASS_THROUGHS {
-        let interiors = interiors_after(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
-        output.record_pass_through(ray);
-        let is_absent = world.is_absent(vertex, -ray.direction);
-        let history = PathHistory {
-            pass_throughs: path.history.pass_throughs + 1,
-            interiors,
-            caustic: if is_absent { path.history.caustic } else { CausticState::NONE },
-            ..path.history
-        };
-        output.continue_path(vertex.surface.spawn_ray(ray.direction, ray.time), Rgb::WHITE, history, 0);
-    }
-}
-
-/// Ends the path at an unlit surface, with its color, if all scattering so far was specular;
-/// otherwise the path passes straight through.
-pub fn add_unlit(
-    world: &World,
-    ray: &Ray,
-    path: &PathState,
-    vertex: &Vertex,
-    shading: &Shading,
-    output: &mut VertexOutput,
-) {
-    if !path.history.events.is_only_specular() {
-        return pass_through(world, ray, path, vertex, output);
-    }
-    output.record_shading(world, ray, vertex, shading);
-    output.add(shading.emission, world.shape_group(vertex.shape));
-}
-
-/// Solids that contain the path after it crosses the interface of one, inwards or outwards.
-fn interiors_after(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> Interiors {
-    let inside = path.history.interiors;
-    interior.map_or(inside, |id| inside.crossed(id, inwards))
-}
-
-/// Whether a medium of higher priority hides this interface (Schmidt and Budge 2002).
-pub fn is_hidden(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id: InteriorId) -> bool {
-    let inwards = vertex.surface.normal.dot(ray.direction) < 0.0;
-    path.history.interiors.hides_interface(id, inwards, world.interiors())
-}
-
-/// Writes the shading of a vertex, which lies on the interface of `interior`, into a black
-/// `shading`. Returns a random number in [0, 1) that decides whether the path passes through by
-/// opacity.
+/// Writes the shading of a vertex on an interface into a black `shading`. Returns a random number in
+/// [0, 1) that decides whether the path passes through by opacity.
 #[inline(always)]
 pub fn shade_into(
     world: &World,
     ray: &Ray,
     path: &PathState,
     vertex: &Vertex,
-    interior: Option<InteriorId>,
+    interface: &Interface,
     shading: &mut Shading,
 ) -> f32 {
-    let exterior_ior = exterior_ior(world, path, interior);
     let choice =
         if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(Dimension::Choice as u32).next_2d() };
-    world.shade_into(vertex, -ray.direction, exterior_ior, choice.x, shading);
+    world.shade_into(vertex, -ray.direction, interface.exterior_ior(world, path), choice.x, shading);
     choice.y
-}
-
-/// Index of refraction of the medium around the solid that the path hit. Where the path has a
-/// wavelength, the index is relative to a solid of its index at 587.56 nm.
-fn exterior_ior(world: &World, path: &PathState, interior: Option<InteriorId>) -> f32 {
-    let PathHistory { interiors: inside, wavelength, .. } = path.history;
-    if inside.is_empty() && wavelength.is_none() {
-        return 1.0;
-    }
-    let others = interior.map_or(inside, |id| inside.exited(id));
-    let exterior = others.top(world.interiors()).map_or(1.0, |interior| interior.ior_at(wavelength));
-    let solid = interior.and_then(|id| world.interior_at(id)).filter(|_| wavelength.is_some());
-    solid.map_or(exterior, |solid| exterior * (solid.ior / solid.ior_at(wavelength)))
 }
 
 impl<'a> ShadingPoint<'a> {
     #[inline]
-    pub fn new(ray: &Ray, vertex: &'a Vertex, shading: &'a Shading, interior: Option<InteriorId>) -> Self {
+    pub fn new(ray: &Ray, vertex: &'a Vertex, shading: &'a Shading, interface: &'a Interface) -> Self {
         let wo = -ray.direction;
         let local = shading.frame.to_local(wo);
-        Self { surface: &vertex.surface, shading, wo, local, time: ray.time, interior, visible_casters: None }
+        Self { surface: &vertex.surface, shading, wo, local, time: ray.time, interface, visible_casters: None }
     }
 
     /// Factor of a light sample's contribution: its multiple importance sampling weight over
@@ -233,7 +173,7 @@ impl<'a> ShadingPoint<'a> {
     /// Solids that contain a ray that continues in the direction `wi`, in the shading frame.
     pub fn interiors_towards(&self, path: &PathState, wi: Vec3) -> Interiors {
         if wi.z * self.local.z < 0.0 {
-            interiors_after(path, self.surface.normal.dot(self.wo) > 0.0, self.interior)
+            self.interface.interiors_behind(path, self.surface.normal.dot(self.wo) > 0.0)
         } else {
             path.history.interiors
         }

@@ -10,7 +10,7 @@ use juggler_world::{LightSampleContext, World};
 const SHADOW_RAY_FRACTION: f32 = 1.0 - 1e-4;
 
 impl Path {
-    /// Samples a collision in the current medium within `distance`. Returns whether there is one;
+    /// Samples a collision in the current medium within `distance` of the ray's `t_min`. Returns whether there is one;
     /// the path then scatters or ends there.
     pub fn sample_medium(
         &self,
@@ -34,7 +34,7 @@ impl Path {
         let volume = u32::from(path.history.events.volume);
         if path.depth + 1 < self.max_depth && self.max_volume.is_none_or(|limit| volume < limit) {
             let phase = HenyeyGreenstein { anisotropy: medium.anisotropy };
-            self.scatter(world, &Ray { origin: ray.at(t), ..*ray }, path, phase, output);
+            self.scatter(world, &Ray { origin: ray.at(ray.t_min + t), ..*ray }, path, phase, output);
         }
         true
     }

@@ -2,6 +2,7 @@
 //! Dielectrics in Ray Traced Images, 2002).
 
 use super::{Medium, Wavelength};
+use std::cmp::Reverse;
 
 /// Maximum number of nested solids that a path tracks.
 pub const MAX_INTERIORS: usize = 4;
@@ -90,26 +91,34 @@ impl Interiors {
         if inwards { self.entered(id) } else { self.exited(id) }
     }
 
-    /// Whether another solid of higher priority hides the interface of solid `id`, which the path
-    /// crosses inwards or outwards. `interiors` is the table of all interiors.
+    /// Whether another solid hides the interface of solid `id`, which the path crosses inwards or
+    /// outwards: one of higher priority, or of equal priority with the same or a lower id.
+    /// `interiors` is the table of all interiors.
     #[inline]
     pub fn hides_interface(&self, id: InteriorId, inwards: bool, interiors: &[Interior]) -> bool {
         if self.is_empty() {
             return false;
         }
         let others = if inwards { *self } else { self.exited(id) };
-        let own = interiors.get(id.index()).map(|own| own.priority);
-        others.top(interiors).map(|other| other.priority) > own
+        let rank = |id: InteriorId| interiors.get(id.index()).map(|own| (own.priority, Reverse(id.0)));
+        others.top_id(interiors).and_then(rank) >= rank(id)
     }
 
-    /// Interior that the path is in: among the solids of the highest priority, the one entered
-    /// last. `interiors` is the table of all interiors.
+    /// Interior that the path is in: that of [`Interiors::top_id`].
     #[inline]
     pub fn top<'i>(&self, interiors: &'i [Interior]) -> Option<&'i Interior> {
         if self.is_empty() {
             return None;
         }
-        let known = self.solids.iter().filter_map(|solid| interiors.get(usize::from(solid.checked_sub(1)?)));
-        known.reduce(|best, next| if next.priority >= best.priority { next } else { best })
+        self.top_id(interiors).and_then(|id| interiors.get(id.index()))
+    }
+
+    /// Id of the interior that the path is in: among the solids of the highest priority, the one of
+    /// the lowest id. The order of entry does not count, so that the medium of an overlap is the
+    /// same for all paths. `interiors` is the table of all interiors.
+    pub fn top_id(&self, interiors: &[Interior]) -> Option<InteriorId> {
+        let ids = self.solids.iter().filter_map(|solid| solid.checked_sub(1)).map(InteriorId);
+        let known = ids.filter_map(|id| Some((Reverse(interiors.get(id.index())?.priority), id.0)));
+        known.min().map(|(_, id)| InteriorId(id))
     }
 }

@@ -7,6 +7,14 @@ use crate::arithmetic::clamp_to_f32_range;
 use juggler_math::{Ray, Vec2};
 
 impl Mesh {
+    /// [`Shape::intersect`](crate::Shape::intersect) for the hits that follow the distance and
+    /// triangle `after`: hits before the distance do not count, nor those at it of triangles up to
+    /// that index.
+    pub fn intersect_after(&self, ray: &Ray, after: (f32, Option<u32>)) -> Option<Hit> {
+        let hit = self.prepared.as_ref()?.closest_after(&clamp_to_f32_range(ray), after)?;
+        Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), primitive: hit.index })
+    }
+
     /// [`Shape::intersect`](crate::Shape::intersect) for many rays, in object space. Set `coherent`
     /// if neighboring rays have about the same origin and direction: they are then traced in
     /// packets. The rays are overwritten.

@@ -54,6 +54,12 @@ impl MovingMesh {
         tree.closest(&ray)
     }
 
+    /// The nearest hit at the ray's time that follows the distance and triangle `after`.
+    pub fn closest_after(&self, ray: &Ray, after: (f32, Option<u32>)) -> Option<TriangleHit> {
+        let (tree, ray) = self.at(ray)?;
+        tree.closest_after(&ray, after)
+    }
+
     /// Whether the ray hits anything at its time.
     pub fn any(&self, ray: &Ray) -> bool {
         self.at(ray).is_some_and(|(tree, ray)| tree.any(&ray))

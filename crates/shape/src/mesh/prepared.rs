@@ -111,6 +111,14 @@ impl PreparedMesh {
         }
     }
 
+    /// The nearest hit at the ray's time that follows the distance and triangle `after`.
+    pub fn closest_after(&self, ray: &Ray, after: (f32, Option<u32>)) -> Option<TriangleHit> {
+        match &self.tree {
+            Tree::Still(bvh) => bvh.filtered(|_, hit| hit.is_after(after)).closest(ray),
+            Tree::Moving(tree) => tree.closest_after(ray, after),
+        }
+    }
+
     /// Whether the ray hits anything at its time.
     pub fn any(&self, ray: &Ray) -> bool {
         match &self.tree {
