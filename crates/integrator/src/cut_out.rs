@@ -20,8 +20,9 @@ impl VertexOutput<'_> {
     /// there is none, continues the camera ray behind them.
     pub(crate) fn skip_cut_outs(&mut self, world: &World, ray: &Ray, vertex: &Vertex) -> Option<Member> {
         let first = Member { vertex: *vertex, t: ray.t_max };
-        let is_cut_out =
-            |path: &PathState, vertex: &Vertex| world.is_cut_out(vertex, -ray.direction, || path.sampler.skipped(0).next_1d());
+        let is_cut_out = |path: &PathState, vertex: &Vertex| {
+            world.is_cut_out(vertex, -ray.direction, || path.sampler.skipped(0).next_1d())
+        };
         if !is_cut_out(self.path, vertex) {
             return Some(first);
         }

@@ -18,7 +18,7 @@ pub struct Boundary {
     /// Medium inside the solid.
     pub medium: Medium,
     /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
-    /// and Budge 2002), among equals the one that a path entered last.
+    /// and Budge 2002), among equals the one whose material comes first.
     pub priority: i32,
 }
 

@@ -51,7 +51,7 @@ pub struct Dielectric {
     /// Medium inside the solid.
     pub medium: Medium,
     /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
-    /// and Budge 2002), among equals the one that a path entered last. Let a drink reach slightly
+    /// and Budge 2002), among equals the one whose material comes first. Let a drink reach slightly
     /// into its glass, and give the glass the higher priority.
     pub priority: i32,
     /// Adds the energy that single scattering between microfacets loses. Set it to `false` to match

@@ -100,7 +100,7 @@ pub struct Principled {
     /// of glTF.
     pub medium: Medium,
     /// Priority where solids overlap: the solid of the highest priority fills the overlap (Schmidt
-    /// and Budge 2002), among equals the one that a path entered last.
+    /// and Budge 2002), among equals the one whose material comes first.
     pub priority: i32,
     /// Emitted radiance on all `sides`, 0 to 1e30 per channel, also after multiplication by
     /// `emissive_strength`. Black emits nothing. A clearcoat reflects some of it back.

@@ -31,6 +31,14 @@ impl Member {
     }
 }
 
+/// Whether a ray starts at the place of a surface that it hits: on the surface's tangent plane, within
+/// rounding errors. Such a ray left another surface there, which hides this one if it may be absent.
+pub fn starts_at(ray: &Ray, vertex: &Vertex) -> bool {
+    let surface = &vertex.surface;
+    let rounding = f32::EPSILON * surface.point.abs().max_element();
+    surface.normal.dot(surface.point - ray.origin).abs() <= 4.0 * (surface.position_error + rounding)
+}
+
 /// Surfaces at the place of a vertex, in the order of their hits along the ray. Neighboring triangles
 /// of a mesh that a ray hits at their common edge count as one.
 #[derive(Clone)]

@@ -42,7 +42,7 @@ mod tests;
 
 pub use casters::{CasterId, CausticCaster, VisibleCasters};
 pub use closest_after::HitKey;
-pub use cluster::{Cluster, Member};
+pub use cluster::{Cluster, Member, starts_at};
 pub use differential::SurfaceDifferential;
 pub use emitters::{EmitterId, EmitterSample, LightSampleContext};
 pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
@@ -334,7 +334,7 @@ impl World {
 
     /// Whether the material has an opacity below 1, or is absent for some rays.
     #[inline]
-    fn may_be_open(&self, vertex: &Vertex) -> bool {
+    pub fn may_be_open(&self, vertex: &Vertex) -> bool {
         self.has_opacity && self.materials.has_opacity(vertex.material)
             || self.has_absence && self.materials.has_absence(vertex.material)
     }

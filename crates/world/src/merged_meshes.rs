@@ -2,8 +2,8 @@
 //! overlapping bounding boxes cost nothing. The hits are the same: ties go to the lower shape
 //! index, and within a mesh to the lower triangle.
 
-use super::large_mesh::RayCoherence;
 use super::closest_after::HitKey;
+use super::large_mesh::RayCoherence;
 use super::{Object, WorldHit};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
 use juggler_math::{Motion, Ray, Transform, Vec2, Vec3};

@@ -1,8 +1,9 @@
 //! Ray queries: nearest hit, occlusion, and transmittance of shadow rays.
 
+use super::cluster::{Cluster, starts_at};
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::RayCoherence;
-use super::{Cluster, Content, Geometry, Vertex, World, WorldHit};
+use super::{Content, Geometry, Vertex, World, WorldHit};
 use arrayvec::ArrayVec;
 use juggler_bvh::{Leaf, PACKET};
 use juggler_material::TexturedPoint;
@@ -335,10 +336,13 @@ impl World {
                 return transmittance;
             }
             let first = self.vertex(&rest, &hit);
+            // Skip a surface that the ray leaves, beside the one that it starts from.
+            let is_left = |vertex: &Vertex| self.may_be_open(vertex) && starts_at(&ray, vertex);
             let mut place: ArrayVec<Vertex, MAX_PLACE> = ArrayVec::new();
-            place.push(first);
+            place.extend((!is_left(&first)).then_some(first));
             let mut cluster = Cluster::new(self, &rest, &first).up_to(ray.t_max);
-            place.extend(cluster.by_ref().map(|member| member.vertex).take(MAX_PLACE - 1));
+            let others = cluster.by_ref().map(|member| member.vertex).filter(|vertex| !is_left(vertex));
+            place.extend(others.take(MAX_PLACE - 1));
             transmittance *= filter(&place);
             if transmittance.is_black() {
                 return transmittance;

@@ -11,7 +11,7 @@ use super::{Dimension, Path};
 use arrayvec::ArrayVec;
 use juggler_material::medium::{Interior, InteriorId, Interiors};
 use juggler_math::Ray;
-use juggler_world::{Cluster, MAX_PASS_THROUGHS, Member, Vertex, World};
+use juggler_world::{Cluster, MAX_PASS_THROUGHS, Member, Vertex, World, starts_at};
 
 /// Maximum number of interfaces at one place.
 const MAX_INTERFACES: usize = 8;
@@ -125,7 +125,14 @@ impl Path {
         loop {
             let ray = ray.with_t_max(member.t);
             let mut here = output.at(&path);
-            let (vertex, interiors, history) = match self.interface(world, &ray, &path, member, &mut cluster) {
+            // Skip a surface that the ray leaves, beside the one that it starts from.
+            let is_sheet = world.interior(&member.vertex).is_none() && world.may_be_open(&member.vertex);
+            let passage = if is_sheet && starts_at(&ray, &member.vertex) {
+                Passage::Straight(path.history.interiors)
+            } else {
+                self.interface(world, &ray, &path, member, &mut cluster)
+            };
+            let (vertex, interiors, history) = match passage {
                 Passage::Straight(interiors) => (member.vertex, Some(interiors), path.history),
                 Passage::Surface(Member { vertex, t }, interface) => {
                     let ray = ray.with_t_max(t);
@@ -149,14 +156,7 @@ impl Path {
 
     /// Determines the surface of all those at the place of `member` that the path interacts with.
     #[inline]
-    fn interface(
-        &self,
-        world: &World,
-        ray: &Ray,
-        path: &PathState,
-        member: Member,
-        cluster: &mut Cluster,
-    ) -> Passage {
+    fn interface(&self, world: &World, ray: &Ray, path: &PathState, member: Member, cluster: &mut Cluster) -> Passage {
         if world.interior(&member.vertex).is_none() {
             // Rays that leave an opaque surface inside a medium start before the interfaces at its place.
             let touching = (!path.history.interiors.is_empty()).then(|| cluster.clone());
@@ -221,7 +221,10 @@ fn net_interface(world: &World, ray: &Ray, path: &PathState, interfaces: &Interf
         (None, None) => return Passage::Straight(behind),
     };
     let net = Some(NetInterface { exterior, behind });
-    Passage::Surface(grown(*chosen, interfaces.iter().map(|(member, ..)| *member)), Interface { interior, is_present: true, net })
+    Passage::Surface(
+        grown(*chosen, interfaces.iter().map(|(member, ..)| *member)),
+        Interface { interior, is_present: true, net },
+    )
 }
 
 /// The surface with an error that reaches beyond all others at its place, so that rays that leave it

@@ -10,6 +10,8 @@
 
 use super::{Clamp, Integrator, PathHistory, PathState, VertexOutput};
 use caustic::HitEmitter;
+use crossing::Interface;
+pub use crossing::passed;
 use juggler_material::Shading;
 use juggler_material::medium::{InteriorId, Wavelength};
 use juggler_math::{Ray, Rgb};
@@ -17,8 +19,6 @@ use juggler_world::{LightSampleContext, ShadowMode, Vertex, VisibleCasters, Worl
 pub use sampling::Sampling;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crossing::Interface;
-pub use crossing::passed;
 use surface::ShadingPoint;
 
 mod caustic;

@@ -89,9 +89,19 @@ fn interior_of_highest_priority_wins() {
     assert_eq!((top(Interiors::NONE), top(in_glass)), (None, Some(1.5)));
     // The glass hides the water where both overlap; outside of the glass there is water.
     assert_eq!((top(in_glass.entered(water)), top(in_glass.entered(water).exited(glass))), (Some(1.5), Some(1.33)));
-    // Among equals, the solid that was entered last.
-    assert_eq!(top(in_glass.entered(diamond)), Some(2.4));
-    assert_eq!(top(in_glass.entered(diamond).exited(diamond)), Some(1.5));
+    // Among equals, the solid of the lowest id, in whatever order they were entered.
+    let both = [in_glass.entered(diamond), Interiors::NONE.entered(diamond).entered(glass)];
+    for inside in both {
+        assert_eq!(top(inside), Some(1.5));
+        assert_eq!(top(inside.exited(diamond)), Some(1.5));
+        assert_eq!(top(inside.exited(glass)), Some(2.4));
+    }
+    // It hides the interfaces of the other, and those of another solid of the same material.
+    let hides = |inside: Interiors, id, inwards| inside.hides_interface(id, inwards, &table);
+    assert!(hides(in_glass, diamond, true) && hides(both[0], diamond, false) && hides(in_glass, glass, true));
+    assert!(hides(in_glass.entered(glass), glass, false) && !hides(in_glass, glass, false));
+    let in_diamond = Interiors::NONE.entered(diamond);
+    assert!(!hides(in_diamond, glass, true) && !hides(both[1], glass, false) && hides(in_glass, water, true));
     assert_eq!(in_glass.exited(water), in_glass);
     let full = (0..9).fold(Interiors::NONE, |inside, _| inside.entered(water));
     assert_eq!((0..MAX_INTERIORS).fold(full, |inside, _| inside.exited(water)), Interiors::NONE);

@@ -20,6 +20,7 @@ mod skies;
 mod snippets;
 mod strategies;
 mod threads;
+mod touching;
 mod views;
 mod white_kinds;
 mod white_worlds;
