@@ -7,7 +7,7 @@ use super::{Content, Geometry, Vertex, World, WorldHit};
 use arrayvec::ArrayVec;
 use juggler_bvh::{Leaf, PACKET};
 use juggler_material::TexturedPoint;
-use juggler_material::medium::Interiors;
+use juggler_material::medium::{InteriorId, Interiors};
 use juggler_math::{Ray, Rgb};
 use std::cell::Cell;
 use std::ops::Range;
@@ -289,25 +289,33 @@ impl World {
     }
 
     /// Share of light that passes straight through the surfaces at one place, and the solids behind
-    /// them. The interfaces of solids act as one: they block no light if the medium before them is
-    /// the medium behind them.
+    /// them. The interfaces of several solids act as one: they block no light if the medium before
+    /// them is the medium behind them.
     fn straight_transmittance(&self, ray: &Ray, inside: Interiors, place: &[Vertex]) -> (f32, Interiors) {
-        let interiors = self.materials.interiors();
+        let table = self.materials.interiors();
         let of_surface = |vertex: &Vertex| {
             let mesh = self.mesh_point(vertex);
             let at = TexturedPoint { surface: &vertex.surface, mesh: mesh.as_ref() };
             self.materials.straight_transmittance(vertex.material, at, -ray.direction)
         };
         let (mut behind, mut transmittance) = (inside, 1.0);
+        let mut interfaces: ArrayVec<(&Vertex, InteriorId, bool), MAX_PLACE> = ArrayVec::new();
         for vertex in place {
+            let inwards = vertex.surface.normal.dot(ray.direction) < 0.0;
             match self.interior(vertex) {
-                Some(id) => behind = behind.crossed(id, vertex.surface.normal.dot(ray.direction) < 0.0),
+                Some(id) => {
+                    behind = behind.crossed(id, inwards);
+                    _ = interfaces.try_push((vertex, id, inwards));
+                }
                 None => transmittance *= of_surface(vertex),
             }
         }
-        if transmittance > 0.0 && inside.top_id(interiors) != behind.top_id(interiors) {
-            let interfaces = place.iter().filter(|vertex| self.interior(vertex).is_some());
-            transmittance = interfaces.fold(transmittance, |product, vertex| product * of_surface(vertex));
+        let is_hidden = match interfaces.as_slice() {
+            [(_, id, inwards)] => inside.hides_interface(*id, *inwards, table),
+            _ => inside.top_id(table) == behind.top_id(table),
+        };
+        if transmittance > 0.0 && !is_hidden {
+            transmittance *= interfaces.iter().map(|(vertex, ..)| of_surface(vertex)).product::<f32>();
         }
         (transmittance, behind)
     }

@@ -1,0 +1,87 @@
+//! Hits behind hits: all surfaces along a ray, one after another.
+
+use super::{crowd, large_mesh, rays, world_of};
+use crate::*;
+use juggler_math::testing::Random;
+use juggler_math::{Motion, Transform};
+use juggler_shape::{Mesh, MeshData, Shape};
+use std::sync::Arc;
+
+/// Objects of every kind, each twice at the same place, in mixed order: shapes, meshes that are merged
+/// and large ones, moving objects, a mesh whose corners move, and instances.
+fn doubled(random: &mut Random) -> Vec<Object> {
+    let mut objects = crowd(random, 2, Some(MaterialId(0)));
+    objects.push(Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1)));
+    for content in [Content::Geometry(Arc::new(Geometry::new(crowd(random, 1, None)))), objects[0].content.clone()] {
+        let keys = vec![random.transform(), random.transform()];
+        objects.push(Object { content, motion: Motion::from_keys(keys).unwrap(), material: None });
+    }
+    let corners = |y: f32| MeshData {
+        positions: vec![Vec3::new(-30.0, y, -30.0), Vec3::new(30.0, y, -30.0), Vec3::new(0.0, y, 40.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 1], [0, 1, 2]],
+        ..MeshData::default()
+    };
+    let sheet = Mesh::from_keyframes(vec![corners(-1.0), corners(2.0)], None).unwrap();
+    objects.push(Object::new(sheet.into(), Transform::IDENTITY, MaterialId(0)));
+    let mut still: Mesh = corners(1.0).into();
+    still.prepare().unwrap();
+    objects.push(Object::new(still.into(), Transform::IDENTITY, MaterialId(0)));
+    let copies: Vec<Object> = objects.iter().rev().cloned().collect();
+    objects.extend(copies);
+    objects
+}
+
+/// All hits along a ray, in order.
+fn walk(world: &World, ray: &Ray) -> Vec<HitKey> {
+    let mut hit = world.closest(&mut { *ray });
+    let mut keys = Vec::new();
+    while hit.is_some() {
+        keys.push(hit.key());
+        hit = world.closest_after(&mut { *ray }, &hit.key());
+    }
+    keys
+}
+
+#[test]
+fn every_surface_along_a_ray_is_found_once_and_in_order() {
+    let random = &mut Random::new(61);
+    let objects = doubled(random);
+    let world = world_of(objects.clone());
+    let mut first = 0;
+    let alone: Vec<(World, u32)> = objects
+        .into_iter()
+        .map(|object| {
+            let shapes = object.shapes() as u32;
+            first += shapes;
+            (world_of(vec![object]), first - shapes)
+        })
+        .collect();
+    let mut coincident = 0;
+    for ray in (0..60).flat_map(|round| rays(random, round, 5)).collect::<Vec<_>>() {
+        let found = walk(&world, &ray);
+        assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "{found:?}");
+        let of_one = |(one, first): &(World, u32)| -> Vec<HitKey> {
+            walk(one, &ray).into_iter().map(|key| HitKey { shape: key.shape + first, ..key }).collect()
+        };
+        let mut expected: Vec<HitKey> = alone.iter().flat_map(of_one).collect();
+        expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(found, expected);
+        // Each object alone has the hits that follow by distance.
+        for (one, _) in &alone {
+            let (mut distances, mut from) = (Vec::new(), ray);
+            loop {
+                let mut probe = from;
+                if !one.closest(&mut probe).is_some() {
+                    break;
+                }
+                distances.push(probe.t_max);
+                from.t_min = probe.t_max.next_up();
+            }
+            let mut walked: Vec<f32> = walk(one, &ray).iter().map(|key| key.t).collect();
+            walked.dedup();
+            assert_eq!(walked, distances);
+        }
+        coincident += found.windows(2).filter(|pair| pair[0].t == pair[1].t).count();
+    }
+    assert!(coincident > 500, "{coincident}");
+}
