@@ -42,6 +42,7 @@ pub fn path_start(job: &Job) -> PathStart {
 /// Pushes the camera rays of `slots`, indices into the samples of `work`, pixel by pixel with
 /// `samples` per pixel.
 pub fn push_camera_rays(job: &Job, start: &PathStart, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+    queue.from_camera = true;
     let (sampler, halves) = (Sampler::new(job.pattern, job.seed), job.aovs.has_halves());
     let context = PixelContext { job, start, sampler, halves };
     if job.samples == 1 {
