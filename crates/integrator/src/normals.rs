@@ -1,4 +1,4 @@
-//! Shading normals as colors, (n + 1) / 2, in world space.
+//! Shading normals as colors, (n + 1) / 2, in world space: those of the AOV `normal`.
 //!
 //! ```json
 //! {"normals": {}}
@@ -11,7 +11,8 @@ use juggler_world::{Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shading normals in world space as colors, (n + 1) / 2; black where rays hit no surface.
+/// Shading normals in world space, after normal and bump mapping, as colors, (n + 1) / 2; black
+/// where rays hit no surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Normals {}
@@ -21,8 +22,9 @@ impl Integrator for Normals {
         if output.pass_cut_out(world, ray, vertex) {
             return;
         }
-        output.record_surface(world, ray, vertex);
-        let n = vertex.surface.shading_normal * 0.5 + 0.5;
+        let shading = output.shade_surface(world, ray, vertex);
+        output.record_shading(world, ray, vertex, &shading);
+        let n = shading.frame.normal * 0.5 + 0.5;
         output.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
     }
 
