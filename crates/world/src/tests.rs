@@ -11,6 +11,7 @@ use juggler_texture::TextureTable;
 use std::sync::Arc;
 
 mod attributes;
+mod coplanar;
 mod moving;
 
 const NO_LIGHTS: [SceneLight; 0] = [];
