@@ -107,6 +107,24 @@ mod tests {
         assert!(!ShutterCamera::from_keys(keys[0], vec![keys[0]; 3]).moves());
     }
 
+    /// A resampled film shows the same picture with other numbers of columns and rows.
+    #[test]
+    fn resampled_films_keep_their_corners() {
+        let keys = [0.0, 2.0]
+            .map(|x| projection(&format!(r#"{{"perspective": {{"eye": [{x}, 0, 5], "direction": [0, 0.3, -1]}}}}"#)));
+        // Twice as many columns, a third of the rows.
+        let to = UVec2::new(80, 10);
+        for camera in [ShutterCamera::from(keys[0]), ShutterCamera::from_keys(keys[0], vec![keys[1]])] {
+            for (time, share) in [(0.0, [0.0, 1.0]), (0.5, [1.0, 0.0]), (1.0, [0.3, 0.8])] {
+                let film = |size: UVec2| size.as_vec2() * Vec2::from(share);
+                let ray = |camera: &ShutterCamera, size| camera.projection_at(time).ray(film(size), Vec2::ZERO, time);
+                let (original, resampled) = (ray(&camera, SIZE), ray(&camera.resampled(SIZE, to), to));
+                assert_eq!(resampled.origin, original.origin);
+                assert!(resampled.direction.abs_diff_eq(original.direction, 1e-6), "{resampled:?} for {original:?}");
+            }
+        }
+    }
+
     #[test]
     fn eight_rays_equal_single_rays() {
         let from = projection(r#"{"thin_lens": {"eye": [0, 0, 5], "lens_radius": 0.1}}"#);

@@ -1,8 +1,8 @@
-//! Signals that end a render in an orderly way.
+//! Signals that end a render in an orderly way, and a signal that must not end the program.
 
 use crate::failure::{Failure, plain};
 #[cfg(unix)]
-use signal_hook::consts::SIGHUP;
+use signal_hook::consts::{SIGHUP, SIGXFSZ};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 #[cfg(feature = "serve")]
@@ -28,6 +28,14 @@ fn is_ignored(status: &str, signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
     mask.is_none_or(|mask| (mask >> (signal - 1)) & 1 == 1)
+}
+
+/// Ignores the signal SIGXFSZ, so that a write beyond the limit of file sizes fails like one to a
+/// full disk: with a message, and without the incomplete file.
+pub fn ignore_file_size_signal() {
+    // A signal that cannot be watched keeps its default effect.
+    #[cfg(unix)]
+    drop(flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))));
 }
 
 /// Record of received signals.

@@ -21,6 +21,7 @@ mod value;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    interrupt::ignore_file_size_signal();
     let words: Vec<_> = std::env::args_os().collect();
     let args = match args::Args::parse_arguments(&words, console::color_choice()) {
         Ok(args) => args,

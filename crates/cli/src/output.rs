@@ -59,9 +59,20 @@ fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
 }
 
 /// Fails if a picture would go to a terminal, where its bytes are unreadable and may act as control
-/// characters.
+/// characters, or nowhere.
 pub fn check_stream(output: &str) -> Result<(), Failure> {
-    if output == STANDARD_OUTPUT && std::io::stdout().is_terminal() {
+    if output != STANDARD_OUTPUT {
+        return Ok(());
+    }
+    if is_standard_output_closed() {
+        return Err(Failure::Invalid(
+            "-o - writes the picture to standard output, which is closed (or /dev/null, opened for reading and \
+             writing): give a file (-o picture.png), or redirect the output to a file (> picture.png) or a program \
+             (| display)"
+                .into(),
+        ));
+    }
+    if std::io::stdout().is_terminal() {
         return Err(Failure::Invalid(
             "-o - writes the picture to standard output, which is a terminal: give a file (-o picture.png), or \
              redirect the output to a file (> picture.png) or a program (| display)"
@@ -69,6 +80,22 @@ pub fn check_stream(output: &str) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Whether the program started without standard output. The standard library then opens `/dev/null`
+/// for reading and writing in its place; `> /dev/null` opens it for writing only.
+fn is_standard_output_closed() -> bool {
+    let is_null = std::fs::read_link("/proc/self/fd/1").is_ok_and(|file| file == Path::new("/dev/null"));
+    is_null && std::fs::read_to_string("/proc/self/fdinfo/1").is_ok_and(|info| is_read_and_write(&info))
+}
+
+/// Whether a file of this `/proc` information was opened for reading and writing.
+fn is_read_and_write(info: &str) -> bool {
+    const ACCESS_MODE: u32 = 3;
+    const READ_AND_WRITE: u32 = 2;
+    let flags = info.lines().find_map(|line| line.strip_prefix("flags:"));
+    let flags = flags.and_then(|flags| u32::from_str_radix(flags.trim(), 8).ok());
+    flags.is_some_and(|flags| flags & ACCESS_MODE == READ_AND_WRITE)
 }
 
 /// Fails if the folder of a file does not exist, before anything is rendered.
@@ -114,6 +141,14 @@ mod tests {
         }
         assert_eq!(numbered("f##.png", 12_345), "f12345.png");
         assert!(has_number("f_%04d.webp") && has_number("a/f#.webp") && !has_number("a#/f.webp"));
+    }
+
+    #[test]
+    fn access_mode_is_read_from_the_flags() {
+        let info = |flags: &str| format!("pos:\t0\nflags:\t{flags}\nmnt_id:\t29\n");
+        assert!(is_read_and_write(&info("0100002")) && is_read_and_write(&info("02100002")));
+        let others = [info("0100000"), info("0100001"), info("0100020"), info("x"), String::new()];
+        assert!(others.iter().all(|info| !is_read_and_write(info)));
     }
 
     #[test]

@@ -1,13 +1,20 @@
 //! Atomic file writes: data go to a temporary file that replaces the destination by renaming, so
 //! that a failed or interrupted run leaves the old file untouched. The temporary file `.NAME.part`
 //! is locked by its writer; the next process that writes NAME removes one left by a killed process.
+//! The temporary file of a very long NAME has the beginning of that name.
 
 use crate::regular;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
+
+/// Maximum number of bytes of a destination's name in the name of its temporary file. File systems
+/// allow 255 bytes, of which the leading period, a random suffix and `.part` need 12.
+const MAX_NAME_BYTES: usize = 243;
+/// Maximum number of symbolic links in a row, as on Linux.
+const MAX_LINKS: usize = 40;
 
 /// A temporary file beside its destination. Dropping it without [`AtomicFile::commit`] removes it.
 #[derive(Debug)]
@@ -18,13 +25,13 @@ pub struct AtomicFile {
 
 impl AtomicFile {
     /// Creates a temporary file for `path`. If `path` is a symbolic link, its target will be
-    /// replaced.
+    /// replaced, or created if it does not exist.
     ///
     /// # Errors
     ///
     /// `path` is not a regular file or the temporary file cannot be created.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let path = link_target(path)?;
         let name = path.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::IsADirectory))?;
         let existing = fs::metadata(&path).ok();
         if existing.as_ref().is_some_and(|m| !m.is_file()) {
@@ -57,11 +64,30 @@ impl AtomicFile {
     }
 }
 
+/// Path that a chain of symbolic links ends at, whether a file exists there or not.
+fn link_target(path: &Path) -> io::Result<PathBuf> {
+    let mut end = path.to_owned();
+    for _ in 0..=MAX_LINKS {
+        match fs::read_link(&end) {
+            // A relative target starts at the folder of the link.
+            Ok(target) => end = end.parent().unwrap_or(Path::new("")).join(target),
+            Err(_) => return Ok(end),
+        }
+    }
+    // Fails with the system's message about loops.
+    fs::canonicalize(path)
+}
+
 /// Creates `.NAME.part` beside the destination, or a file with a random suffix if another process
 /// is writing that one.
 fn create_temporary(folder: &Path, name: &OsStr, permissions: Option<&Permissions>) -> io::Result<NamedTempFile> {
-    let mut prefix = std::ffi::OsString::from(".");
-    prefix.push(name);
+    let mut prefix = OsString::from(".");
+    if name.len() <= MAX_NAME_BYTES {
+        prefix.push(name);
+    } else {
+        let name = name.to_string_lossy();
+        prefix.push(name.get(..name.floor_char_boundary(MAX_NAME_BYTES)).unwrap_or_default());
+    }
     let create = |random: usize| {
         let mut builder = tempfile::Builder::new();
         builder.prefix(&prefix).suffix(".part").rand_bytes(random);
@@ -220,6 +246,45 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         assert!(AtomicFile::create(folder.path()).is_err());
         assert!(AtomicFile::create(&folder.path().join("none/a.txt")).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_to_missing_files_create_the_files() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        fs::create_dir(place("out")).unwrap();
+        symlink("second", place("first")).unwrap();
+        symlink("out/a.txt", place("second")).unwrap();
+        symlink(place("out/b.txt"), place("absolute")).unwrap();
+        symlink("none/a.txt", place("lost")).unwrap();
+        symlink("round", place("round")).unwrap();
+        for (link, target) in [("first", "out/a.txt"), ("absolute", "out/b.txt")] {
+            write(&place(link), b"new").unwrap();
+            assert!(fs::symlink_metadata(place(link)).unwrap().is_symlink(), "{link}");
+            assert_eq!(fs::read_to_string(place(target)).unwrap(), "new", "{link}");
+        }
+        let failure = |link: &str| write(&place(link), b"new").unwrap_err();
+        assert_eq!(failure("lost").kind(), io::ErrorKind::NotFound);
+        assert!(failure("round").to_string().contains("symbolic links"), "{}", failure("round"));
+        assert_eq!(names(folder.path()), ["absolute", "first", "lost", "out", "round", "second"]);
+        assert_eq!(names(&place("out")), ["a.txt", "b.txt"]);
+    }
+
+    #[test]
+    fn names_may_be_as_long_as_file_systems_allow() {
+        let folder = tempfile::tempdir().unwrap();
+        // Two bytes per character, cut after half of one.
+        for name in ["x".repeat(255), format!("x{}", "ä".repeat(127)), "y".repeat(244)] {
+            let path = folder.path().join(&name);
+            let (first, second) = (AtomicFile::create(&path).unwrap(), AtomicFile::create(&path).unwrap());
+            first.handle().unwrap().write_all(b"first").unwrap();
+            first.commit().unwrap();
+            second.commit().unwrap();
+            assert_eq!(names(folder.path()), [name]);
+            fs::remove_file(path).unwrap();
+        }
     }
 
     #[cfg(unix)]

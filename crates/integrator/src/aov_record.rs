@@ -221,9 +221,14 @@ impl VertexOutput<'_> {
     /// Records the surface that a camera ray hit, for integrators that do not trace light.
     pub fn record_surface(&mut self, world: &World, ray: &Ray, vertex: &Vertex) {
         if self.is_recording() {
-            let choice = if world.is_simple(vertex) { 0.0 } else { self.path.sampler.skipped(0).next_1d() };
-            self.record_shading(world, ray, vertex, &world.shade(vertex, -ray.direction, 1.0, choice));
+            self.record_shading(world, ray, vertex, &self.shade_surface(world, ray, vertex));
         }
+    }
+
+    /// Shading of the surface that a camera ray hit, for integrators that do not trace light.
+    pub fn shade_surface(&self, world: &World, ray: &Ray, vertex: &Vertex) -> Shading {
+        let choice = if world.is_simple(vertex) { 0.0 } else { self.path.sampler.skipped(0).next_1d() };
+        world.shade(vertex, -ray.direction, 1.0, choice)
     }
 
     /// Records a surface that the path hit.

@@ -1,4 +1,4 @@
-//! Shading normals as colors, (n + 1) / 2, in world space.
+//! Shading normals as colors, (n + 1) / 2, in world space: those of the AOV `normal`.
 //!
 //! ```json
 //! {"normals": {}}
@@ -11,7 +11,8 @@ use juggler_world::{Member, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shading normals in world space as colors, (n + 1) / 2; black where rays hit no surface.
+/// Shading normals in world space, after normal and bump mapping, as colors, (n + 1) / 2; black
+/// where rays hit no surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Normals {}
@@ -20,8 +21,9 @@ impl Integrator for Normals {
     fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
         let Some(Member { vertex, t }) = output.skip_cut_outs(world, ray, vertex) else { return };
         let (ray, vertex) = (&ray.with_t_max(t), &vertex);
-        output.record_surface(world, ray, vertex);
-        let n = vertex.surface.shading_normal * 0.5 + 0.5;
+        let shading = output.shade_surface(world, ray, vertex);
+        output.record_shading(world, ray, vertex, &shading);
+        let n = shading.frame.normal * 0.5 + 0.5;
         output.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
     }
 

@@ -32,6 +32,9 @@ pub struct Queue {
     pub rays: Vec<Ray>,
     /// State of the path that each ray belongs to.
     pub paths: Vec<PathState>,
+    /// Whether the rays are camera rays. Rays that passed straight through a surface are not, even
+    /// though their paths have no vertex yet.
+    pub from_camera: bool,
 }
 
 impl Queue {
@@ -58,6 +61,7 @@ impl Queue {
     pub fn clear(&mut self) {
         self.rays.clear();
         self.paths.clear();
+        self.from_camera = false;
     }
 }
 

@@ -124,12 +124,16 @@ mod tests {
 
     /// Share of the surface that is opaque at this distance, in texels that a footprint covers.
     fn coverage(filter: &str, texels: f32) -> f64 {
+        coverage_above(0.5, filter, texels)
+    }
+
+    fn coverage_above(cutoff: f32, filter: &str, texels: f32) -> f64 {
         let json = format!(r#"{{"image": {{"file": "leaves", "channel": "a", "filter": "{filter}"}}}}"#);
         let leaves: AnyTexture = serde_json::from_str(&json).unwrap();
         let (textures, errors) = TextureTable::compile([("leaves".to_owned(), leaves)], &Leaves);
         assert!(errors.is_empty(), "{errors:?}");
         let opacity = textures.resolve("opacity", &Input::product("leaves", 1.0)).unwrap();
-        let mask = CompiledMask::new(opacity, Some(0.5), MaterialId::NONE);
+        let mask = CompiledMask::new(opacity, Some(cutoff), MaterialId::NONE);
         let opaque = (0..40_000).filter(|i| {
             let uv = Vec2::new((i % 200) as f32 + 0.5, (i / 200) as f32 + 0.5) / 200.0;
             let mut surface = Surface::new(Vec3::ZERO, 0.0, Vec3::Z, uv);
@@ -137,6 +141,19 @@ mod tests {
             mask.opacity(&textures, &ShadingView::along_normal(&surface)) == 1.0
         });
         opaque.count() as f64 / 40_000.0
+    }
+
+    /// An opacity equal to the threshold is present (glTF 2.0, section 3.9.4: "greater than or
+    /// equal").
+    #[test]
+    fn opacity_equal_to_the_cutoff_is_opaque() {
+        for (opacity, cutoff, is_opaque) in [(0.5, 0.5, true), (0.5, 0.5f32.next_up(), false), (0.0, 0.0, true)] {
+            let mask = CompiledMask::new(Slot::Value(opacity), Some(cutoff), MaterialId::NONE);
+            assert_eq!(mask.is_opaque(), is_opaque, "{opacity} at {cutoff}");
+        }
+        // Texels of opacity 1 and 0 at thresholds of 1 and 0.
+        let texels = coverage("nearest", 0.0);
+        assert_eq!([1.0, 0.0].map(|cutoff| coverage_above(cutoff, "nearest", 0.0)), [texels, 1.0]);
     }
 
     #[test]

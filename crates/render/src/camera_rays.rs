@@ -42,6 +42,7 @@ pub fn path_start(job: &Job) -> PathStart {
 /// Pushes the camera rays of `slots`, indices into the samples of `work`, pixel by pixel with
 /// `samples` per pixel.
 pub fn push_camera_rays(job: &Job, start: &PathStart, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+    queue.from_camera = true;
     let (sampler, halves) = (Sampler::new(job.pattern, job.seed), job.aovs.has_halves());
     let context = PixelContext { job, start, sampler, halves };
     if job.samples == 1 {
@@ -193,7 +194,43 @@ impl<'j> Pixel<'j> {
 
 #[cfg(test)]
 mod tests {
-    use super::{FILM_DIMENSIONS, LENS_DIMENSIONS, TIME_DIMENSION};
+    use super::super::tests::{job, read, world};
+    use super::*;
+    use juggler_camera::{AnyCamera, ShutterCamera};
+    use juggler_integrator::{AnyIntegrator, Path};
+    use juggler_math::Vec3;
+
+    /// Film position, lens position and time of a pixel's samples are independent: the correlation
+    /// of any two of them is small.
+    #[test]
+    fn film_lens_and_time_are_independent() {
+        const SAMPLES: u32 = 256;
+        let key = |z: f32| {
+            let lens = format!(
+                r#"{{"thin_lens": {{"eye": [0, 0, {z}], "direction": [0, 0, -1], "lens_radius": 1, "focus_distance": 4}}}}"#
+            );
+            read::<AnyCamera>(&lens).projection(UVec2::ONE).unwrap()
+        };
+        let camera = ShutterCamera::from_keys(key(5.0), vec![key(6.0)]);
+        let (world, integrator) = (world(&[], &[], Rgb::WHITE), AnyIntegrator::from(Path::default()));
+        let job = job(&world, &camera, &integrator, SAMPLES);
+        let work = Work::first(juggler_camera::film::Rect { x: 0, y: 0, width: 1, height: 1 }, SAMPLES);
+        let mut queue = Queue::default();
+        push_camera_rays(&job, &path_start(&job), &work, SAMPLES.into(), 0..SAMPLES.into(), &mut queue);
+        // The focal plane shows the film position, and the origin the lens position.
+        let of_ray = |ray: &juggler_math::Ray| {
+            let focus: Vec3 = ray.origin + ray.direction * (4.0 / -ray.direction.z);
+            [focus.x, focus.y, ray.origin.x, ray.origin.y, ray.time]
+        };
+        let rays: Vec<[f32; 5]> = queue.rays.iter().map(of_ray).collect();
+        let mean = |f: &dyn Fn(&[f32; 5]) -> f32| rays.iter().map(f).sum::<f32>() / rays.len() as f32;
+        let means: [f32; 5] = std::array::from_fn(|i| mean(&|ray| ray[i]));
+        let covariance = |i: usize, j: usize| mean(&|ray| (ray[i] - means[i]) * (ray[j] - means[j]));
+        for (i, j) in (0..5).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let correlation = covariance(i, j) / (covariance(i, i) * covariance(j, j)).sqrt();
+            assert!(correlation.abs() < 0.15, "components {i} and {j}: {correlation}");
+        }
+    }
 
     #[test]
     fn dimensions_of_a_camera_ray_are_distinct() {

@@ -68,6 +68,9 @@ pub fn render<E: From<Cancelled>>(
     for band in bands(region, schedule.band_pixels) {
         let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
         let render_tile = |pixels: Rect| {
+            if control.is_cancelled() {
+                return;
+            }
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
             // Compute the means before locking the film.

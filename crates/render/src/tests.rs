@@ -20,6 +20,7 @@ mod blur;
 mod cancelling;
 mod clamping;
 mod cones;
+mod filters;
 mod inside;
 mod inspecting;
 mod opacity;

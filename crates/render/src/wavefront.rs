@@ -160,8 +160,7 @@ impl<'j> Engine<'j> {
 
     fn nearest(&mut self, queue: &mut Queue) {
         self.hits.resize(queue.len(), WorldHit::NONE);
-        let from_camera = queue.paths.first().is_some_and(|path| path.depth == 0);
-        if from_camera {
+        if queue.from_camera {
             self.job.world.closest_packet(&mut queue.rays, &mut self.hits);
         } else {
             self.rays.secondary += queue.len() as u64;
@@ -246,6 +245,7 @@ impl<'j> Engine<'j> {
     fn stack_rest(&mut self, queue: &Queue, done: usize) {
         if done < queue.len() {
             let mut rest = self.spare.pop().unwrap_or_default();
+            rest.from_camera = queue.from_camera;
             for i in done..queue.len() {
                 // Restore the maximum distance, so that the ray is intersected anew.
                 let ray = Ray { t_max: f32::INFINITY, ..queue.rays[i] };

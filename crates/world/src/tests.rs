@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 mod attributes;
 mod behind;
+mod coplanar;
 mod moving;
 
 const NO_LIGHTS: [SceneLight; 0] = [];

@@ -1,10 +1,11 @@
 //! Output files of `juggler render`.
 
-use crate::harness::{Folder, wait_until};
+use crate::harness::{Folder, Run, wait_until};
 use juggler::imaging;
 use juggler::math::Image;
 use std::fs::{self, File};
 use std::io::BufReader;
+use std::process::Command;
 
 fn image(folder: &Folder, name: &str) -> Image {
     imaging::read(&folder.path(name)).unwrap()
@@ -179,5 +180,48 @@ fn renders_of_extreme_scales_terminate() {
         let mut child = folder.command("render flat.json --size 8x8 --samples 1 -q").spawn().unwrap();
         wait_until("the render ends", || child.try_wait().unwrap().is_some());
         assert!(child.wait().unwrap().success(), "{shape}, {scale}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_missing_file_creates_that_file() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("out")).unwrap();
+    std::os::unix::fs::symlink("out/real.png", folder.path("link.png")).unwrap();
+    folder.good("render ball.json -q -o link.png");
+    assert!(fs::symlink_metadata(folder.path("link.png")).unwrap().is_symlink());
+    assert_eq!(image(&folder, "out/real.png").width(), 16);
+}
+
+#[test]
+fn file_names_may_have_255_bytes() {
+    let folder = Folder::new();
+    for ending in [".png", ".exr", ".jfilm"] {
+        let name = "x".repeat(255 - ending.len()) + ending;
+        folder.good(&format!("render ball.json -q -o {name}"));
+        assert_eq!(folder.files(), [name.as_str()]);
+        fs::remove_file(folder.path(&name)).unwrap();
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn closed_standard_output_is_an_error() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o a.jfilm");
+    for line in ["render ball.json -q -o -", "merge a.jfilm -q -o -"] {
+        let run = |redirection: &str| {
+            let program = folder.command(line);
+            let mut shell = Command::new("sh");
+            shell.args(["-c", &format!(r#"exec "$0" "$@" {redirection}"#)]);
+            shell.arg(program.get_program()).args(program.get_args());
+            Run::of(shell.current_dir(folder.path(".")).output().unwrap())
+        };
+        let closed = run(">&-");
+        assert_eq!(closed.status, 2, "{line}: {}", closed.stderr);
+        assert!(closed.stderr.contains("standard output, which is closed"), "{line}: {}", closed.stderr);
+        let discarded = run("> /dev/null");
+        assert_eq!((discarded.status, discarded.stderr.as_str()), (0, ""), "{line}");
     }
 }

@@ -5,7 +5,7 @@ use crate::harness::{self, Folder, Run, wait_until};
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Starts a render of hours, and sends a signal once the output file has its first bytes.
@@ -123,4 +123,19 @@ fn an_interrupted_merge_leaves_nothing() {
         run.status == 143
     });
     assert!(interrupted, "all merges were done before the signal came");
+}
+
+#[test]
+fn a_limit_of_file_sizes_leaves_no_incomplete_file() {
+    let folder = Folder::new();
+    for output in ["out.pfm", "out.jfilm", "out.exr --aov position"] {
+        let render = folder.command(&format!("render ball.json -q --size 200x200 -o {output}"));
+        // 8 blocks of 512 or 1,024 bytes.
+        let mut limited = Command::new("sh");
+        limited.args(["-c", r#"ulimit -f 8; exec "$0" "$@""#]).arg(render.get_program()).args(render.get_args());
+        let run = Run::of(limited.current_dir(folder.path(".")).output().unwrap());
+        assert_eq!((run.status, run.stdout.as_str()), (3, ""), "{output}: {}", run.stderr);
+        assert!(run.stderr.contains("cannot write") && run.stderr.contains("out."), "{output}: {}", run.stderr);
+        assert_eq!(folder.files(), [""; 0], "{output}");
+    }
 }

@@ -124,6 +124,19 @@ fn gamma_chunk_of_a_foreign_png_is_decoded() {
     assert!((pixel.r - 0.2).abs() < 1e-6 && (pixel.g - 0.4).abs() < 1e-6 && pixel.b == 1.0, "{pixel:?}");
 }
 
+/// Pixels of a Radiance file are already multiplied by all its exposures.
+#[test]
+fn exposures_of_a_radiance_file_are_divided_out() {
+    let file = |lines: &str| {
+        let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{lines}\n-Y 1 +X 1\n");
+        read(&[header.as_bytes(), &[128, 64, 32, 129]].concat()).pixels()[0]
+    };
+    // An exponent of 129 makes a mantissa of 128 equal to 1.
+    for (lines, exposure) in [("", 1.0), ("EXPOSURE=2\n", 2.0), ("EXPOSURE= 0.5\nEXPOSURE=16\n", 8.0)] {
+        assert_eq!(file(lines), Rgb::new(1.0, 0.5, 0.25) / exposure, "{lines}");
+    }
+}
+
 #[test]
 fn exposure_applies_to_levels_and_not_to_scene_referred_formats() {
     let image = Image::filled(4, 4, Rgb::splat(0.1));

@@ -198,3 +198,27 @@ fn every_integrator_fills_all_aovs() {
         assert!(["not_finite.Y", "clamped.Y"].iter().all(|channel| found[*channel].iter().all(|count| *count == 0.0)));
     }
 }
+
+/// The integrator `normals` shows the AOV `normal`: with normal maps, and on the back of a surface.
+#[test]
+fn normals_integrator_shows_the_normals_of_the_aov() {
+    let (white, tilted) = (r#"{"diffuse": {"reflectance": 0.8}}"#, [0.6_f32, 0.0, 0.8]);
+    let mapped = format!(r#"{{"normal_map": {{"texture": [0.8, 0.5, 0.9], "material": {white}}}}}"#);
+    let card = r#""degrees": 90}}, {"translate": [-0.485, 0, 1]}"#;
+    let scene = SCENE.replace(&format!(r#""white": {white}"#), &format!(r#""white": {mapped}"#));
+    let scene = scene.replace(card, &card.replace("90", "-90"));
+    assert!(scene.contains("normal_map") && scene.contains("-90"));
+    let (found, _) = layers(&scene, &[Aov::Normal, Aov::Alpha]);
+    let shown = layers(&scene.replace(r#"{"path": {"max_depth": 4}}"#, r#""normals""#), &[]).1;
+    for (pixel, color) in shown.iter().enumerate() {
+        for (axis, shown) in ["X", "Y", "Z"].into_iter().zip(color.to_array()) {
+            let expected = 0.5 * (found[&format!("normal.{axis}")][pixel] + found["alpha.A"][pixel]);
+            assert!((shown - expected).abs() < 1e-5, "{axis} of pixel {pixel}: {shown} for {expected}");
+        }
+    }
+    for (pixel, normal) in [(at(0.1, 0.05), tilted), (at(-0.4, 0.1), [0.0, 0.0, 1.0])] {
+        for (shown, normal) in shown[pixel].to_array().into_iter().zip(normal) {
+            assert!((shown - 0.5 * (normal + 1.0)).abs() < 1e-5, "{:?} for {normal:?}", shown);
+        }
+    }
+}

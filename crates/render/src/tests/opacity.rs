@@ -37,3 +37,20 @@ fn shadow_rays_pass_as_many_invisible_surfaces_as_paths() {
         assert!(look(MAX_PASS_THROUGHS + 1).is_black(), "{name} through one more");
     }
 }
+
+#[test]
+fn rays_behind_invisible_surfaces_count_as_secondary_rays() {
+    let (size, samples, eye) = (UVec2::new(6, 4), 4, Vec3::new(0.5, 20.0, 0.0));
+    let camera = look(eye, Vec3::ZERO, "5", size);
+    let paths = u64::from(size.x * size.y * samples);
+    for integrator in [AnyIntegrator::from(Path::default()), Classic::default().into()] {
+        for count in [0, 1, 5] {
+            let (world, control) = (panes(count, r#"{"emissive": {}}"#, &[]), Control::default());
+            let work = Work::first(Rect { x: 0, y: 0, width: size.x, height: size.y }, samples);
+            job(&world, &camera, &integrator, samples).render(&work, &control).unwrap();
+            // Each path passes every pane and ends at the emissive floor.
+            let expected = RayCounts { camera: paths, secondary: paths * u64::from(count), ..RayCounts::default() };
+            assert_eq!(control.rays(), expected, "{count} panes");
+        }
+    }
+}

@@ -294,7 +294,7 @@ impl Inspector<'_> {
         }
         let pieces = next.rays.chunks(GROUP_RAYS).zip(next.paths.chunks(GROUP_RAYS)).zip(from.chunks(GROUP_RAYS));
         for ((rays, paths), from) in pieces.rev() {
-            let queue = Queue { rays: rays.to_vec(), paths: paths.to_vec() };
+            let queue = Queue { rays: rays.to_vec(), paths: paths.to_vec(), from_camera: false };
             stack.push(RecordedQueue { queue, from: from.to_vec() });
         }
     }

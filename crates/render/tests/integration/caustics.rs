@@ -228,3 +228,42 @@ fn a_disk_right_below_a_sphere_blocks_its_caustic() {
     let blocked = seen(scene().with(r#"{"disk": {"radius": 0.6}}"#, Vec3::Y * 0.245, black));
     assert_eq!(blocked, 0.0);
 }
+
+/// A small rectangular light beside a glass sphere, seen at another angle from the sphere's surface
+/// than from its center.
+fn close_light(is_hidden: bool) -> Scene {
+    let tilted = Transform::rotation(Vec3::Z, 2.2).unwrap();
+    Scene::floor().with(&sphere(0.5), Vec3::new(0.1, 0.6, 0.0), &made_of(GLASS, is_hidden)).placed(
+        r#"{"rectangle": {"size": [0.5, 0.5]}}"#,
+        tilted.then(&Transform::translation(Vec3::new(-0.2, 1.45, 0.1))),
+        r#"{"emissive": {"radiance": 20}}"#,
+    )
+}
+
+#[test]
+fn light_close_to_a_sphere_is_neither_lost_nor_counted_twice() {
+    let options = path(r#""max_depth": 6"#);
+    let [light_sampled, bsdf_sampled] =
+        [false, true].map(|hidden| measure(&close_light(hidden).world(), &look(), &*options, 4096));
+    println!("{light_sampled:?} {bsdf_sampled:?}");
+    light_sampled.equals(bsdf_sampled, "a light close to a sphere");
+}
+
+/// Light sampling through a sphere obeys the limits of path length and of specular bounces, as
+/// BSDF sampling does.
+#[test]
+fn light_through_spheres_obeys_the_limits_of_paths() {
+    let limits = (2..=5).map(|depth| format!(r#""max_depth": {depth}"#));
+    let limits = limits.chain((0..=3).map(|specular| format!(r#""max_depth": 8, "max_specular": {specular}"#)));
+    for limit in limits {
+        for (name, build) in [("mirror", mirror as Build), ("glass", clear)] {
+            let [light_sampled, bsdf_sampled] =
+                [false, true].map(|hidden| measure(&build(hidden).world(), &look(), &*path(&limit), 256));
+            println!("{name}, {limit}: {light_sampled:?} {bsdf_sampled:?}");
+            // Paths of some limits carry no light at all.
+            let sigma = (light_sampled.sigma.powi(2) + bsdf_sampled.sigma.powi(2)).sqrt();
+            let off = (light_sampled.mean - bsdf_sampled.mean).abs();
+            assert!(sigma < 0.004 && off <= 3.0 * sigma + 1e-4, "{name}, {limit}: off by {off} ± {sigma}");
+        }
+    }
+}

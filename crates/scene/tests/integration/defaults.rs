@@ -245,6 +245,13 @@ fn emitters_whose_light_goes_nowhere_are_warned_of() {
         assert_eq!(warnings(&room(&light(height, turn, sides), "")), [], "{height} {turn} {sides}");
     }
     assert_eq!(warnings(&area(r#""radiance": 1"#)), []);
+    // An infinite floor behind the front is not lit, one ahead is, and so is one at another angle.
+    let floor = |height: f32, turn: &str| {
+        let plane = format!(r#"{{"shape": "plane", "transform": [{turn} {{"translate": [0, {height}, 0]}}]}}"#);
+        warnings(&room(&format!("{}, {plane}", light(3.5, "", "front")), ""))
+    };
+    assert_eq!(floor(-1.0, ""), [("objects[2]".into(), away.to_owned())]);
+    assert_eq!((floor(5.0, ""), floor(-1.0, r#"{"rotate": {"axis": [1, 0, 0], "degrees": 10}},"#)), (vec![], vec![]));
     // A screen that only the camera sees.
     let screen = r#", {"shape": "rectangle", "material": {"emissive": {}},
         "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0, 1, 4.5]}]}"#;

@@ -23,6 +23,7 @@ mod lighting;
 mod limits;
 mod models;
 mod mutations;
+mod placing;
 mod posed;
 mod units;
 mod values;

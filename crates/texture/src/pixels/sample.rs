@@ -197,6 +197,23 @@ mod tests {
         assert_eq!(picture.sample([-1e9, 0.125], 0.0, [Wrap::Clamp; 2], Filter::Nearest), picture.texel(0, 0, 0));
     }
 
+    /// Stripes of one texel along the longer edge: the level whose texels are as wide as two of them
+    /// is gray.
+    #[test]
+    fn longer_edge_determines_the_mip_level() {
+        let stripes: Vec<f32> = (0..64 * 2).map(|i| (i % 2) as f32).collect();
+        let wide = MipMap::from_floats([64, 2], 1, stripes).unwrap();
+        let high = MipMap::from_floats([2, 64], 1, (0..64 * 2).map(|i| (i / 2 % 2) as f32).collect()).unwrap();
+        for (picture, along) in [(&wide, 0), (&high, 1)] {
+            for (texels, contrast) in [(1.0, 1.0), (2.0, 0.0), (5.0, 0.0)] {
+                let at = |texel: f32| if along == 0 { [texel / 64.0, 0.25] } else { [0.25, texel / 64.0] };
+                let values = [10.5, 11.5]
+                    .map(|texel| picture.sample(at(texel), texels / 64.0, [Wrap::Repeat; 2], Filter::Trilinear)[0]);
+                assert_eq!(values[1] - values[0], contrast, "axis {along}, {texels} texels: {values:?}");
+            }
+        }
+    }
+
     #[test]
     fn wide_footprints_see_the_mean() {
         let mut random = Random::new(742);

@@ -81,6 +81,23 @@ fn joint_matrices_undo_the_bind_pose() {
     assert_eq!(bare.joint_matrices(&worlds).unwrap(), [worlds[3], worlds[1], worlds[4]]);
 }
 
+/// Joints that left their bind pose: inverse bind matrices apply before the joints' transforms.
+#[test]
+fn joint_matrices_apply_the_inverse_bind_matrix_first() {
+    let mut random = Random::new(74);
+    let worlds: Vec<DAffine3> = (0..5).map(|_| random_affine(&mut random)).collect();
+    let inverse_binds: Vec<DAffine3> = (0..3).map(|_| random_affine(&mut random)).collect();
+    let columns = |map: &DAffine3| DMat4::from(*map).to_cols_array().map(|element| element as f32);
+    let (joints, columns) = ([3, 1, 4], inverse_binds.iter().map(columns).collect::<Vec<_>>());
+    let matrices = Skin::new(&joints, Some(&columns)).unwrap().joint_matrices(&worlds).unwrap();
+    for ((matrix, node), inverse_bind) in matrices.iter().zip(joints).zip(&inverse_binds) {
+        let point = random.point(2.0).as_dvec3();
+        let expected = worlds[node].transform_point3(inverse_bind.transform_point3(point));
+        let found = matrix.transform_point3(point);
+        assert!(found.abs_diff_eq(expected, 1e-4 * expected.length().max(1.0)), "{found} for {expected}");
+    }
+}
+
 #[test]
 fn normals_stay_perpendicular_to_the_deformed_surface() {
     // M shears, so it turns normals and tangents differently.
