@@ -51,6 +51,8 @@ pub struct ShadingPoint {
     pub normal: Vec3,
     /// Kind of scattering of the strongest lobe that is not specular.
     pub scatter: Scatter,
+    /// The surface, of all those at its place.
+    pub vertex: Vertex,
 }
 
 impl PathLog {
@@ -62,7 +64,7 @@ impl PathLog {
 
     /// Records a surface that a path of the sample `slot` hit.
     pub fn record_hit(&mut self, slot: usize, hit: &SurfaceHit) {
-        self.hits.push((slot, ShadingPoint { normal: hit.normal, scatter: hit.scatter }));
+        self.hits.push((slot, ShadingPoint { normal: hit.normal, scatter: hit.scatter, vertex: *hit.vertex }));
     }
 }
 

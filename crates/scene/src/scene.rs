@@ -189,14 +189,19 @@ impl Scene {
 
     /// Finds all errors and warnings of the scene without building the world.
     pub fn check(&self) -> Problems {
-        self.check_with_light().0
+        let (_, wrong, more) = self.assembly();
+        self.report(merge_findings(merge_findings(self.schema_findings(), wrong), more))
     }
 
-    /// Finds the problems as [`Scene::check`] does, and the light with the largest unoccluded
-    /// illuminance at the center of the scene.
+    /// Finds the problems as [`Scene::check`] does, and builds the world to find objects of which the
+    /// order decides what is seen. Returns also the light with the largest unoccluded illuminance at
+    /// the center of the scene.
     pub fn check_with_light(&self) -> (Problems, Option<Illuminance>) {
         let (assembly, wrong, more) = self.assembly();
-        (self.report(merge_findings(merge_findings(self.schema_findings(), wrong), more)), assembly.illuminance)
+        let findings = merge_findings(merge_findings(self.schema_findings(), wrong), more);
+        let illuminance = assembly.illuminance.clone();
+        let order = if findings.iter().any(Finding::is_error) { Vec::new() } else { assembly.ambiguity_warnings() };
+        (self.report(merge_findings(findings, order)), illuminance)
     }
 
     /// Builds the world.

@@ -12,6 +12,7 @@ use juggler_shape::surface::{Surface, Tangents};
 use std::borrow::Cow;
 use std::sync::Arc;
 
+mod ambiguity;
 mod casters;
 mod closest_after;
 mod cluster;
@@ -40,6 +41,7 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
+pub use ambiguity::Ambiguity;
 pub use casters::{CasterId, CausticCaster, VisibleCasters};
 pub use closest_after::HitKey;
 pub use cluster::{Cluster, Member, starts_at};

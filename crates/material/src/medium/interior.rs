@@ -29,7 +29,7 @@ impl Interior {
 }
 
 /// Index of an interior in the table of a world's interiors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct InteriorId(u16);
 
 impl InteriorId {

@@ -225,6 +225,10 @@ impl Inspector<'_> {
                 *place = Some(*shading_point);
             }
         }
+        // Of several surfaces at one place, keep the one that the path interacted with.
+        for (vertex, shading_point) in segment.vertices.iter_mut().zip(&segment.shading_points) {
+            *vertex = shading_point.map(|point| point.vertex).or(*vertex);
+        }
         let rays = recorded.queue.rays.iter().zip(&recorded.queue.paths).zip(&recorded.from);
         for (((ray, path), from), (vertex, shading_point)) in
             rays.zip(segment.vertices.iter().zip(&segment.shading_points))

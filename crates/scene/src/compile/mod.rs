@@ -14,6 +14,7 @@ use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_world::{Labels, Object, SceneLight, World};
 use std::sync::Arc;
 
+mod ambiguities;
 pub(crate) mod area_lights;
 mod count;
 mod defaults;

@@ -1,0 +1,44 @@
+//! Warnings about objects of which the order in the file decides what is seen.
+
+use super::Assembly;
+use crate::report::Finding;
+use juggler_world::{Ambiguity, World};
+
+/// Maximum number of warnings.
+const MAX_WARNINGS: usize = 5;
+
+impl Assembly {
+    /// Builds the world and returns warnings about opaque surfaces of unlike materials at one place,
+    /// and about overlapping solids of equal priority.
+    pub fn ambiguity_warnings(self) -> Vec<Finding> {
+        let Self { objects, materials, lights, background, labels, names, .. } = self;
+        let found = World::new(objects, materials, lights, background).with_labels(labels).ambiguities();
+        let warning = |(kind, first, second): &(Ambiguity, u32, u32)| {
+            let [first, second] = [first, second].map(|entry| names.object(*entry));
+            match kind {
+                Ambiguity::Surfaces => surfaces(&first, &second),
+                Ambiguity::Solids => solids(&first, &second),
+            }
+        };
+        let mut warnings: Vec<Finding> = found.iter().take(MAX_WARNINGS).map(warning).collect();
+        if let more @ 1.. = found.len().saturating_sub(MAX_WARNINGS) {
+            warnings.push(Finding::warning(format!("{more} more pairs of objects touch or overlap like that")));
+        }
+        warnings
+    }
+}
+
+fn surfaces(first: &str, second: &str) -> Finding {
+    let message = format!(
+        "`{first}` and `{second}` have opaque surfaces at one place: which of them is seen depends on their order"
+    );
+    Finding::warning(message).help("move one of them, or leave out the surface that is hidden")
+}
+
+fn solids(first: &str, second: &str) -> Finding {
+    let message = format!(
+        "the solids `{first}` and `{second}` overlap and have the same priority: the material of `{first}`, which \
+         comes first, fills the overlap"
+    );
+    Finding::warning(message).help("give the solid that shall fill the overlap a higher `priority`")
+}

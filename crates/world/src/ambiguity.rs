@@ -1,0 +1,121 @@
+//! Places where the order of objects decides what is seen, since nothing else does: opaque surfaces
+//! of unlike materials at one place, and overlapping solids of equal priority.
+
+use super::{Cluster, Member, Vertex, World};
+use juggler_material::medium::{Interior, InteriorId};
+use juggler_math::{Ray, Vec3};
+use std::collections::BTreeSet;
+
+/// Number of test rays along each edge of the bounding box.
+const GRID: u32 = 24;
+/// Maximum number of places along a test ray.
+const MAX_PLACES: usize = 256;
+/// Smallest difference of color that counts.
+const MIN_DIFFERENCE: f32 = 1e-3;
+
+/// What the order of objects decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Ambiguity {
+    /// Which of two opaque surfaces at one place is seen.
+    Surfaces,
+    /// Which of two overlapping solids fills the overlap.
+    Solids,
+}
+
+/// Two scene entries, of which the first wins by its order alone.
+pub type AmbiguousEntries = (Ambiguity, u32, u32);
+
+impl World {
+    /// Finds scene entries whose order decides what is seen. Test rays parallel to the axes, on a grid
+    /// over the bounding box, pass straight through everything. Small contacts may be missed.
+    pub fn ambiguities(&self) -> BTreeSet<AmbiguousEntries> {
+        let (bounds, mut found) = (self.bounds(), BTreeSet::new());
+        if !bounds.is_finite() {
+            return found;
+        }
+        for axis in 0..3 {
+            let [across, along] = [(axis + 1) % 3, (axis + 2) % 3];
+            for cell in 0..GRID * GRID {
+                // Keep off the planes of symmetry on which scenes are built.
+                let at = |i: u32, offset: f32| (i as f32 + offset) / GRID as f32;
+                let mut origin = bounds.min - bounds.extent() - 1.0;
+                origin[across] = bounds.min[across] + bounds.extent()[across] * at(cell % GRID, 0.4367);
+                origin[along] = bounds.min[along] + bounds.extent()[along] * at(cell / GRID, 0.5719);
+                self.follow(&Ray { time: 0.5, ..Ray::new(origin, Vec3::AXES[axis]) }, &mut found);
+            }
+        }
+        found
+    }
+
+    /// Follows a ray straight through everything.
+    fn follow(&self, ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
+        let (mut rest, mut open) = (*ray, Vec::<(InteriorId, Vertex)>::new());
+        for _ in 0..MAX_PLACES {
+            let hit = self.closest(&mut rest);
+            if !hit.is_some() {
+                return;
+            }
+            let first = Member { vertex: self.vertex(&rest, &hit), t: rest.t_max };
+            let mut cluster = Cluster::new(self, &rest, &first.vertex);
+            let members: Vec<Member> = std::iter::once(first).chain(&mut cluster).collect();
+            self.compare_surfaces(&members, ray, found);
+            self.cross_solids(&members, ray, &mut open, found);
+            rest = cluster.ray_behind();
+        }
+    }
+
+    /// Compares the opaque surfaces at one place.
+    fn compare_surfaces(&self, members: &[Member], ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
+        let mut opaque = members.iter().filter(|member| !self.may_pass(&member.vertex));
+        let Some(first) = opaque.next() else { return };
+        for other in opaque.filter(|other| self.look_unlike(&first.vertex, &other.vertex, -ray.direction)) {
+            self.report(Ambiguity::Surfaces, &first.vertex, &other.vertex, found);
+        }
+    }
+
+    fn look_unlike(&self, a: &Vertex, b: &Vertex, wo: Vec3) -> bool {
+        let [a, b] = [a, b].map(|vertex| self.shade(vertex, wo, 1.0, 0.5));
+        let difference = (a.albedo(wo) - b.albedo(wo)).map(f32::abs) + (a.emission - b.emission).map(f32::abs);
+        difference.max_channel() > MIN_DIFFERENCE
+    }
+
+    /// Crosses the interfaces at one place, first those that the ray leaves, and compares the solids
+    /// that it enters with those that it is in.
+    fn cross_solids(
+        &self,
+        members: &[Member],
+        ray: &Ray,
+        open: &mut Vec<(InteriorId, Vertex)>,
+        found: &mut BTreeSet<AmbiguousEntries>,
+    ) {
+        let crossed = |inwards: bool| {
+            let is_crossed = move |member: &&Member| member.is_entered(ray) == inwards;
+            members.iter().filter(is_crossed).filter_map(|member| Some((self.interior(&member.vertex)?, member.vertex)))
+        };
+        for (id, _) in crossed(false) {
+            if let Some(at) = open.iter().rposition(|(one, _)| *one == id) {
+                open.remove(at);
+            }
+        }
+        for (id, vertex) in crossed(true) {
+            for (other, around) in open.iter().filter(|(other, _)| self.fill_unlike(*other, id)) {
+                let (first, second) = if *other < id { (around, &vertex) } else { (&vertex, around) };
+                self.report(Ambiguity::Solids, first, second, found);
+            }
+            open.push((id, vertex));
+        }
+    }
+
+    fn fill_unlike(&self, a: InteriorId, b: InteriorId) -> bool {
+        let [a, b] = [a, b].map(|id| self.interior_at(id));
+        let priority = |interior: &Interior| interior.priority;
+        a != b && a.map(priority) == b.map(priority)
+    }
+
+    fn report(&self, kind: Ambiguity, first: &Vertex, second: &Vertex, found: &mut BTreeSet<AmbiguousEntries>) {
+        let [first, second] = [first, second].map(|vertex| self.entry_of(vertex.shape));
+        if first != second {
+            found.insert((kind, first, second));
+        }
+    }
+}
