@@ -16,6 +16,7 @@ pub mod hash;
 pub mod image;
 pub mod message;
 pub mod motion;
+mod polar;
 pub mod portable;
 pub mod quaternion;
 pub mod range;

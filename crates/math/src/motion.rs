@@ -2,17 +2,17 @@
 //!
 //! Time runs from 0 (shutter opens) to 1 (shutter closes). Keys stand at equal intervals, and every
 //! point moves in a straight line between them. [`Motion::smoothed`] approximates rotations by more
-//! keys, found by polar decomposition (Higham 1986; Shoemake and Duff 1992, "Matrix Animation and
-//! Polar Decomposition").
+//! keys, found by polar decomposition. If the motion between keys turns about a center that stays,
+//! the origin follows the arc about that center (a screw motion, Chasles 1830).
 
-use crate::quaternion::slerp;
-use crate::{Aabb, Transform, Vec3, portable};
-use glam::{DMat3, DQuat, DVec3, Mat3};
+use crate::polar::{self, PolarDecomposition};
+use crate::{Aabb, Transform, Vec3};
+use glam::Mat3;
 use std::sync::Arc;
 
 /// Maximum rotation between two keys, in radians. The sagitta of the chord is at most 1.2e-4 of the
 /// radius.
-const STEP_RADIANS: f64 = 1.0 / 32.0;
+pub const STEP_RADIANS: f64 = 1.0 / 32.0;
 /// Maximum number of keys after smoothing.
 const MAX_KEYS: usize = 4097;
 /// Maximum deviation from linear interpolation of a key that is dropped, relative to the object's
@@ -91,6 +91,18 @@ impl Motion {
         if all.is_finite() && !all.is_empty() { all.grown(8.0 * f32::EPSILON * size) } else { all }
     }
 
+    /// Bounds of a local box from one time to a later one.
+    pub fn aabb_between(&self, local: &Aabb, from: f32, to: f32) -> Aabb {
+        let Self::Moving(keys) = self else { return self.aabb(local) };
+        let last = (keys.len() - 1) as f32;
+        let [first, end] = [(from * last).floor() as usize + 1, (to * last).ceil() as usize];
+        let inner = keys.get(first..end.min(keys.len())).unwrap_or_default().iter().map(|key| key.aabb(local));
+        let ends = self.at(from).aabb(local).union(self.at(to).aabb(local));
+        let all = inner.fold(ends, Aabb::union);
+        let size = all.min.abs().max(all.max.abs()).max_element();
+        if all.is_finite() && !all.is_empty() { all.grown(8.0 * f32::EPSILON * size) } else { all }
+    }
+
     /// Resamples the motion: adds keys where it rotates, drops keys where linear interpolation
     /// suffices. `size` is the object's size in world space.
     #[must_use]
@@ -105,10 +117,11 @@ impl Motion {
             return Self::Moving(without_redundant_keys(keys.to_vec(), straight).into());
         }
         let mut round = Vec::with_capacity(steps * (keys.len() - 1) + 1);
-        for (pair, ends) in parts.windows(2).zip(keys.windows(2)) {
+        let centers = polar::lasting_centers(&parts);
+        for ((pair, ends), center) in parts.windows(2).zip(keys.windows(2)).zip(centers) {
             round.push(ends[0]);
             for step in 1..steps {
-                let between = pair[0].lerp(&pair[1], step as f64 / steps as f64).transform();
+                let between = pair[0].lerp(&pair[1], center, step as f64 / steps as f64).transform();
                 round.push(between.unwrap_or(ends[0]));
             }
         }
@@ -147,62 +160,6 @@ fn is_between(at: &Transform, before: &Transform, after: &Transform, size: f32) 
         && largest(middle.matrix() - at.matrix()) <= TOLERANCE * largest(at.matrix())
 }
 
-/// Polar decomposition of a transform: stretch, then rotation (and reflection), then translation.
-struct PolarDecomposition {
-    stretch: DMat3,
-    /// −1 for a reflection, else 1.
-    sign: f64,
-    rotation: DQuat,
-    translation: DVec3,
-}
-
-impl PolarDecomposition {
-    fn from_transform(transform: &Transform) -> Option<Self> {
-        let matrix = transform.matrix().as_dmat3();
-        let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
-        let mut rotation = matrix * sign;
-        // Newton iteration for the polar factor: converges linearly at first, then quadratically.
-        for _ in 0..64 {
-            let next = (rotation + rotation.transpose().inverse()) * 0.5;
-            let change = (next - rotation).to_cols_array().iter().fold(0.0, |m: f64, v| v.abs().max(m));
-            rotation = next;
-            if change < 1e-14 {
-                break;
-            }
-        }
-        rotation.is_finite().then(|| Self {
-            stretch: rotation.transpose() * matrix * sign,
-            sign,
-            rotation: DQuat::from_mat3(&rotation).normalize(),
-            translation: transform.origin().as_dvec3(),
-        })
-    }
-
-    /// Angle in radians between two rotations, along the shorter arc; 0 if only one of them has a
-    /// reflection.
-    fn angle_to(&self, other: &Self) -> f64 {
-        if self.sign == other.sign {
-            2.0 * portable::acos_f64(self.rotation.dot(other.rotation).abs().min(1.0))
-        } else {
-            0.0
-        }
-    }
-
-    fn lerp(&self, other: &Self, fraction: f64) -> Self {
-        Self {
-            stretch: self.stretch * (1.0 - fraction) + other.stretch * fraction,
-            sign: self.sign,
-            rotation: slerp(self.rotation, other.rotation, fraction),
-            translation: self.translation.lerp(other.translation, fraction),
-        }
-    }
-
-    fn transform(&self) -> Option<Transform> {
-        let matrix = DMat3::from_quat(self.rotation) * self.stretch * self.sign;
-        Transform::new(matrix.as_mat3(), self.translation.as_vec3())
-    }
-}
-
 impl Transform {
     /// Interpolates matrix and translation linearly from `self` (`fraction = 0`) to `other` (1).
     /// Where the result is singular, returns the nearer of the two.
@@ -215,6 +172,13 @@ impl Transform {
         let matrix = self.matrix() * (1.0 - fraction) + other.matrix() * fraction;
         Self::new(matrix, translation).unwrap_or(if fraction < 0.5 { *self } else { *other })
     }
+}
+
+/// Interpolates rotation, stretch and translation from `from` (`fraction = 0`) to `to` (1), the
+/// rotation along the shorter arc; `None` where the result is singular.
+pub fn interpolate_parts(from: &Transform, to: &Transform, fraction: f64) -> Option<Transform> {
+    let [from, to] = [from, to].map(PolarDecomposition::from_transform);
+    from?.lerp(&to?, None, fraction).transform()
 }
 
 /// Interpolates linearly between two points.
@@ -282,6 +246,31 @@ mod tests {
     }
 
     #[test]
+    fn smoothed_rotation_about_a_distant_axis_follows_the_circle() {
+        let arm = Motion::Still(Transform::translation(Vec3::new(1.0, 0.0, 0.3)));
+        let aside = Motion::Still(Transform::translation(Vec3::new(-4.0, 2.0, 0.0)));
+        for turns in [0.25, 2.0, -6.0] {
+            let round = arm.then(&spin(turns, 17)).then(&aside).smoothed(0.1);
+            for i in 0..=1000 {
+                let time = i as f32 / 1000.0;
+                let exact = Transform::rotation(Vec3::Z, turns * std::f32::consts::TAU * time).unwrap();
+                let exact = exact.point(Vec3::new(1.0, 0.0, 0.3)) + Vec3::new(-4.0, 2.0, 0.0);
+                assert!(close3(round.at(time).origin(), exact, 3e-4), "{turns} {time}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_spinning_object_in_flight_keeps_its_straight_path() {
+        let flight = Motion::from_keys((0..17).map(|i| Transform::translation(Vec3::X * i as f32)).collect()).unwrap();
+        let motion = spin(6.0, 17).then(&flight).smoothed(1.0);
+        for i in 0..=1000 {
+            let time = i as f32 / 1000.0;
+            assert!(close3(motion.at(time).origin(), Vec3::X * 16.0 * time, 1e-4), "{time}");
+        }
+    }
+
+    #[test]
     fn straight_paths_need_two_keys_and_curved_ones_more() {
         let along = |f: fn(f32) -> Vec3| {
             Motion::from_keys((0..17).map(|i| Transform::translation(f(i as f32 / 16.0))).collect()).unwrap()
@@ -304,6 +293,15 @@ mod tests {
             for _ in 0..100 {
                 let inside = local.min + local.extent() * random.vec3();
                 assert!(all.contains(motion.at(random.f32()).point(inside)));
+            }
+        }
+        for _ in 0..50 {
+            let motion = Motion::from_keys((0..5).map(|_| random.transform()).collect()).unwrap().smoothed(1.0);
+            let (a, b) = (random.f32(), random.f32());
+            let part = motion.aabb_between(&local, a.min(b), a.max(b));
+            for _ in 0..100 {
+                let inside = local.min + local.extent() * random.vec3();
+                assert!(part.contains(motion.at(a + (b - a) * random.f32()).point(inside)));
             }
         }
         assert_eq!(spin(1.0, 5).aabb(&Aabb::INFINITE), Aabb::INFINITE);

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 use juggler_bsdf::Bsdf;
 use juggler_material::medium::Medium;
 use juggler_material::{MaterialId, MaterialTable, ShadingView};
-use juggler_math::{Frame, Motion, Rgb, Vec2, Vec3, warp};
+use juggler_math::{Frame, Rgb, Vec2, Vec3, warp};
 use juggler_shape::AnyShape;
 use juggler_shape::surface::Surface;
 use std::cell::RefCell;
@@ -161,7 +161,7 @@ impl CausticCaster {
     }
 
     fn new(world_shape: &WorldShape, material: &SpecularMaterial) -> Option<Self> {
-        let Motion::Still(transform) = &world_shape.motion else { return None };
+        let transform = world_shape.motion.static_transform()?;
         let radius = world_shape.shape.sphere()?.radius * transform.uniform_scale()?;
         let sphere = SpecularSphere { center: transform.origin(), radius };
         Some(Self { sphere, shapes: vec![world_shape.shape_index], material: material.clone() })

@@ -1,12 +1,12 @@
 //! Emissive shapes in world space.
 
 use super::emitters::{EmitterId, EmitterSample, LightSampleContext, bsdf_sampled};
-use super::world_shapes::{WorldShape, collect_shapes};
+use super::world_shapes::{WorldMotion, WorldShape, collect_shapes};
 use super::{Geometry, Vertex};
 use juggler_light::emitter::LightBounds;
 use juggler_material::{MaterialId, MaterialTable, ShadingView, Sides, SurfaceEmission, TexturedPoint};
-use juggler_math::{Motion, Ray, Rgb, Transform, Vec2, Vec3};
-use juggler_shape::{AnyShape, SurfacePoint};
+use juggler_math::{Ray, Rgb, Transform, Vec2, Vec3};
+use juggler_shape::{AnyShape, Mesh, SurfacePoint};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -16,7 +16,9 @@ pub struct EmissiveShape {
     /// Index of the shape, counting the contents of every instance.
     pub shape_index: u32,
     shape: Arc<AnyShape>,
-    motion: Motion,
+    motion: WorldMotion,
+    /// Motion of the sampled points, if it differs: that of a moving sphere without rotation.
+    sphere_motion: Option<Box<WorldMotion>>,
     material: MaterialId,
     emission: SurfaceEmission,
 }
@@ -27,8 +29,8 @@ impl EmissiveShape {
         let emission = |shape: &AnyShape, id| materials.emission(id).filter(|_| shape.area().is_finite());
         let emissive = collect_shapes(top, usize::MAX, &|shape, id| emission(shape, id).is_some());
         let with_emission = |world_shape: WorldShape| {
-            let WorldShape { shape_index, shape, motion, material } = world_shape;
-            Some(Self { shape_index, emission: emission(&shape, material)?, shape, motion, material })
+            let WorldShape { shape_index, shape, motion, sphere_motion, material } = world_shape;
+            Some(Self { shape_index, emission: emission(&shape, material)?, shape, motion, sphere_motion, material })
         };
         emissive.into_iter().filter_map(with_emission).collect()
     }
@@ -38,12 +40,19 @@ impl EmissiveShape {
         &self.shape
     }
 
-    /// Transform to world space; `None` if the shape moves.
+    /// Transform to world space; `None` if the shape moves or deforms.
     pub fn static_transform(&self) -> Option<&Transform> {
-        match &self.motion {
-            Motion::Still(transform) => Some(transform),
-            Motion::Moving(_) => None,
-        }
+        self.motion.static_transform().filter(|_| self.moving_mesh().is_none())
+    }
+
+    /// The mesh, if it deforms while the shutter is open.
+    fn moving_mesh(&self) -> Option<&Mesh> {
+        self.shape.mesh().filter(|mesh| mesh.moves())
+    }
+
+    /// Transform of the sampled points at a time.
+    fn transform_at(&self, time: f32) -> Transform {
+        self.sphere_motion.as_deref().unwrap_or(&self.motion).at(time)
     }
 
     /// Whether both sides of the surface emit.
@@ -58,7 +67,7 @@ impl EmissiveShape {
 
     /// Bounds for the light tree.
     pub fn bounds(&self) -> LightBounds {
-        let scale = self.motion.at(0.0).max_scale();
+        let scale = self.motion.max_scale();
         // Upper bound: as if the whole area faced the receiver.
         let power = 4.0 * PI * self.shape.area() * scale * scale * self.luminance();
         // Normals of an arbitrary shape may point anywhere.
@@ -76,8 +85,12 @@ impl EmissiveShape {
         u: Vec2,
         probability: f32,
     ) -> Option<EmitterSample> {
-        let transform = self.motion.at(context.time);
-        let sample = self.shape.sample(transform.point_to_local(context.point), u)?;
+        let transform = self.transform_at(context.time);
+        let from = transform.point_to_local(context.point);
+        let sample = match self.moving_mesh() {
+            Some(mesh) => mesh.sample_at(from, u, context.time)?,
+            None => self.shape.sample(from, u)?,
+        };
         let offset = transform.point(sample.point) - context.point;
         let distance = offset.length();
         let wi = offset / distance;
@@ -118,12 +131,14 @@ impl EmissiveShape {
     /// Density per steradian, seen from `from`, with which [`EmissiveShape::sample`] picks the
     /// point `vertex` of this shape.
     pub fn pdf(&self, from: &LightSampleContext, vertex: &Vertex) -> f32 {
-        let transform = self.motion.at(from.time);
+        let transform = self.transform_at(from.time);
         let normal = (transform.matrix().transpose() * vertex.surface.normal).normalize_or(Vec3::Y);
         let point = transform.point_to_local(vertex.surface.point);
-        let pdf = self
-            .shape
-            .pdf(transform.point_to_local(from.point), &SurfacePoint { point, normal, primitive: vertex.primitive });
+        let local = SurfacePoint { point, normal, primitive: vertex.primitive };
+        let pdf = match self.moving_mesh() {
+            Some(mesh) => mesh.pdf_at(transform.point_to_local(from.point), &local, from.time),
+            None => self.shape.pdf(transform.point_to_local(from.point), &local),
+        };
         pdf * solid_angle_ratio(&transform, from.point, point, normal)
     }
 }

@@ -1,6 +1,7 @@
 //! Geometry under one bounding volume hierarchy: the top level of the world, or a group of objects
 //! that is stored once and instantiated many times.
 
+use super::hierarchy_entries::HierarchyEntries;
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::{self, LargeMesh, RayCoherence};
 use super::merged_meshes::{self, MergedMeshes};
@@ -110,14 +111,14 @@ impl Geometry {
         let bounds = all_boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
         let (bounded, unbounded): (Vec<u32>, Vec<u32>) =
             indices.partition(|i| objects[*i as usize].is_bounded_by(&all_boxes[*i as usize]));
-        let boxes: Vec<Aabb> = bounded.iter().map(|object_index| all_boxes[*object_index as usize]).collect();
+        let mut entries = HierarchyEntries::new(&objects, bounded, &all_boxes);
         drop(all_boxes);
-        let bvh = Bvh::build(&boxes, Quality::Balanced);
-        drop(boxes);
-        let leaf_order = bvh.order().iter().map(|position| bounded[*position as usize]);
-        let items = leaf_order
-            .map(|object_index| LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index)))
-            .collect();
+        let bvh = Bvh::build(&std::mem::take(&mut entries.boxes), Quality::Balanced);
+        let item = |entry: &u32| {
+            let (object_index, times) = (entries.objects[*entry as usize], entries.times(*entry as usize));
+            LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
+        };
+        let items = bvh.order().iter().map(item).collect();
         let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
         let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);

@@ -25,7 +25,7 @@ pub struct Instance {
 
 /// A sphere in its geometry's space.
 #[derive(Clone, Debug)]
-enum SphereKeys {
+pub enum SphereKeys {
     /// The object is no sphere in the geometry's space.
     None,
     /// A sphere that becomes an ellipsoid in the geometry's space.
@@ -38,7 +38,7 @@ enum SphereKeys {
 
 impl SphereKeys {
     /// Converts an object that is a sphere and stays one at every key of its motion.
-    fn from_object(object: &Object) -> Self {
+    pub fn from_object(object: &Object) -> Self {
         let Content::Shape(shape) = &object.content else { return Self::None };
         let Some(sphere) = shape.sphere() else { return Self::None };
         let at_key = |key: &Transform| Some((key.origin(), sphere.radius * key.uniform_scale()?));
@@ -48,6 +48,13 @@ impl SphereKeys {
             Some([(center, radius)]) => Self::Still(*center, *radius),
             Some(keys) => Self::Moving(keys.into()),
         }
+    }
+
+    /// Motion of the unit sphere to the spheres at the keys, without rotation.
+    pub fn motion(keys: &[(Vec3, f32)]) -> Option<Motion> {
+        let at_key =
+            |(center, radius): &(Vec3, f32)| Some(Transform::scale(Vec3::splat(*radius))?.with_translation(*center));
+        Motion::from_keys(keys.iter().map(at_key).collect::<Option<_>>()?)
     }
 
     /// Center and radius at a time.
@@ -70,6 +77,15 @@ impl Instance {
         let sphere = SphereKeys::from_object(&object);
         let Object { content, motion, material } = object;
         Self { sphere, material, is_identity: motion == Motion::Still(Transform::IDENTITY), content, motion }
+    }
+
+    /// Motion that takes `shape` to the sphere that rays hit, without rotation; `None` unless the
+    /// object is a sphere that moves. Between keys, the object's own motion shrinks a sphere that
+    /// rotates.
+    pub fn sphere_motion(&self, shape: &AnyShape) -> Option<Motion> {
+        let (SphereKeys::Moving(keys), Some(sphere)) = (&self.sphere, shape.sphere()) else { return None };
+        let to_unit = Transform::scale(Vec3::splat(1.0 / sphere.radius))?;
+        Some(Motion::Still(to_unit).then(&SphereKeys::motion(keys)?))
     }
 
     /// Transforms a ray to object space.
@@ -207,10 +223,31 @@ pub enum LeafItem {
         /// Index of its first shape.
         shape_index: u32,
     },
+    /// A moving shape or instance, bounded over a segment of the shutter interval.
+    Segment {
+        /// Times from which and to which the entry counts.
+        times: [f32; 2],
+        /// Index of the object in its geometry.
+        object_index: u32,
+        /// Index of its first shape.
+        shape_index: u32,
+    },
+}
+
+/// Whether the time of a ray is in a segment of the shutter interval.
+#[inline(always)]
+fn is_within(ray: &Ray, [from, to]: [f32; 2]) -> bool {
+    let time = ray.time.clamp(0.0, 1.0);
+    from <= time && time <= to
 }
 
 impl LeafItem {
-    pub fn new(object: &Object, object_index: u32, shape_index: u32) -> Self {
+    /// Creates the entry of an object. With `times`, it counts only from the first to the second of
+    /// them.
+    pub fn new(object: &Object, object_index: u32, shape_index: u32, times: Option<[f32; 2]>) -> Self {
+        if let Some(times) = times {
+            return Self::Segment { times, object_index, shape_index };
+        }
         match SphereKeys::from_object(object) {
             SphereKeys::Still(center, radius) => Self::Sphere { center, radius, shape_index },
             _ if object.content.as_shape().is_some() => Self::Shape { object_index, shape_index },
@@ -230,6 +267,11 @@ impl LeafItem {
             Self::Shape { object_index, shape_index } | Self::Geometry { object_index, shape_index } => {
                 objects[object_index as usize].closest(ray, first + shape_index, best);
             }
+            Self::Segment { times, object_index, shape_index } => {
+                if is_within(ray, times) {
+                    objects[object_index as usize].closest(ray, first + shape_index, best);
+                }
+            }
         }
     }
 
@@ -240,6 +282,9 @@ impl LeafItem {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
             Self::Shape { object_index, .. } | Self::Geometry { object_index, .. } => {
                 objects[object_index as usize].occludes(ray)
+            }
+            Self::Segment { times, object_index, .. } => {
+                is_within(ray, times) && objects[object_index as usize].occludes(ray)
             }
         }
     }

@@ -23,6 +23,7 @@ mod emitters;
 pub mod frames;
 mod geometry;
 mod geometry_stats;
+mod hierarchy_entries;
 mod infinite_lights;
 mod instance;
 mod interiors;

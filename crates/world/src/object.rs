@@ -78,7 +78,7 @@ impl Object {
     pub fn moves(&self) -> bool {
         self.motion.moves()
             || match &self.content {
-                Content::Shape(_) => false,
+                Content::Shape(shape) => shape.mesh().is_some_and(Mesh::moves),
                 Content::Geometry(geometry) => geometry.moves(),
             }
     }

@@ -2,7 +2,7 @@
 
 use super::{Content, Geometry};
 use juggler_material::MaterialId;
-use juggler_math::{Motion, Transform};
+use juggler_math::{Aabb, Motion, Transform};
 use juggler_shape::AnyShape;
 use std::collections::BTreeMap;
 use std::ptr;
@@ -14,8 +14,65 @@ pub struct WorldShape {
     /// Index of the shape, counting the contents of every instance.
     pub shape_index: u32,
     pub shape: Arc<AnyShape>,
-    pub motion: Motion,
+    pub motion: WorldMotion,
+    /// Motion without rotation of a sphere that moves.
+    pub sphere_motion: Option<Box<WorldMotion>>,
     pub material: MaterialId,
+}
+
+/// Transform of a shape to world space as a function of shutter time. It equals the transforms that
+/// ray queries apply one after another.
+#[derive(Clone, Debug)]
+pub enum WorldMotion {
+    /// One motion.
+    Single(Motion),
+    /// Motions of nested instances, the innermost first. Products of moving transforms are not
+    /// linear between keys, so a single motion cannot replace them.
+    Nested(Arc<[Motion]>),
+}
+
+impl WorldMotion {
+    /// Motion of an object whose instance has the motion `outer`.
+    fn of_instance(inner: &Motion, outer: &Self) -> Self {
+        match outer {
+            Self::Single(outer) if !(inner.moves() && outer.moves()) => Self::Single(inner.then(outer)),
+            Self::Single(outer) => Self::Nested([inner.clone(), outer.clone()].into()),
+            Self::Nested(outer) => Self::Nested(std::iter::once(inner).chain(outer.iter()).cloned().collect()),
+        }
+    }
+
+    /// Transform to world space; `None` if the shape moves.
+    pub fn static_transform(&self) -> Option<&Transform> {
+        match self {
+            Self::Single(Motion::Still(transform)) => Some(transform),
+            Self::Single(Motion::Moving(_)) | Self::Nested(_) => None,
+        }
+    }
+
+    /// Transform at a time, which is clamped to 0 to 1.
+    pub fn at(&self, time: f32) -> Transform {
+        match self {
+            Self::Single(motion) => motion.at(time),
+            Self::Nested(all) => all.iter().fold(Transform::IDENTITY, |inner, outer| inner.then(&outer.at(time))),
+        }
+    }
+
+    /// Bounds of a local box over the whole shutter interval.
+    pub fn aabb(&self, local: &Aabb) -> Aabb {
+        match self {
+            Self::Single(motion) => motion.aabb(local),
+            Self::Nested(all) => all.iter().fold(*local, |bounds, motion| motion.aabb(&bounds)),
+        }
+    }
+
+    /// Upper bound of [`Transform::max_scale`] over the whole shutter interval.
+    pub fn max_scale(&self) -> f32 {
+        let largest = |motion: &Motion| motion.keys().iter().map(Transform::max_scale).fold(0.0, f32::max);
+        match self {
+            Self::Single(motion) => largest(motion),
+            Self::Nested(all) => all.iter().map(largest).product(),
+        }
+    }
 }
 
 /// Collects up to `limit` shapes for which `predicate` returns true, given shape and material, from
@@ -26,13 +83,14 @@ pub fn collect_shapes(
     predicate: &dyn Fn(&AnyShape, MaterialId) -> bool,
 ) -> Vec<WorldShape> {
     let mut search = Search { predicate, limit, found: Vec::new(), contains_match: BTreeMap::new() };
-    search.collect(top, &InstanceContext { motion: Transform::IDENTITY.into(), first: 0, inherited: None });
+    let motion = WorldMotion::Single(Transform::IDENTITY.into());
+    search.collect(top, &InstanceContext { motion, first: 0, inherited: None });
     search.found
 }
 
 /// Transform, first shape index and inherited material of an instance.
 struct InstanceContext {
-    motion: Motion,
+    motion: WorldMotion,
     first: u32,
     inherited: Option<MaterialId>,
 }
@@ -57,12 +115,14 @@ impl Search<'_> {
             match &instance.content {
                 Content::Shape(shape) => {
                     if let Some(material) = material.filter(|material| (self.predicate)(shape, *material)) {
-                        let motion = instance.motion.then(&context.motion);
-                        self.found.push(WorldShape { shape_index, shape: Arc::clone(shape), motion, material });
+                        let to_world = |motion: &Motion| WorldMotion::of_instance(motion, &context.motion);
+                        let sphere_motion = instance.sphere_motion(shape).map(|motion| Box::new(to_world(&motion)));
+                        let (motion, shape) = (to_world(&instance.motion), Arc::clone(shape));
+                        self.found.push(WorldShape { shape_index, shape, motion, sphere_motion, material });
                     }
                 }
                 Content::Geometry(below) if self.has_any(below, material) => {
-                    let motion = instance.motion.then(&context.motion);
+                    let motion = WorldMotion::of_instance(&instance.motion, &context.motion);
                     self.collect(below, &InstanceContext { motion, first: shape_index, inherited: material });
                 }
                 Content::Geometry(_) => {}
@@ -85,5 +145,36 @@ impl Search<'_> {
         });
         self.contains_match.insert(key, has_any);
         has_any
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::Vec3;
+    use juggler_math::testing::{Random, close3};
+
+    /// A motion between two random transforms.
+    fn motion(random: &mut Random) -> Motion {
+        Motion::from_keys(vec![random.transform(), random.transform()]).unwrap()
+    }
+
+    #[test]
+    fn nested_motions_equal_one_motion_after_another() {
+        let mut random = Random::new(71);
+        let still = Motion::Still(random.transform());
+        let all = [motion(&mut random), still, motion(&mut random), motion(&mut random)];
+        let top = WorldMotion::Single(Transform::IDENTITY.into());
+        let nested = all.iter().rev().fold(top, |outer, inner| WorldMotion::of_instance(inner, &outer));
+        assert!(nested.static_transform().is_none());
+        let local = Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE };
+        let bounds = nested.aabb(&local);
+        for _ in 0..200 {
+            let (time, point) = (random.f32(), local.min + local.extent() * random.vec3());
+            let expected = all.iter().fold(point, |point, motion| motion.at(time).point(point));
+            let found = nested.at(time).point(point);
+            assert!(close3(found, expected, 1e-3 * expected.length().max(1.0)) && bounds.contains(found), "{time}");
+            assert!(nested.at(time).max_scale() <= nested.max_scale() * 1.001);
+        }
     }
 }

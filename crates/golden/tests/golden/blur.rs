@@ -33,7 +33,7 @@ fn picture(frame: f64, settings: &Settings) -> Picture {
     Picture::new(&scene, settings).unwrap()
 }
 
-fn pixels(picture: &Picture) -> Vec<Rgb> {
+pub fn pixels(picture: &Picture) -> Vec<Rgb> {
     picture.render_image(&Control::default()).unwrap().pixels().to_vec()
 }
 

@@ -19,6 +19,8 @@ mod instances;
 mod kinds;
 mod matrix;
 mod model;
+mod moving_emitters;
+mod moving_parts;
 mod noise;
 mod scales;
 mod tree;

@@ -3,9 +3,10 @@
 use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
+use super::transform_motion;
 use crate::description::{ChainSphere, Description, Instances, Object, TransformStep};
 use crate::item::Item;
-use crate::motion::{ListTracks, ObjectTrack, Tracks};
+use crate::motion::{ListForm, ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use juggler_material::MaterialId;
@@ -25,7 +26,7 @@ pub fn place(
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
 ) -> (Vec<juggler_world::Object>, Vec<u32>) {
-    let mut preparer = Preparer { files, materials, findings };
+    let mut preparer = Preparer { files, materials, findings, is_animated: false };
     let groups = PathRef::Root.key("groups");
     let still = ListTracks::new();
     let groups = scene.groups.iter().map(|(name, objects)| {
@@ -99,18 +100,45 @@ struct Preparer<'m> {
     files: Files<'m>,
     materials: &'m mut Materials,
     findings: &'m mut Vec<Finding>,
+    /// Whether an enclosing object depends on time.
+    is_animated: bool,
+}
+
+/// Whether the JSON of an object depends on time.
+fn depends_on_time(object: &Item<Object>) -> bool {
+    object.template().is_some_and(|template| template.depends_on_time)
 }
 
 impl Preparer<'_> {
     fn objects<'s>(&mut self, objects: &'s [Item<Object>], times: Times<'_>, path: &PathRef<'_>) -> Vec<Prepared<'s>> {
         let times = times.fitting(objects.len());
-        let object = |(i, object): (usize, &'s Item<Object>)| {
+        let mut prepared = Vec::with_capacity(objects.len());
+        for (i, object) in objects.iter().enumerate() {
+            if !object.is_visible() {
+                self.check_flat(object, &path.index(i));
+                continue;
+            }
             let (at, inner) = times.object(i);
             let at = if at.iter().all(|other| **other == **object) { &[] } else { at.as_slice() };
-            Some(Prepared { index: i, ..self.object(object, at, inner, &path.index(i))? })
-        };
-        let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
-        visible.filter_map(object).collect()
+            let outer = self.is_animated;
+            self.is_animated = outer || depends_on_time(object);
+            let own = self.object(object, at, inner, &path.index(i));
+            self.is_animated = outer;
+            prepared.extend(own.map(|own| Prepared { index: i, ..own }));
+        }
+        prepared
+    }
+
+    /// Reports a scale of 0 that is not animated.
+    fn check_flat(&mut self, object: &Item<Object>, path: &PathRef<'_>) {
+        let path_steps = Path::from(path);
+        let contains = |form: &Path| path_steps.steps().starts_with(form.steps());
+        let is_form = |form: &ListForm| form.template.depends_on_time && contains(&form.path);
+        let is_animated =
+            self.is_animated || depends_on_time(object) || self.files.scene.list_forms.iter().any(is_form);
+        if bool::from(object.visible) && !is_animated {
+            self.transform(&object.transform, &path.key("transform"));
+        }
     }
 
     /// Prepares an object, which equals the objects `at` at even times and has child objects at the
@@ -144,7 +172,7 @@ impl Preparer<'_> {
         if let Some(shape) = &object.shape {
             let others = collect_all(at, |at| at.shape.as_ref());
             let prepared = self.shape(shape, &others, &path.key("shape"))?;
-            Some(Content::Shapes(vec![(sphere_scaling(shape, others), Arc::new(prepared))]))
+            Some(Content::Shapes(vec![(transform_motion::sphere_scaling(shape, others), Arc::new(prepared))]))
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
         } else if let Some(objects) = &object.objects {
@@ -210,11 +238,10 @@ impl Preparer<'_> {
     /// Motion of an object from its transform steps at the frame and `at` other times.
     fn motion(&mut self, steps: &[TransformStep], at: &[&Object], path: &PathRef<'_>) -> Option<Motion> {
         let still = self.transform(steps, path)?;
-        let keys: Option<Vec<Transform>> = match at.iter().all(|at| at.transform == steps) {
-            true => None,
-            false => at.iter().map(|at| composed(&at.transform)).collect(),
-        };
-        Some(keys.and_then(Motion::from_keys).unwrap_or(still.into()))
+        let moves = at.iter().any(|at| at.transform != steps);
+        let keys: Vec<&[TransformStep]> = at.iter().map(|at| at.transform.as_slice()).collect();
+        let motion = if moves { transform_motion::motion(&keys) } else { None };
+        Some(motion.unwrap_or(still.into()))
     }
 
     /// Motions of an object's instances. They move if there are as many `at` all other times.
@@ -259,21 +286,6 @@ impl Preparer<'_> {
 fn collect_all<'o, T>(objects: &[&'o Object], part: impl Fn(&'o Object) -> Option<T>) -> Vec<T> {
     let parts: Option<Vec<T>> = objects.iter().map(|object| part(object)).collect();
     parts.unwrap_or_default()
-}
-
-/// Composition of all steps; `None` if one of them is degenerate.
-fn composed(steps: &[TransformStep]) -> Option<Transform> {
-    let next = |whole: Transform, step: &TransformStep| Some(whole.then(&step.transform().ok()?));
-    steps.iter().try_fold(Transform::IDENTITY, next)
-}
-
-/// Motion of a sphere whose radius changes, as a scaling.
-fn sphere_scaling(shape: &AnyShape, others: Vec<&AnyShape>) -> Motion {
-    let Some(sphere) = shape.sphere() else { return Transform::IDENTITY.into() };
-    let scaling = |other: &Sphere| Transform::scale(Vec3::splat(other.radius / sphere.radius));
-    let keys = others.into_iter().map(|other| other.sphere().and_then(scaling));
-    let keys: Option<Vec<Transform>> = keys.collect();
-    keys.and_then(Motion::from_keys).unwrap_or(Transform::IDENTITY.into())
 }
 
 /// Diameter of the bounding box after a motion; 1 for unbounded content.

@@ -121,10 +121,16 @@ impl Visible {
 pub struct GroupName(pub String);
 
 impl Object {
-    /// Whether the scene contains the object. Hidden objects and their children are neither placed
-    /// nor counted.
+    /// Whether the scene contains the object. Hidden objects, objects with a scale of 0, and their
+    /// children are neither placed nor counted.
     pub fn is_visible(&self) -> bool {
-        self.visible.0
+        self.visible.0 && !self.is_flat()
+    }
+
+    /// Whether a step of the transform scales by 0. At a frame of an animation, the object is then
+    /// absent; otherwise it is an error.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.transform.iter().any(TransformStep::is_flat)
     }
 
     /// Mesh of the object, if its shape is one.

@@ -146,8 +146,8 @@ fn orthonormal_frame(axis: DVec3, top: DVec3) -> DMat3 {
     DMat3::from_cols(side, axis.cross(side), axis)
 }
 
-/// One scale factor, or one for each axis. Factors must not be 0; negative factors mirror the
-/// object.
+/// One scale factor, or one for each axis. Negative factors mirror the object. Factors must not be
+/// 0, except at some frames of an animation: at these, the object is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Axes")]
@@ -160,7 +160,7 @@ pub enum ScaleFactors {
 
 impl ScaleFactors {
     /// Factors along x, y and z.
-    pub(super) fn factors(&self) -> Vec3 {
+    pub(crate) fn factors(&self) -> Vec3 {
         match self {
             Self::All(factor) => Vec3::splat(*factor),
             Self::Each(factors) => *factors,
@@ -169,6 +169,11 @@ impl ScaleFactors {
 }
 
 impl TransformStep {
+    /// Whether the step scales by 0 along an axis.
+    pub(crate) fn is_flat(&self) -> bool {
+        matches!(self, Self::Scale(axes) if axes.factors().abs().min_element() == 0.0)
+    }
+
     /// Affine map of this step, or an error if the step is degenerate.
     pub fn transform(&self) -> Result<Transform, PlacementError> {
         match self {

@@ -13,6 +13,7 @@ mod animation;
 mod around;
 mod built_in;
 mod defaults;
+mod flat_objects;
 mod format;
 mod images;
 mod import_files;

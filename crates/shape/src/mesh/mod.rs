@@ -15,7 +15,6 @@
 
 use super::SurfaceDerivatives;
 use super::arithmetic::clamp_to_f32_range;
-use super::solid_angle::{area_pdf, area_sample, select_by_weight};
 use super::triangle_geometry::TriangleGeometry;
 use super::{Hit, InvalidShape, Shape, ShapeSample, SurfacePoint, check};
 use crate::attribute::MeshAttribute;
@@ -23,7 +22,7 @@ use crate::surface::Surface;
 use crease::SmoothingGroups;
 use description::MeshDescription;
 use juggler_bvh::SimdLevel;
-use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
+use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use prepared::PreparedMesh;
 use serde::Deserialize;
 use std::sync::{Arc, OnceLock};
@@ -37,6 +36,7 @@ mod moving_mesh;
 mod point;
 mod prepared;
 mod rare;
+mod sampling;
 
 pub use data::MeshData;
 pub use morph::{MorphArrays, MorphTarget};
@@ -163,8 +163,8 @@ impl Mesh {
     }
 
     /// Mesh that moves linearly between keyframes at uniform times from opening to closing of the
-    /// shutter, all with the same triangles. Its area, sampled points and creases are those of the
-    /// first keyframe. The error names the field at fault.
+    /// shutter, all with the same triangles. Its area is the mean over that time; its creases are
+    /// those of the first keyframe. The error names the field at fault.
     pub fn from_keyframes(mut keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
         let same = keys.windows(2).all(|pair| match pair {
             [a, b] => a.triangles == b.triangles && a.positions.len() == b.positions.len(),
@@ -326,15 +326,11 @@ impl Shape for Mesh {
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<ShapeSample> {
-        let prepared = self.prepared.as_ref()?;
-        let (index, rest) = select_by_weight(prepared.running_areas(), u.x)?;
-        let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate().as_dvec2();
-        let (point, normal) = prepared.arrays().triangle_geometry(index)?.point(at);
-        area_sample(from, point, normal, prepared.area())
+        self.sample_at(from, u, 0.0)
     }
 
     fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
-        area_pdf(from, at, self.area())
+        self.pdf_at(from, at, 0.0)
     }
 
     fn triangles(&self) -> usize {

@@ -75,6 +75,14 @@ impl MovingMesh {
         Some(TriangleGeometry { corners: lerp_corners(from.corners, to.corners), normals, uvs: from.uvs })
     }
 
+    /// Mean area of a triangle over the keyframes and the midpoints between them, so that a triangle
+    /// counts even if it has no area at some keyframes.
+    pub fn mean_area(&self, triangle: usize) -> Option<f64> {
+        let last = 2 * self.intervals.len();
+        let area = |step: usize| Some(self.triangle_geometry(triangle, step as f32 / last as f32)?.area());
+        Some((0..=last).map(area).sum::<Option<f64>>()? / (last + 1) as f64)
+    }
+
     /// Tangent at a time, as [`MeshData::tangent`].
     pub fn tangent(&self, triangle: usize, at: Vec2, time: f32) -> Option<(Vec3, f32)> {
         let (key, fraction) = key_interval(self.keys.len(), time);

@@ -169,9 +169,12 @@ impl PreparedMesh {
         self.bounds
     }
 
-    /// Area of all triangles.
+    /// Area of all triangles; the mean over time if they move.
     pub fn area(&self) -> f32 {
-        self.area as f32
+        match &self.tree {
+            Tree::Still(_) => self.area as f32,
+            Tree::Moving(_) => self.running_areas().last().map_or(0.0, |area| *area as f32),
+        }
     }
 
     /// Number of triangles without area.
@@ -179,14 +182,16 @@ impl PreparedMesh {
         self.degenerate
     }
 
-    /// Running sums of the triangles' areas.
+    /// Running sums of the triangles' areas, which are means over time if they move.
     pub fn running_areas(&self) -> &[f64] {
         self.areas.get_or_init(|| {
             let mut sum = 0.0;
-            let triangles =
-                (0..self.arrays.triangles.len()).filter_map(|triangle| self.arrays.triangle_geometry(triangle));
-            let running = triangles.map(|triangle| {
-                sum += triangle.area();
+            let area = |triangle| match &self.tree {
+                Tree::Still(_) => self.arrays.triangle_geometry(triangle).map(|triangle| triangle.area()),
+                Tree::Moving(tree) => tree.mean_area(triangle),
+            };
+            let running = (0..self.arrays.triangles.len()).filter_map(area).map(|area| {
+                sum += area;
                 sum
             });
             running.collect()
