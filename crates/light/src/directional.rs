@@ -5,8 +5,9 @@
 //!     "angle_degrees": 0.53}}
 //! ```
 //!
-//! `angle_degrees` gives soft shadows and changes nothing else: all points of the disk emit the
-//! same radiance, and the irradiance does not depend on the angle.
+//! `angle_degrees` gives soft shadows and does not change the irradiance `E` on a surface that faces
+//! the light. All points of the disk emit the same radiance, `E / (π sin²(angle / 2))`, because the
+//! integral of the cosine over the disk's cone is `π sin²(angle / 2)`.
 
 use super::{InvalidLight, Light, LightSample, check_color, check_direction, in_range};
 use juggler_math::{Frame, Rgb, Transform, Vec2, Vec3, warp};
@@ -76,10 +77,12 @@ impl Light for Directional {
     }
 
     fn sample(&self, _from: Vec3, u: Vec2) -> Option<LightSample> {
-        let radiance = self.color * self.intensity;
+        let mut radiance = self.color * self.intensity;
         let mut wi = -self.direction.normalize_or_zero();
         if self.angle_degrees > 0.0 && wi != Vec3::ZERO {
             let size = warp::cone_size(0.5 * self.angle_degrees.to_radians());
+            // Solid angle of the cone, 2π size, over its integral of the cosine, π size (2 - size).
+            radiance = radiance * (2.0 / (2.0 - size));
             wi = Frame::around(wi).to_world(warp::uniform_cone(u, size));
         }
         (!radiance.is_black() && wi != Vec3::ZERO).then_some(LightSample {
@@ -124,6 +127,25 @@ mod tests {
         let sample = light.sample(Vec3::new(1e9, 0.0, 3.0), Vec2::ZERO).unwrap();
         assert!((sample.wi - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6);
         assert_eq!((sample.distance, sample.radiance), (f32::INFINITY, Rgb::splat(2.0)));
+    }
+
+    /// The mean of radiance times cosine over a stratified grid of samples is the irradiance on a
+    /// surface that faces the light: `color` times `intensity` for every angle, and the same bits as
+    /// ever for 0.
+    #[test]
+    fn irradiance_does_not_depend_on_the_angle() {
+        const GRID: u16 = 64;
+        for angle_degrees in [0.0, 0.53, 10.0, 40.0, 90.0, 120.0, 180.0] {
+            let light = Directional { intensity: 3.0, angle_degrees, ..Directional::default() };
+            let stratum = |i: u16| (f32::from(i) + 0.5) / f32::from(GRID);
+            let samples = (0..GRID * GRID).map(|i| Vec2::new(stratum(i / GRID), stratum(i % GRID)));
+            let arriving = samples.filter_map(|u| light.sample(Vec3::ZERO, u));
+            let sum: f64 = arriving.map(|sample| f64::from(sample.radiance.g * sample.wi.y)).sum();
+            let irradiance = sum / f64::from(GRID * GRID);
+            assert!((irradiance / 3.0 - 1.0).abs() < 1e-5, "{angle_degrees}: {irradiance}");
+        }
+        let point = Directional { intensity: 3.0, ..Directional::default() };
+        assert_eq!(point.sample(Vec3::ZERO, Vec2::ZERO).map(|sample| sample.radiance), Some(Rgb::splat(3.0)));
     }
 
     #[test]

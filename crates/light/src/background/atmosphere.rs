@@ -1,7 +1,10 @@
 //! Scattering of sunlight in a clear atmosphere (Hillaire, A Scalable and Production Ready Sky and
 //! Atmosphere Rendering Technique, 2020): single scattering along the view ray, multiple scattering
-//! by the closed form of its section 5.5. Coefficients from its table 1; the absorption of haze is
-//! from Bruneton and Neyret (2008).
+//! by the closed form of its section 5.5. Coefficients of air and ozone from its table 1. The haze
+//! deviates from the paper: its extinction follows Ångström's law (1929), and its phase function is
+//! that of Henyey and Greenstein (1941), with an asymmetry that grows with the turbidity. Its amount
+//! and exponent are fitted to the clear skies of Hosek and Wilkie (2012); `tests/sky/agree.py`
+//! prints the comparison.
 //!
 //! Lengths are in kilometers. Each vector holds three channels: red, green and blue. The sun's
 //! irradiance above the atmosphere is 1.
@@ -15,11 +18,18 @@ const TOP: f64 = 6460.0;
 /// Scattering coefficient of air at sea level, per kilometer, and scale height.
 const AIR: DVec3 = DVec3::new(5.802e-3, 13.558e-3, 33.1e-3);
 const AIR_HEIGHT: f64 = 8.0;
-/// Scattering and extinction coefficients of haze at sea level, per kilometer, before the factor of
-/// the turbidity.
-const HAZE: f64 = 3.996e-3;
-const HAZE_EXTINCTION: f64 = 4.44e-3;
+/// Wavelengths of the three channels, in nanometers.
+const WAVELENGTHS: DVec3 = DVec3::new(680.0, 550.0, 440.0);
+/// Vertical optical thickness of haze at 550 nm for each unit of turbidity above 1, relative to that
+/// of air.
+const HAZE_PER_TURBIDITY: f64 = 0.4;
+/// Exponent of Ångström's law: the extinction of haze is proportional to wavelength^-exponent.
+const HAZE_EXPONENT: f64 = 1.1;
+/// Single-scattering albedo of haze: scattering over extinction.
+const HAZE_ALBEDO: f64 = 0.95;
 const HAZE_HEIGHT: f64 = 1.2;
+/// Asymmetry g of the phase function of haze: in the clearest air, and from turbidity 5 on.
+const HAZE_ASYMMETRY: [f32; 2] = [0.65, 0.7];
 /// Absorption coefficient of ozone at its densest, at 25 km; 0 from 15 km below and above.
 const OZONE: DVec3 = DVec3::new(0.650e-3, 1.881e-3, 0.085e-3);
 /// Sine of the sun's angular radius.
@@ -31,7 +41,8 @@ const MULTIPLE_SCATTERING_SIZE: [usize; 2] = [10, 24];
 
 /// Atmosphere with tables of transmittance and of multiple scattering.
 pub(super) struct Atmosphere {
-    haze: f64,
+    /// Extinction coefficient of haze at sea level, per kilometer.
+    haze_extinction: DVec3,
     albedo: DVec3,
     transmittance: Vec<DVec3>,
     multiple_scattering: Vec<DVec3>,
@@ -40,7 +51,7 @@ pub(super) struct Atmosphere {
 /// Coefficients of the medium at some height, per kilometer.
 struct Medium {
     air: DVec3,
-    haze: f64,
+    haze: DVec3,
     extinction: DVec3,
 }
 
@@ -53,12 +64,14 @@ pub(super) struct Scattered {
 }
 
 impl Atmosphere {
-    /// Creates an atmosphere and its tables. `turbidity` is the vertical optical thickness of air
-    /// and haze, relative to that of air alone, for green light; 1 is air without haze. `albedo` is
-    /// the reflectance of the ground.
+    /// Creates an atmosphere and its tables. `turbidity` has the scale of Hosek and Wilkie: 1 is air
+    /// without haze, and each further unit adds haze with 0.4 times the vertical optical thickness
+    /// of air at 550 nm. `albedo` is the reflectance of the ground.
     pub fn new(turbidity: f64, albedo: DVec3) -> Self {
-        let haze = (turbidity - 1.0) * AIR.y * AIR_HEIGHT / (HAZE_EXTINCTION * HAZE_HEIGHT);
-        let mut atmosphere = Self { haze, albedo, transmittance: Vec::new(), multiple_scattering: Vec::new() };
+        let thickness = (turbidity - 1.0) * HAZE_PER_TURBIDITY * AIR.y * AIR_HEIGHT;
+        let haze_extinction = haze_spectrum() * (thickness / HAZE_HEIGHT);
+        let mut atmosphere =
+            Self { haze_extinction, albedo, transmittance: Vec::new(), multiple_scattering: Vec::new() };
         atmosphere.transmittance =
             table(TRANSMITTANCE_SIZE, |y, x| atmosphere.depth_to_top(y, x).map(|depth| portable::exp_f64(-depth)));
         atmosphere.multiple_scattering = table(MULTIPLE_SCATTERING_SIZE, |y, x| {
@@ -70,9 +83,9 @@ impl Atmosphere {
     fn medium(&self, radius: f64) -> Medium {
         let altitude = (radius - GROUND).max(0.0);
         let air = AIR * portable::exp_f64(-altitude / AIR_HEIGHT);
-        let haze = self.haze * portable::exp_f64(-altitude / HAZE_HEIGHT);
+        let haze = self.haze_extinction * portable::exp_f64(-altitude / HAZE_HEIGHT);
         let ozone = (1.0 - (altitude - 25.0).abs() / 15.0).max(0.0);
-        Medium { air, haze: haze * HAZE, extinction: air + DVec3::splat(haze * HAZE_EXTINCTION) + OZONE * ozone }
+        Medium { air, haze: haze * HAZE_ALBEDO, extinction: air + haze + OZONE * ozone }
     }
 
     /// Optical depth to the top of the atmosphere, for table coordinates of height and direction,
@@ -139,7 +152,7 @@ impl Atmosphere {
             let direction = DVec3::new(ring * cos_turn, cos, ring * sin_turn);
             let (end, grounded) = ray_end(radius, cos);
             let transmittance = self.march::<20>(from, direction, end, |point, medium, weight| {
-                let scattering = medium.air + DVec3::splat(medium.haze);
+                let scattering = medium.air + medium.haze;
                 let height = point.length();
                 second += weight * scattering * self.sunlight(height, point.dot(sun) / height) / (4.0 * PI);
                 transfer += weight * scattering;
@@ -198,7 +211,7 @@ impl Atmosphere {
             let altitude = ((height - GROUND - 0.001) / 99.0).clamp(0.0, 1.0);
             let multiple_scattering =
                 look_up(&self.multiple_scattering, MULTIPLE_SCATTERING_SIZE, altitude.sqrt(), 0.5 + 0.5 * cos);
-            let scattered_again = (medium.air + DVec3::splat(medium.haze)) * multiple_scattering;
+            let scattered_again = (medium.air + medium.haze) * multiple_scattering;
             light.without_haze += weight * (medium.air * arrives * air_phase + scattered_again);
             light.haze += weight * arrives * medium.haze;
         });
@@ -237,12 +250,22 @@ fn look_up(table: &[DVec3], [rows, columns]: [usize; 2], y: f64, x: f64) -> DVec
     line(row).lerp(line(row + 1), down)
 }
 
-/// Phase function of haze, per steradian, for the cosine of the scattering angle (Cornette and
-/// Shanks 1992, g = 0.8).
-pub(super) fn haze_phase(cos: f32) -> f32 {
-    const G: f32 = 0.8;
-    let around = 1.0 + G * G - 2.0 * G * cos;
-    3.0 / (8.0 * std::f32::consts::PI) * (1.0 - G * G) * (1.0 + cos * cos) / ((2.0 + G * G) * around * around.sqrt())
+/// Extinction of haze in each channel relative to that at 550 nm, by Ångström's law.
+fn haze_spectrum() -> DVec3 {
+    WAVELENGTHS.map(|wavelength| portable::exp_f64(-HAZE_EXPONENT * portable::ln_f64(wavelength / WAVELENGTHS.y)))
+}
+
+/// Asymmetry g of the phase function of haze: the mean cosine of the scattering angle.
+pub(super) fn haze_asymmetry(turbidity: f32) -> f32 {
+    let [clear, hazy] = HAZE_ASYMMETRY;
+    clear + (hazy - clear) * ((turbidity - 1.0) / 4.0).clamp(0.0, 1.0)
+}
+
+/// Phase function of haze with asymmetry `g`, per steradian, for the cosine of the scattering angle
+/// (Henyey and Greenstein 1941).
+pub(super) fn haze_phase(g: f32, cos: f32) -> f32 {
+    let around = 1.0 + g * g - 2.0 * g * cos;
+    (1.0 - g * g) / (4.0 * std::f32::consts::PI * around * around.sqrt())
 }
 
 #[cfg(test)]
@@ -253,10 +276,10 @@ mod tests {
     fn light_straight_down_passes_by_the_closed_form() {
         let atmosphere = Atmosphere::new(2.0, DVec3::ZERO);
         // Optical depths of two exponential profiles and of a tent of half width 15 km; the haze is
-        // as thick as air in green.
+        // 0.4 times as thick as air in green.
         let end = 1.0 - (-100.0f64 / 8.0).exp();
-        let haze = AIR.y * AIR_HEIGHT;
-        let depth = AIR * AIR_HEIGHT * end + DVec3::splat(haze) + OZONE * 15.0;
+        let haze = [680.0f64, 550.0, 440.0].map(|nm| 0.4 * AIR.y * AIR_HEIGHT * (nm / 550.0).powf(-1.1));
+        let depth = AIR * AIR_HEIGHT * end + DVec3::from(haze) + OZONE * 15.0;
         let transmittance = atmosphere.transmittance_to_top(GROUND, 1.0);
         for channel in 0..3 {
             assert!((transmittance[channel] / (-depth[channel]).exp() - 1.0).abs() < 2e-3, "{transmittance} {depth}");
@@ -271,8 +294,14 @@ mod tests {
     fn haze_phase_function_integrates_to_one() {
         let steps = 20_000;
         let cos = |i: i32| (f64::from(i) + 0.5) / f64::from(steps) * 2.0 - 1.0;
-        let sum: f64 = (0..steps).map(|i| f64::from(haze_phase(cos(i) as f32))).sum();
-        assert!((sum * 4.0 * PI / f64::from(steps) - 1.0).abs() < 1e-4);
+        for turbidity in [1.0, 2.0, 5.0, 10.0] {
+            let g = haze_asymmetry(turbidity);
+            let phase = |i: i32| f64::from(haze_phase(g, cos(i) as f32)) * 4.0 * PI / f64::from(steps);
+            let sum: f64 = (0..steps).map(phase).sum();
+            let mean_cosine: f64 = (0..steps).map(|i| phase(i) * cos(i)).sum();
+            assert!((sum - 1.0).abs() < 1e-4 && (mean_cosine - f64::from(g)).abs() < 1e-4, "{sum} {mean_cosine}");
+            assert!((0.65..=0.7).contains(&g));
+        }
     }
 
     /// The irradiance of sky and sun does not exceed the sun's above the atmosphere, and more than
@@ -290,7 +319,7 @@ mod tests {
                 let ring = (1.0 - sine * sine).sqrt();
                 let direction = DVec3::new(ring * c, sine, ring * s);
                 let light = atmosphere.sky(direction, sun);
-                let phase = f64::from(haze_phase(direction.dot(sun) as f32));
+                let phase = f64::from(haze_phase(haze_asymmetry(turbidity as f32), direction.dot(sun) as f32));
                 diffuse += (light.without_haze + light.haze * phase) * sine * 2.0 * PI / f64::from(rows * columns);
             }
             let direct = atmosphere.sunlight(GROUND, sun_sine) * sun_sine;

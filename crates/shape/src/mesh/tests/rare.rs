@@ -65,3 +65,36 @@ fn moving_meshes_keep_attributes_and_blend_tangents() {
     assert!(close3(frame.u, Vec3::new(0.5, 0.0, -0.5), 1e-5), "{frame:?}");
     assert!(close3(frame.v, -surface.local_normal.cross(frame.u), 1e-5), "{frame:?}");
 }
+
+/// Without surface coordinates, the tangents of a sphere of triangles are those of the exact sphere,
+/// on both sides of every edge; with them, the triangles' derivatives stay.
+#[test]
+fn meshes_without_coordinates_have_tangents_about_the_axis() {
+    let corner = |turn: u32, y: f32| {
+        let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 6.0).sin_cos();
+        Vec3::new(cos, y, -sin)
+    };
+    let positions: Vec<Vec3> = (0..6).flat_map(|turn| [corner(turn, -1.0), corner(turn, 1.0)]).collect();
+    let side = |i: u32| [[2 * i, (2 * i + 2) % 12, (2 * i + 3) % 12], [2 * i, (2 * i + 3) % 12, 2 * i + 1]];
+    let data = MeshData { positions, triangles: (0..6).flat_map(side).collect(), ..MeshData::default() };
+    let mut mesh = Mesh { crease_angle_degrees: Some(180.0), ..data.clone().into() };
+    mesh.prepare().unwrap();
+    assert!(mesh.lacks_surface_coordinates());
+    let shape = AnyShape::from(mesh);
+    for step in 0..360u16 {
+        let (sin, cos) = f32::from(step).to_radians().sin_cos();
+        let ray = Ray::new(Vec3::new(3.0 * cos, 0.1, -3.0 * sin), Vec3::new(-cos, 0.0, sin));
+        let hit = shape.intersect(&ray).unwrap();
+        let surface = shape.surface(&ray, &hit);
+        let frame = shape.tangent_frame(hit.primitive, &surface, 0.0).unwrap();
+        // The radius turns by the azimuth, so the tangent is the azimuth's derivative.
+        assert!(close3(frame.u.normalize(), Vec3::new(-sin, 0.0, -cos), 1e-4), "{step}: {frame:?}");
+        assert!(frame.v.normalize().y > 0.8, "{step}: {frame:?}");
+    }
+    let uvs = data.positions.iter().map(|p| Vec2::new(p.x, p.y)).collect();
+    let mut mesh = Mesh::from(MeshData { uvs, ..data });
+    mesh.prepare().unwrap();
+    let ray = Ray::new(Vec3::new(3.0, 0.1, 0.2), Vec3::NEG_X);
+    let surface = mesh.surface(&ray, &mesh.intersect(&ray).unwrap());
+    assert!(AnyShape::from(mesh).tangent_frame(0, &surface, 0.0).is_none());
+}
