@@ -14,15 +14,18 @@
 //! with probability G2 / G1. Otherwise, that is with probability L(wo), a direction is sampled in
 //! proportion to L(wi) cos θi. Samples of a white interface thus have a weight of 1 whatever the
 //! error of the tables. Values and densities use L of the tables, which are within 0.002 for plain
-//! glass. Under a thin film, whose reflectance no table holds, L is that of the plain interface.
+//! glass. Under a thin film or a [`SpecularWeight`] below 1, whose reflectances no table holds, L is
+//! that of the plain interface.
 
 use super::energy::{self, InterfaceLoss, SampleRng, Side};
 use super::ggx::Ggx;
 use super::lobe::{Deltas, channel_sum, delta, nonzero_deltas, sample_delta_pair, selection_probability};
-use super::{BsdfSample, Scatter, ThinFilm, choose, fresnel};
+use super::{BsdfSample, Scatter, SpecularWeight, ThinFilm, choose, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
+
+mod estimates;
 
 /// Dielectric interface lobe: glass, water.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +38,8 @@ pub struct Dielectric {
     pub transmission: Rgb,
     /// Thin film above the interface, and the fraction of the surface that it covers, 0 to 1.
     pub thin_film: Option<(ThinFilm, f32)>,
+    /// Factor on the Fresnel reflectance below total reflection.
+    specular: SpecularWeight,
     compensation: Option<Compensation>,
 }
 
@@ -85,7 +90,8 @@ impl Dielectric {
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
         let ggx = if (ior - 1.0).abs() < Self::MIN_IOR_DIFFERENCE { Ggx::isotropic(0.0) } else { Ggx::new(alpha) };
-        Self { ggx, ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, thin_film: None, compensation: None }
+        let (reflection, transmission, specular) = (Rgb::WHITE, Rgb::WHITE, SpecularWeight::default());
+        Self { ggx, ior, reflection, transmission, thin_film: None, specular, compensation: None }
     }
 
     /// Interface with multiple scattering between microfacets.
@@ -124,6 +130,12 @@ impl Dielectric {
         Self { reflection, transmission, ..self }
     }
 
+    /// The same interface with a factor on the Fresnel reflectance; see [`SpecularWeight`].
+    #[inline]
+    pub fn with_specular(self, specular: SpecularWeight) -> Self {
+        Self { specular, ..self }
+    }
+
     /// Whether the interface has only specular reflection and refraction.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -136,11 +148,19 @@ impl Dielectric {
         if w.z < 0.0 { 1.0 / self.ior } else { self.ior }
     }
 
-    /// Fresnel reflectance at an angle of cosine `cos`, for the index behind over that in front.
+    /// Fresnel reflectance at an angle of cosine `cos`, for the index behind over that in front,
+    /// times the specular weight unless reflection is total.
     #[inline]
     fn reflectance(&self, cos: f32, ior: f32) -> Rgb {
         let plain = fresnel::dielectric_reflectance(cos, ior);
-        let Some((thin_film, amount)) = self.thin_film.filter(|_| plain < 1.0) else { return Rgb::splat(plain) };
+        if plain < 1.0 { self.partial_reflectance(plain, cos, ior) * self.specular.weight } else { Rgb::WHITE }
+    }
+
+    /// Reflectance below total reflection, of the thin film where it covers the interface, otherwise
+    /// `plain`.
+    #[inline]
+    fn partial_reflectance(&self, plain: f32, cos: f32, ior: f32) -> Rgb {
+        let Some((thin_film, amount)) = self.thin_film else { return Rgb::splat(plain) };
         // The film takes the angle above it, whichever side light comes from.
         let is_below = ior != self.ior;
         let above = if is_below { (1.0 - (1.0 - cos * cos) / (ior * ior)).max(0.0).sqrt() } else { cos };
@@ -161,7 +181,13 @@ impl Dielectric {
         if self.compensation.is_some() {
             return channel_sum(reflectance) * (1.0 / 3.0);
         }
-        selection_probability(self.reflection * reflectance, self.transmission * (Rgb::WHITE - reflectance))
+        selection_probability(self.reflected(reflectance), self.transmission * (Rgb::WHITE - reflectance))
+    }
+
+    /// Fraction of light that an interface of this reflectance reflects, with the factors on it.
+    #[inline]
+    fn reflected(&self, reflectance: Rgb) -> Rgb {
+        self.reflection * self.specular.tint(reflectance)
     }
 
     /// Multiple scattering of light along `wo`, flipped to be above; `ior` is the index behind over
@@ -183,7 +209,7 @@ impl Dielectric {
             let microfacet = self.ggx.eval_reflection(view.wo, wi);
             let reflectance = self.reflectance(microfacet.cos, view.ior);
             let pdf = if view.multiple.is_some() { microfacet.value } else { microfacet.pdf };
-            (self.reflection * reflectance * microfacet.value, pdf * self.reflection_probability(reflectance))
+            (self.reflected(reflectance) * microfacet.value, pdf * self.reflection_probability(reflectance))
         } else {
             self.eval_refraction(view, wi)
         };
@@ -255,31 +281,12 @@ impl Dielectric {
     fn delta_pair(&self, wo: Vec3) -> [BsdfSample; 2] {
         let ior = self.ior_from(wo);
         let reflectance = self.smooth_reflectance(wo.z.abs(), ior);
-        let reflected = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * reflectance, 1.0);
+        let reflected = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflected(reflectance), 1.0);
         let (wi, transmitted) = match fresnel::refract(wo, Vec3::Z, 1.0 / ior) {
             Some(wi) => (wi, (Rgb::WHITE - reflectance) / (ior * ior)),
             None => (-wo, Rgb::BLACK),
         };
         [reflected, delta(wi, self.transmission * transmitted, ior)]
-    }
-
-    /// Reflectance and transmittance of light along `wo`, without their colors.
-    pub(super) fn reflectance_and_transmittance(&self, wo: Vec3) -> [f32; 2] {
-        let (ior, cos) = (self.ior_from(wo), wo.z.abs());
-        if self.is_smooth() {
-            let reflectance = channel_sum(self.smooth_reflectance(cos, ior)) / 3.0;
-            return [reflectance, 1.0 - reflectance];
-        }
-        let up = Vec3::new(wo.x, wo.y, cos);
-        let reflected = energy::dielectric_reflection_albedo(cos, self.ggx.mean_alpha(), ior);
-        let multiple = self.multiple(up, ior);
-        let loss = || InterfaceLoss::new(self.ggx, ior).at(Side::from_ior(ior), up);
-        let loss = multiple.map_or_else(loss, |multiple| multiple.loss_probability);
-        let transmitted = (1.0 - reflected - loss).max(0.0);
-        match multiple {
-            Some(Multiple { transmitted_fraction: t, .. }) => [reflected + loss * (1.0 - t), transmitted + loss * t],
-            None => [reflected, transmitted],
-        }
     }
 
     #[inline]
@@ -294,23 +301,6 @@ impl Dielectric {
         let [a, b] = along.map(|w| fresnel::refract(w, m, self.ior));
         let reflectance = self.smooth_reflectance(along[0].dot(m).clamp(0.0, 1.0), 1.0 / self.ior);
         Some((1.0 - channel_sum(reflectance) / 3.0, [a?, b?]))
-    }
-
-    /// 1 / η²: projected solid angle below into which the whole upper hemisphere refracts, over π.
-    #[inline]
-    pub(super) fn inverse_squared_ior(&self) -> f32 {
-        1.0 / (self.ior * self.ior)
-    }
-
-    /// Transmittance of the polished interface for light from below at an angle of this cosine.
-    #[inline]
-    pub(super) fn smooth_transmittance_below(&self, cos: f32) -> f32 {
-        1.0 - fresnel::dielectric_reflectance(cos.min(1.0), 1.0 / self.ior)
-    }
-
-    /// Cosine-weighted mean of [`Dielectric::smooth_transmittance_below`] over all directions.
-    pub(super) fn mean_smooth_transmittance_below(&self) -> f32 {
-        1.0 - fresnel::mean_dielectric_reflectance(1.0 / self.ior)
     }
 
     /// Whether the microfacets are isotropic.
@@ -372,10 +362,10 @@ impl ScatteringLobe for Dielectric {
         }
         if self.is_smooth() {
             let reflectance = self.smooth_reflectance(wo.z.abs(), self.ior_from(wo));
-            return self.reflection * reflectance + self.transmission * (Rgb::WHITE - reflectance);
+            return self.reflected(reflectance) + self.transmission * (Rgb::WHITE - reflectance);
         }
         let [reflected, transmitted] = self.reflectance_and_transmittance(wo);
-        self.reflection * reflected + self.transmission * transmitted
+        self.reflected(Rgb::splat(reflected)) + self.transmission * transmitted
     }
 
     /// Specular reflection and refraction, if smooth; deltas of zero weight are left out.

@@ -31,6 +31,7 @@ mod phong;
 pub mod plastic;
 pub mod principled;
 pub mod sheen;
+mod specular_weight;
 mod sum;
 pub mod thin;
 pub mod thin_film;
@@ -47,6 +48,7 @@ pub use lobe::{Deltas, ScatteringLobe};
 pub use phong::{ConeSampling, Highlight, PhongParameters};
 pub use plastic::Plastic;
 pub use principled::Principled;
+pub use specular_weight::SpecularWeight;
 pub use sum::{Bsdf, MAX_LOBES};
 pub use thin_film::ThinFilm;
 

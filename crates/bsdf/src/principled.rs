@@ -12,13 +12,14 @@
 //! - rough surfaces include multiple scattering, unless `single_scattering`;
 //! - glass uses Fresnel's exact equations, and thin-walled glass includes reflections between its
 //!   two interfaces;
-//! - for glass, `specular` and `specular_color` reduce the reflection without increasing the
-//!   transmission.
+//! - for glass, `specular` and `specular_color` scale the reflectance at every angle, and total
+//!   reflection inside a solid keeps all light; see [`SpecularWeight`].
 
 use super::fresnel::f0_from_ior;
 use super::thin_film::ThinFilm;
 use super::{
-    Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Sheen, ThinDielectric, TiltedConductor,
+    Bsdf, Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Sheen, SpecularWeight, ThinDielectric,
+    TiltedConductor,
 };
 use juggler_math::{Rgb, Vec2, Vec3};
 
@@ -182,16 +183,18 @@ impl Principled {
     }
 
     fn push_glass(&self, bsdf: &mut Bsdf, relative_ior: f32, weight: f32) {
-        let reflection = self.specular_color.map(|c| c.min(1.0)) * self.specular;
+        let specular = SpecularWeight::new(self.specular, self.specular_color);
         let thin_film = self.thin_film(self.dielectric_f0());
         if self.thin_walled {
             let new = if self.single_scattering { ThinDielectric::new } else { ThinDielectric::compensated };
-            let mut pane = new(self.glass_ior(), self.alpha()).tinted(reflection, self.base_color);
+            let mut pane =
+                new(self.glass_ior(), self.alpha()).tinted(Rgb::WHITE, self.base_color).with_specular(specular);
             pane.thin_film = thin_film;
             bsdf.push_scaled(pane, weight);
         } else {
             let new = if self.single_scattering { Dielectric::new } else { Dielectric::compensated };
-            let mut interface = new(relative_ior, self.alpha()).tinted(reflection, self.base_color);
+            let mut interface =
+                new(relative_ior, self.alpha()).tinted(Rgb::WHITE, self.base_color).with_specular(specular);
             interface.thin_film = thin_film;
             bsdf.push_scaled(interface, weight);
         }

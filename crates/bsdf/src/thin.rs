@@ -11,7 +11,7 @@
 use super::energy::SampleRng;
 use super::ggx::{Ggx, MicrofacetReflection};
 use super::lobe::{Deltas, channel_sum, delta, nonzero_deltas, sample_delta_pair, selection_probability};
-use super::{BsdfSample, Scatter, ThinFilm, energy, fresnel};
+use super::{BsdfSample, Scatter, SpecularWeight, ThinFilm, energy, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
@@ -27,6 +27,8 @@ pub struct ThinDielectric {
     pub transmission: Rgb,
     /// Thin film on the sheet, and the fraction of the sheet that it covers, 0 to 1.
     pub thin_film: Option<(ThinFilm, f32)>,
+    /// Factor on the Fresnel reflectance of each interface.
+    specular: SpecularWeight,
     compensated: bool,
 }
 
@@ -36,8 +38,8 @@ impl ThinDielectric {
     #[inline]
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
-        let (reflection, transmission) = (Rgb::WHITE, Rgb::WHITE);
-        Self { ggx: Ggx::new(alpha), ior, reflection, transmission, thin_film: None, compensated: false }
+        let (reflection, transmission, specular) = (Rgb::WHITE, Rgb::WHITE, SpecularWeight::default());
+        Self { ggx: Ggx::new(alpha), ior, reflection, transmission, thin_film: None, specular, compensated: false }
     }
 
     /// Sheet with multiple scattering between microfacets.
@@ -53,6 +55,13 @@ impl ThinDielectric {
         Self { reflection, transmission, ..self }
     }
 
+    /// The same sheet with a factor on the Fresnel reflectance of each interface; see
+    /// [`SpecularWeight`].
+    #[inline]
+    pub fn with_specular(self, specular: SpecularWeight) -> Self {
+        Self { specular, ..self }
+    }
+
     /// Whether the sheet has only specular reflection and transmission.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -66,13 +75,19 @@ impl ThinDielectric {
         let once = self
             .thin_film
             .map_or(Rgb::splat(once), |(thin_film, amount)| Rgb::splat(once).lerp(thin_film.reflectance(cos), amount));
-        once.map(|once| 2.0 * once / (1.0 + once))
+        (once * self.specular.weight).map(|once| 2.0 * once / (1.0 + once))
+    }
+
+    /// Fraction of light that a sheet of this reflectance reflects, with the factors on it.
+    #[inline]
+    fn reflected(&self, reflectance: Rgb) -> Rgb {
+        self.reflection * self.specular.tint(reflectance)
     }
 
     /// Probability that a microfacet of this reflectance reflects.
     #[inline]
     fn reflection_probability(&self, reflectance: Rgb) -> f32 {
-        selection_probability(self.reflection * reflectance, self.transmission * (Rgb::WHITE - reflectance))
+        selection_probability(self.reflected(reflectance), self.transmission * (Rgb::WHITE - reflectance))
     }
 
     /// Fraction of light along `w` that single scattering loses.
@@ -82,7 +97,7 @@ impl ThinDielectric {
 
     /// Fraction of multiply scattered light that is reflected.
     fn multiple_reflectance(&self) -> f32 {
-        let once = fresnel::mean_dielectric_reflectance(self.ior);
+        let once = fresnel::mean_dielectric_reflectance(self.ior) * self.specular.weight;
         2.0 * once / (1.0 + once)
     }
 
@@ -109,7 +124,7 @@ impl ThinDielectric {
 
     fn delta_pair(&self, wo: Vec3) -> [BsdfSample; 2] {
         let reflectance = self.reflectance(wo.z.abs());
-        let reflected = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * reflectance, 1.0);
+        let reflected = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflected(reflectance), 1.0);
         [reflected, delta(-wo, self.transmission * (Rgb::WHITE - reflectance), 1.0)]
     }
 }
@@ -132,7 +147,7 @@ impl ScatteringLobe for ThinDielectric {
         let reflectance = self.reflectance(microfacet.cos);
         let probability = self.reflection_probability(reflectance);
         let (color, multiple_reflectance) = if is_reflected {
-            (self.reflection, self.multiple_reflectance())
+            (self.reflection * self.specular.color, self.multiple_reflectance())
         } else {
             (self.transmission, 1.0 - self.multiple_reflectance())
         };
@@ -172,17 +187,18 @@ impl ScatteringLobe for ThinDielectric {
         let (cos, alpha) = (wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
             let reflectance = self.reflectance(cos);
-            return self.reflection * reflectance + self.transmission * (Rgb::WHITE - reflectance);
+            return self.reflected(reflectance) + self.transmission * (Rgb::WHITE - reflectance);
         }
         let loss = self.energy_loss(wo);
         let reflectance =
             energy::mean_microfacet_reflectance(cos, alpha, |cos| channel_sum(self.reflectance(cos)) / 3.0);
-        let once = (self.reflection * reflectance + self.transmission * (1.0 - reflectance)) * (1.0 - loss);
+        let once = (self.reflected(Rgb::splat(reflectance)) + self.transmission * (1.0 - reflectance)) * (1.0 - loss);
         if !self.compensated {
             return once;
         }
         let multiple_reflectance = self.multiple_reflectance();
-        once + (self.reflection * multiple_reflectance + self.transmission * (1.0 - multiple_reflectance)) * loss
+        once + (self.reflected(Rgb::splat(multiple_reflectance)) + self.transmission * (1.0 - multiple_reflectance))
+            * loss
     }
 
     /// Specular reflection and transmission, if smooth; deltas of zero weight are left out.

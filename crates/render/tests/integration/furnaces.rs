@@ -23,6 +23,8 @@ fn white_objects_vanish() {
         r#"{"dielectric": {"ior": 0.7}}"#,
         r#"{"dielectric": {"ior": 1}}"#,
         r#"{"dielectric": {"ior": 1.5, "thin": true}}"#,
+        r#"{"principled": {"base_color": 1, "transmission": 1, "roughness": 0, "specular": 0, "thin": true}}"#,
+        r#"{"principled": {"base_color": 1, "transmission": 1, "roughness": 0, "specular": 0.5}}"#,
         r#"{"boundary": {"medium": {"scattering": 2, "anisotropy": 0.5}}}"#,
         r#"{"dielectric": {"ior": 1.3, "medium": {"scattering": [2, 1, 0.5], "anisotropy": -0.3}}}"#,
         r#"{"phong": {"diffuse": 1, "specular": 0}}"#,
@@ -56,6 +58,23 @@ fn rough_white_objects_nearly_vanish_in_a_furnace() {
             let Estimate { mean, sigma } = sphere(&of(kind), samples);
             assert!((mean - 1.0).abs() < 3.0 * sigma + 0.007 && sigma < 0.004, "{kind}, {roughness}: {mean} ± {sigma}");
         }
+    }
+}
+
+/// A turned cube refracts most light to a face at which reflection is total, where no specular
+/// weight may absorb it.
+#[test]
+fn a_turned_cube_of_any_specular_weight_vanishes() {
+    let turn = Transform::rotation(Vec3::new(1.0, 2.0, 0.5), 1.0).unwrap();
+    for (specular, roughness) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.3)] {
+        let glass = format!(
+            r#"{{"principled": {{"base_color": 1, "transmission": 1, "specular": {specular}, "roughness": {roughness}}}}}"#
+        );
+        let scene = Scene::new().placed(r#"{"cuboid": {}}"#, turn, &glass).in_light(1.0);
+        let camera = looking(Vec3::Z * 5.0 + Vec3::X * 0.2, Vec3::X * 0.2);
+        let Estimate { mean, sigma } = measure(&scene.world(), &camera, &*path(r#""max_depth": 1000"#), 256);
+        let bound = 4.0 * sigma + if roughness > 0.0 { 0.007 } else { 1e-5 };
+        assert!((mean - 1.0).abs() <= bound && sigma < 0.004, "{glass}: {mean} ± {sigma}");
     }
 }
 
