@@ -87,7 +87,7 @@ fn tilted_normal_map_equals_a_tilted_surface() {
 #[test]
 fn tilted_diffuse_surfaces_follow_the_cosine() {
     for material in [r#"{"diffuse": {"reflectance": 1}}"#, r#"{"principled": {"base_color": 1, "specular": 0}}"#] {
-        for (degrees, expected) in [(45f32, 0.707_107f32), (60.0, 0.5)] {
+        for (degrees, expected) in [(45f32, std::f32::consts::FRAC_1_SQRT_2), (60.0, 0.5)] {
             let (sin, cos) = degrees.to_radians().sin_cos();
             let color = [0.5 + 0.5 * sin, 0.5, 0.5 + 0.5 * cos];
             let (table, id) =
