@@ -19,10 +19,14 @@
 //! light (s = 1 reflects a lune at the plane of g, and doubles grazing light); a large s blurs
 //! highlights that the plane of g cuts.
 //!
+//! Diffuse reflection keeps to n·l instead, as Cycles, three.js and Filament do: light in a lune is
+//! absorbed, so that a bump has the contrast of a surface with the shading normal. Its furnace is
+//! (1 + cos β) / 2, the part of the cosine lobe above both planes.
+//!
 //! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3).
 
-use super::Bsdf;
-use crate::{BsdfSample, Scatter};
+use super::{Bsdf, Role, WeightedLobe};
+use crate::{BsdfSample, Lobe, Scatter};
 use juggler_math::{Rgb, Vec2, Vec3, portable};
 use std::f32::consts::PI;
 
@@ -86,10 +90,17 @@ impl Horizon {
     }
 }
 
+/// Whether a lobe is the diffuse reflection of an opaque surface.
+#[inline]
+fn is_diffuse_reflection(one: &WeightedLobe) -> bool {
+    one.role == Role::Upright && matches!(one.lobe, Lobe::Lambert(_) | Lobe::OrenNayar(_))
+}
+
 impl Bsdf {
     /// Sets the geometric normal, a unit vector in the frame of the lobes on either side of the
     /// surface, where a map has turned the shading normal. No light is then scattered to directions
-    /// that both normals have on different sides; its energy is spread over other directions.
+    /// that both normals have on different sides; its energy is spread over other directions, except
+    /// that of diffuse reflection, which is absorbed.
     pub fn set_geometric_normal(&mut self, normal: Vec3) {
         self.horizon = Horizon::new(if normal.z < 0.0 { -normal } else { normal });
     }
@@ -101,28 +112,52 @@ impl Bsdf {
         }
         let (value, pdf) = self.eval_pdf_of_lobes(wo, wi);
         let Some(source) = horizon.source(wi) else { return (value, pdf) };
-        let (more, density) = self.eval_pdf_of_lobes(wo, source);
+        let (more, density) = self.eval_pdf_to_spread(wo, source);
         (value + more / horizon.stretch, pdf + density / horizon.stretch)
+    }
+
+    /// Value and density of the light that the lobes scatter to a direction in a lune. The value is
+    /// without diffuse reflection, which is absorbed there, while the density counts its samples.
+    fn eval_pdf_to_spread(&self, wo: Vec3, source: Vec3) -> (Rgb, f32) {
+        let (value, pdf) = self.eval_pdf_of_lobes(wo, source);
+        if !self.lobes.iter().any(is_diffuse_reflection) {
+            return (value, pdf);
+        }
+        if self.lobes.iter().all(is_diffuse_reflection) {
+            return (Rgb::BLACK, pdf);
+        }
+        let diffuse = self.lobes.iter().enumerate().filter(|(_, one)| is_diffuse_reflection(one));
+        let absorbed = diffuse.fold(Rgb::BLACK, |sum, (index, one)| {
+            let weight = one.weight * self.layer_attenuation(index, wo, source);
+            sum + self.eval_pdf_of_one(one, wo, source).0 * weight
+        });
+        ((value - absorbed).map(|channel| channel.max(0.0)), pdf)
     }
 
     /// [`Bsdf::sample`] with a horizon.
     pub(super) fn sample_above(&self, horizon: &Horizon, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
         let sample = self.sample_of_lobes(wo, u, u_choice)?;
         let share = 1.0 / horizon.stretch;
-        let (wi, own, other) = if horizon.divides(sample.wi) {
-            let wi = horizon.spread(sample.wi);
-            (wi, share, Some((wi, 1.0)))
-        } else {
-            (sample.wi, 1.0, horizon.source(sample.wi).map(|source| (source, share)))
-        };
-        let Some((other, share)) = other.filter(|_| sample.scatter != Scatter::Specular) else {
+        if !horizon.divides(sample.wi) {
+            let source = horizon.source(sample.wi).filter(|_| sample.scatter != Scatter::Specular);
+            let Some(source) = source else { return Some(sample) };
+            // Two directions of the lobes map to this one: combine their values and densities.
+            let (value, density) = self.eval_pdf_to_spread(wo, source);
+            let pdf = sample.pdf + density * share;
+            return Some(BsdfSample { weight: (sample.weight * sample.pdf + value * share) / pdf, pdf, ..sample });
+        }
+        let wi = horizon.spread(sample.wi);
+        if sample.scatter == Scatter::Specular {
             return Some(BsdfSample { wi, ..sample });
+        }
+        let spread = if self.lobes.iter().any(is_diffuse_reflection) {
+            self.eval_pdf_to_spread(wo, sample.wi).0
+        } else {
+            sample.weight * sample.pdf
         };
-        // Two directions of the lobes map to this one: combine their values and densities.
-        let (value, density) = self.eval_pdf_of_lobes(wo, other);
-        let pdf = sample.pdf * own + density * share;
-        let weight = (sample.weight * (sample.pdf * own) + value * share) / pdf;
-        Some(BsdfSample { wi, weight, pdf, ..sample })
+        let (value, density) = self.eval_pdf_of_lobes(wo, wi);
+        let pdf = sample.pdf * share + density;
+        Some(BsdfSample { wi, weight: (spread * share + value) / pdf, pdf, ..sample })
     }
 
     /// Maps a delta's direction out of the lunes.

@@ -53,16 +53,10 @@ fn flat_normal_map_changes_nothing() {
     }
 }
 
-/// Cosine term of a diffuse BSDF whose shading normal leans from the geometric normal by some 20
-/// degrees: the cosine of `wi`, plus a quarter of the cosine of the direction below the surface
-/// that the BSDF maps to `wi`, at a quarter of the elevation angle of `wi`.
+/// Cosine term of a diffuse BSDF around a leaning shading normal: n·l above the surface of the
+/// geometric normal, black below.
 fn leaning_cosine(normal: Vec3, leaning: Vec3, wi: Vec3) -> f32 {
-    let lean = leaning.reject_from_normalized(normal).normalize();
-    let (along, up) = (wi.dot(lean), wi.dot(normal));
-    let (radius, psi) = (along.hypot(up), up.atan2(along));
-    let angle = leaning.angle_between(normal);
-    let cosine = |psi: f32| (radius * (psi + angle).sin()).max(0.0);
-    if up <= 0.0 { 0.0 } else { cosine(psi) + 0.25 * cosine(-0.25 * psi) }
+    if wi.dot(normal) <= 0.0 { 0.0 } else { leaning.dot(wi).max(0.0) }
 }
 
 #[test]
@@ -85,6 +79,25 @@ fn tilted_normal_map_equals_a_tilted_surface() {
         let below = ShadingView { wo: -n, ..view };
         let expected = 0.7 / PI * leaning_cosine(-n, -leaning, wi);
         assert!(close(light(&table, id, &below, wi).g, expected, 1e-4) || expected < 1e-5, "{wi}");
+    }
+}
+
+/// Known answers: under light along the geometric normal, a white diffuse surface tilted by β has
+/// the radiance cos β of n·l.
+#[test]
+fn tilted_diffuse_surfaces_follow_the_cosine() {
+    for material in [r#"{"diffuse": {"reflectance": 1}}"#, r#"{"principled": {"base_color": 1, "specular": 0}}"#] {
+        for (degrees, expected) in [(45f32, std::f32::consts::FRAC_1_SQRT_2), (60.0, 0.5)] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let color = [0.5 + 0.5 * sin, 0.5, 0.5 + 0.5 * cos];
+            let (table, id) =
+                compile(&format!(r#"{{"normal_map": {{"texture": {color:?}, "material": {material}}}}}"#)).unwrap();
+            let (surface, t) = (ground(), tangents(Vec3::X, Vec3::NEG_Z));
+            let wo = Vec3::new(sin, cos, 0.0);
+            let view = ShadingView { wo, tangents: Some(&t), ..ShadingView::along_normal(&surface) };
+            let radiance = light(&table, id, &view, Vec3::Y).g * PI;
+            assert!(close(radiance, expected, 1e-5), "{material} {degrees}: {radiance}");
+        }
     }
 }
 
