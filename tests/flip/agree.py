@@ -2,7 +2,7 @@
 
     python3 -m venv flip && flip/bin/pip install flip-evaluator==1.7
     mkdir pairs
-    JUGGLER_FLIP_PICTURES=$PWD/pairs cargo test -p juggler-imaging --lib flip::tests::the_authors
+    JUGGLER_FLIP_PICTURES=$PWD/pairs cargo test -p juggler-imaging --lib flip::tests::flip_matches
     flip/bin/python tests/flip/agree.py pairs target/release/juggler
 
 The test writes eleven pairs of procedural pictures, NAME.picture.png or .exr and NAME.reference.png

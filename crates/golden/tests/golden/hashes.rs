@@ -1,10 +1,11 @@
-//! Hashes of the linear pixels of every built-in scene, rendered small: the same for any number of
-//! threads, and those in `hashes.txt`. The test runs unoptimized and optimized, on every platform,
+//! Hashes of the linear pixels of every built-in scene and of the [extra](super::extra) scenes,
+//! rendered small: the same for any number of threads, and those in `hashes.txt`. The test runs unoptimized and optimized, on every platform,
 //! against the same file.
 //!
 //! After an intended change of pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test
 //! golden hashes::`.
 
+use super::extra::{EXTRA_SCENES, scene};
 use juggler::render::Control;
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::{Error, Picture, Settings};
@@ -46,7 +47,7 @@ fn hash(picture: &Picture, pool: &ThreadPool) -> String {
 
 /// Renders the views of a scene and adds their hashes.
 fn add(hashes: &mut Hashes, name: &str, pools: &[ThreadPool]) {
-    let scene = Scene::built_in(name).unwrap();
+    let scene = scene(name);
     let length = scene.description.animation.frames;
     for frame in [0].into_iter().chain(FRAMES.into_iter().filter(|frame| *frame < length)) {
         let moved = if frame == 0 { scene.clone() } else { scene.at_frame(frame.into()).unwrap() };
@@ -83,8 +84,8 @@ pub(crate) fn changes(old: &str, new: &str) -> String {
 fn built_in_scenes_have_their_hashes_on_any_number_of_threads() {
     let pools = THREADS.map(|threads| ThreadPoolBuilder::new().num_threads(threads).build().unwrap());
     let mut hashes = Hashes::new();
-    for scene in built_in_scenes() {
-        add(&mut hashes, scene.name, &pools);
+    for name in built_in_scenes().iter().map(|scene| scene.name).chain(EXTRA_SCENES) {
+        add(&mut hashes, name, &pools);
     }
     assert!(hashes.len() >= built_in_scenes().len() && hashes.contains_key("juggler@22"));
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("hashes.txt");

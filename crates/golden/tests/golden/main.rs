@@ -13,6 +13,7 @@
 mod arithmetic;
 mod blur;
 mod chess;
+mod extra;
 mod hashes;
 mod hits;
 mod instances;

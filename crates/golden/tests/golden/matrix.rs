@@ -6,12 +6,13 @@
 //! larger pictures of all scenes. After an intended change of pictures: `JUGGLER_BLESS=1 cargo test
 //! -p juggler-golden --test golden matrix::`.
 
+use super::extra::{EXTRA_SCENES, scene};
 use juggler::camera::film::Film;
 use juggler::film::shard::Work;
 use juggler::film::{Merge, MergeGoal, PartialRenderError, ShardDescription, write};
 use juggler::imaging::Options;
 use juggler::render::{Control, Scheduler};
-use juggler::scene::{Scene, built_in_scenes};
+use juggler::scene::built_in_scenes;
 use juggler::world::simd_levels;
 use juggler::{Error, Limit, Picture, RenderOrigin, Settings};
 use juggler_math::testing::skipped;
@@ -44,8 +45,8 @@ const WIDE: TestSize = TestSize { width: 96, samples: 52, scenes: |_| true };
 fn picture(name: &str, test_size: &TestSize, limit: Limit) -> Picture {
     let moving = MOVING.iter().find(|moving| moving.0 == name);
     let scene = match moving {
-        Some((_, name, frame, _)) => Scene::built_in(name).unwrap().at_frame(*frame).unwrap(),
-        None => Scene::built_in(name).unwrap(),
+        Some((_, name, frame, _)) => scene(name).at_frame(*frame).unwrap(),
+        None => scene(name),
     };
     let shutter = moving.map(|moving| moving.3);
     let [width, height] = scene.description.render.size.map(f64::from);
@@ -158,7 +159,7 @@ fn scene_hashes_do_not_depend_on_threads_shards_or_vector_units() {
     let wide = std::env::var_os("JUGGLER_MATRIX").is_some_and(|value| value == "wide");
     let test_size = if wide { &WIDE } else { &NARROW };
     let still = built_in_scenes().iter().map(|scene| scene.name).filter(|name| (test_size.scenes)(name));
-    let names: Vec<&str> = still.chain(MOVING.iter().map(|moving| moving.0)).collect();
+    let names: Vec<&str> = still.chain(MOVING.iter().map(|moving| moving.0)).chain(EXTRA_SCENES).collect();
     assert!(names.len() >= 20);
     let found = map_parallel(&names, |name| format!("{name} {}\n", hash(name, test_size))).concat();
     if wide {

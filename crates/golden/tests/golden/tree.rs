@@ -103,6 +103,7 @@ const OPENERS: &[&str] = &[
     "bvh/benches/traverse.rs",
     "cli/src/command/render/folder.rs",
     "cli/src/interrupt.rs",
+    "cli/src/output.rs",
     "cli/src/stats.rs",
     "denoise/examples/evaluate.rs",
     "fuzz/src/bombs/run.rs",
