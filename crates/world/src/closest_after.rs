@@ -2,7 +2,7 @@
 //! without moving the origin of the ray, so none of them is lost.
 
 use super::geometry::Geometry;
-use super::instance::{Instance, LeafItem};
+use super::instance::{Instance, LeafItem, is_within};
 use super::{Content, Vertex, World, WorldHit};
 use juggler_bvh::Leaf;
 use juggler_math::Ray;
@@ -88,6 +88,11 @@ impl LeafItem {
             }
             Self::Shape { object_index, shape_index } | Self::Geometry { object_index, shape_index } => {
                 objects[object_index as usize].closest_after(ray, key, first + shape_index, best);
+            }
+            Self::Segment { times, object_index, shape_index } => {
+                if is_within(ray, times) {
+                    objects[object_index as usize].closest_after(ray, key, first + shape_index, best);
+                }
             }
         }
     }

@@ -236,7 +236,7 @@ pub enum LeafItem {
 
 /// Whether the time of a ray is in a segment of the shutter interval.
 #[inline(always)]
-fn is_within(ray: &Ray, [from, to]: [f32; 2]) -> bool {
+pub(super) fn is_within(ray: &Ray, [from, to]: [f32; 2]) -> bool {
     let time = ray.time.clamp(0.0, 1.0);
     from <= time && time <= to
 }
