@@ -31,6 +31,7 @@ mod needs;
 mod placing;
 mod settings;
 mod shutter_motion;
+mod surface_coordinates;
 
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub use illuminance::Illuminance;
