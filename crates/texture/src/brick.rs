@@ -83,6 +83,10 @@ impl Texture for Brick {
         let map = self.mapping.compile(Space::Uv);
         Ok(Arc::new(CompiledBrick { brick, mortar, width, height, mortar_width, shift, variation, seed, map }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Uv))
+    }
 }
 
 /// A [`Brick`] with its names resolved.

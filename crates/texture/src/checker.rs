@@ -95,6 +95,10 @@ impl Texture for Checker {
             offset: self.offset,
         }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.space)
+    }
 }
 
 /// A [`Checker`] with its names resolved.

@@ -2,7 +2,7 @@
 
 use super::check;
 use super::{
-    AnyTexture, Image, Input, InputValue, InvalidTexture, MipMap, SharedTexture, Slot, TextureId, TextureTable,
+    AnyTexture, Image, Input, InputValue, InvalidTexture, MipMap, SharedTexture, Slot, Space, TextureId, TextureTable,
     compiled,
 };
 use juggler_math::Rgb;
@@ -87,15 +87,18 @@ impl Images for NoImages {
 struct LookupCost {
     lookups: u32,
     depth: u32,
+    /// Whether the texture, or one inside it, varies over the surface coordinates.
+    over_uv: bool,
 }
 
 impl LookupCost {
-    const SINGLE: Self = Self { lookups: 1, depth: 1 };
+    const SINGLE: Self = Self { lookups: 1, depth: 1, over_uv: false };
 
     /// Cost of a texture that evaluates another one `times` times per lookup.
     fn with_uses(self, other: Self, times: u32) -> Self {
         let lookups = self.lookups.saturating_add(other.lookups.saturating_mul(times));
-        Self { lookups, depth: self.depth.max(other.depth.saturating_add(1)) }
+        let over_uv = self.over_uv || other.over_uv;
+        Self { lookups, depth: self.depth.max(other.depth.saturating_add(1)), over_uv }
     }
 }
 
@@ -143,6 +146,7 @@ pub fn compile(
             table.names.insert(name, id);
         }
     }
+    table.over_uv = resolver.textures.iter().map(|(_, cost)| cost.over_uv).collect();
     table.textures = resolver.textures.into_iter().map(|(texture, _)| texture).collect();
     resolver.errors.sort_by(|a, b| a.0.cmp(&b.0));
     (table, resolver.errors)
@@ -173,6 +177,20 @@ impl TextureResolver<'_> {
                 Ok(Slot::product(product, texture))
             }
         }
+    }
+
+    /// Resolves an input that each lookup evaluates `times` times, with coordinates that replace the
+    /// surface's.
+    pub fn projected_slot<T: InputValue>(
+        &mut self,
+        field: &str,
+        input: &Input<T>,
+        times: u32,
+    ) -> Result<Slot<T>, TextureError> {
+        let over_uv = self.cost.over_uv;
+        let slot = self.slot(field, input, times);
+        self.cost.over_uv = over_uv;
+        slot
     }
 
     /// Id of a texture that each lookup evaluates `times` times.
@@ -228,7 +246,9 @@ impl TextureResolver<'_> {
         match compiled? {
             _ if cost.depth > MAX_NESTING => Err(TextureError::TooDeep),
             _ if cost.lookups > MAX_LOOKUPS => Err(TextureError::TooMany),
-            compiled => Ok((compiled, cost)),
+            compiled => {
+                Ok((compiled, LookupCost { over_uv: cost.over_uv || texture.space() == Some(Space::Uv), ..cost }))
+            }
         }
     }
 }
@@ -255,6 +275,18 @@ mod tests {
         assert_eq!(table.color(&slot, &TextureLookup::default()), Rgb::new(0.0, 0.25, 0.5));
         let at = TextureLookup { uv: juggler_math::Vec2::new(1.5, 0.5), ..TextureLookup::default() };
         assert_eq!(table.color(&slot, &at), Rgb::new(1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn textures_over_surface_coordinates_are_known() {
+        let (table, errors) = compile_json(
+            r#"{"a": {"checker": {}}, "b": {"checker": {"space": "local", "even": "c"}}, "c": {"mix": {"a": "a"}},
+                "d": {"triplanar": {"texture": "a"}}, "e": {"noise": {}}, "f": {"noise": {"space": "uv"}},
+                "g": {"brick": {"space": "world"}}, "h": {"mix": {"a": "d", "b": "g"}}}"#,
+        );
+        assert!(errors.is_empty(), "{errors:?}");
+        let over_uv: Vec<&str> = table.names().filter(|name| table.is_over_uv(name)).collect();
+        assert_eq!(over_uv, ["a", "b", "c", "f"]);
     }
 
     #[test]

@@ -91,6 +91,10 @@ impl Texture for Dots {
         compiled.mean = (0..64).map(shell).sum();
         Ok(Arc::new(compiled))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Uv))
+    }
 }
 
 /// A [`Dots`] with its names resolved.

@@ -142,6 +142,10 @@ impl Texture for Gradient {
         let stops = CompiledStops::new(&self.stops, resolver)?;
         Ok(Arc::new(CompiledGradient { stops, space, start, end, shape }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.space)
+    }
 }
 
 /// A [`Gradient`] with its names resolved.

@@ -126,6 +126,10 @@ impl Texture for Image {
             map: self.mapping.compile(Space::Uv),
         }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Uv))
+    }
 }
 
 /// An [`Image`] with its pixels.

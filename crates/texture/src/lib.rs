@@ -153,6 +153,12 @@ pub trait Texture: Send + Sync {
     fn check(&self) -> Result<(), InvalidTexture>;
     /// Resolves the names of a description that passes [`Texture::check`].
     fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError>;
+
+    /// Coordinate space of the pattern, nested textures not counted; `None` for textures that have
+    /// none.
+    fn space(&self) -> Option<Space> {
+        None
+    }
 }
 
 juggler_math::closed_set! {

@@ -75,6 +75,10 @@ impl Texture for Marble {
         let map = self.mapping.compile(Space::Local);
         Ok(Arc::new(CompiledMarble { colors, distortion, sharpness, mean, octaves, map }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Local))
+    }
 }
 
 /// Weight of the vein color at a phase, in turns.

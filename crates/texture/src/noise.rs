@@ -48,6 +48,10 @@ impl Texture for Noise {
         let colors = ColorBlend { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         Ok(Arc::new(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Local))
+    }
 }
 
 /// A [`Noise`] with its names resolved.

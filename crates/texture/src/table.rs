@@ -70,6 +70,8 @@ pub struct TextureTable {
     pub(super) names: BTreeMap<String, TextureId>,
     /// Textures by id. A texture refers only to earlier ones.
     pub(super) textures: Vec<SharedTexture>,
+    /// Whether each texture, or one inside it, varies over the surface coordinates.
+    pub(super) over_uv: Vec<bool>,
 }
 
 impl TextureTable {
@@ -107,6 +109,12 @@ impl TextureTable {
                 None => Ok(Slot::product(product, product.texture_name().map(id).transpose()?)),
             },
         }
+    }
+
+    /// Whether the texture of this name, or one inside it, varies over the surface coordinates
+    /// (u, v).
+    pub fn is_over_uv(&self, name: &str) -> bool {
+        self.names.get(name).and_then(|id| self.over_uv.get(id.0 as usize)).is_some_and(|over_uv| *over_uv)
     }
 
     /// Number of textures.

@@ -56,7 +56,7 @@ impl Texture for Triplanar {
     fn compile(&self, resolver: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         let space = self.mapping.space.filter(|space| *space != Space::Uv);
         let map = Mapping { space, ..self.mapping }.compile(Space::Local);
-        let texture = resolver.slot("texture", &self.texture, 3)?;
+        let texture = resolver.projected_slot("texture", &self.texture, 3)?;
         Ok(Arc::new(CompiledTriplanar { texture, sharpness: self.sharpness, map }))
     }
 }

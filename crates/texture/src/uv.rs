@@ -33,6 +33,10 @@ impl Texture for Uv {
     fn compile(&self, _: &mut TextureResolver<'_>) -> Result<SharedTexture, TextureError> {
         Ok(Arc::new(CompiledUv { map: self.mapping.compile(Space::Uv) }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Uv))
+    }
 }
 
 /// A compiled [`Uv`].

@@ -106,6 +106,10 @@ impl Texture for Voronoi {
         let mean = (0..512).map(share).sum::<f32>() / 512.0;
         Ok(Arc::new(CompiledVoronoi { colors, feature, points, mean, map }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Local))
+    }
 }
 
 /// Scattered feature points.

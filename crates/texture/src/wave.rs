@@ -98,6 +98,10 @@ impl Texture for Wave {
         let Self { shape, profile, distortion, octaves, .. } = *self;
         Ok(Arc::new(CompiledWave { colors, shape, profile, distortion, octaves, map: self.mapping.compile(Space::Uv) }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Uv))
+    }
 }
 
 /// A [`Wave`] with its names resolved.

@@ -81,6 +81,10 @@ impl Texture for Wood {
         let Self { distortion, grain, octaves, .. } = *self;
         Ok(Arc::new(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile(Space::Local) }))
     }
+
+    fn space(&self) -> Option<Space> {
+        Some(self.mapping.space_or(Space::Local))
+    }
 }
 
 /// A [`Wood`] with its names resolved.

@@ -2,6 +2,7 @@
 
 use super::labels::Names;
 use super::meshes::Files;
+use super::surface_coordinates::OverUv;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::{Path, PathRef};
@@ -20,6 +21,8 @@ pub struct Materials {
     has_emission: bool,
     /// Requested materials, in order.
     requested: Vec<MaterialId>,
+    /// Materials that need surface coordinates.
+    pub over_uv: OverUv,
 }
 
 impl Materials {
@@ -37,12 +40,14 @@ impl Materials {
             warn_of_ineffective_settings(material, &PathRef::Root.key("materials").key(name), findings);
         }
         let named = scene.materials.iter().map(|(name, material)| (name.clone(), (**material).clone()));
+        let over_uv = OverUv::new(scene, &textures);
         let compiler = MaterialCompiler::new(textures, named);
         Self {
             compiler,
             default_material: None,
             has_emission: scene.materials.values().any(|material| has_emission(material)),
             requested: Vec::new(),
+            over_uv,
         }
     }
 

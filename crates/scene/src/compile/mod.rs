@@ -32,6 +32,7 @@ mod needs;
 mod placing;
 mod settings;
 mod shutter_motion;
+mod surface_coordinates;
 mod transform_motion;
 
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};

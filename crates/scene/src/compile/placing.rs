@@ -26,7 +26,7 @@ pub fn place(
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
 ) -> (Vec<juggler_world::Object>, Vec<u32>) {
-    let mut preparer = Preparer { files, materials, findings, is_animated: false };
+    let mut preparer = Preparer { scene, files, materials, findings, is_animated: false };
     let groups = PathRef::Root.key("groups");
     let still = ListTracks::new();
     let groups = scene.groups.iter().map(|(name, objects)| {
@@ -97,6 +97,7 @@ impl<'t> Times<'t> {
 }
 
 struct Preparer<'m> {
+    scene: &'m Description,
     files: Files<'m>,
     materials: &'m mut Materials,
     findings: &'m mut Vec<Finding>,
@@ -158,7 +159,20 @@ impl Preparer<'_> {
             None => None,
         };
         let content = self.content(object, at, inner, path)?;
+        self.warn_of_missing_coordinates(object, &content, path);
         Some(Prepared { index: 0, motion: motion?, instances, material, content })
+    }
+
+    /// Warns of a mesh without surface coordinates if the object's material needs them.
+    fn warn_of_missing_coordinates(&mut self, object: &Object, content: &Content<'_>, path: &PathRef<'_>) {
+        let lacks = |shape: &AnyShape| shape.mesh().is_some_and(Mesh::lacks_surface_coordinates);
+        let Content::Shapes(shapes) = content else { return };
+        if shapes.iter().any(|(_, shape)| lacks(shape))
+            && object.material.as_ref().is_some_and(|material| self.materials.over_uv.contains(material, self.scene))
+        {
+            let message = "the mesh has no surface coordinates: use space `local` or `triplanar`";
+            self.findings.push(Finding::warning(message).at(&path.key("shape")));
+        }
     }
 
     /// Prepares the content of an object. Validation ensures that there is exactly one.
