@@ -3,7 +3,7 @@
 
 use crate::codec;
 use crate::input::{open, source};
-use crate::tone::{Curve, Gamma, Srgb};
+use crate::tone::{Curve, Gamma, Matrix, Srgb, high_dynamic_range};
 use crate::{ImageError, ImageFormat, Limits};
 use std::io::{BufRead, Seek};
 use std::path::Path;
@@ -19,8 +19,8 @@ pub struct Raster {
     pub transfer_function: TransferFunction,
 }
 
-/// Size and sample format of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Size, sample format and primaries of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterLayout {
     /// Format, detected by the first bytes.
     pub format: ImageFormat,
@@ -32,6 +32,9 @@ pub struct RasterLayout {
     pub channels: u8,
     /// Bytes per sample: 1, 2, or 4 for floats.
     pub sample_bytes: u8,
+    /// Matrix from the primaries that the file states to those of sRGB, for linear values; `None`
+    /// if the file states sRGB's or none.
+    pub to_srgb: Option<Matrix>,
 }
 
 /// Samples of an image.
@@ -64,6 +67,10 @@ pub enum TransferFunction {
     Gamma(f64),
     /// Linear values, as in floating-point formats.
     Linear,
+    /// Perceptual quantizer (ITU-R BT.2100), with the reference white of 203 cd/m² as 1.
+    Pq,
+    /// Hybrid log-gamma (ITU-R BT.2100), as scene light with the reference white of 75 % as 1.
+    Hlg,
 }
 
 impl TransferFunction {
@@ -73,6 +80,8 @@ impl TransferFunction {
             Self::Srgb => Srgb {}.decode(level),
             Self::Gamma(gamma) => Gamma { gamma }.decode(level),
             Self::Linear => level,
+            Self::Pq => high_dynamic_range::pq(level),
+            Self::Hlg => high_dynamic_range::hlg(level),
         }
     }
 }

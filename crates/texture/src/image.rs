@@ -56,11 +56,11 @@ pub struct Image {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ColorSpace {
-    /// The file's own statement; without it, sRGB for integers (PNG, JPEG, WebP) and linear light
-    /// for floats (EXR, HDR, PFM).
+    /// The file's own statement of transfer function and primaries, converted to linear sRGB;
+    /// without it, sRGB for integers (PNG, JPEG, WebP) and linear light for floats (EXR, HDR, PFM).
     #[default]
     Auto,
-    /// Transfer function of sRGB.
+    /// Transfer function and primaries of sRGB, whatever the file states.
     Srgb,
     /// Linear light, or values that are not light.
     Linear,

@@ -240,7 +240,7 @@ fn movie_formats_that_cannot_hold_the_frames_are_refused() {
         ("-o f.gif --at 1", "--at is for pictures"),
         ("-o f.webp --fps 5 --quality 50", "--quality is for JPEG and MP4 files"),
         ("-o f.mp4 --plays 2", "--plays is for .webp, .apng and .gif"),
-        ("-o f.gif --fps 101", "only 0.01 to 100"),
+        ("-o f.gif --fps 50.1", "only 0.01 to 50"),
         ("-o f.gif --size 65536x1", "65536 × 1"),
         ("-o f.webp --frames 0..2 --size 2x16384", "1 to 16383"),
         ("-o f.mp4 --size 15x16", "16 to 65535"),

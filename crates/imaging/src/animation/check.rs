@@ -24,9 +24,10 @@ impl AnimationFormat {
         }
     }
 
-    /// Frames per second that the format can store; GIF measures time in hundredths of a second.
+    /// Frames per second that the format can store; GIF measures time in hundredths of a
+    /// second, and browsers show frames of less than 2/100 s at a tenth of their rate.
     pub fn frame_rates(self) -> RangeInclusive<f64> {
-        let most = if self == Self::Gif { 100.0 } else { *FRAME_RATES.end() };
+        let most = if self == Self::Gif { 50.0 } else { *FRAME_RATES.end() };
         *FRAME_RATES.start()..=most
     }
 

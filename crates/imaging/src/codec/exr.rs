@@ -92,7 +92,8 @@ pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterL
     };
     let Vec2(width, height) = header.layer_size;
     let size = source.size(width as u64, height as u64, max_pixels_per_byte(header))?;
-    Ok(source.layout(size, colors + u8::from(has(header, &["A"])), 4))
+    let to_srgb = header.shared_attributes.chromaticities.filter(|_| colors == 3).and_then(to_srgb);
+    Ok(RasterLayout { to_srgb, ..source.layout(size, colors + u8::from(has(header, &["A"])), 4) })
 }
 
 /// Samples of the part that [`layout`] selects, within its data window.
@@ -137,9 +138,8 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let reader = reader.first_valid_layer().all_attributes().non_parallel();
     let image = reader.from_buffered(&mut *bytes).map_err(|error| unreadable(source, error))?;
     let size = image.layer_data.size;
-    let matrix = image.attributes.chromaticities.and_then(to_srgb);
-    let light = |pixel: [f32; 3]| matrix.map_or(Rgb::from(pixel), |matrix| matrix.color(Rgb::from(pixel)));
-    let pixels = image.layer_data.channel_data.pixels.1.into_iter().map(light).collect();
+    let mut pixels: Vec<Rgb> = image.layer_data.channel_data.pixels.1.into_iter().map(Rgb::from).collect();
+    super::convert_primaries(&mut pixels, image.attributes.chromaticities.and_then(to_srgb));
     let (width, height) = source.size(size.0 as u64, size.1 as u64, u64::MAX)?;
     source.image(width, height, pixels)
 }

@@ -3,16 +3,18 @@
 //! without a half-step offset, as most programs do; the error is at most 1/256 of the largest
 //! channel.
 
-use super::{Header, Inspected, ReadSeek, RowWriter, Source, UNEXPECTED_END, quoted};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source, quoted};
 use crate::ImageError;
 use crate::output::Destination;
+use crate::raster::RasterLayout;
+use crate::tone::{Chromaticities, Matrix};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read, Write};
 
 /// Image widths for which rows can be run-length encoded.
 const RLE_WIDTHS: std::ops::Range<usize> = 8..32_768;
-/// Maximum number of pixels per byte: a run of 127 pixels takes 2 bytes in each of 4 channels.
-const MAX_PIXELS_PER_BYTE: u64 = 16;
+/// Maximum number of pixels per byte: 2,048 equal pixels of a row take three old runs of 4 bytes.
+const MAX_PIXELS_PER_BYTE: u64 = 256;
 
 /// Streams rows into a Radiance HDR file.
 pub(super) struct Writer {
@@ -117,40 +119,118 @@ fn power_of_two(n: i32) -> f32 {
     f32::from_bits(((n + 127) as u32) << 23)
 }
 
-/// Reads an image, with or without run-length encoding.
+/// Reads an image, with or without run-length encoding, and converts it to sRGB primaries.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let (mut image, to_srgb) = pixels(source, bytes)?;
+    super::convert_primaries(image.pixels_mut(), to_srgb);
+    Ok(image)
+}
+
+/// Layout of the image's raster, from the header.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     let lines = read_header(source, bytes)?;
-    let (width, height) = size(source, &lines)?;
+    Ok(RasterLayout { to_srgb: to_srgb(&lines), ..source.layout(size(source, &lines)?, 3, 4) })
+}
+
+/// Matrix from the primaries of the last `PRIMARIES=` line to sRGB's: x and y of red, green, blue
+/// and white.
+fn to_srgb(lines: &[String]) -> Option<Matrix> {
+    let numbers = numbers_of::<8>(lines.iter().rev().find_map(|line| line.strip_prefix("PRIMARIES="))?)?;
+    let [rx, ry, gx, gy, bx, by, wx, wy] = numbers;
+    Chromaticities { red: [rx, ry], green: [gx, gy], blue: [bx, by], white: [wx, wy] }.to_srgb()
+}
+
+/// Numbers separated by blanks; `None` if their count differs or one of them is not finite.
+fn numbers_of<const COUNT: usize>(text: &str) -> Option<[f64; COUNT]> {
+    let numbers: Option<Vec<f64>> = text.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+    let numbers: [f64; COUNT] = numbers?.try_into().ok()?;
+    numbers.iter().all(|number| number.is_finite()).then_some(numbers)
+}
+
+/// Factors that the file's `EXPOSURE=` and `COLORCORR=` lines have multiplied the original colors
+/// with. Lines of one kind accumulate.
+fn applied_factors(lines: &[String]) -> Rgb {
+    let exposures = lines.iter().filter_map(|line| line.strip_prefix("EXPOSURE=")).filter_map(numbers_of::<1>);
+    let corrections = lines.iter().filter_map(|line| line.strip_prefix("COLORCORR=")).filter_map(numbers_of::<3>);
+    let positive = |factors: &[f64; 3]| factors.iter().all(|factor| (*factor as f32) > 0.0);
+    let all = exposures.map(|[exposure]| [exposure; 3]).chain(corrections).filter(positive);
+    all.fold(Rgb::WHITE, |product, factors| product * Rgb::from(factors.map(|factor| factor as f32)))
+}
+
+/// Reads an image in the file's primaries, with the matrix to sRGB's.
+pub(super) fn pixels(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Image, Option<Matrix>), ImageError> {
+    let lines = read_header(source, bytes)?;
+    let resolution = resolution(source, &lines)?;
     if let Some(format) = lines.iter().find_map(|l| l.strip_prefix("FORMAT=")).filter(|f| *f != "32-bit_rle_rgbe") {
         return Err(source.malformed(format!("its pixels are {}, only 32-bit_rle_rgbe is supported", quoted(format))));
     }
-    let exposures = lines.iter().filter_map(|l| l.strip_prefix("EXPOSURE=")).filter_map(|v| v.trim().parse().ok());
-    let exposure: f32 = exposures.filter(|&v: &f32| v > 0.0 && v.is_finite()).product();
+    let factors = applied_factors(&lines).to_array();
     let mut pixels = Vec::new();
     let mut planes = Vec::new();
-    for _ in 0..height {
-        read_row(source, bytes, width as usize, &mut planes)?;
-        pixels.extend(planes.chunks_exact(4).map(|p| from_rgbe([p[0], p[1], p[2], p[3]]) / exposure));
+    let (scanlines, length) = resolution.scanlines();
+    for _ in 0..scanlines {
+        read_row(source, bytes, length as usize, &mut planes)?;
+        pixels.extend(planes.chunks_exact(4).map(|p| {
+            let [r, g, b] = from_rgbe([p[0], p[1], p[2], p[3]]).to_array();
+            Rgb::new(r / factors[0], g / factors[1], b / factors[2])
+        }));
     }
-    source.image(width, height, pixels)
+    let pixels = resolution.upright(pixels);
+    Ok((source.image(resolution.width, resolution.height, pixels)?, to_srgb(&lines)))
 }
 
-/// Parses the resolution line.
+/// Image size, from the resolution line.
 fn size(source: Source, lines: &[String]) -> Result<(u32, u32), ImageError> {
+    let Resolution { width, height, .. } = resolution(source, lines)?;
+    Ok((width, height))
+}
+
+/// Size and order of the pixels. Scanlines advance along the first axis of the resolution line,
+/// pixels of a scanline along the second.
+struct Resolution {
+    width: u32,
+    height: u32,
+    /// Whether scanlines are columns.
+    has_columns: bool,
+    /// Whether x falls, and whether y rises to the top, in the order of the file.
+    is_flipped: [bool; 2],
+}
+
+/// Parses the resolution line, in one of its eight forms such as `-Y height +X width`.
+fn resolution(source: Source, lines: &[String]) -> Result<Resolution, ImageError> {
     let last = lines.last().map(String::as_str).unwrap_or_default();
     let words: Vec<&str> = last.split_ascii_whitespace().collect();
-    let (width, height) = match words.as_slice() {
-        ["-Y", height, "+X", width] => (width.parse(), height.parse()),
-        _ => {
-            return Err(
-                source.malformed(format!("its size says {}, only `-Y height +X width` is supported", quoted(last)))
-            );
-        }
+    let (x, columns, y, rows, has_columns) = match words.as_slice() {
+        [y @ ("-Y" | "+Y"), rows, x @ ("-X" | "+X"), columns] => (*x, columns, *y, rows, false),
+        [x @ ("-X" | "+X"), columns, y @ ("-Y" | "+Y"), rows] => (*x, columns, *y, rows, true),
+        _ => return Err(source.malformed(format!("its size says {}, not `-Y height +X width`", quoted(last)))),
     };
-    let (Ok(width), Ok(height)) = (width, height) else {
+    let (Ok(width), Ok(height)) = (columns.parse(), rows.parse()) else {
         return Err(source.malformed(format!("its size says {}", quoted(last))));
     };
-    source.size(width, height, MAX_PIXELS_PER_BYTE)
+    let (width, height) = source.size(width, height, MAX_PIXELS_PER_BYTE)?;
+    Ok(Resolution { width, height, has_columns, is_flipped: [x == "-X", y == "+Y"] })
+}
+
+impl Resolution {
+    /// Number of scanlines, and of pixels in each.
+    fn scanlines(&self) -> (u32, u32) {
+        if self.has_columns { (self.width, self.height) } else { (self.height, self.width) }
+    }
+
+    /// Pixels row by row from the top, from pixels in the order of the file.
+    fn upright(&self, pixels: Vec<Rgb>) -> Vec<Rgb> {
+        if !self.has_columns && self.is_flipped == [false, false] {
+            return pixels;
+        }
+        let (width, height) = (self.width as usize, self.height as usize);
+        let pixel = |x: usize, y: usize| {
+            let x = if self.is_flipped[0] { width - 1 - x } else { x };
+            let y = if self.is_flipped[1] { height - 1 - y } else { y };
+            pixels.get(if self.has_columns { x * height + y } else { y * width + x }).copied().unwrap_or_default()
+        };
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
+    }
 }
 
 /// Reads the header's lines including the resolution line, without the empty line.
@@ -183,10 +263,7 @@ fn read_row(source: Source, bytes: &mut dyn ReadSeek, width: usize, row: &mut Ve
     row.clear();
     let packed = RLE_WIDTHS.contains(&width) && start[..2] == [2, 2] && start[2] < 128;
     if !packed {
-        row.extend(start);
-        let expected = (width - 1) * 4;
-        let got = (&mut *bytes).take(expected as u64).read_to_end(row).map_err(|e| source.failed(e))?;
-        return if got == expected { Ok(()) } else { Err(source.malformed(UNEXPECTED_END)) };
+        return read_old_row(source, bytes, start, width, row);
     }
     if usize::from(start[2]) << 8 | usize::from(start[3]) != width {
         return Err(source.malformed("a row has the wrong width"));
@@ -199,6 +276,33 @@ fn read_row(source: Source, bytes: &mut dyn ReadSeek, width: usize, row: &mut Ve
         }
     }
     Ok(())
+}
+
+/// Reads a row of single pixels and of old runs, whose first pixel is `pixel`. The pixel (1, 1, 1,
+/// n) repeats the last pixel n times; in a sequence of runs, each counts 256 times as much as the
+/// run before.
+fn read_old_row(
+    source: Source,
+    bytes: &mut dyn ReadSeek,
+    pixel: [u8; 4],
+    width: usize,
+    row: &mut Vec<u8>,
+) -> Result<(), ImageError> {
+    let (mut pixel, mut last, mut unit) = (pixel, None, 1);
+    loop {
+        let run = last.filter(|_| pixel[..3] == [1, 1, 1]);
+        let count = if run.is_some() { usize::from(pixel[3]).saturating_mul(unit) } else { 1 };
+        if count > width.saturating_sub(row.len() / 4) {
+            return Err(source.malformed("a run is longer than its row"));
+        }
+        unit = if run.is_some() { unit.saturating_mul(256) } else { 1 };
+        last = Some(run.unwrap_or(pixel));
+        row.extend(std::iter::repeat_n(run.unwrap_or(pixel), count).flatten());
+        if row.len() >= width.saturating_mul(4) {
+            return Ok(());
+        }
+        bytes.read_exact(&mut pixel).map_err(|e| source.failed(e))?;
+    }
 }
 
 fn unpack_plane(bytes: &mut dyn BufRead, width: usize, mut put: impl FnMut(u8) -> Option<()>) -> io::Result<()> {
@@ -227,5 +331,8 @@ pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspec
     let lines = read_header(source, bytes)?;
     let size = size(source, &lines)?;
     let pairs = lines.iter().filter_map(|l| l.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned())));
-    Ok((size, pairs.filter(|(key, _)| key != "FORMAT" && key != "EXPOSURE").collect()))
+    Ok((
+        size,
+        pairs.filter(|(key, _)| !["FORMAT", "EXPOSURE", "COLORCORR", "PRIMARIES"].contains(&key.as_str())).collect(),
+    ))
 }

@@ -10,7 +10,7 @@ mod webp;
 use crate::look::{self, DisplayLook};
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
-use crate::tone::{Curve, Srgb, Tone};
+use crate::tone::{Curve, Matrix, Srgb, Tone};
 use crate::{ImageError, ImageFormat, Limits, Viewpoint};
 use juggler_math::message::excerpt;
 use juggler_math::{Image, Rgb};
@@ -253,7 +253,14 @@ impl Source<'_> {
     }
 
     fn layout(self, (width, height): (u32, u32), channels: u8, sample_bytes: u8) -> RasterLayout {
-        RasterLayout { format: self.format, width, height, channels, sample_bytes }
+        RasterLayout { format: self.format, width, height, channels, sample_bytes, to_srgb: None }
+    }
+
+    /// Raster of linear RGB pixels in the file's primaries.
+    fn float_raster(self, image: &Image, to_srgb: Option<Matrix>) -> Raster {
+        let samples = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
+        let layout = RasterLayout { to_srgb, ..self.layout((image.width(), image.height()), 3, 4) };
+        Raster { layout, samples: RasterSamples::Floats(samples), transfer_function: TransferFunction::Linear }
     }
 
     fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
@@ -281,12 +288,8 @@ pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
         ImageFormat::Jpeg => jpeg::raster(source, bytes),
         ImageFormat::Exr => exr::raster(source, bytes),
         ImageFormat::Webp => webp::raster(source, bytes),
-        ImageFormat::Hdr | ImageFormat::Pfm => {
-            let image = read(source, bytes)?;
-            let samples = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
-            let layout = source.layout((image.width(), image.height()), 3, 4);
-            Ok(Raster { layout, samples: RasterSamples::Floats(samples), transfer_function: TransferFunction::Linear })
-        }
+        ImageFormat::Hdr => hdr::pixels(source, bytes).map(|(image, to_srgb)| source.float_raster(&image, to_srgb)),
+        ImageFormat::Pfm => pfm::read(source, bytes).map(|image| source.float_raster(&image, None)),
     };
     source.with_offset(bytes, raster)
 }
@@ -298,7 +301,7 @@ pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterL
         ImageFormat::Webp => webp::layout(source, bytes),
         ImageFormat::Exr => exr::layout(source, bytes),
         ImageFormat::Jpeg => jpeg::size(source, bytes).map(|size| source.layout(size, 3, 1)),
-        ImageFormat::Hdr => hdr::inspect(source, bytes).map(|(size, _)| source.layout(size, 3, 4)),
+        ImageFormat::Hdr => hdr::layout(source, bytes),
         ImageFormat::Pfm => pfm::size(source, bytes).map(|size| source.layout(size, 3, 4)),
     };
     source.with_offset(bytes, layout)
@@ -341,6 +344,13 @@ type Inspected = ((u32, u32), Metadata);
 /// decode equal levels to equal values.
 fn srgb_levels() -> [f32; 256] {
     std::array::from_fn(|k| Srgb {}.decode(k as f64 / 255.0) as f32)
+}
+
+/// Converts pixels from a file's primaries to sRGB's.
+fn convert_primaries(pixels: &mut [Rgb], to_srgb: Option<Matrix>) {
+    if let Some(matrix) = to_srgb {
+        pixels.iter_mut().for_each(|pixel| *pixel = matrix.color(*pixel));
+    }
 }
 
 /// Converts 8-bit sRGB pixels to linear RGB.

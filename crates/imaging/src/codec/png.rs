@@ -7,7 +7,7 @@ use super::{Header, Inspected, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::ImageError;
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
-use crate::tone::{Chromaticities, Curve, Gamma, LevelEncoder, Matrix, Primaries, Srgb};
+use crate::tone::{Chromaticities, LevelEncoder, Matrix};
 use juggler_math::{Image, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
 use std::io::{self, BufRead, Seek, Write};
@@ -176,13 +176,9 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
     let (width, height) = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
-    let curve: Box<dyn Curve> = match transfer_function(info) {
-        TransferFunction::Gamma(gamma) => Box::new(Gamma { gamma }),
-        _ => Box::new(Srgb {}),
-    };
-    let (interlaced, matrix) = (info.interlaced, to_srgb(info));
+    let (interlaced, transfer_function, matrix) = (info.interlaced, transfer_function(info), to_srgb(info));
     let (color, depth) = reader.output_color_type();
-    let row = Row::new(color, depth, curve.as_ref(), u64::from(width) * u64::from(height));
+    let row = Row::new(color, depth, transfer_function, u64::from(width) * u64::from(height));
     let mut pixels = Vec::new();
     if interlaced {
         let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
@@ -193,17 +189,14 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
             row.append(bytes.data(), &mut pixels);
         }
     }
-    if let Some(matrix) = matrix {
-        pixels.iter_mut().for_each(|pixel| *pixel = matrix.color(*pixel));
-    }
+    super::convert_primaries(&mut pixels, matrix);
     source.image(width, height, pixels)
 }
 
 /// Matrix from the file's primaries (cICP, else cHRM) to sRGB's; `None` if they are equal.
 fn to_srgb(info: &png::Info) -> Option<Matrix> {
     if let Some(codes) = &info.coding_independent_code_points {
-        let named = |p: &Primaries| p.code_point() == Some(codes.color_primaries);
-        return Primaries::ALL.into_iter().find(named)?.chromaticities().to_srgb();
+        return Chromaticities::from_code_point(codes.color_primaries)?.to_srgb();
     }
     if info.srgb.is_some() || info.icc_profile.is_some() {
         return None;
@@ -216,9 +209,18 @@ fn to_srgb(info: &png::Info) -> Option<Matrix> {
 
 /// Transfer function of the file; sRGB if it names none.
 fn transfer_function(info: &png::Info) -> TransferFunction {
-    let codes = info.coding_independent_code_points.as_ref().map(|codes| codes.transfer_function);
+    if let Some(codes) = &info.coding_independent_code_points {
+        // ITU-T H.273, table 3. Browsers show the curves of standard video as sRGB, too.
+        return match codes.transfer_function {
+            4 => TransferFunction::Gamma(2.2),
+            5 => TransferFunction::Gamma(2.8),
+            8 => TransferFunction::Linear,
+            16 => TransferFunction::Pq,
+            18 => TransferFunction::Hlg,
+            _ => TransferFunction::Srgb,
+        };
+    }
     match (info.srgb, info.gama_chunk) {
-        _ if codes == Some(SRGB_CURVE) => TransferFunction::Srgb,
         (None, Some(gama)) if gama.into_value() > 0.0 => TransferFunction::Gamma(1.0 / f64::from(gama.into_value())),
         _ => TransferFunction::Srgb,
     }
@@ -229,7 +231,9 @@ fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Resu
     let info = reader.info();
     let size = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
     let (color, depth) = reader.output_color_type();
-    Ok(source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 }))
+    let layout = source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 });
+    // White keeps its value, and so does gray.
+    Ok(RasterLayout { to_srgb: to_srgb(info).filter(|_| layout.channels > 2), ..layout })
 }
 
 /// Reads the samples; palettes and depths below 8 bits are expanded to bytes.
@@ -256,19 +260,19 @@ pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterL
 }
 
 /// Converts rows of samples to linear RGB.
-struct Row<'a> {
+struct Row {
     /// Samples per pixel: 1 gray, 2 gray and alpha, 3 RGB, 4 RGBA.
     samples: usize,
     is_16_bit: bool,
-    curve: &'a dyn Curve,
+    transfer_function: TransferFunction,
     /// Table of linear values by level; empty for images too small to pay for it.
     levels: Vec<f32>,
 }
 
-impl<'a> Row<'a> {
-    fn new(color: ColorType, depth: BitDepth, curve: &'a dyn Curve, pixels: u64) -> Self {
+impl Row {
+    fn new(color: ColorType, depth: BitDepth, transfer_function: TransferFunction, pixels: u64) -> Self {
         let is_16_bit = depth == BitDepth::Sixteen;
-        let mut row = Self { samples: color.samples(), is_16_bit, curve, levels: Vec::new() };
+        let mut row = Self { samples: color.samples(), is_16_bit, transfer_function, levels: Vec::new() };
         let count = if is_16_bit { 65_536 } else { 256 };
         if pixels > count {
             row.levels = (0..count as usize).map(|level| row.linear(level)).collect();
@@ -278,7 +282,7 @@ impl<'a> Row<'a> {
 
     fn linear(&self, level: usize) -> f32 {
         let top = if self.is_16_bit { 65_535.0 } else { 255.0 };
-        self.levels.get(level).copied().unwrap_or_else(|| self.curve.decode(level as f64 / top) as f32)
+        self.levels.get(level).copied().unwrap_or_else(|| self.transfer_function.decode(level as f64 / top) as f32)
     }
 
     fn append(&self, bytes: &[u8], pixels: &mut Vec<Rgb>) {

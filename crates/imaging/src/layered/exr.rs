@@ -147,12 +147,20 @@ impl Part {
                 let samples = samples.unwrap_or_default().iter();
                 match self.depth {
                     SampleDepth::Float => data.extend(samples.flat_map(|value| value.to_ne_bytes())),
-                    SampleDepth::Half => data.extend(samples.flat_map(|value| f16::from_f32(*value).to_ne_bytes())),
+                    SampleDepth::Half => {
+                        data.extend(samples.flat_map(|value| to_half(*value).to_ne_bytes()));
+                    }
                 }
             }
         }
         data
     }
+}
+
+/// Nearest half float, at most the largest finite one: 65,504.
+fn to_half(value: f32) -> f16 {
+    let largest = f16::MAX.to_f32();
+    f16::from_f32(value.clamp(-largest, largest))
 }
 
 /// Channel indices sorted by name, as OpenEXR requires.

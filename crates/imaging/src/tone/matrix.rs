@@ -4,7 +4,7 @@ use juggler_math::Rgb;
 
 /// 3 × 3 matrix, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Matrix(pub [[f64; 3]; 3]);
+pub struct Matrix(pub(crate) [[f64; 3]; 3]);
 
 impl Matrix {
     /// Diagonal matrix.

@@ -10,6 +10,7 @@ mod color_pipeline;
 mod dither;
 mod gamma;
 mod gamut;
+pub(crate) mod high_dynamic_range;
 mod linear;
 mod matrix;
 mod pbr_neutral;
@@ -23,6 +24,7 @@ pub use aces::Aces;
 pub use agx::{Agx, AgxLook};
 pub use gamma::Gamma;
 pub use linear::Linear;
+pub use matrix::Matrix;
 pub use pbr_neutral::PbrNeutral;
 pub use primaries::{Chromaticities, Primaries};
 pub use quantizer::Quantizer;
@@ -31,7 +33,6 @@ pub use srgb::Srgb;
 pub use white_balance::WhiteBalance;
 
 pub(crate) use dither::LevelEncoder;
-pub(crate) use matrix::Matrix;
 
 use color_pipeline::ColorPipeline;
 use juggler_math::{Rgb, portable};

@@ -83,6 +83,23 @@ pub struct Chromaticities {
 }
 
 impl Chromaticities {
+    /// Chromaticities of a code point in a PNG's cICP chunk (ITU-T H.273, table 2); `None` if it is
+    /// reserved or names no RGB primaries of displays.
+    pub(crate) fn from_code_point(code_point: u8) -> Option<Self> {
+        let named = Primaries::ALL.into_iter().find(|primaries| primaries.code_point() == Some(code_point));
+        let srgb = Primaries::Srgb.chromaticities();
+        match code_point {
+            // ITU-R BT.601 with 625 and 525 lines, SMPTE 240M.
+            5 => Some(Self { green: [0.29, 0.60], ..srgb }),
+            6 | 7 => Some(Self { red: [0.630, 0.340], green: [0.310, 0.595], blue: [0.155, 0.070], ..srgb }),
+            // SMPTE RP 431-2: the primaries of Display P3 with the white of cinemas.
+            11 => Some(Self { white: [0.314, 0.351], ..Primaries::DisplayP3.chromaticities() }),
+            // EBU Tech. 3213-E.
+            22 => Some(Self { red: [0.630, 0.340], green: [0.295, 0.605], blue: [0.155, 0.077], ..srgb }),
+            _ => named.map(Primaries::chromaticities),
+        }
+    }
+
     /// Matrix from linear RGB to CIE XYZ with white at luminance 1. Its middle row holds the
     /// luminances of the primaries.
     pub(crate) fn to_xyz(self) -> Matrix {

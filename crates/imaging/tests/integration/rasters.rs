@@ -50,7 +50,8 @@ fn raster_samples_of_every_format_match_the_image() {
 fn png_raster_keeps_alpha_16_bit_samples_and_transfer_function() {
     use png::{BitDepth, ColorType};
     let raster = read(&png(ColorType::Rgba, BitDepth::Eight, None, &[1, 2, 3, 4, 5, 6, 7, 8])).unwrap();
-    let layout = RasterLayout { format: ImageFormat::Png, width: 2, height: 1, channels: 4, sample_bytes: 1 };
+    let layout =
+        RasterLayout { format: ImageFormat::Png, width: 2, height: 1, channels: 4, sample_bytes: 1, to_srgb: None };
     let samples = RasterSamples::Bytes(vec![1, 2, 3, 4, 5, 6, 7, 8]);
     assert_eq!(raster, Raster { layout, samples, transfer_function: TransferFunction::Srgb });
     let raster = read(&png(ColorType::Grayscale, BitDepth::Sixteen, Some(1.0), &[1, 2, 255, 255])).unwrap();
@@ -64,6 +65,118 @@ fn png_raster_keeps_alpha_16_bit_samples_and_transfer_function() {
     // One-bit samples are expanded to bytes.
     let raster = read(&png(ColorType::Grayscale, BitDepth::One, None, &[0b0100_0000])).unwrap();
     assert_eq!(raster.samples, RasterSamples::Bytes(vec![0, 255]));
+}
+
+#[test]
+fn png_states_primaries_and_transfer_functions_by_cicp() {
+    let png = |codes: [u8; 4], samples: &[u8]| {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_chunk(png::chunk::cICP, &codes).unwrap();
+        writer.write_image_data(samples).unwrap();
+        drop(writer);
+        bytes
+    };
+    let pixels = [60, 128, 60, 255, 255, 255];
+    let raster = read(&png([12, 13, 0, 1], &pixels)).unwrap();
+    // The level's linear value times the matrix of CSS Color Module Level 4 from Display P3.
+    let [low, high] = [60.0, 128.0].map(|level| raster.transfer_function.decode(level / 255.0) as f32);
+    let color = raster.layout.to_srgb.unwrap().color(juggler_math::Rgb::new(low, high, low));
+    let expected =
+        [1.2249 * low - 0.2249 * high, 1.0421 * high - 0.0421 * low, 1.0983 * low - 0.0786 * high - 0.0197 * low];
+    for (found, expected) in color.to_array().into_iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-4, "{color:?} {expected}");
+    }
+    let curve = |code: u8| {
+        let bytes = png([1, code, 0, 1], &pixels);
+        let (raster, image) = (read(&bytes).unwrap(), decode("a file", Cursor::new(&bytes), &LIMITS).unwrap());
+        let linear = raster.transfer_function.decode(128.0 / 255.0) as f32;
+        assert_eq!(linear, image.pixels()[0].g, "{code}");
+        assert_eq!(raster.layout.to_srgb, None);
+        raster.transfer_function
+    };
+    use TransferFunction::{Gamma, Hlg, Linear, Pq, Srgb};
+    assert_eq!([1, 4, 5, 8, 13, 16, 18].map(curve), [Srgb, Gamma(2.2), Gamma(2.8), Linear, Srgb, Pq, Hlg]);
+}
+
+/// A Radiance file with these header lines, resolution and pixels.
+fn hdr(lines: &str, size: &str, pixels: &[u8]) -> Vec<u8> {
+    let head = format!("#?RADIANCE\n{lines}FORMAT=32-bit_rle_rgbe\n\n{size}\n");
+    [head.as_bytes(), pixels].concat()
+}
+
+#[test]
+fn radiance_states_primaries_exposure_and_color_correction() {
+    let pixels = [128, 64, 32, 129, 128, 128, 128, 129];
+    let lines = "EXPOSURE=2\nEXPOSURE=0.5\nEXPOSURE=4\nCOLORCORR=2 1 0.5\n";
+    let image = decode("a file", Cursor::new(hdr(lines, "-Y 1 +X 2", &pixels)), &LIMITS).unwrap();
+    assert_eq!(image.pixels()[0].to_array(), [0.125, 0.125, 0.125]);
+    let lines = "PRIMARIES=0.680 0.320 0.265 0.690 0.150 0.060 0.3127 0.3290\n";
+    let bytes = hdr(lines, "-Y 1 +X 2", &pixels);
+    let color = decode("a file", Cursor::new(&bytes), &LIMITS).unwrap().pixels()[0].to_array();
+    for (found, expected) in
+        color.into_iter().zip([1.2249 - 0.1125, 0.5 * 1.0421 - 0.0421, 0.25 * 1.0983 - 0.0197 - 0.0393])
+    {
+        assert!((found - expected).abs() < 2e-4, "{color:?}");
+    }
+    let raster = read(&bytes).unwrap();
+    assert_eq!(raster.samples, RasterSamples::Floats(vec![1.0, 0.5, 0.25, 1.0, 1.0, 1.0]));
+    assert!(raster.layout.to_srgb.is_some());
+    for wrong in ["PRIMARIES=1 2 3\n", "PRIMARIES=a\n", "COLORCORR=0 1 1\n", "COLORCORR=nan 1 1\n", "EXPOSURE=inf\n"] {
+        let image = decode("a file", Cursor::new(hdr(wrong, "-Y 1 +X 2", &pixels)), &LIMITS).unwrap();
+        assert_eq!(image.pixels()[0].to_array(), [1.0, 0.5, 0.25], "{wrong}");
+    }
+}
+
+#[test]
+fn radiance_has_eight_orientations() {
+    // Row by row from the top left, the pixels are 2 3 4 and 5 6 7.
+    let orders = [
+        ("-Y 2 +X 3", [1, 2, 3, 4, 5, 6]),
+        ("-Y 2 -X 3", [3, 2, 1, 6, 5, 4]),
+        ("+Y 2 +X 3", [4, 5, 6, 1, 2, 3]),
+        ("+Y 2 -X 3", [6, 5, 4, 3, 2, 1]),
+        ("+X 3 -Y 2", [1, 4, 2, 5, 3, 6]),
+        ("-X 3 -Y 2", [3, 6, 2, 5, 1, 4]),
+        ("+X 3 +Y 2", [4, 1, 5, 2, 6, 3]),
+        ("-X 3 +Y 2", [6, 3, 5, 2, 4, 1]),
+    ];
+    for (size, levels) in orders {
+        let pixels: Vec<u8> = levels.into_iter().flat_map(|level| [level + 1, level + 1, level + 1, 136]).collect();
+        let image = decode("a file", Cursor::new(hdr("", size, &pixels)), &LIMITS).unwrap();
+        assert_eq!((image.width(), image.height()), (3, 2), "{size}");
+        let found: Vec<f32> = image.pixels().iter().map(|pixel| pixel.r).collect();
+        assert_eq!(found, [2.0, 3.0, 4.0, 5.0, 6.0, 7.0], "{size}");
+    }
+}
+
+#[test]
+fn radiance_has_old_runs() {
+    let row = |pixels: &[[u8; 4]], width: u32| {
+        let bytes = hdr("", &format!("-Y 1 +X {width}"), pixels.as_flattened());
+        decode("a file", Cursor::new(bytes), &LIMITS)
+            .map(|image| image.pixels().iter().map(|p| p.g).collect::<Vec<_>>())
+    };
+    let (a, b) = ([9, 8, 7, 136], [1, 2, 3, 136]);
+    assert_eq!(row(&[a, [1, 1, 1, 2], b], 4).unwrap(), [8.0, 8.0, 8.0, 2.0]);
+    // 1 + 44 + 256 pixels, then another.
+    let long = row(&[a, [1, 1, 1, 44], [1, 1, 1, 1], b], 302).unwrap();
+    assert!(long[..301].iter().all(|value| *value == 8.0) && long[301] == 2.0);
+    let error = row(&[a, [1, 1, 1, 9], b], 4).unwrap_err().to_string();
+    assert!(error.contains("a run is longer than its row"), "{error}");
+    assert!(row(&[a, [1, 1, 1, 0], [1, 1, 1, 0]], 4).is_err());
+}
+
+#[test]
+fn half_floats_end_at_their_largest_finite_value() {
+    let image =
+        juggler_math::Image::from_pixels(2, 1, vec![juggler_math::Rgb::new(1e6, 65_520.0, f32::INFINITY); 2]).unwrap();
+    let options = Options { exr_depth: juggler_imaging::SampleDepth::Half, ..Options::default() };
+    let bytes = encode(ImageFormat::Exr, &image, &juggler_imaging::Header { options, ..header(&image) });
+    let image = decode("a file", Cursor::new(&bytes), &LIMITS).unwrap();
+    assert_eq!(image.pixels()[1].to_array(), [65_504.0; 3]);
 }
 
 fn exr(channels: &[(&str, [f32; 2])]) -> Vec<u8> {

@@ -10,6 +10,7 @@ use crate::path::Path;
 use crate::store::Store;
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
+use juggler_math::Rgb;
 use juggler_texture::{AnyTexture, ColorSpace, Image, Images, MipMap};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -118,32 +119,51 @@ fn mip_map(raster: Raster, space: ColorSpace) -> Option<MipMap> {
         ColorSpace::Srgb => TransferFunction::Srgb,
         ColorSpace::Linear => TransferFunction::Linear,
     };
-    let RasterLayout { width, height, channels, .. } = raster.layout;
+    let RasterLayout { width, height, channels, to_srgb, .. } = raster.layout;
     let size = [width, height];
-    match raster.samples {
+    let to_srgb = to_srgb.filter(|_| space == ColorSpace::Auto && channels > 2);
+    let samples = match (raster.samples, to_srgb) {
+        (RasterSamples::Bytes(bytes), None) => {
+            return MipMap::from_bytes(size, channels, bytes, |level| transfer_function.decode(level));
+        }
+        (samples, _) => samples,
+    };
+    let mut numbers = linear_values(samples, channels, transfer_function);
+    for texel in numbers.chunks_exact_mut(usize::from(channels)) {
+        if let (Some(matrix), [r, g, b, ..]) = (to_srgb, texel) {
+            [*r, *g, *b] = matrix.color(Rgb::new(*r, *g, *b)).to_array();
+        }
+    }
+    MipMap::from_floats(size, channels, numbers)
+}
+
+/// Linear values of samples; alpha, the last of 2 or 4 channels, is linear already.
+fn linear_values(samples: RasterSamples, channels: u8, transfer_function: TransferFunction) -> Vec<f32> {
+    let channels = usize::from(channels);
+    let is_alpha = |i: usize| channels.is_multiple_of(2) && i % channels == channels - 1;
+    let levels = |count: u32| -> Vec<f32> {
+        let top = f64::from(count - 1);
+        (0..count).map(|level| transfer_function.decode(f64::from(level) / top) as f32).collect()
+    };
+    let linear = |table: &[f32], i: usize, level: u16, top: f32| match table.get(usize::from(level)) {
+        Some(color) if !is_alpha(i) => *color,
+        _ => f32::from(level) / top,
+    };
+    match samples {
         RasterSamples::Bytes(bytes) => {
-            MipMap::from_bytes(size, channels, bytes, |level| transfer_function.decode(level))
+            let table = levels(256);
+            bytes.iter().enumerate().map(|(i, level)| linear(&table, i, u16::from(*level), 255.0)).collect()
         }
         RasterSamples::Words(words) => {
-            let table: Vec<f32> =
-                (0..=u16::MAX).map(|word| transfer_function.decode(f64::from(word) / 65_535.0) as f32).collect();
-            let color = |word: u16| table.get(usize::from(word)).copied().unwrap_or_default();
-            let numbers = words.chunks(usize::from(channels)).flat_map(|texel| {
-                let alpha = if channels.is_multiple_of(2) { texel.len().checked_sub(1) } else { None };
-                let number =
-                    move |i: usize, word: u16| if Some(i) == alpha { f32::from(word) / 65_535.0 } else { color(word) };
-                texel.iter().enumerate().map(move |(i, word)| number(i, *word))
-            });
-            MipMap::from_floats(size, channels, numbers.collect())
+            let table = levels(65_536);
+            words.iter().enumerate().map(|(i, level)| linear(&table, i, *level, 65_535.0)).collect()
         }
         RasterSamples::Floats(mut numbers) => {
             if transfer_function != TransferFunction::Linear {
-                let colors = usize::from(channels) - usize::from(channels.is_multiple_of(2));
-                for texel in numbers.chunks_mut(usize::from(channels)) {
-                    texel.iter_mut().take(colors).for_each(|v| *v = transfer_function.decode(f64::from(*v)) as f32);
-                }
+                let colors = numbers.iter_mut().enumerate().filter(|(i, _)| !is_alpha(*i));
+                colors.for_each(|(_, number)| *number = transfer_function.decode(f64::from(*number)) as f32);
             }
-            MipMap::from_floats(size, channels, numbers)
+            numbers
         }
     }
 }
@@ -210,7 +230,7 @@ pub fn estimate(path: &std::path::Path) -> Estimate {
     // Pyramids store bytes or floats, a third more for the smaller levels. Decoders hold samples
     // and blocks in addition.
     let (sample_bytes, beside) = match layout.sample_bytes {
-        1 => (1, 4),
+        1 if layout.to_srgb.is_none() => (1, 4),
         _ => (4, 8),
     };
     let resident_bytes = samples * sample_bytes * 4 / 3 + 64;

@@ -49,6 +49,36 @@ fn complaint(folder: &TempDir, file: &str) -> String {
     text.replace(&format!("{}/", folder.path().display()), "")
 }
 
+/// Expected value: CSS Color Module Level 4, section 18, from linear Display P3 to linear sRGB.
+#[test]
+fn textures_convert_the_primaries_that_files_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let original = Rgb::new(0.05, 0.25, 0.1);
+    let image = Image::from_pixels(2, 1, vec![original; 2]).unwrap();
+    let tone = Tone { dither: false, primaries: juggler_imaging::Primaries::DisplayP3, ..Tone::default() };
+    for (name, png_16_bit) in [("a.png", false), ("deep.png", true), ("a.exr", false)] {
+        let path = folder.path().join(name);
+        let options = Options { png_16_bit, ..Options::default() };
+        let header = Header { options, tone: tone.clone(), ..Header::new(2, 1) };
+        let mut writer = create(&path, ImageFormat::from_path(&path).unwrap(), &header).unwrap();
+        writer.write_rows(image.pixels()).unwrap();
+        writer.finish().unwrap();
+        let texel = |space| AssetCache::default().image(&path, space).unwrap().texel(0, 0, 0);
+        let stored = [0.8225 * 0.05 + 0.1775 * 0.25, 0.0332 * 0.05 + 0.9668 * 0.25];
+        for i in 0..3 {
+            assert!(
+                (texel(ColorSpace::Auto)[i] - original.to_array()[i]).abs() < 3e-3,
+                "{name} {:?}",
+                texel(ColorSpace::Auto)
+            );
+        }
+        // A stated color space takes the levels as they are.
+        let red = texel(ColorSpace::Linear)[0];
+        let red = if name == "a.exr" { red } else { srgb_decode(red) };
+        assert!((red - stored[0]).abs() < 3e-3 && (original.r - stored[0]).abs() > 0.03, "{name} {red}");
+    }
+}
+
 #[test]
 fn integer_images_default_to_srgb_and_float_images_to_linear() {
     let folder = folder();

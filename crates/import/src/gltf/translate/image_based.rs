@@ -227,6 +227,7 @@ mod tests {
             height: 1,
             channels: 4,
             sample_bytes: 1,
+            to_srgb: None,
         };
         let samples = RasterSamples::Bytes(vec![255, 188, 0, 51, 255, 255, 255, 0]);
         let transfer_function = juggler_imaging::TransferFunction::Srgb;
