@@ -119,7 +119,7 @@ impl<'a> Objects<'a> {
         let Some(object) = self.content(index, mesh, &deformation, &world, findings)? else { return Ok(()) };
         // The transform of a node with a skin has no effect.
         let world = if deformation.joints.is_some() { DAffine3::IDENTITY } else { world };
-        let is_visible = self.view.visible.get(index).copied().unwrap_or(true);
+        let is_visible = object.is_visible() && self.view.visible.get(index).copied().unwrap_or(true);
         let object = object.named(format!("{}{}", self.view.prefix, node.path)).visible(is_visible);
         let Some(instances) = content.instances.transforms(&content.data, index)? else {
             self.place(object, &world, index, findings);
