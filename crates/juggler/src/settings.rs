@@ -8,6 +8,7 @@ use juggler_integrator::AnyIntegrator;
 use juggler_render::StopCriterion;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
+use juggler_scene::model::find_camera;
 use juggler_scene::{IntegratorChoice, Scene};
 use std::ops::RangeInclusive;
 
@@ -104,18 +105,32 @@ impl Settings {
     /// Returns the scene with these settings applied. Fails for unknown names and values out of
     /// range.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
+        let camera = self.camera_of(scene)?;
         let mut scene = scene.clone();
         let description = &mut scene.description;
-        if let Some(name) = &self.camera {
-            let single = description.camera.iter().map(|_| "camera");
-            check_name("camera", name, single.chain(description.cameras.keys().map(String::as_str)))?;
-            description.render.camera = Some(CameraName(name.clone()));
+        if camera.is_some() {
+            description.render.camera = camera;
         }
         if self.max_depth.is_some() && self.integrator.is_none() {
             description.render.integrator = Some(IntegratorChoice::for_scene(description).integrator);
         }
         self.apply_to(&mut description.render, &mut description.tone)?;
         Ok(scene)
+    }
+
+    /// Whole name of the camera that the settings select.
+    fn camera_of(&self, scene: &Scene) -> Result<Option<CameraName>, Error> {
+        let Some(name) = &self.camera else { return Ok(None) };
+        // Models are expanded only if the scene itself has no such camera.
+        if scene.description.cameras.contains_key(name) {
+            return Ok(Some(CameraName(name.clone())));
+        }
+        let names = scene.camera_names();
+        let names = names.iter().map(String::as_str);
+        match find_camera(names.clone(), name) {
+            Some(found) => Ok(Some(CameraName(found.to_owned()))),
+            None => check_name("camera", name, names).map(|()| None),
+        }
     }
 
     /// Applies the settings other than the camera to render settings and tone. `max_depth` needs

@@ -208,7 +208,7 @@ fn contents(at: &Location<'_>, buffer: &Buffer, files: &dyn Files, limit: u64) -
 /// Reads what a URI names; the pointer is that of the URI.
 fn read(pointer: &str, uri: &str, files: &dyn Files, limit: u64) -> Result<Vec<u8>, Fault> {
     let names = match Uri::parse(uri).map_err(|error| Fault::at(pointer, error))? {
-        Uri::Data { base64, .. } => return uri::decode(base64).map_err(|error| Fault::at(pointer, error)),
+        Uri::Data { data, .. } => return uri::decode(data).map_err(|error| Fault::at(pointer, error)),
         Uri::File(names) => names,
     };
     let mut fault = None;

@@ -40,12 +40,24 @@ pub enum UriError {
     /// The name contains a control character.
     #[error("`{0}` contains a control character")]
     Control(String),
-    /// The data URI does not say `base64`.
-    #[error("the data URI has no `;base64,`; other encodings are not read")]
-    Encoding,
+    /// The data URI has no comma before its data.
+    #[error("the data URI has no comma, which ends its type")]
+    Comma,
+    /// The data URI has a `%` without two hexadecimal digits.
+    #[error("the data URI has a `%` that two hexadecimal digits do not follow")]
+    Percent,
     /// The data URI is not valid base64.
     #[error("the data URI is not valid base64: {0}")]
     Base64(String),
+}
+
+/// Data of a data URI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EncodedData<'u> {
+    /// Base64; percent-encoding is possible.
+    Base64(&'u str),
+    /// Percent-encoding: each byte stands for itself or is `%` with two hexadecimal digits.
+    Percent(&'u str),
 }
 
 /// A URI of a buffer or an image.
@@ -55,8 +67,8 @@ pub enum Uri<'u> {
     Data {
         /// Type of the data, such as `image/png`; empty if the URI states none.
         media_type: &'u str,
-        /// The data in base64; percent-encoding is possible.
-        base64: &'u str,
+        /// The data, encoded.
+        data: EncodedData<'u>,
     },
     /// Names of a file in the order in which they are tried: percent-decoded, then as written. The
     /// separators are `/`.
@@ -101,8 +113,12 @@ impl<'u> Uri<'u> {
 ///
 /// # Errors
 ///
-/// The text is not valid base64.
-pub fn decode(base64: &str) -> Result<Vec<u8>, UriError> {
+/// The text is not valid base64 or percent-encoding.
+pub fn decode(data: EncodedData<'_>) -> Result<Vec<u8>, UriError> {
+    let base64 = match data {
+        EncodedData::Base64(base64) => base64,
+        EncodedData::Percent(text) => return percent_decoded(text.as_bytes()).ok_or(UriError::Percent),
+    };
     let decoded = base64.contains('%').then(|| percent_decoded(base64.as_bytes())).flatten();
     let text = decoded.map_or(Cow::Borrowed(base64.as_bytes()), Cow::Owned);
     BASE64.decode(text).map_err(|error| UriError::Base64(error.to_string()))
@@ -118,13 +134,13 @@ fn split_scheme(uri: &str) -> Option<(&str, &str)> {
 
 /// The parts of a data URI after `data:`.
 fn data(rest: &str) -> Result<Uri<'_>, UriError> {
-    let (head, base64) = rest.split_once(',').ok_or(UriError::Encoding)?;
-    let head = match head.rsplit_once(';') {
-        Some((head, encoding)) if encoding.trim().eq_ignore_ascii_case("base64") => head,
-        _ => return Err(UriError::Encoding),
+    let (head, data) = rest.split_once(',').ok_or(UriError::Comma)?;
+    let (head, data) = match head.rsplit_once(';') {
+        Some((head, encoding)) if encoding.trim().eq_ignore_ascii_case("base64") => (head, EncodedData::Base64(data)),
+        _ => (head, EncodedData::Percent(data)),
     };
     let media_type = head.split(';').next().unwrap_or_default().trim();
-    Ok(Uri::Data { media_type, base64 })
+    Ok(Uri::Data { media_type, data })
 }
 
 /// Checks the name of a file; returns it with the separators `/`.
@@ -221,7 +237,7 @@ mod tests {
     #[test]
     fn data_is_decoded() {
         let parse = |uri: &'static str| match Uri::parse(uri) {
-            Ok(Uri::Data { media_type, base64 }) => (media_type, decode(base64)),
+            Ok(Uri::Data { media_type, data }) => (media_type, decode(data)),
             other => panic!("{uri}: {other:?}"),
         };
         let bytes = Ok(vec![0, 1, 254, 255]);
@@ -229,7 +245,9 @@ mod tests {
         assert_eq!(parse("DATA:;base64,AAH+/w"), ("", bytes.clone()), "without padding");
         assert_eq!(parse("data:image/png;name=a;base64,AAH%2B/w%3D%3D"), ("image/png", bytes));
         assert!(parse("data:;base64,A*").1.is_err());
-        assert_eq!(Uri::parse("data:,hello"), Err(UriError::Encoding));
-        assert_eq!(Uri::parse("data:base64"), Err(UriError::Encoding));
+        assert_eq!(parse("data:,a%20b%00%fF+"), ("", Ok(b"a b\0\xff+".to_vec())), "RFC 2397, without base64");
+        assert_eq!(parse("data:text/plain;charset=utf-8,%41"), ("text/plain", Ok(b"A".to_vec())));
+        assert_eq!(parse("data:,%4").1, Err(UriError::Percent));
+        assert_eq!(Uri::parse("data:base64"), Err(UriError::Comma));
     }
 }

@@ -174,6 +174,15 @@ pub(super) fn real(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
+/// Whether a word is a form in which C libraries write a number that is none: `nan(ind)`,
+/// `-nan(snan)`, `1.#IND`, `-1.#QNAN0`.
+pub(super) fn is_nan_of_c(word: &[u8]) -> bool {
+    let unsigned = word.strip_prefix(b"-").or_else(|| word.strip_prefix(b"+")).unwrap_or(word).to_ascii_lowercase();
+    unsigned.starts_with(b"nan(") && unsigned.ends_with(b")")
+        || unsigned.starts_with(b"1.#ind")
+        || unsigned.starts_with(b"1.#qnan")
+}
+
 /// Parses a word as an integer.
 pub(super) fn integer(word: &[u8]) -> Option<i64> {
     let (digits, negative) = match word {

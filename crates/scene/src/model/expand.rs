@@ -4,15 +4,16 @@
 //! of all other objects stay. Models that move while the shutter is open are expanded at each
 //! sampled time too, which gives the tracks of their objects, lights and cameras.
 
-use super::ModelChoice;
 use super::instance::{ModelNames, Place};
+use super::{ModelChoice, find_camera};
 use crate::compile::{AssetCache, Files};
-use crate::description::{Description, Object, Objects};
+use crate::description::{CameraName, Description, Object, Objects};
 use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use crate::shared::Shared;
+use crate::suggest::did_you_mean_or_list;
 use indexmap::IndexMap;
 use juggler_camera::AnyCamera;
 use juggler_light::AnyLight;
@@ -147,6 +148,7 @@ impl Expander<'_> {
             }
             self.description.cameras.insert(name, camera.value.into());
         }
+        self.findings.extend(choose_camera(&mut self.description));
         for light in self.lights.into_values() {
             if let Some(keys) = light.moving() {
                 let index = self.description.lights.len();
@@ -238,6 +240,20 @@ impl Expander<'_> {
             self.findings.push(finding.at(path));
         }
     }
+}
+
+/// Writes the whole name of the camera that `render.camera` selects. Returns an error if there is none.
+fn choose_camera(scene: &mut Description) -> Option<Finding> {
+    let chosen = scene.render.camera.as_ref()?.0.clone();
+    let single = scene.camera.iter().map(|_| "camera");
+    let names = single.chain(scene.cameras.keys().map(String::as_str));
+    if let Some(name) = find_camera(names.clone(), &chosen).map(str::to_owned) {
+        scene.render.value_mut_unmarked().camera = Some(CameraName(name));
+        return None;
+    }
+    let help = did_you_mean_or_list(&chosen, names).unwrap_or_else(|| "the scene has no cameras".to_owned());
+    let missing = Finding::error(format!("no camera is called `{chosen}`")).help(help);
+    Some(missing.at(Path::root().key("render").key("camera")))
 }
 
 /// Object at a moment of its track.

@@ -1,6 +1,7 @@
 //! Models: scenes of other formats, whole or as objects of a scene.
 
 mod cache;
+mod camera_names;
 mod choice;
 mod expand;
 mod files;
@@ -12,6 +13,7 @@ mod scene;
 mod summary;
 
 pub(crate) use cache::{ModelCache, OpenedModel};
+pub use camera_names::find_camera;
 pub use choice::{AnimationChoice, ModelChoice, ModelRepeat, NameOrIndex};
 pub(crate) use expand::{Expansion, SceneTime, expand, has_models};
 pub use files::{FileError, Files};

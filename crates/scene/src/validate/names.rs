@@ -4,6 +4,7 @@ use super::rule::Rule;
 use super::{Validator, other_programs};
 use crate::description::Description;
 use crate::document::Node;
+use crate::model::has_models;
 use crate::path::PathRef;
 use crate::report::Finding;
 use crate::suggest::{closest, did_you_mean, did_you_mean_or_list};
@@ -55,6 +56,18 @@ impl<'t> NameScope<'t> {
         }
     }
 
+    /// Whether objects of the scene's own list, or in them, are models.
+    fn has_models(self) -> bool {
+        fn are_in(objects: Option<&Node>) -> bool {
+            let objects = objects.map(Node::elements).unwrap_or_default();
+            objects.iter().any(|object| object.get("model").is_some() || are_in(object.get("objects")))
+        }
+        match self {
+            Self::Tree(tree) => are_in(tree.get("objects")),
+            Self::Scene(scene) => has_models(scene),
+        }
+    }
+
     fn all(self, part: &str) -> Vec<&'t str> {
         match self {
             Self::Tree(tree) => tree.get(part).into_iter().flat_map(Node::members).map(|(name, _)| &**name).collect(),
@@ -72,7 +85,8 @@ impl Validator<'_> {
     /// Reports an error if the scene does not define a name.
     pub(super) fn check_reference(&mut self, family: NamedFamily, node: &Node, name: &str, at: &PathRef<'_>) {
         let (part, noun) = family.words();
-        if self.known.has(part, name) {
+        // The cameras of models are known when the models are expanded, which checks the name.
+        if self.known.has(part, name) || family == NamedFamily::Camera && self.known.has_models() {
             return;
         }
         let names = self.known.all(part);

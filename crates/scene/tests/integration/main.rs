@@ -22,6 +22,7 @@ mod inline_textures;
 mod juggler;
 mod lighting;
 mod limits;
+mod model_cameras;
 mod models;
 mod mutations;
 mod placing;

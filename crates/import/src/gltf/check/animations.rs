@@ -74,7 +74,9 @@ impl Checker<'_> {
             "pointer" if channel.target.extensions.pointer.is_some() => {
                 return self.pointer_values(at, animation, channel);
             }
-            "pointer" => return self.fault(&target, format_args!("has no `KHR_animation_pointer`")),
+            "pointer" => {
+                return self.warn(&target, "has no `KHR_animation_pointer`, so the channel has no effect");
+            }
             path => return self.warn(&target, format_args!("channels of `{path}` have no effect")),
         };
         if per_key == 0 {

@@ -32,6 +32,9 @@ impl Checker<'_> {
                     self.fault(&at, format_args!("needs {length} bytes, the BIN chunk has {binary}"));
                 }
                 Some(_) if position == 0 => {}
+                _ if !self.document.uses_buffer(position) => {
+                    self.warn(&at, "has no `uri` and no use; it is not read");
+                }
                 None if position == 0 => self.fault(&at, format_args!("has no `uri`, and the file has no BIN chunk")),
                 _ => self.fault(&at, format_args!("has no `uri`; only the first buffer may be the BIN chunk")),
             }

@@ -95,6 +95,12 @@ impl Checker<'_> {
     }
 
     fn punctual(&mut self, at: &Location<'_>, light: &PunctualLight) {
+        if light.light_type == LightType::Unknown {
+            self.warn(
+                &at.key("type"),
+                "the kind of the light is not known, expected `directional`, `point` or `spot`; it is left out",
+            );
+        }
         self.numbers(&at.key("color"), &light.color, &UNIT);
         self.number(&at.key("intensity"), light.intensity, &NOT_NEGATIVE);
         self.optional(&at.key("range"), light.range, &POSITIVE);

@@ -11,7 +11,7 @@ const MAX_SHOWN: usize = 8;
 type Parent = Option<(usize, usize)>;
 
 impl Checker<'_> {
-    /// Checks that the nodes form trees, whose roots are those of the scenes.
+    /// Checks that the nodes form trees, and warns of scenes that list other nodes than roots.
     pub(super) fn graph(&mut self) {
         let parents = self.parents();
         self.roots(&parents);
@@ -43,7 +43,7 @@ impl Checker<'_> {
         parents
     }
 
-    /// Checks that the nodes of scenes have no parents.
+    /// Warns of nodes of scenes that have parents.
     fn roots(&mut self, parents: &[Parent]) {
         let list = Location::root("scenes");
         for (position, scene) in self.document.scenes.iter().enumerate() {
@@ -51,8 +51,8 @@ impl Checker<'_> {
             let nodes = at.key("nodes");
             for (position, node) in scene.nodes.iter().enumerate() {
                 if let Some(Some((parent, _))) = parents.get(node.get()) {
-                    let text = format_args!("node {node} is not a root, it is a child of node {parent}");
-                    self.fault(&nodes.index(position), text);
+                    let text = "it is shown once, with the transforms of its ancestors";
+                    self.warn(&nodes.index(position), format_args!("node {node} is a child of node {parent}; {text}"));
                 }
             }
         }

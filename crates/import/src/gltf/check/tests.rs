@@ -79,10 +79,12 @@ fn the_first_buffer_may_be_the_bin_chunk() {
     file.view(&[0; 8], "");
     assert!(file.open().is_ok());
     assert_eq!(
-        faults(r#""buffers": [{"byteLength": 8}]"#),
+        faults(r#""buffers": [{"byteLength": 8}], "bufferViews": [{"buffer": 0, "byteLength": 8}]"#),
         ["/buffers/0: has no `uri`, and the file has no BIN chunk"]
     );
-    let second = faults(r#""buffers": [{"byteLength": 8, "uri": "a"}, {"byteLength": 8}]"#);
+    let unused = r#""buffers": [{"byteLength": 8, "uri": "a"}, {"byteLength": 8}]"#;
+    assert_eq!(warnings(unused), ["/buffers/1: has no `uri` and no use; it is not read"]);
+    let second = faults(&format!(r#"{unused}, "bufferViews": [{{"buffer": 1, "byteLength": 8}}]"#));
     assert_eq!(second, ["/buffers/1: has no `uri`; only the first buffer may be the BIN chunk"]);
     let json = r#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 9}]}"#;
     let short = Gltf::open("a.glb", crate::gltf::testing::glb(json, &[0; 8]), &Limits::default());
@@ -119,8 +121,9 @@ fn nodes_are_trees() {
     assert_eq!(faults(r#""nodes": [{"children": [0]}]"#), ["/nodes/0/children/0: node 0 is its own ancestor (0 -> 0)"]);
     let shared = faults(r#""nodes": [{"children": [2]}, {"children": [2]}, {}]"#);
     assert_eq!(shared, ["/nodes/1/children/0: node 2 is a child of node 0 already"]);
-    let root = faults(r#""nodes": [{"children": [1]}, {}], "scenes": [{"nodes": [0, 1]}]"#);
-    assert_eq!(root, ["/scenes/0/nodes/1: node 1 is not a root, it is a child of node 0"]);
+    let root = warnings(r#""nodes": [{"children": [1]}, {}], "scenes": [{"nodes": [0, 1]}]"#);
+    let text = "it is shown once, with the transforms of its ancestors";
+    assert_eq!(root, [format!("/scenes/0/nodes/1: node 1 is a child of node 0; {text}")]);
     let twice = faults(r#""nodes": [{}], "scenes": [{"nodes": [0, 0]}]"#);
     assert_eq!(twice, ["/scenes/0/nodes/1: 0 stands twice in the list"]);
     let missing = faults(r#""nodes": [{"children": [1]}], "scenes": [{"nodes": [1]}], "scene": 1"#);

@@ -40,6 +40,9 @@ pub enum LightType {
     Point,
     /// Light from a point in a cone.
     Spot,
+    /// Light of an unknown kind, which is left out.
+    #[serde(other)]
+    Unknown,
 }
 
 /// Cone of a spot light. Angles are between axis and edge, in radians.

@@ -105,6 +105,16 @@ pub struct Document {
     pub extensions: DocumentExtensions,
 }
 
+impl Document {
+    /// Whether a buffer view uses a buffer.
+    pub fn uses_buffer(&self, buffer: usize) -> bool {
+        self.buffer_views.iter().any(|view| {
+            let compressed = view.compressed().map(|(_, compressed)| compressed.buffer);
+            view.buffer.get() == buffer || compressed.is_some_and(|index| index.get() == buffer)
+        })
+    }
+}
+
 /// Extensions of a document.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct DocumentExtensions {

@@ -12,7 +12,7 @@ pub enum Repeat {
     /// Holds the first and the last pose.
     #[default]
     Once,
-    /// Repeats the clip; its end coincides with its start.
+    /// Repeats the clip. The end of each cycle shows the end of the clip, not its start.
     Loop,
     /// Alternates between forward and backward playback.
     PingPong,
@@ -68,7 +68,12 @@ impl Clip {
         match repeat {
             Repeat::Once => seconds.max(0.0).min(duration),
             _ if seconds.is_infinite() => 0.0,
-            Repeat::Loop => seconds.rem_euclid(duration),
+            Repeat::Loop => {
+                // Times come from frame numbers, whose rounding may miss the end.
+                let (time, rounding) = (seconds.rem_euclid(duration), 1e-9 * duration);
+                let is_end = time <= rounding && seconds > rounding;
+                if is_end { duration } else { time }
+            }
             Repeat::PingPong => {
                 let time = seconds.rem_euclid(2.0 * duration);
                 if time > duration { 2.0 * duration - time } else { time }
@@ -149,7 +154,9 @@ mod tests {
             (-1.0, 0.0, 3.0, 1.0),
             (0.0, 0.0, 0.0, 0.0),
             (3.5, 3.5, 3.5, 3.5),
-            (4.0, 4.0, 0.0, 4.0),
+            (4.0, 4.0, 4.0, 4.0),
+            (4.0 + 1e-15, 4.0, 4.0, 8.0 - (4.0 + 1e-15)),
+            (8.0, 4.0, 4.0, 0.0),
             (5.0, 4.0, 1.0, 3.0),
             (9.5, 4.0, 1.5, 1.5),
             (f64::NAN, 0.0, 0.0, 0.0),

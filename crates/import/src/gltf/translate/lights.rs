@@ -37,7 +37,7 @@ pub fn lights(view: &View<'_>, document: &Document, photometric: bool) -> Lights
         let name = || format!("{}{}", view.prefix, node.path);
         let punctual = extensions.light_punctual.and_then(|light| known?.get(light.light.get()));
         if let Some(light) = punctual {
-            found.lights.push((name(), any_light(light, &world, scale)));
+            found.lights.extend(any_light(light, &world, scale).map(|light| (name(), light)));
         }
         if let Some(reference) = extensions.light_ies {
             let profile = reference.light.get();
@@ -50,11 +50,12 @@ pub fn lights(view: &View<'_>, document: &Document, photometric: bool) -> Lights
     found
 }
 
-/// Light of a node.
-fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> AnyLight {
+/// Light of a node; `None` if its kind is not known.
+fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> Option<AnyLight> {
     let (color, intensity) = (rgb(light.color), intensity(light.intensity * scale));
     let (position, direction) = (position(world), forward(world).as_vec3());
-    match light.light_type {
+    Some(match light.light_type {
+        LightType::Unknown => return None,
         LightType::Directional => Directional { direction, color, intensity, ..Directional::default() }.into(),
         LightType::Point => {
             Point { position, color, intensity: Some(intensity), range: range(light), ..Point::default() }.into()
@@ -67,7 +68,7 @@ fn any_light(light: &PunctualLight, world: &DAffine3, scale: f64) -> AnyLight {
             let spot = Spot { position, direction, color, intensity, beam_degrees, cutoff_degrees, ..Spot::default() };
             Spot { beam_exponent, falloff: SpotFalloff::SquaredCosine, range: range(light), ..spot }.into()
         }
-    }
+    })
 }
 
 /// Range of a light, if it has one.

@@ -9,7 +9,7 @@ use crate::gltf::error::Fault;
 use crate::gltf::pose::Vertices;
 use crate::gltf::primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
-use juggler_math::Aabb;
+use juggler_math::{Aabb, Vec3};
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 use juggler_shape::{Mesh, MeshData};
 use std::collections::BTreeMap;
@@ -109,7 +109,11 @@ fn decode(data: &GltfData, entry: &Entry) -> Result<(Option<Geometry>, Warnings)
     };
     match assembly {
         Assembly::Arrays(mut arrays) => {
-            let warnings = std::mem::take(&mut arrays.warnings);
+            let mut warnings = std::mem::take(&mut arrays.warnings);
+            if is_without_area(&arrays) {
+                warnings.add(pointer(mesh, part), "has no triangle with an area and is left out", 1);
+                return Ok((None, warnings));
+            }
             if let Some(set) = tangent_set {
                 add_tangents(&mut arrays, set);
             }
@@ -118,6 +122,25 @@ fn decode(data: &GltfData, entry: &Entry) -> Result<(Option<Geometry>, Warnings)
         Assembly::LeftOut(warnings) => Ok((None, warnings)),
         Assembly::Draco(_) => Err(Fault::at(pointer(mesh, part), "the compressed data cannot be read")),
     }
+}
+
+/// Whether a primitive has only degenerate triangles and nothing deforms them.
+fn is_without_area(arrays: &PrimitiveArrays) -> bool {
+    let is_rigid = arrays.targets.is_empty() && arrays.joints.is_empty();
+    match &arrays.faces {
+        Faces::Triangles(triangles) => is_rigid && !have_area(&arrays.vertices.positions, triangles),
+        Faces::Points(_) | Faces::Lines(_) => false,
+    }
+}
+
+/// Whether some triangle has an area.
+pub fn have_area(positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
+    let corner = |index: u32| positions.get(index as usize).map(|corner| corner.as_dvec3());
+    let normal = |[a, b, c]: [u32; 3]| {
+        let (a, b, c) = (corner(a)?, corner(b)?, corner(c)?);
+        Some((b - a).cross(c - a))
+    };
+    triangles.iter().any(|triangle| normal(*triangle).is_some_and(|normal| normal.length() > 0.0))
 }
 
 /// Set of texture coordinates along which a material of a primitive, in any variant, needs tangents.

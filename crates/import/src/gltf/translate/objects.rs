@@ -6,7 +6,7 @@ use super::deformed::{Deformation, deformed_mesh, morph_weights};
 use super::faults::Faults;
 use super::materials::{MaterialSet, PrimitiveSurface};
 use super::matrix::{matrix_rows, matrix_step};
-use super::meshes::{Form, Geometry, pointer};
+use super::meshes::{Form, Geometry, have_area, pointer};
 use super::select::Selection;
 use super::thin::{RELATIVE_RADIUS, local_radius, solids};
 use super::tree::SceneNode;
@@ -17,8 +17,9 @@ use crate::gltf::primitive::{Faces, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
-use juggler_math::Aabb;
+use juggler_math::{Aabb, Vec3};
 use juggler_scene::{Instances, Object};
+use juggler_shape::{Mesh, MeshData};
 use std::borrow::Cow;
 
 /// What the objects of a scene are made of.
@@ -118,7 +119,7 @@ impl<'a> Objects<'a> {
         let Some(object) = self.content(index, mesh, &deformation, &world, findings)? else { return Ok(()) };
         // The transform of a node with a skin has no effect.
         let world = if deformation.joints.is_some() { DAffine3::IDENTITY } else { world };
-        let is_visible = self.view.visible.get(index).copied().unwrap_or(true);
+        let is_visible = object.is_visible() && self.view.visible.get(index).copied().unwrap_or(true);
         let object = object.named(format!("{}{}", self.view.prefix, node.path)).visible(is_visible);
         let Some(instances) = content.instances.transforms(&content.data, index)? else {
             self.place(object, &world, index, findings);
@@ -221,7 +222,9 @@ impl<'a> Objects<'a> {
         let at = pointer(mesh, part);
         let object = match (&geometry.form, geometry.deformable.as_deref()) {
             (Form::Surface(mesh), None) => Object::new(mesh.clone()),
-            (Form::Surface(mesh), Some(arrays)) if !deformation.moves(arrays) => Object::new(mesh.clone()),
+            (Form::Surface(mesh), Some(arrays)) if !deformation.moves(arrays) => {
+                with_area(mesh.clone(), &at, &mut findings.warnings)
+            }
             (Form::Surface(_), Some(arrays)) => self.deformed(arrays, deformation, &at, &mut findings.warnings)?,
             (Form::Thin, Some(arrays)) => match self.thin(arrays, deformation, world, &at, findings)? {
                 Some(object) => object,
@@ -256,7 +259,7 @@ impl<'a> Objects<'a> {
         self.reserve(arrays, at)?;
         let deformed = deformation.apply(arrays, at)?;
         warnings.add(at, "vertices without joint weights stay in place", deformed.unweighted as u64);
-        Ok(Object::new(deformed_mesh(deformed, triangles)))
+        Ok(with_area(deformed_mesh(deformed, triangles), at, warnings))
     }
 
     /// Counts the bytes of deformed arrays.
@@ -315,7 +318,7 @@ impl<'a> Objects<'a> {
                 let Some((Some(geometry), _)) = faults.take(content.meshes.get(&content.data, slot)) else { continue };
                 let Aabb { min, max } = geometry.bounds;
                 let corners = (0..8).map(|i| {
-                    juggler_math::Vec3::new(
+                    Vec3::new(
                         if i & 1 == 0 { min.x } else { max.x },
                         if i & 2 == 0 { min.y } else { max.y },
                         if i & 4 == 0 { min.z } else { max.z },
@@ -330,6 +333,19 @@ impl<'a> Objects<'a> {
         let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
         if diagonal.is_finite() && diagonal > 0.0 { diagonal } else { 1.0 }
     }
+}
+
+/// Object of a mesh that deforms. In a pose without area, a hidden triangle takes its place, so that
+/// the objects of all times correspond.
+fn with_area(mesh: Mesh, at: &str, warnings: &mut Warnings) -> Object {
+    let arrays = mesh.arrays();
+    if have_area(&arrays.positions, &arrays.triangles) {
+        return Object::new(mesh);
+    }
+    warnings.add(at, "the pose leaves no triangle with an area, so the primitive is hidden", 1);
+    let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let hidden = Mesh::from(MeshData { positions: corners, triangles: vec![[0, 1, 2]], ..MeshData::default() });
+    Object::new(hidden).visible(false)
 }
 
 /// What the material of a primitive depends on.

@@ -79,16 +79,28 @@ impl NodeTree {
 
     /// Nodes of a scene in depth-first order; all nodes if there is no scene.
     pub fn scene(&self, document: &Document, names: &Names, scene: Option<usize>) -> Vec<SceneNode> {
+        let has_parent = |node: &usize| self.hierarchy.parent(*node).is_some();
         let roots: Vec<usize> = match scene.and_then(|scene| document.scenes.get(scene)) {
-            Some(scene) => scene.nodes.iter().map(|node| node.get()).collect(),
-            None => (0..document.nodes.len()).filter(|node| self.hierarchy.parent(*node).is_none()).collect(),
+            Some(scene) => {
+                // Listed nodes with parents come last, so that they keep the paths that their parents give.
+                let listed = scene.nodes.iter().map(|node| node.get());
+                let (inner, mut roots): (Vec<usize>, Vec<usize>) = listed.partition(has_parent);
+                roots.extend(inner);
+                roots
+            }
+            None => (0..document.nodes.len()).filter(|node| !has_parent(node)).collect(),
         };
         let name = |index: usize| names.nodes.get(index).map(String::as_str).unwrap_or_default();
         let mut found: Vec<SceneNode> = Vec::new();
+        let mut is_found = vec![false; document.nodes.len()];
         // Each entry is a node and the position of its parent in the list.
         let mut stack: Vec<(usize, Option<usize>)> = roots.into_iter().rev().map(|root| (root, None)).collect();
         while let Some((index, parent)) = stack.pop() {
             let Some(node) = document.nodes.get(index) else { continue };
+            match is_found.get_mut(index) {
+                Some(known @ false) => *known = true,
+                _ => continue,
+            }
             let above = parent.and_then(|parent| found.get(parent)).map(|parent| parent.path.as_str());
             let path = joined(above.unwrap_or_default(), name(index));
             stack.extend(node.children.iter().rev().map(|child| (child.get(), Some(found.len()))));

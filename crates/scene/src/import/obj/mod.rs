@@ -10,6 +10,7 @@
 //! by [`read_model`], which keeps them all but lines and curves. Positions may have sRGB colors
 //! after x, y and z, as MeshLab and Blender write them; they become the attribute `color`.
 
+mod lenient;
 mod model;
 mod notes;
 #[cfg(test)]
@@ -197,8 +198,7 @@ impl ObjPiece {
             }
             Some(b"vn") => {
                 limits.next_vertex(self.counts()[2])?;
-                let [x, y, z] = ["x", "y", "z"];
-                self.normals.push(vec3(scanner.real(x)?, scanner.real(y)?, scanner.real(z)?));
+                self.normals.push(lenient::normal(scanner, &mut self.notes)?);
             }
             Some(b"f" | b"fo") => self.face(scanner, limits)?,
             Some(word) => {
@@ -229,8 +229,12 @@ impl ObjPiece {
     fn face(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), ImportErrorKind> {
         self.face.clear();
         while let Some(word) = scanner.word() {
+            let (word, has_comment) = lenient::without_comment(word, &mut self.notes);
             let triple = self.corner(word, scanner)?;
             self.face.push(self.welded.corners.index(triple, limits)?);
+            if has_comment {
+                scanner.rest_of_line();
+            }
         }
         self.welded.faces.push(&self.face, limits)
     }

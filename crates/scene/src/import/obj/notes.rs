@@ -14,6 +14,10 @@ pub(super) struct Notes {
     pub furthest: Option<(u32, FilePosition)>,
     /// Number of positions with further numbers that are no colors, such as weights.
     pub weights: u64,
+    /// Number of comments that no blank separates from the number before.
+    pub glued_comments: u64,
+    /// Number of words such as `-nan(ind)` in normals.
+    pub nan_words: u64,
     ignored: BTreeMap<String, u64>,
     other_ignored: u64,
 }
@@ -47,6 +51,8 @@ impl Notes {
             self.not_yet_defined(index, place);
         }
         self.weights += piece.weights;
+        self.glued_comments += piece.glued_comments;
+        self.nan_words += piece.nan_words;
         self.other_ignored += piece.other_ignored;
         piece.ignored.into_iter().for_each(|(name, count)| self.add(name, count));
     }
@@ -56,6 +62,12 @@ impl Notes {
         let mut warnings = Vec::new();
         if self.weights > 0 {
             warnings.push(format!("{} vertices have numbers after x y z that are no colors: ignored", self.weights));
+        }
+        if self.glued_comments > 0 {
+            warnings.push(format!("{} comments follow a face vertex without a blank", self.glued_comments));
+        }
+        if self.nan_words > 0 {
+            warnings.push(format!("{} numbers of normals are no numbers: taken as missing", self.nan_words));
         }
         let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {

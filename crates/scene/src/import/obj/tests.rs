@@ -187,3 +187,24 @@ fn limits_are_kept_and_named() {
     check(&format!("{SQUARE}f 1 2 3 4\n"), one, "at least 2 triangles, the limit is 1");
     assert!(super::read(SQUARE.as_bytes(), &one, PIECE).unwrap_err().to_string().starts_with("contains no triangles"));
 }
+
+#[test]
+fn comments_may_touch_the_last_face_vertex() {
+    let Imported { mesh, warnings } = read(&format!("{SQUARE}f 1 2 3 # comment\nf 1 3 4#c 7 8\n"));
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(warnings, ["1 comments follow a face vertex without a blank"]);
+    assert_eq!(error(&format!("{SQUARE}f 1 2 #3\nf 1 3 x#c\n")).0, 6);
+}
+
+#[test]
+fn normals_that_are_no_numbers_in_c_are_missing() {
+    let with = |word: &str| read(&format!("{SQUARE}vn 0 0 1\nvn {word} 0 0\nf 1//1 2//1 3//2\n"));
+    let expected = with("nan");
+    for word in ["-nan(ind)", "nan(snan)", "-1.#IND", "1.#QNAN0"] {
+        let Imported { mesh, warnings } = with(word);
+        assert_eq!(mesh.triangles, expected.mesh.triangles, "{word}");
+        assert!(warnings.contains(&"1 numbers of normals are no numbers: taken as missing".to_owned()), "{warnings:?}");
+        assert_eq!(warnings.len(), expected.warnings.len() + 1, "{warnings:?}");
+    }
+    assert_eq!(error(&format!("{SQUARE}vn nano 0 0\n")), (5, "expected a number for x, found 'nano'".into()));
+}

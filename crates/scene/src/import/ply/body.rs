@@ -33,6 +33,10 @@ pub(super) trait Values: Clone + Sync {
     fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), ImportErrorKind>;
     /// Skips `count` rows of an element and parses only as much as is needed to find their end.
     fn skip_rows(&mut self, element: &Element, count: u64) -> Result<(), ImportErrorKind>;
+    /// Checks the end after the last row.
+    fn end(&mut self) -> Result<(), ImportErrorKind> {
+        Ok(())
+    }
     /// Minimum size of a value, in bytes.
     fn min_size(&self, kind: Scalar) -> u64;
     /// Number of bytes left.
@@ -77,6 +81,7 @@ impl<'h> Body<'h> {
                 _ => skip_element(element, &mut values, &mut parts.warnings)?,
             }
         }
+        values.end()?;
         parts.assemble()
     }
 

@@ -67,9 +67,21 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
     let header = Header::read(&mut scanner)?;
     let body = Body::new(&header, limits, piece);
     match header.encoding {
-        Encoding::Ascii => body.read(ascii::AsciiValues::new(scanner)),
+        Encoding::Ascii => read_text(&body, &ascii::AsciiValues::new(scanner)),
         Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
     }
+}
+
+/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers;
+/// the error is that of the lines unless the sequence fits the header exactly.
+fn read_text(body: &Body<'_>, values: &ascii::AsciiValues<'_>) -> Result<Imported, ImportErrorKind> {
+    let strict = body.read(values.clone());
+    if !matches!(strict, Err(ImportErrorKind::Malformed { .. })) {
+        return strict;
+    }
+    let Ok(mut found) = body.read(values.clone().without_lines()) else { return strict };
+    found.warnings.push("lines do not hold one element each: read as a sequence of numbers".to_owned());
+    Ok(found)
 }
 
 /// Estimates the counts of a PLY. The header gives the number of vertices and faces. The number of

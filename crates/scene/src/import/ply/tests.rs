@@ -304,3 +304,16 @@ fn colors_become_attributes() {
     let only_faces = read(text.replace("uchar red", "char red"));
     assert!(only_faces.mesh.attributes["color"].domain == AttributeDomain::Face, "signed colors are ignored");
 }
+
+#[test]
+fn several_elements_may_stand_on_a_line() {
+    let whole = read(SQUARE);
+    let (header, rows) = SQUARE.split_at(SQUARE.find("0 0 0\n").unwrap());
+    for rows in [rows.replace('\n', " "), rows.replace(' ', "\n"), rows.replacen('\n', " ", 2)] {
+        let Imported { mesh, warnings } = read(format!("{header}{rows}"));
+        assert_eq!(mesh, whole.mesh, "{rows:?}");
+        assert_eq!(warnings, ["lines do not hold one element each: read as a sequence of numbers"]);
+    }
+    let further = error(format!("{header}{} 7", rows.replace('\n', " ")));
+    assert!(further.1.starts_with("expected the end of the line"), "{further:?}");
+}

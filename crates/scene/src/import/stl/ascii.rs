@@ -103,7 +103,8 @@ fn statement(
     let word = scanner.word();
     let is = |keyword: &[u8]| word.is_some_and(|word| word.eq_ignore_ascii_case(keyword));
     if inside && is(b"facet") {
-        welded.push(facet(scanner)?, limits)?;
+        let corners = facet(scanner, welded)?;
+        welded.push(corners, limits)?;
         return Ok(true);
     }
     if !is(if inside { b"endsolid" } else { b"solid" }) {
@@ -115,20 +116,32 @@ fn statement(
 }
 
 /// Reads a facet after its keyword. The normal is not parsed, since exporters write words such as
-/// `-nan(ind)` for it.
-fn facet(scanner: &mut Scanner<'_>) -> Result<[Vec3; 3], ImportErrorKind> {
-    keyword(scanner, "normal")?;
-    for axis in ["x", "y", "z"] {
-        if scanner.word_anywhere().is_none() {
-            return Err(scanner.expected(&format!("a number for the normal's {axis}"), None));
+/// `-nan(ind)` for it. It may be absent.
+fn facet(scanner: &mut Scanner<'_>, welded: &mut WeldedFacets) -> Result<[Vec3; 3], ImportErrorKind> {
+    let is = |word: &[u8], keyword: &[u8]| word.eq_ignore_ascii_case(keyword);
+    match scanner.word_anywhere() {
+        Some(word) if is(word, b"normal") => {
+            normal(scanner)?;
+            keyword(scanner, "outer")?;
         }
+        Some(word) if is(word, b"outer") => welded.without_normal += 1,
+        word => return Err(scanner.expected("'normal'", word)),
     }
-    keyword(scanner, "outer")?;
     keyword(scanner, "loop")?;
     let corners = [corner(scanner)?, corner(scanner)?, corner(scanner)?];
     keyword(scanner, "endloop")?;
     keyword(scanner, "endfacet")?;
     Ok(corners)
+}
+
+/// Skips the numbers of a normal.
+fn normal(scanner: &mut Scanner<'_>) -> Result<(), ImportErrorKind> {
+    for axis in ["x", "y", "z"] {
+        if scanner.word_anywhere().is_none() {
+            return Err(scanner.expected(&format!("a number for the normal's {axis}"), None));
+        }
+    }
+    Ok(())
 }
 
 fn corner(scanner: &mut Scanner<'_>) -> Result<Vec3, ImportErrorKind> {

@@ -70,11 +70,12 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
     }
 }
 
-/// Welded facets of a piece, and the number of dropped facets.
+/// Welded facets of a piece, and the numbers of dropped facets and of those without a normal.
 #[derive(Default)]
 struct WeldedFacets {
     piece: WeldedPiece,
     dropped: u64,
+    without_normal: u64,
 }
 
 impl WeldedFacets {
@@ -92,22 +93,27 @@ impl WeldedFacets {
     }
 }
 
-/// Welded facets of all pieces, and the number of dropped facets.
+/// Welded facets of all pieces, and the numbers of dropped facets and of those without a normal.
 #[derive(Default)]
 struct AllFacets {
     welded: Welded,
     dropped: u64,
+    without_normal: u64,
 }
 
 impl AllFacets {
     fn append(&mut self, welded: WeldedFacets, limits: &Limits) -> Result<(), ImportErrorKind> {
         self.dropped += welded.dropped;
+        self.without_normal += welded.without_normal;
         self.welded.append(welded.piece, limits)
     }
 
     fn finish(self, mut warnings: Vec<String>, limits: &Limits) -> Result<Imported, ImportErrorKind> {
         if self.dropped > 0 {
             warnings.push(format!("{} facets with infinite or NaN coordinates ignored", self.dropped));
+        }
+        if self.without_normal > 0 {
+            warnings.push(format!("{} facets have no 'normal', which STL requires", self.without_normal));
         }
         let (keys, faces) = self.welded.finish(limits)?;
         let positions = keys.into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();

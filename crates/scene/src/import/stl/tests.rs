@@ -129,3 +129,11 @@ fn limits_are_kept_and_named() {
     check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
     check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");
 }
+
+#[test]
+fn facets_without_a_normal_are_read() {
+    let text = format!("solid\n{}{}endsolid\n", facet(LOWER).replace(" normal 0 0 0", ""), facet(UPPER));
+    let Imported { mesh, warnings } = read(text.as_bytes());
+    assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+    assert_eq!(warnings, ["1 facets have no 'normal', which STL requires"]);
+}

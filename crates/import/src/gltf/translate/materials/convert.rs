@@ -29,9 +29,8 @@ pub fn material(
 ) -> Result<AnyMaterial, Fault> {
     let none = MaterialExtensions::default();
     let extensions = material.extensions.as_deref().unwrap_or(&none);
-    // Specular and glossiness win only where the material does not state metallic and roughness.
+    // Specular and glossiness replace metallic and roughness, which are a fallback for other readers.
     let glossiness = extensions.specular_glossiness.as_ref();
-    let glossiness = glossiness.filter(|_| material.pbr_metallic_roughness == MetallicRoughness::default());
     let base = Base::new(material, glossiness);
     if extensions.unlit.is_some() || !surface.is_lit {
         return surface::unlit(textures, material, &base, surface);

@@ -290,18 +290,18 @@ fn glass_is_thin_without_thickness() {
 }
 
 #[test]
-fn specular_and_glossiness_are_converted_where_metallic_is_not_stated() {
+fn specular_and_glossiness_replace_metallic_and_roughness() {
     let model = r#""extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.2, 0.4, 0.6, 0.5],
         "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.75"#;
     let material = principled(&parts(&format!("{{{model}}}}}}}"), &LIT));
     assert_eq!(material.base_color, Rgb::new(0.2, 0.4, 0.6).into());
-    assert_eq!((material.metallic, material.roughness), (0.0.into(), 0.25.into()));
+    assert_eq!((material.metallic.clone(), material.roughness.clone()), (0.0.into(), 0.25.into()));
     // Reflectance at normal incidence: ((ior - 1) / (ior + 1))² times the color.
     let Input::Value(color) = material.specular_color else { panic!("{:?}", material.specular_color) };
     let reflectance = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2) * color.r;
     assert!((reflectance - 0.04).abs() < 1e-6, "{reflectance}");
     let stated = format!(r#"{{"pbrMetallicRoughness": {{"metallicFactor": 0.5}}, {model}}}}}}}"#);
-    assert_eq!(principled(&parts(&stated, &LIT)).metallic, 0.5.into());
+    assert_eq!(principled(&parts(&stated, &LIT)), material, "the extension wins over its fallback");
     let textured = parts(&format!(r#"{{{model}, "specularGlossinessTexture": {{"index": 0}}}}}}}}"#), &LIT);
     let Input::Texture(name) = principled(&textured).roughness else { panic!("a texture") };
     let range = mix(&textured, &name);

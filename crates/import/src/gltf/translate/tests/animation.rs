@@ -3,7 +3,7 @@ use juggler_math::Vec3;
 use juggler_scene::model::{AnimationChoice, ModelRepeat, NameOrIndex};
 
 /// A triangle that moves from x = 0 to x = 4 in two seconds, beside one that stays.
-fn moving() -> Builder {
+pub fn moving() -> Builder {
     let mut builder = triangle();
     builder.floats("SCALAR", 1, &[0.0, 2.0]);
     builder.floats("VEC3", 3, &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]);
@@ -65,7 +65,7 @@ fn unknown_names_are_errors_with_suggestions() {
 }
 
 /// A triangle of a skin of one joint.
-fn skinned(joint: &str) -> Builder {
+pub fn skinned(joint: &str) -> Builder {
     let mut builder = triangle();
     builder.array(5121, "VEC4", 3, &[0; 12]);
     builder.floats("VEC4", 4, &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);

@@ -1,6 +1,7 @@
 //! Small documents and their parts.
 
 mod animation;
+mod lenient;
 mod nodes;
 mod views;
 
