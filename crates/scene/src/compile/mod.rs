@@ -33,6 +33,7 @@ mod placing;
 mod settings;
 mod shutter_motion;
 mod surface_coordinates;
+mod times;
 mod transform_motion;
 
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
