@@ -6,7 +6,7 @@ use super::{Vertex, World};
 use arrayvec::ArrayVec;
 use juggler_math::Ray;
 
-/// Maximum number of surfaces at one place that are told apart by shape and side.
+/// Maximum number of surfaces at one place that are distinguished by shape and side.
 const MAX_SIDES: usize = 16;
 /// Maximum number of surfaces at one place; a ray passes the others together with the last one.
 const MAX_MEMBERS: u32 = 64;

@@ -202,17 +202,17 @@ fn touching_media_attenuate_once_each() {
     }
 }
 
-/// A lamp shines its radiance into the medium that it touches: through the glass (1 - R) / n² of it
-/// arrive, since the lamp absorbs what the glass reflects.
+/// An emitter emits its radiance into the medium that it touches: through the glass (1 - R) / n² of
+/// it arrive, since the emitter absorbs what the glass reflects.
 #[test]
-fn glass_that_stands_on_a_lamp_refracts_its_light() {
+fn glass_that_stands_on_an_emitter_refracts_its_light() {
     let block = Item::cuboid([-1.0, 0.0, -1.0], [1.0, 1.0, 1.0], glass(1.5));
     for order in orders(&[block, Item::new(floor(8.0), EMITTER)]) {
         for (_, placement) in placements().iter().filter(|(number, _)| *number < 17) {
             for kind in 0..3 {
                 let items: Vec<Item> = order.iter().cloned().map(|item| item.represented(kind)).collect();
                 let result = seen(&items, placement, Vec3::new(0.0, 3.0, 0.0), 0.0, &path(""));
-                is_near("lamp", result, 0.96 / 2.25, 0.004);
+                is_near("emitter", result, 0.96 / 2.25, 0.004);
             }
         }
     }
@@ -307,8 +307,8 @@ fn faces_back_to_back_are_seen_from_both_sides() {
 /// A glass sphere fills a shell of its own radius and index: both are one sphere.
 #[test]
 fn a_sphere_in_a_shell_of_its_own_radius_is_one_solid() {
-    let ball = |n: f64| Item::new(r#"{"sphere": {"radius": 1}}"#, glass(n));
-    for pair in [[ball(1.5), ball(1.5)], [ball(1.5), ball(1.7)]] {
+    let sphere = |n: f64| Item::new(r#"{"sphere": {"radius": 1}}"#, glass(n));
+    for pair in [[sphere(1.5), sphere(1.5)], [sphere(1.5), sphere(1.7)]] {
         for order in orders(&pair) {
             for (_, placement) in placements() {
                 let result = seen(&order, &placement, Vec3::new(3.0, 0.4, 0.7), 1.0, &path(r#""max_depth": 500"#));
@@ -336,18 +336,18 @@ fn layer(random: &mut Random, y: f64) -> (Item, f64) {
     (item.represented(kind), thickness)
 }
 
-/// A stack of 2 to 4 layers along y with a gap between neighbors, on a diffuse floor if `random`
+/// A stack of 2 to 4 layers along y, `distance` apart, on a diffuse floor if `random`
 /// says so.
-fn stack(random: &mut Random, gap: f64) -> Vec<Item> {
+fn stack(random: &mut Random, distance: f64) -> Vec<Item> {
     let (mut items, mut y) = (Vec::new(), 0.0);
     if random.below(2) == 0 {
         items.push(Item::new(floor(8.0), r#"{"diffuse": {"reflectance": 0.6}}"#));
-        y += gap;
+        y += distance;
     }
     for _ in items.len()..2 + random.below(3) {
         let (item, thickness) = layer(random, y);
         items.push(item);
-        y += thickness + gap;
+        y += thickness + distance;
     }
     items
 }
@@ -357,7 +357,7 @@ fn random_stacks_do_not_depend_on_the_order_of_their_layers() {
     let stacks = if is_deep() { 200 } else { 12 };
     let deviations = family_wise_deviations(stacks * 24);
     for number in 0..stacks {
-        let make = |gap: f64| stack(&mut Random::new(number as u64), gap);
+        let make = |distance: f64| stack(&mut Random::new(number as u64), distance);
         let placement = all_placements()[if number % 2 == 0 { 0 } else { number % 17 }].clone();
         let integrator = path(r#""max_depth": 200"#);
         let picture = |items: &[Item]| seen(items, &placement, Vec3::new(2.0, 6.0, 1.0), 1.0, &integrator);
@@ -369,7 +369,7 @@ fn random_stacks_do_not_depend_on_the_order_of_their_layers() {
             let difference = (other.mean - first.mean).abs();
             assert!(difference <= allowed + 1e-4 * first.mean, "stack {number}: {first:?}, {other:?}, {order:?}");
         }
-        // Small gaps change nothing without refraction, and unless a floor faces a one-sided sheet.
+        // Small distances change nothing without refraction, and unless a floor faces a one-sided sheet.
         let has = |text: &str| items.iter().any(|item| item.material.contains(text));
         let refracts = items.iter().any(|item| item.material.starts_with(r#"{"dielectric": {"ior": 1."#));
         if !(refracts || has("0.6") && has("sides")) {
