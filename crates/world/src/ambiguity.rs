@@ -2,7 +2,7 @@
 //! of unlike materials at one place, and overlapping solids of equal priority.
 
 use super::{Cluster, Member, Vertex, World};
-use juggler_material::medium::{Interior, InteriorId};
+use juggler_material::medium::InteriorId;
 use juggler_math::{Ray, Vec3};
 use std::collections::BTreeSet;
 
@@ -64,11 +64,14 @@ impl World {
         }
     }
 
-    /// Compares the opaque surfaces at one place.
+    /// Compares the opaque surfaces at one place. Where solids stand on each other, their surfaces
+    /// face each other and nobody sees them, so only surfaces that face the same side count.
     fn compare_surfaces(&self, members: &[Member], ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
         let mut opaque = members.iter().filter(|member| !self.may_pass(&member.vertex));
         let Some(first) = opaque.next() else { return };
-        for other in opaque.filter(|other| self.look_unlike(&first.vertex, &other.vertex, -ray.direction)) {
+        let has_same_side = |other: &&Member| other.is_entered(ray) == first.is_entered(ray);
+        let look_unlike = |other: &&Member| self.look_unlike(&first.vertex, &other.vertex, -ray.direction);
+        for other in opaque.filter(has_same_side).filter(look_unlike) {
             self.report(Ambiguity::Surfaces, &first.vertex, &other.vertex, found);
         }
     }
@@ -107,9 +110,8 @@ impl World {
     }
 
     fn fill_unlike(&self, a: InteriorId, b: InteriorId) -> bool {
-        let [a, b] = [a, b].map(|id| self.interior_at(id));
-        let priority = |interior: &Interior| interior.priority;
-        a != b && a.map(priority) == b.map(priority)
+        let interiors = self.interior_at(a).zip(self.interior_at(b));
+        interiors.is_some_and(|(a, b)| a != b && a.priority == b.priority)
     }
 
     fn report(&self, kind: Ambiguity, first: &Vertex, second: &Vertex, found: &mut BTreeSet<AmbiguousEntries>) {

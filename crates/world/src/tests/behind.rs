@@ -1,10 +1,13 @@
 //! Hits behind hits: all surfaces along a ray, one after another.
 
-use super::{crowd, large_mesh, rays, world_of};
+use super::{NO_LIGHTS, crowd, large_mesh, rays, world_of};
 use crate::*;
+use juggler_light::background::Solid;
+use juggler_material::MaterialCompiler;
 use juggler_math::testing::Random;
 use juggler_math::{Motion, Transform};
-use juggler_shape::{Mesh, MeshData, Shape};
+use juggler_shape::{AnyShape, Mesh, MeshData, Shape};
+use juggler_texture::TextureTable;
 use std::sync::Arc;
 
 /// Objects of every kind, each twice at the same place, in mixed order: shapes, meshes that are merged
@@ -84,4 +87,40 @@ fn every_surface_along_a_ray_is_found_once_and_in_order() {
         coincident += found.windows(2).filter(|pair| pair[0].t == pair[1].t).count();
     }
     assert!(coincident > 500, "{coincident}");
+}
+
+/// Entries of a world of cuboids with these heights and materials whose order decides what is seen.
+fn ambiguous(cuboids: &[([f32; 2], &str)]) -> Vec<(Ambiguity, u32, u32)> {
+    let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
+    let mut objects = Vec::new();
+    for ([low, high], material) in cuboids {
+        let shape = format!(r#"{{"cuboid": {{"min": [-1, {low}, -1], "max": [1, {high}, 1]}}}}"#);
+        let mut shape: AnyShape = serde_json::from_str(&shape).unwrap();
+        shape.prepare().unwrap();
+        let material = compiler.compile(&serde_json::from_str(material).unwrap()).unwrap();
+        objects.push(Object::new(shape, Transform::IDENTITY, material));
+    }
+    let entries = (0..objects.len() as u32).collect();
+    let world = World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()));
+    world.with_labels(Labels { entries, ..Labels::default() }).ambiguities().into_iter().collect()
+}
+
+#[test]
+fn only_objects_that_share_a_visible_surface_or_an_overlap_are_ambiguous() {
+    let (white, red) = (r#"{"diffuse": {"reflectance": 0.8}}"#, r#"{"diffuse": {"reflectance": [0.8, 0.1, 0.1]}}"#);
+    let glass = |priority: i32| format!(r#"{{"dielectric": {{"ior": 1.5, "priority": {priority}}}}}"#);
+    let (low, high) = (glass(0), glass(1));
+    // One stands on the other, apart from it, and in it with the sides at one place.
+    assert!(ambiguous(&[([0.0, 1.0], white), ([1.0, 2.0], white)]).is_empty());
+    assert!(ambiguous(&[([0.0, 1.0], white), ([1.5, 2.0], red)]).is_empty());
+    assert_eq!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], red)]), [(Ambiguity::Surfaces, 0, 1)]);
+    assert!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], white)]).is_empty());
+    // Solids that touch, are alike or differ in priority are none.
+    assert!(ambiguous(&[([0.0, 1.0], &low), ([1.0, 2.0], &low)]).is_empty());
+    assert!(ambiguous(&[([0.0, 1.0], &low), ([0.5, 2.0], &high)]).is_empty());
+    assert!(ambiguous(&[([0.0, 1.0], &low), ([0.5, 2.0], &low)]).is_empty());
+    let flint = r#"{"dielectric": {"ior": 1.7}}"#;
+    assert!(ambiguous(&[([0.0, 1.0], &low), ([1.0, 2.0], flint)]).is_empty());
+    assert_eq!(ambiguous(&[([0.0, 1.0], &low), ([0.5, 2.0], flint)]), [(Ambiguity::Solids, 0, 1)]);
+    assert_eq!(ambiguous(&[([0.5, 2.0], flint), ([0.0, 1.0], &low)]), [(Ambiguity::Solids, 0, 1)]);
 }
