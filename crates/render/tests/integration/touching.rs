@@ -123,7 +123,7 @@ fn floor(size: f64) -> String {
 /// Turns, shifts and motions of whole scenes, by number; a few of them unless all cases are run.
 fn placements() -> Vec<(usize, Motion)> {
     let all = all_placements().into_iter().enumerate();
-    all.filter(|(number, _)| is_deep() || [0, 2, 7, 17, 18].contains(number)).collect()
+    all.filter(|(number, _)| is_deep() || [0, 7, 17, 18].contains(number)).collect()
 }
 
 fn all_placements() -> Vec<Motion> {
@@ -354,7 +354,7 @@ fn stack(random: &mut Random, distance: f64) -> Vec<Item> {
 
 #[test]
 fn random_stacks_do_not_depend_on_the_order_of_their_layers() {
-    let stacks = if is_deep() { 200 } else { 12 };
+    let stacks = if is_deep() { 200 } else { 6 };
     let deviations = family_wise_deviations(stacks * 24);
     for number in 0..stacks {
         let make = |distance: f64| stack(&mut Random::new(number as u64), distance);
