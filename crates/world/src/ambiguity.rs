@@ -27,7 +27,8 @@ pub type AmbiguousEntries = (Ambiguity, u32, u32);
 
 impl World {
     /// Finds scene entries whose order decides what is seen. Test rays parallel to the axes, on a grid
-    /// over the bounding box, pass straight through everything. Small contacts may be missed.
+    /// over the bounding box, follow solids up to the first opaque surface. Small contacts, and those
+    /// inside closed rooms, may be missed.
     pub fn ambiguities(&self) -> BTreeSet<AmbiguousEntries> {
         let (bounds, mut found) = (self.bounds(), BTreeSet::new());
         if !bounds.is_finite() {
@@ -38,16 +39,20 @@ impl World {
             for cell in 0..GRID * GRID {
                 // Keep off the planes of symmetry on which scenes are built.
                 let at = |i: u32, offset: f32| (i as f32 + offset) / GRID as f32;
-                let mut origin = bounds.min - bounds.extent() - 1.0;
-                origin[across] = bounds.min[across] + bounds.extent()[across] * at(cell % GRID, 0.4367);
-                origin[along] = bounds.min[along] + bounds.extent()[along] * at(cell / GRID, 0.5719);
-                self.follow(&Ray { time: 0.5, ..Ray::new(origin, Vec3::AXES[axis]) }, &mut found);
+                let reach = bounds.extent() + 1.0;
+                for (start, direction) in [(bounds.min - reach, 1.0), (bounds.max + reach, -1.0)] {
+                    let mut origin = start;
+                    origin[across] = bounds.min[across] + bounds.extent()[across] * at(cell % GRID, 0.4367);
+                    origin[along] = bounds.min[along] + bounds.extent()[along] * at(cell / GRID, 0.5719);
+                    let ray = Ray { time: 0.5, ..Ray::new(origin, Vec3::AXES[axis] * direction) };
+                    self.follow(&ray, &mut found);
+                }
             }
         }
         found
     }
 
-    /// Follows a ray straight through everything.
+    /// Follows a ray straight on, to the first opaque surface.
     fn follow(&self, ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
         let (mut rest, mut open) = (*ray, Vec::<(InteriorId, Vertex)>::new());
         for _ in 0..MAX_PLACES {
@@ -60,6 +65,9 @@ impl World {
             let members: Vec<Member> = std::iter::once(first).chain(&mut cluster).collect();
             self.compare_surfaces(&members, ray, found);
             self.cross_solids(&members, ray, &mut open, found);
+            if members.iter().any(|member| !self.may_pass(&member.vertex)) {
+                return;
+            }
             rest = cluster.ray_behind();
         }
     }
