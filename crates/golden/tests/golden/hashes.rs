@@ -1,6 +1,6 @@
 //! Hashes of the linear pixels of every built-in scene and of the [extra](super::extra) scenes,
-//! rendered small: the same for any number of threads, and those in `hashes.txt`. The test runs unoptimized and optimized, on every platform,
-//! against the same file.
+//! rendered small: the same for any number of threads, and those in `hashes.txt`. The test runs
+//! unoptimized and optimized, on every platform, against the same file.
 //!
 //! After an intended change of pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test
 //! golden hashes::`.

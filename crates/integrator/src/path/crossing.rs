@@ -158,7 +158,8 @@ impl Path {
     #[inline]
     fn interface(&self, world: &World, ray: &Ray, path: &PathState, member: Member, cluster: &mut Cluster) -> Passage {
         if world.interior(&member.vertex).is_none() {
-            // Rays that leave an opaque surface inside a medium start before the interfaces at its place.
+            // Rays that leave an opaque surface inside a medium start before the interfaces at its
+            // place.
             let touching = (!path.history.interiors.is_empty()).then(|| cluster.clone());
             return Passage::Surface(grown(member, touching.into_iter().flatten()), Interface::OPAQUE);
         }
@@ -202,8 +203,8 @@ fn lone_interface(world: &World, ray: &Ray, path: &PathState, member: Member, id
 }
 
 /// Interface between the medium before several interfaces and the medium behind them: that of the
-/// solid that the path enters, or of the one that it leaves. Opacity may remove the surface, but not the
-/// medium behind it.
+/// solid that the path enters, or of the one that it leaves. Opacity may remove the surface, but
+/// not the medium behind it.
 fn net_interface(world: &World, ray: &Ray, path: &PathState, interfaces: &Interfaces, behind: Interiors) -> Passage {
     let table = world.interiors();
     let (from, to) = (path.history.interiors.top_id(table), behind.top_id(table));

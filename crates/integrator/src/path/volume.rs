@@ -10,8 +10,8 @@ use juggler_world::{LightSampleContext, World};
 const SHADOW_RAY_FRACTION: f32 = 1.0 - 1e-4;
 
 impl Path {
-    /// Samples a collision in the current medium within `distance` of the ray's `t_min`. Returns whether there is one;
-    /// the path then scatters or ends there.
+    /// Samples a collision in the current medium within `distance` of the ray's `t_min`. Returns
+    /// whether there is one; the path then scatters or ends there.
     pub fn sample_medium(
         &self,
         world: &World,

@@ -369,7 +369,8 @@ fn random_stacks_do_not_depend_on_the_order_of_their_layers() {
             let difference = (other.mean - first.mean).abs();
             assert!(difference <= allowed + 1e-4 * first.mean, "stack {number}: {first:?}, {other:?}, {order:?}");
         }
-        // Small distances change nothing without refraction, and unless a floor faces a one-sided sheet.
+        // Small distances change nothing without refraction, and unless a floor faces a one-sided
+        // sheet.
         let has = |text: &str| items.iter().any(|item| item.material.contains(text));
         let refracts = items.iter().any(|item| item.material.starts_with(r#"{"dielectric": {"ior": 1."#));
         if !(refracts || has("0.6") && has("sides")) {

@@ -300,8 +300,8 @@ pub fn cameras_of(
     (cameras, camera_keys, findings)
 }
 
-/// Whether a background lights the scene: environments, skies and studios do, and with path tracing every
-/// background that is not black.
+/// Whether a background lights the scene: environments, skies and studios do, and with path tracing
+/// every background that is not black.
 fn is_light_source(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
     let is_light =
         matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_) | AnyBackground::Studio(_));

@@ -269,8 +269,8 @@ mod tests {
         let asset = parts.assets.get("a/image-based light 0.pfm").unwrap();
         let image = decode("a", Cursor::new(asset.bytes().unwrap()), &Limits::default()).unwrap();
         assert_eq!([image.width(), image.height()], [4, 2]);
-        // The rotation takes the faces +x, +z, -x, -z to -z, +x, +z, -x. Half of each pixel's samples are
-        // of the face below, a quarter of each of two neighbors.
+        // The rotation takes the faces +x, +z, -x, -z to -z, +x, +z, -x. Half of each pixel's
+        // samples are of the face below, a quarter of each of two neighbors.
         let levels: Vec<f32> = image.row(1).unwrap().iter().map(|pixel| pixel.r).collect();
         assert!(model.summary(&ModelChoice::default()).unwrap().is_lit);
         assert_eq!(levels, [3.5, 3.75, 4.0, 3.75]);

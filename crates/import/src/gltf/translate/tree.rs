@@ -82,7 +82,8 @@ impl NodeTree {
         let has_parent = |node: &usize| self.hierarchy.parent(*node).is_some();
         let roots: Vec<usize> = match scene.and_then(|scene| document.scenes.get(scene)) {
             Some(scene) => {
-                // Listed nodes with parents come last, so that they keep the paths that their parents give.
+                // Listed nodes with parents come last, so that they keep the paths that their
+                // parents give.
                 let listed = scene.nodes.iter().map(|node| node.get());
                 let (inner, mut roots): (Vec<usize>, Vec<usize>) = listed.partition(has_parent);
                 roots.extend(inner);

@@ -6,10 +6,11 @@
 //! `vertex_index`), in any order and of any number type. Colors `red green blue` of vertices or
 //! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
 //! are linear. The columns `u1 v1` are the second set of surface coordinates, and `tx ty tz tw` the
-//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile` names a picture for a scene around the file
-//! ([`texture_file`]). The reader ignores everything else with a warning that names it, including
-//! lines of the header that are neither declarations nor comments, such as `Created by Blender3D`.
-//! In a text, each line is one row of an element, as the header describes it.
+//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile`
+//! names a picture for a scene around the file ([`texture_file`]). The reader ignores everything
+//! else with a warning that names it, including lines of the header that are neither declarations
+//! nor comments, such as `Created by Blender3D`. In a text, each line is one row of an element, as
+//! the header describes it.
 
 mod ascii;
 mod binary;
