@@ -349,6 +349,12 @@ impl Bsdf {
         heaviest.map_or(Scatter::Specular, |one| one.lobe.scatter())
     }
 
+    /// Whether any lobe transmits light diffusely, as a leaf does.
+    #[inline]
+    pub fn transmits_diffusely(&self) -> bool {
+        self.lobes.iter().any(|one| matches!(one.lobe, Lobe::DiffuseTransmission(_)))
+    }
+
     /// Whether there is any delta.
     #[inline]
     pub fn has_specular(&self) -> bool {

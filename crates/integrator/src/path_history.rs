@@ -3,6 +3,8 @@
 use super::path::Sampling;
 use juggler_material::medium::{Interiors, Wavelength};
 use juggler_math::Vec3;
+#[cfg(doc)]
+use juggler_world::World;
 use juggler_world::{CasterId, LightSampleContext};
 
 /// History of a path: the data of its last vertex that multiple importance sampling needs at the
@@ -35,6 +37,9 @@ pub struct PathHistory {
     pub events: ScatterCounts,
     /// Specular sphere that the path has followed since `from`.
     pub caustic: CausticState,
+    /// Whether the path is a camera ray that has only been transmitted so far, by clear or rough
+    /// glass. The background shows it its backdrop ([`World::backdrop`]), if there is one.
+    pub sees_backdrop: bool,
 }
 
 /// State of a path on its way through a specular sphere, since the vertex where lights may have
@@ -108,6 +113,7 @@ impl PathHistory {
         pass_throughs: 0,
         events: ScatterCounts { diffuse: 0, glossy: 0, specular: 0, volume: 0 },
         caustic: CausticState::NONE,
+        sees_backdrop: true,
     };
 
     /// Context of light samples at `from`.

@@ -50,6 +50,7 @@ pub struct Cluster<'w> {
     key: HitKey,
     /// Shape and side of each member so far.
     sides: ArrayVec<(u32, bool), MAX_SIDES>,
+    /// Number of hits behind the first one so far; [`MAX_MEMBERS`] if no other surface can be near.
     visited: u32,
 }
 
@@ -60,10 +61,11 @@ impl<'w> Cluster<'w> {
         let surface = &vertex.surface;
         let cosine = surface.normal.dot(ray.direction).abs().max(MIN_COSINE);
         let rounding = f32::EPSILON * surface.point.abs().max_element().max(ray.t_max);
-        let end = ray.t_max + 4.0 * (surface.position_error + rounding) / cosine;
+        let reach = 4.0 * (surface.position_error + rounding) / cosine;
+        let visited = if world.contacts.is_apart(vertex, reach) { MAX_MEMBERS } else { 0 };
         let mut sides = ArrayVec::new();
         sides.push((vertex.shape, first.is_entered(ray)));
-        Self { world, ray: *ray, end, key: HitKey::new(first.t, vertex), sides, visited: 0 }
+        Self { world, ray: *ray, end: ray.t_max + reach, key: HitKey::new(first.t, vertex), sides, visited }
     }
 
     /// The cluster without surfaces beyond the distance `t_max`.

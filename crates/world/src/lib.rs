@@ -1,5 +1,6 @@
 //! Scene geometry, materials and lights as the renderer queries them; immutable while rendering.
 
+use contacts::Contacts;
 use emissive_shape::EmissiveShape;
 use emitters::Emitters;
 use juggler_bsdf::PhongParameters;
@@ -16,6 +17,7 @@ mod ambiguity;
 mod casters;
 mod closest_after;
 mod cluster;
+mod contacts;
 mod differential;
 mod emissive_shape;
 mod emissive_surfaces;
@@ -118,6 +120,7 @@ pub struct World {
     background: AnyBackground,
     emitters: Emitters,
     casters: Vec<CausticCaster>,
+    contacts: Contacts,
     has_transparency: bool,
     has_opacity: bool,
     /// Whether any surface is absent for some rays: see [`MaterialTable::is_absent`].
@@ -178,6 +181,7 @@ impl World {
         let emitters =
             Emitters::new(&lights, EmissiveShape::collect(&top, &materials), &background, radius(&top.bounds()));
         let casters = CausticCaster::collect(&top, &materials);
+        let contacts = Contacts::new(&top, &materials);
         Self {
             top,
             materials,
@@ -186,6 +190,7 @@ impl World {
             background,
             emitters,
             casters,
+            contacts,
             has_transparency,
             has_opacity,
             has_absence,
@@ -237,10 +242,11 @@ impl World {
         self.background.radiance(ray)
     }
 
-    /// Background radiance along a camera ray that leaves the world unscattered.
+    /// Radiance that camera rays see in place of the background's light, directly and through glass;
+    /// `None` if they see the light itself.
     #[inline]
-    pub fn visible_background_radiance(&self, ray: &Ray) -> Rgb {
-        self.background.visible_as().unwrap_or_else(|| self.background.radiance(ray))
+    pub fn backdrop(&self) -> Option<Rgb> {
+        self.background.visible_as()
     }
 
     /// Whether anything moves while the shutter is open, so that the time of a ray matters.

@@ -11,7 +11,7 @@
 mod crossing;
 mod physical;
 
-use super::{Integrator, PathState, SurfaceHit, VertexOutput};
+use super::{Integrator, PathHistory, PathState, SurfaceHit, VertexOutput};
 use juggler_bsdf::{ConeSampling, Highlight, PhongParameters, Scatter, cone, fresnel};
 use juggler_camera::aov::LightGroup;
 use juggler_camera::sampler::Sampler;
@@ -73,8 +73,8 @@ impl Integrator for Classic {
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
         output.record_miss(ray);
-        let radiance =
-            if path.is_camera_ray() { world.visible_background_radiance(ray) } else { world.background_radiance(ray) };
+        let backdrop = world.backdrop().filter(|_| path.history.sees_backdrop);
+        let radiance = backdrop.unwrap_or_else(|| world.background_radiance(ray));
         output.add(radiance, world.background_group());
     }
 }
@@ -177,11 +177,13 @@ impl Classic {
             // Total internal reflection: the mirror gets the transmitted part as well.
             reflection += transmission;
         }
-        let bundle = Bundle { path, point, min_weight: self.min_weight };
+        let history = PathHistory { sees_backdrop: false, ..path.history };
+        let bundle = Bundle { path, point, history, min_weight: self.min_weight };
         bundle.trace(reflected, phong.glossy, reflection, sampler, 0, output);
         if let Some(refracted) = refracted {
             let mut sampler = *sampler;
             sampler.skip(1);
+            let bundle = Bundle { history: path.history, ..bundle };
             bundle.trace(refracted, phong.blurry, transmission, &sampler, phong.glossy.rays, output);
         }
     }
@@ -191,6 +193,8 @@ impl Classic {
 struct Bundle<'a> {
     path: &'a PathState,
     point: &'a ShadingPoint<'a>,
+    /// History of the paths along the rays.
+    history: PathHistory,
     min_weight: f32,
 }
 
@@ -216,7 +220,8 @@ impl Bundle<'_> {
             } else {
                 axis
             };
-            output.trace_branch(surface.spawn_ray(direction, self.point.time), weight, first_child + i);
+            let ray = surface.spawn_ray(direction, self.point.time);
+            output.trace_branch(ray, weight, self.history, first_child + i);
         }
     }
 }

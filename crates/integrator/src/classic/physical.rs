@@ -3,7 +3,7 @@
 //! ambient light.
 
 use super::{Classic, sample_weight};
-use crate::{PathState, VertexOutput};
+use crate::{PathHistory, PathState, VertexOutput};
 use juggler_bsdf::{BsdfSample, Scatter};
 use juggler_camera::sampler::Sampler;
 use juggler_material::Shading;
@@ -88,7 +88,9 @@ impl Classic {
     ) {
         if (path.beta * sample.weight).max_channel() >= self.min_weight && !sample.weight.is_black() {
             let direction = point.shading.frame.to_world(sample.wi);
-            output.trace_branch(point.vertex.surface.spawn_ray(direction, point.time), sample.weight, child);
+            let sees_backdrop = path.history.sees_backdrop && sample.wi.z * point.wo.z < 0.0;
+            let history = PathHistory { sees_backdrop, ..path.history };
+            output.trace_branch(point.vertex.surface.spawn_ray(direction, point.time), sample.weight, history, child);
         }
     }
 }

@@ -174,6 +174,11 @@ impl ShadingPoint<'_> {
         if !self.same_hemisphere(connection.direction, wi) || !self.interiors_towards(path, wi).is_empty() {
             return;
         }
+        // Only BSDF samples see the backdrop.
+        let is_backdrop = sample.light.emitter == EmitterId::Background && sample.world.backdrop().is_some();
+        if is_backdrop && sample.kind != SpecularPath::Reflected && self.sees_backdrop(path, wi) {
+            return;
+        }
         let (scattered, bsdf_pdf) = self.eval_pdf(connection.direction, wi);
         // Compute the radiance that leaves the light along the path, and the density of the path.
         let last = sample.caster.sphere.center + connection.vertices[1] * sample.caster.sphere.radius;

@@ -261,9 +261,11 @@ impl Integrator for Path {
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
         if !self.sample_medium(world, ray, f32::INFINITY, path, output) {
             output.record_miss(ray);
-            if path.history.events.is_none() {
-                // Light sampling cannot generate camera rays: their weight is 1.
-                return output.add(world.visible_background_radiance(ray), world.background_group());
+            // Light sampling neither generates camera rays nor samples the backdrop: the weight is 1.
+            let backdrop = world.backdrop().filter(|_| path.history.sees_backdrop);
+            if backdrop.is_some() || path.history.events.is_none() {
+                let radiance = backdrop.unwrap_or_else(|| world.background_radiance(ray));
+                return output.add(radiance, world.background_group());
             }
             let light = || world.background_pdf(ray.direction);
             let weight = self.emission_weight(world, path, ray, light, HitEmitter::Background, |_, _| light());

@@ -160,6 +160,10 @@ impl<'a> ShadingPoint<'a> {
         if !self.same_hemisphere(light.wi, wi) {
             return;
         }
+        // Only BSDF samples see the backdrop.
+        if light.emitter == EmitterId::Background && world.backdrop().is_some() && self.sees_backdrop(path, wi) {
+            return;
+        }
         let (scattered, pdf) = self.eval_pdf(light.wi, wi);
         if scattered.is_black() {
             return;
@@ -177,6 +181,12 @@ impl<'a> ShadingPoint<'a> {
         } else {
             path.history.interiors
         }
+    }
+
+    /// Whether a path that continues in the direction `wi`, in the shading frame, sees the backdrop:
+    /// only transmission through glass has changed its direction since the camera.
+    pub fn sees_backdrop(&self, path: &PathState, wi: Vec3) -> bool {
+        path.history.sees_backdrop && wi.z * self.local.z < 0.0 && !self.shading.bsdf.transmits_diffusely()
     }
 
     /// Shading normal on the illuminated side; zero if light may arrive from both.
@@ -209,6 +219,7 @@ impl<'a> ShadingPoint<'a> {
         let eta_scale = path.history.eta_scale * sample.ior * sample.ior;
         let (interiors, pass_throughs) = (self.interiors_towards(path, sample.wi), 0);
         let caustic = self.caustic_state(world, shape, path, sample, interiors);
+        let sees_backdrop = self.sees_backdrop(path, sample.wi);
         if sample.scatter == Scatter::Specular {
             return PathHistory {
                 pdf: f32::INFINITY,
@@ -217,6 +228,7 @@ impl<'a> ShadingPoint<'a> {
                 pass_throughs,
                 events,
                 caustic,
+                sees_backdrop,
                 ..path.history
             };
         }
@@ -233,6 +245,7 @@ impl<'a> ShadingPoint<'a> {
             pass_throughs,
             events,
             caustic,
+            sees_backdrop,
         }
     }
 }

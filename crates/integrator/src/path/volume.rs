@@ -68,6 +68,7 @@ impl Path {
             pass_throughs: 0,
             events,
             caustic: CausticState::NONE,
+            sees_backdrop: false,
             ..path.history
         };
         // Terminate by Russian roulette.

@@ -40,8 +40,8 @@ pub struct Environment {
     #[serde(default = "up")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// Radiance that camera rays see instead, also through transparent surfaces of masks. All other
-    /// rays see the image. By default camera rays see it, too.
+    /// Radiance that camera rays see instead, also through masks and through clear or rough glass
+    /// without reflection inside. All other rays see the image. By default camera rays see it, too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "W/(scene unit² sr)"))]
     pub visible_as: Option<Rgb>,

@@ -50,7 +50,8 @@ pub trait Background: Send + Sync {
     }
     /// Radiance along a ray with a unit direction.
     fn radiance(&self, ray: &Ray) -> Rgb;
-    /// Radiance that camera rays see instead, if it differs. It lights nothing.
+    /// Radiance that camera rays see instead, directly and through glass, if it differs. It lights
+    /// nothing.
     fn visible_as(&self) -> Option<Rgb> {
         None
     }

@@ -107,3 +107,69 @@ fn what_is_visible_instead_of_the_background_is_seen_by_camera_rays_only() {
     // The floor shows the irradiance π of the studio.
     traced(Scene::floor().before(seen), &at_origin(), 256).is(0.5);
 }
+
+/// Slab of a material below the camera, of thickness 0.5.
+fn slab(material: &str) -> Scene {
+    let shape = r#"{"cuboid": {"min": [-50, -0.5, -50], "max": [50, 0, 50]}}"#;
+    Scene::new().with(shape, Vec3::ZERO, material)
+}
+
+/// Uniform light of radiance 1, which camera rays see as `visible`.
+fn uniform(visible: Option<f32>) -> AnyBackground {
+    let mut environment = Environment::from_file("white.exr");
+    environment.set_panorama(Arc::new(Panorama::new(Image::filled(8, 4, Rgb::WHITE)).unwrap()));
+    environment.visible_as = visible.map(Rgb::splat);
+    prepared(environment.into())
+}
+
+fn seen_with(scene: Scene, background: AnyBackground, integrator: &str, samples: u32) -> f64 {
+    measure(&scene.before(background).world(), &at_origin(), &*read::<AnyIntegrator>(integrator), samples).mean
+}
+
+/// Glass shows the backdrop along paths that it only transmits, whatever its roughness.
+#[test]
+fn glass_shows_the_backdrop() {
+    let strategies = ["mis", "light", "bsdf"].map(|sampling| format!(r#"{{"path": {{"sampling": "{sampling}"}}}}"#));
+    // Fresnel reflectance for the index 1.5 of a view at the cosine 2 / √29.
+    let (cosine, refracted) = (2.0 / 29f64.sqrt(), (1.0 - 25.0 / 29.0 / 2.25f64).sqrt());
+    let squared_ratio = |a: f64, b: f64| ((a - b) / (a + b)).powi(2);
+    let reflectance = 0.5 * (squared_ratio(cosine, 1.5 * refracted) + squared_ratio(1.5 * cosine, refracted));
+    for integrator in &strategies {
+        // Both surfaces transmit the backdrop; internal reflections show the light.
+        let clear = |visible| seen_with(slab(r#"{"dielectric": {}}"#), uniform(Some(visible)), integrator, 1024);
+        let transmitted = (clear(3.0) - clear(1.0)) / 2.0;
+        assert!((transmitted - (1.0 - reflectance).powi(2)).abs() < 0.02, "{integrator}: {transmitted}");
+        // A furnace in which the backdrop equals the light: no light counts twice.
+        for glass in [
+            r#"{"dielectric": {"roughness": 0.4}}"#,
+            r#"{"principled": {"transmission": 1, "thin": true, "roughness": 0.4}}"#,
+        ] {
+            let furnace = |visible| seen_with(slab(glass), uniform(visible), integrator, 256);
+            let (alike, plain) = (furnace(Some(1.0)), furnace(None));
+            assert!((alike - plain).abs() < 0.01, "{integrator} {glass}: {alike} {plain}");
+            assert!(furnace(Some(2.0)) > plain + 0.3, "{integrator} {glass}");
+        }
+    }
+    // Classic glass: no Fresnel reflection unless it is asked for.
+    let classic = r#"{"phong": {"diffuse": 0, "transparency": 1, "ior": 1.5}}"#;
+    assert_eq!(seen_with(slab(classic), uniform(Some(3.0)), r#"{"classic": {}}"#, 1), 3.0);
+}
+
+/// Leaves, metal, and glass in front of a mirror show the light.
+#[test]
+fn diffuse_transmission_and_reflections_show_the_light() {
+    let mirrored = || {
+        slab(r#"{"dielectric": {}}"#).with(r#"{"plane": {}}"#, Vec3::NEG_Y, r#"{"conductor": {"reflectance": 0.9}}"#)
+    };
+    for scene in [
+        &|| slab(r#"{"translucent": {"reflectance": 0.2, "transmittance": 0.7}}"#) as Scene,
+        &|| slab(r#"{"conductor": {"reflectance": 0.9, "roughness": 0.4}}"#),
+        &mirrored,
+        &|| slab(r#"{"boundary": {"medium": {"scattering": 50}}}"#),
+    ] as [&dyn Fn() -> Scene; 4]
+    {
+        let [seen, plain] =
+            [Some(3.0), None].map(|visible| seen_with(scene(), uniform(visible), r#"{"path": {}}"#, 64));
+        assert!((seen - plain).abs() < 1e-6, "{seen} {plain}");
+    }
+}
