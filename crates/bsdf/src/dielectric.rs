@@ -136,6 +136,12 @@ impl Dielectric {
         Self { specular, ..self }
     }
 
+    /// Index of refraction below the surface over that above.
+    #[inline]
+    pub fn ior(&self) -> f32 {
+        self.ior
+    }
+
     /// Whether the interface has only specular reflection and refraction.
     #[inline]
     pub fn is_smooth(&self) -> bool {

@@ -23,11 +23,13 @@
 //! absorbed, so that a bump has the contrast of a surface with the shading normal. Its furnace is
 //! (1 + cos β) / 2, the part of the cosine lobe above both planes.
 //!
-//! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3).
+//! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3). Reflections
+//! at shading normals inside of a solid may therefore gather light in orbits of total reflection,
+//! which it never leaves and which no light entered. [`Bsdf::sample_exit`] ends them.
 
 use super::{Bsdf, Role, WeightedLobe};
 use crate::{BsdfSample, Lobe, Scatter};
-use juggler_math::{Rgb, Vec2, Vec3, portable};
+use juggler_math::{Frame, Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::PI;
 
 /// The geometric surface in the frame of a shading normal z that differs from its normal g.
@@ -158,6 +160,27 @@ impl Bsdf {
         let (value, density) = self.eval_pdf_of_lobes(wo, wi);
         let pdf = sample.pdf * share + density;
         Some(BsdfSample { wi, weight: (spread * share + value) / pdf, pdf, ..sample })
+    }
+
+    /// Sample that lets light leave a smooth solid where `reflected`, a sample for `wo` inside of the
+    /// solid, is a total reflection about a perturbed normal. The direction is cosine-distributed
+    /// about the geometric normal, by `u` in the unit square. `None` if the reflection is not total
+    /// or the normal is not perturbed.
+    pub fn sample_exit(&self, wo: Vec3, reflected: &BsdfSample, u: Vec2) -> Option<BsdfSample> {
+        let horizon = self.horizon.as_ref()?;
+        let is_reflected = wo.z < 0.0 && reflected.wi.z < 0.0 && reflected.scatter == Scatter::Specular;
+        if !is_reflected || self.deltas(wo).any(|delta| delta.wi.z > 0.0) {
+            return None;
+        }
+        let ior = self.lobes.iter().find_map(|one| match &one.lobe {
+            Lobe::Dielectric(dielectric) => Some(dielectric.ior()),
+            _ => None,
+        })?;
+        let wi = Frame::around(horizon.normal).to_world(warp::cosine_hemisphere(u));
+        // Mirror directions below the perturbed horizon.
+        let wi = Vec3 { z: wi.z.abs(), ..wi };
+        // Radiance in the solid is that outside times the square of the index of refraction.
+        Some(BsdfSample { wi, weight: reflected.weight * (ior * ior), ior: 1.0 / ior, ..*reflected })
     }
 
     /// Maps a delta's direction out of the lunes.

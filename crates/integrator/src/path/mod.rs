@@ -49,6 +49,8 @@ enum Dimension {
     CausticLight = 7,
     /// Wavelength of the path at its first dispersive surface.
     Wavelength = 8,
+    /// Direction in which light leaves a solid that holds it by total reflection.
+    Exit = 9,
 }
 
 /// Default number of light samples at the first vertex, if the world has several emitters.

@@ -10,6 +10,10 @@ use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use juggler_shape::surface::Surface;
 use juggler_world::{EmitterId, EmitterSample, LightSampleContext, Vertex, VisibleCasters, World};
 
+/// Number of specular events after which a solid releases the light that it holds by total
+/// reflection about perturbed normals. Such light has lost the picture of where it came from.
+const MAX_HELD: u16 = 8;
+
 /// A shading point: a vertex with its evaluated material and the direction of view.
 pub struct ShadingPoint<'a> {
     pub surface: &'a Surface,
@@ -125,6 +129,19 @@ impl<'a> ShadingPoint<'a> {
         let pdf = sample.pdf * (1.0 - fraction) + fraction * visible_casters.pdf(direction);
         let weight = sample.weight * (sample.pdf / pdf);
         Some((direction, BsdfSample { weight, pdf, ..sample }))
+    }
+
+    /// Replaces a total reflection about a perturbed normal after many specular events: see
+    /// [`Bsdf::sample_exit`].
+    fn released(&self, path: &PathState, (wi, sample): (Vec3, BsdfSample)) -> (Vec3, BsdfSample) {
+        if path.history.events.specular < MAX_HELD || sample.scatter != Scatter::Specular {
+            return (wi, sample);
+        }
+        let u = path.sampler.skipped(Dimension::Exit as u32).next_2d();
+        match self.shading.bsdf.sample_exit(self.local, &sample, u) {
+            Some(exit) => (self.shading.frame.to_world(exit.wi), exit),
+            None => (wi, sample),
+        }
     }
 
     /// Samples `count` lights.
@@ -279,7 +296,7 @@ impl Path {
         path: &PathState,
         output: &mut VertexOutput,
     ) {
-        let Some((wi, sample)) = point.sample(path) else { return };
+        let Some((wi, sample)) = point.sample(path).map(|sampled| point.released(path, sampled)) else { return };
         if !point.same_hemisphere(wi, sample.wi) {
             return;
         }
