@@ -159,7 +159,7 @@ impl Dielectric {
     #[inline]
     fn reflectance(&self, cos: f32, ior: f32) -> Rgb {
         let plain = fresnel::dielectric_reflectance(cos, ior);
-        if plain < 1.0 { self.partial_reflectance(plain, cos, ior) * self.specular.weight } else { Rgb::WHITE }
+        if plain < 1.0 { self.partial_reflectance(plain, cos, ior) * self.specular.weight() } else { Rgb::WHITE }
     }
 
     /// Reflectance below total reflection, of the thin film where it covers the interface, otherwise

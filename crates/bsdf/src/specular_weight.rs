@@ -11,34 +11,41 @@ use juggler_math::Rgb;
 /// Factors on a Fresnel reflectance below total reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpecularWeight {
-    /// w max(c): factor on the reflectance, 0 to 1. Light that is not reflected is transmitted.
-    pub weight: f32,
-    /// c / max(c): factor on reflected light, 0 to 1 per channel.
-    pub color: Rgb,
+    /// w c, 0 to 1 per channel.
+    factors: Rgb,
 }
 
 impl Default for SpecularWeight {
     /// Factors that change nothing.
     fn default() -> Self {
-        Self { weight: 1.0, color: Rgb::WHITE }
+        Self { factors: Rgb::WHITE }
     }
 }
 
 impl SpecularWeight {
     /// Factors of a `weight`, 0 to 1, and a `color`, of which values beyond 1 count as 1.
     pub fn new(weight: f32, color: Rgb) -> Self {
-        let color = color.map(|channel| channel.min(1.0));
-        let largest = color.max_channel();
-        if largest <= 0.0 {
-            return Self { weight: 0.0, color: Rgb::WHITE };
-        }
-        Self { weight: weight * largest, color: color / largest }
+        Self { factors: color.map(|channel| channel.min(1.0)) * weight }
+    }
+
+    /// w max(c): factor on the reflectance, 0 to 1. Light that is not reflected is transmitted.
+    #[inline]
+    pub fn weight(&self) -> f32 {
+        self.factors.max_channel()
+    }
+
+    /// c / max(c): factor on reflected light, 0 to 1 per channel.
+    #[inline]
+    pub fn color(&self) -> Rgb {
+        let weight = self.weight();
+        if weight > 0.0 { self.factors / weight } else { Rgb::WHITE }
     }
 
     /// Reflected light of an interface of this `reflectance`, which contains the weight; 1 is total
     /// reflection.
     #[inline]
     pub(super) fn tint(&self, reflectance: Rgb) -> Rgb {
-        if reflectance == Rgb::WHITE { reflectance } else { reflectance * self.color }
+        let is_neutral = self.factors == Rgb::WHITE || reflectance == Rgb::WHITE;
+        if is_neutral { reflectance } else { reflectance * self.color() }
     }
 }

@@ -75,7 +75,7 @@ impl ThinDielectric {
         let once = self
             .thin_film
             .map_or(Rgb::splat(once), |(thin_film, amount)| Rgb::splat(once).lerp(thin_film.reflectance(cos), amount));
-        (once * self.specular.weight).map(|once| 2.0 * once / (1.0 + once))
+        (once * self.specular.weight()).map(|once| 2.0 * once / (1.0 + once))
     }
 
     /// Fraction of light that a sheet of this reflectance reflects, with the factors on it.
@@ -97,7 +97,7 @@ impl ThinDielectric {
 
     /// Fraction of multiply scattered light that is reflected.
     fn multiple_reflectance(&self) -> f32 {
-        let once = fresnel::mean_dielectric_reflectance(self.ior) * self.specular.weight;
+        let once = fresnel::mean_dielectric_reflectance(self.ior) * self.specular.weight();
         2.0 * once / (1.0 + once)
     }
 
@@ -147,7 +147,7 @@ impl ScatteringLobe for ThinDielectric {
         let reflectance = self.reflectance(microfacet.cos);
         let probability = self.reflection_probability(reflectance);
         let (color, multiple_reflectance) = if is_reflected {
-            (self.reflection * self.specular.color, self.multiple_reflectance())
+            (self.reflection * self.specular.color(), self.multiple_reflectance())
         } else {
             (self.transmission, 1.0 - self.multiple_reflectance())
         };

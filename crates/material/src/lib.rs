@@ -27,6 +27,7 @@ mod one_sided;
 mod phong;
 mod plastic;
 mod principled;
+mod properties;
 mod roughness;
 mod shading;
 mod table;

@@ -1,5 +1,6 @@
 //! All materials of a world, compiled.
 
+use super::properties::MaterialProperties;
 use super::shading::facing_normal;
 use super::{
     CompiledMaterial, MaterialId, ScatteringMaterial, Shading, ShadingView, SurfaceEmission, TexturedPoint, lookup,
@@ -23,37 +24,6 @@ pub struct MaterialTable {
     textures: TextureTable,
 }
 
-/// Properties of a material that hold at all points.
-#[derive(Clone, Copy, Debug)]
-struct MaterialProperties {
-    /// Whether shadow rays of the classic integrator pass somewhere.
-    transparent: bool,
-    /// Whether opacity is below 1 somewhere.
-    has_opacity: bool,
-    /// Whether the surface is absent for some rays, whatever the point.
-    has_absence: bool,
-    /// Whether shading varies over the surface.
-    textured: bool,
-    /// Whether shading needs the surface's tangents.
-    tangents: bool,
-    /// Emission, if any.
-    emission: Option<SurfaceEmission>,
-    /// Interior behind the surface, if any.
-    interior: Option<InteriorId>,
-}
-
-impl MaterialProperties {
-    const NONE: Self = Self {
-        transparent: false,
-        has_opacity: false,
-        has_absence: false,
-        textured: false,
-        tangents: false,
-        emission: None,
-        interior: None,
-    };
-}
-
 impl MaterialTable {
     pub(super) fn new(textures: TextureTable) -> Self {
         Self { textures, ..Self::default() }
@@ -69,6 +39,8 @@ impl MaterialTable {
             _ => false,
         };
         let classic = matches!(&compiled, CompiledMaterial::Phong(material) if material.is_transparent());
+        let is_unlit = matches!(&compiled, CompiledMaterial::Unlit(_));
+        let passes_front = has_opacity || classic || is_unlit || any(|properties| properties.passes_front);
         let nested_opacity = any(|properties| properties.has_opacity);
         let has_opacity = has_opacity || absent || nested_opacity;
         // A material that is absent from behind is as opaque on the front as the one inside it.
@@ -78,6 +50,7 @@ impl MaterialTable {
             transparent: has_opacity || classic || any(|properties| properties.transparent),
             has_opacity,
             has_absence: absent || any(|properties| properties.has_absence),
+            passes_front,
             // Tangents are computed from the point in object space, which untextured surfaces lack.
             textured: tangents || compiled.is_textured() || any(|properties| properties.textured),
             tangents,
@@ -346,6 +319,13 @@ impl MaterialTable {
     #[inline]
     pub fn has_absence(&self, id: MaterialId) -> bool {
         self.properties(id).has_absence
+    }
+
+    /// Whether light may pass straight through the front of material `id`. The back of a one-sided
+    /// material may be absent all the same.
+    #[inline]
+    pub fn passes_front(&self, id: MaterialId) -> bool {
+        self.properties(id).passes_front
     }
 
     /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.

@@ -39,6 +39,24 @@ pub fn starts_at(ray: &Ray, vertex: &Vertex) -> bool {
     surface.normal.dot(surface.point - ray.origin).abs() <= 4.0 * (surface.position_error + rounding)
 }
 
+/// Distance along the ray, from the vertex that it hits at its `t_max`, up to which other surfaces are
+/// at the same place.
+#[inline]
+fn reach(ray: &Ray, vertex: &Vertex) -> f32 {
+    let surface = &vertex.surface;
+    let cosine = surface.normal.dot(ray.direction).abs().max(MIN_COSINE);
+    let rounding = f32::EPSILON * surface.point.abs().max_element().max(ray.t_max);
+    4.0 * (surface.position_error + rounding) / cosine
+}
+
+impl World {
+    /// Whether the vertex that `ray` hits at its `t_max` is known to be the only surface at its place.
+    #[inline]
+    pub fn is_alone(&self, ray: &Ray, vertex: &Vertex) -> bool {
+        self.contacts.is_apart(vertex, reach(ray, vertex))
+    }
+}
+
 /// Surfaces at the place of a vertex, in the order of their hits along the ray. Neighboring triangles
 /// of a mesh that a ray hits at their common edge count as one.
 #[derive(Clone)]
@@ -58,10 +76,7 @@ impl<'w> Cluster<'w> {
     /// Cluster of the vertex that `ray` hits at its `t_max`.
     pub fn new(world: &'w World, ray: &Ray, vertex: &Vertex) -> Self {
         let first = Member { vertex: *vertex, t: ray.t_max };
-        let surface = &vertex.surface;
-        let cosine = surface.normal.dot(ray.direction).abs().max(MIN_COSINE);
-        let rounding = f32::EPSILON * surface.point.abs().max_element().max(ray.t_max);
-        let reach = 4.0 * (surface.position_error + rounding) / cosine;
+        let reach = reach(ray, vertex);
         let visited = if world.contacts.is_apart(vertex, reach) { MAX_MEMBERS } else { 0 };
         let mut sides = ArrayVec::new();
         sides.push((vertex.shape, first.is_entered(ray)));

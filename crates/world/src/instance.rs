@@ -276,16 +276,22 @@ impl LeafItem {
     }
 
     /// Whether the ray hits anything in its range.
-    #[inline]
+    #[inline(always)]
     pub fn occludes(&self, objects: &[Instance], ray: &Ray) -> bool {
         match *self {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
             Self::Shape { object_index, .. } | Self::Geometry { object_index, .. } => {
                 objects[object_index as usize].occludes(ray)
             }
-            Self::Segment { times, object_index, .. } => {
-                is_within(ray, times) && objects[object_index as usize].occludes(ray)
-            }
+            Self::Segment { times, object_index, .. } => occludes_within(&objects[object_index as usize], ray, times),
         }
     }
+}
+
+/// Whether the ray hits an object that counts in a segment of the shutter interval. Kept out of line,
+/// since motion is rare.
+#[cold]
+#[inline(never)]
+fn occludes_within(object: &Instance, ray: &Ray, times: [f32; 2]) -> bool {
+    is_within(ray, times) && object.occludes(ray)
 }

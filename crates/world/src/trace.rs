@@ -51,10 +51,15 @@ impl Leaf for Nearest<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn any(&mut self, _lane: usize, ray: &Ray, range: Range<u32>) -> bool {
-        let items = &self.geometry.items[range.start as usize..range.end as usize];
-        items.iter().any(|item| item.occludes(&self.geometry.objects, ray))
+        // A loop is inlined where `Iterator::any` is not.
+        for item in &self.geometry.items[range.start as usize..range.end as usize] {
+            if item.occludes(&self.geometry.objects, ray) {
+                return true;
+            }
+        }
+        false
     }
 
     #[inline]
@@ -344,6 +349,9 @@ impl World {
                 return transmittance;
             }
             let first = self.vertex(&rest, &hit);
+            if self.may_be_open(&first) && !self.may_pass_along(&rest, &first) {
+                return Rgb::BLACK;
+            }
             // Skip a surface that the ray leaves, beside the one that it starts from.
             let is_left = |vertex: &Vertex| self.may_be_open(vertex) && starts_at(&ray, vertex);
             let mut place: ArrayVec<Vertex, MAX_PLACE> = ArrayVec::new();

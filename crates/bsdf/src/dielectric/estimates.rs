@@ -28,7 +28,7 @@ impl Dielectric {
     fn single_reflection_albedo(&self, cos: f32, ior: f32) -> f32 {
         let alpha = self.ggx.mean_alpha();
         let albedo = energy::dielectric_reflection_albedo(cos, alpha, ior);
-        if self.specular.weight == 1.0 {
+        if self.specular.weight() == 1.0 {
             return albedo;
         }
         // Microfacets reflect totally where they do without the weight.
@@ -36,7 +36,7 @@ impl Dielectric {
         let plain = mean(&|cos| fresnel::dielectric_reflectance(cos, ior));
         let total = mean(&|cos| if fresnel::dielectric_reflectance(cos, ior) < 1.0 { 0.0 } else { 1.0 });
         let total = (total / plain.max(f32::MIN_POSITIVE)).min(1.0) * albedo;
-        total + (albedo - total) * self.specular.weight
+        total + (albedo - total) * self.specular.weight()
     }
 
     /// 1 / η²: projected solid angle below into which the whole upper hemisphere refracts, over π.

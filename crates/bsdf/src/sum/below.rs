@@ -44,11 +44,11 @@ pub(super) enum Role {
     Below,
     /// Pane that only transmits: it returns the light that layers keep from leaving the pane at
     /// index `glass`.
-    PaneReturn { glass: usize },
+    PaneReturn { glass: u8 },
     /// Flipped mirror that returns the light that layers keep from leaving the solid glass at index
     /// `glass`.
     SolidReturn {
-        glass: usize,
+        glass: u8,
         /// Weight of the mirror; the rest is diffuse.
         polished: f32,
         /// Cosine-weighted mean transmittance of polished glass from below.
@@ -61,7 +61,7 @@ impl Role {
     #[inline]
     pub(super) fn glass(&self) -> Option<usize> {
         match self {
-            Self::PaneReturn { glass } | Self::SolidReturn { glass, .. } => Some(*glass),
+            Self::PaneReturn { glass } | Self::SolidReturn { glass, .. } => Some(usize::from(*glass)),
             Self::Upright | Self::Below => None,
         }
     }
@@ -95,7 +95,7 @@ impl Bsdf {
         let index = layers.len();
         let returned = match &glass.lobe {
             Lobe::ThinDielectric(pane) => WeightedLobe {
-                role: Role::PaneReturn { glass: index },
+                role: Role::PaneReturn { glass: index as u8 },
                 ..WeightedLobe::new(pane.tinted(Rgb::BLACK, color), weight)
             },
             Lobe::Dielectric(interface) => {
@@ -110,7 +110,7 @@ impl Bsdf {
                 } else {
                     mean(!interface.is_isotropic(), blocked) * interface.inverse_squared_ior()
                 };
-                let role = Role::SolidReturn { glass: index, polished, transmittance };
+                let role = Role::SolidReturn { glass: index as u8, polished, transmittance };
                 let mirror = Conductor::new(Fresnel::Schlick { f0: color, f90: color }, interface.alpha());
                 WeightedLobe {
                     role,
@@ -139,7 +139,8 @@ impl Bsdf {
     /// h(μ): transmittance of the glass from below at an angle of this cosine, over its mean.
     fn relative_transmittance(&self, one: &WeightedLobe, cos: f32) -> f32 {
         let Role::SolidReturn { glass, transmittance, .. } = one.role else { return 0.0 };
-        let polished = self.interface(glass).map_or(0.0, |interface| interface.smooth_transmittance_below(cos));
+        let polished =
+            self.interface(usize::from(glass)).map_or(0.0, |interface| interface.smooth_transmittance_below(cos));
         one.diffuse_fraction + (1.0 - one.diffuse_fraction) * polished / transmittance
     }
 
@@ -168,7 +169,8 @@ impl Bsdf {
         let (o, i) = (flip(wo), flip(wi));
         let mut density = 0.0;
         if polished > 0.0 {
-            density += polished * mirror.single_scattering_shape(o, i) * self.return_reflectance(glass, o, i);
+            density +=
+                polished * mirror.single_scattering_shape(o, i) * self.return_reflectance(usize::from(glass), o, i);
         }
         if polished < 1.0 {
             let h = self.relative_transmittance(one, o.z) * self.relative_transmittance(one, i.z);
@@ -259,9 +261,12 @@ impl Bsdf {
             Role::Upright => one.lobe.eval_pdf(wo, wi),
             Role::Below => one.lobe.eval_pdf(flip(wo), flip(wi)),
             Role::PaneReturn { glass } => {
-                let blocked = self.pane_blocked_fraction(glass, wo, wi);
-                let scattered =
-                    self.lobes.get(glass).filter(|_| blocked > 0.0).map(|pane| pane.lobe.eval_pdf(wo, flip(wi)));
+                let blocked = self.pane_blocked_fraction(usize::from(glass), wo, wi);
+                let scattered = self
+                    .lobes
+                    .get(usize::from(glass))
+                    .filter(|_| blocked > 0.0)
+                    .map(|pane| pane.lobe.eval_pdf(wo, flip(wi)));
                 scattered.map_or((Rgb::BLACK, 0.0), |(value, pdf)| (value * blocked, pdf * blocked))
             }
             Role::SolidReturn { .. } => self.eval_pdf_of_returned(one, wo, wi),
@@ -286,12 +291,12 @@ impl Bsdf {
             Role::Below => one.lobe.deltas(flip(wo)).into_iter().map(flip_sample).collect(),
             _ if wo.z >= 0.0 => Deltas::new(),
             Role::PaneReturn { glass } => {
-                let blocked = |delta: BsdfSample| self.pane_blocked_fraction(glass, wo, delta.wi);
+                let blocked = |delta: BsdfSample| self.pane_blocked_fraction(usize::from(glass), wo, delta.wi);
                 let deltas = one.lobe.deltas(flip(wo)).into_iter();
                 deltas.map(|delta| BsdfSample { weight: delta.weight * blocked(delta), ..delta }).collect()
             }
             Role::SolidReturn { glass, .. } => {
-                let reflectance = |delta: &BsdfSample| self.return_reflectance(glass, flip(wo), delta.wi);
+                let reflectance = |delta: &BsdfSample| self.return_reflectance(usize::from(glass), flip(wo), delta.wi);
                 let deltas = one.lobe.deltas(flip(wo)).into_iter();
                 deltas
                     .map(|delta| flip_sample(BsdfSample { weight: delta.weight * reflectance(&delta), ..delta }))

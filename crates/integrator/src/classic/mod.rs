@@ -91,6 +91,7 @@ impl<'a> ShadingPoint<'a> {
 impl Classic {
     /// Shades a vertex, by its classic material if it has one, and traces shadow rays and secondary
     /// rays. Returns `false` if opacity lets the ray pass.
+    #[inline(always)]
     fn interact(
         &self,
         world: &World,

@@ -22,6 +22,7 @@ struct ShadingPoint<'a> {
 impl Classic {
     /// Shades a vertex whose material is not the classic one. Returns `false` if opacity lets the ray
     /// pass.
+    #[inline(always)]
     pub(super) fn physical(
         &self,
         world: &World,

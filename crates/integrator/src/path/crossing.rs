@@ -51,14 +51,30 @@ impl Interface {
     /// Surface that transmits no light.
     pub const OPAQUE: Self = Self { interior: None, is_present: false, net: None };
 
+    /// Interface at a vertex that is known to be the only surface at its place; `None` if other
+    /// surfaces or opacity may matter, or if a solid hides the interface.
+    #[inline]
+    pub fn alone(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex) -> Option<Self> {
+        let is_alone = !world.may_be_open(vertex) && world.is_alone(ray, vertex);
+        let inwards = vertex.surface.normal.dot(ray.direction) < 0.0;
+        if is_alone { lone_interface(world, path, vertex, inwards) } else { None }
+    }
+
     /// Index of refraction of the medium outside of the solid that the path hit. Where the path has a
     /// wavelength, the index is relative to a solid of its index at 587.56 nm.
-    #[inline]
+    #[inline(always)]
     pub fn exterior_ior(&self, world: &World, path: &PathState) -> f32 {
         let PathHistory { interiors: inside, wavelength, .. } = path.history;
         if inside.is_empty() && wavelength.is_none() && self.net.is_none() {
             return 1.0;
         }
+        self.exterior_ior_inside(world, path)
+    }
+
+    /// [`Interface::exterior_ior`] inside of solids. Kept out of line, since most paths are outside.
+    #[inline(never)]
+    fn exterior_ior_inside(&self, world: &World, path: &PathState) -> f32 {
+        let PathHistory { interiors: inside, wavelength, .. } = path.history;
         let interiors = world.interiors();
         let exterior: Option<&Interior> = match self.net {
             Some(net) => net.exterior.and_then(|id| world.interior_at(id)),
@@ -187,19 +203,24 @@ impl Path {
             next = cluster.next();
         }
         match interfaces.as_slice() {
-            [(member, id, false)] => lone_interface(world, ray, path, *member, *id),
+            [(member, _, false)] => {
+                let (vertex, inwards) = (&member.vertex, member.is_entered(ray));
+                let straight = || crossed(path.history.interiors, world.interior(vertex), inwards);
+                let interface = lone_interface(world, path, vertex, inwards);
+                interface
+                    .map_or_else(|| Passage::Straight(straight()), |interface| Passage::Surface(*member, interface))
+            }
             _ => net_interface(world, ray, path, &interfaces, behind),
         }
     }
 }
 
-/// Interface without others at its place, unless a solid of higher priority hides it.
-fn lone_interface(world: &World, ray: &Ray, path: &PathState, member: Member, id: InteriorId) -> Passage {
-    let (inside, inwards) = (path.history.interiors, member.is_entered(ray));
-    if inside.hides_interface(id, inwards, world.interiors()) {
-        return Passage::Straight(inside.crossed(id, inwards));
-    }
-    Passage::Surface(member, Interface { interior: Some(id), is_present: true, net: None })
+/// Interface without others at its place; `None` if a solid of higher priority hides it.
+#[inline]
+fn lone_interface(world: &World, path: &PathState, vertex: &Vertex, inwards: bool) -> Option<Interface> {
+    let interior = world.interior(vertex);
+    let is_hidden = |id| path.history.interiors.hides_interface(id, inwards, world.interiors());
+    (!interior.is_some_and(is_hidden)).then_some(Interface { interior, is_present: true, net: None })
 }
 
 /// Interface between the medium before several interfaces and the medium behind them: that of the

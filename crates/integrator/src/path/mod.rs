@@ -254,10 +254,15 @@ impl Integrator for Path {
         if self.sample_medium(world, ray, ray.t_max - ray.t_min, path, output) {
             return;
         }
-        if world.may_pass(vertex) || !path.history.interiors.is_empty() {
+        // Follow the path through all surfaces at this place, if there may be several.
+        let interface = if !world.may_pass_along(ray, vertex) && path.history.interiors.is_empty() {
+            Interface::OPAQUE
+        } else if let Some(interface) = Interface::alone(world, ray, path, vertex) {
+            interface
+        } else {
             return self.cross_surfaces(world, ray, path, vertex, output);
-        }
-        self.interact(world, ray, path, vertex, &Interface::OPAQUE, output);
+        };
+        self.interact(world, ray, path, vertex, &interface, output);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
