@@ -25,7 +25,7 @@ import OpenImageIO as oiio
 
 HERE = Path(__file__).resolve().parent
 PARTS = {
-    "beauty": "BGR", "alpha": "A", "albedo": "BGR", "normal": "XYZ", "geometric_normal": "XYZ", "depth": "Z", "position": "XYZ",
+    "beauty": "BGR", "alpha": "A", "albedo": "BGR", "normal": "XYZ", "geometric_normal": "XYZ", "depth": "Z", "planar_depth": "Z", "position": "XYZ",
     "uv": "UV", "motion": "XY", "motion_back": "XY", "emission": "BGR", "direct": "BGR", "indirect": "BGR",
     "light_group_rest": "BGR", "light_group_key": "BGR", "light_group_light": "BGR", "light_group_sky": "BGR",
     "object_id": "Y", "material_id": "Y", "instance_id": "Y",

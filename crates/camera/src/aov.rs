@@ -18,6 +18,8 @@ pub enum FilmAov {
     GeometricNormal,
     /// Distance of the first hit along the ray, in scene units; second channel, coverage.
     Depth,
+    /// Distance of the first hit along the view direction, in scene units; second channel, coverage.
+    PlanarDepth,
     /// Position of the first hit, in world space.
     Position,
     /// Surface coordinates of the first hit; third channel, coverage.

@@ -102,6 +102,12 @@ impl Projection {
         self.origin
     }
 
+    /// View direction: the unit normal of the film that points into the picture.
+    pub fn view_direction(&self) -> Vec3 {
+        let [right, down] = [self.right, self.down].map(|v| v.as_dvec3().normalize_or_zero());
+        right.cross(down).normalize_or_zero().as_vec3()
+    }
+
     /// Pixel size at the ray origin, and its growth per unit of distance, at the center of the
     /// film.
     pub fn pixel_footprint(&self) -> [f32; 2] {

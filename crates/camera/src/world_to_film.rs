@@ -133,6 +133,15 @@ mod tests {
         }
     }
 
+    /// The depth along the view direction is the third component of camera space.
+    #[test]
+    fn the_view_direction_is_the_forward_axis_of_each_camera() {
+        for camera in AnyCamera::examples() {
+            let (axes, projection) = (camera.axes().unwrap(), camera.projection(SIZE).unwrap());
+            assert!(projection.view_direction().abs_diff_eq(axes.forward, 1e-6), "{camera:?}");
+        }
+    }
+
     #[test]
     fn camera_space_is_left_handed_with_the_view_along_z() {
         for camera in AnyCamera::examples() {

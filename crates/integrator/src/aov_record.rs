@@ -2,6 +2,7 @@
 
 use super::{PathKind, PathLog, VertexOutput};
 use juggler_bsdf::Scatter;
+use juggler_camera::ShutterCamera;
 use juggler_camera::aov::{self, DenoisingFeature, FilmAov, FilmAovs, LightGroup};
 use juggler_camera::film::{HitIds, MASKS};
 use juggler_material::Shading;
@@ -14,6 +15,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct AovRecord {
     aovs: FilmAovs,
+    /// Camera of the rays, for planar depth.
+    camera: Option<ShutterCamera>,
     /// Scene at neighboring frames, for motion vectors.
     frames: Option<Arc<NeighborFrames>>,
     /// Planes that receive light by number of path segments (emission, direct, indirect), and by
@@ -35,8 +38,8 @@ pub struct AovRecord {
 }
 
 impl AovRecord {
-    /// Creates a record of `aovs`; `frames` are needed by motion aovs.
-    pub fn new(aovs: &FilmAovs, frames: Option<&Arc<NeighborFrames>>) -> Self {
+    /// Creates a record of `aovs` for rays of `camera`; `frames` are needed by motion vectors.
+    pub fn new(aovs: &FilmAovs, camera: Option<&ShutterCamera>, frames: Option<&Arc<NeighborFrames>>) -> Self {
         let path_kinds = [FilmAov::Emission, FilmAov::Direct, FilmAov::Indirect].map(|aov| aovs.index_of(aov));
         let mut groups = Vec::new();
         for (plane, aov) in aovs.planes.iter().enumerate() {
@@ -47,9 +50,11 @@ impl AovRecord {
             }
         }
         let color = aovs.index_of(FilmAov::HalfFeature(DenoisingFeature::Color));
+        let camera = camera.filter(|_| aovs.index_of(FilmAov::PlanarDepth).is_some()).cloned();
         let aovs = aovs.clone();
         Self {
             aovs,
+            camera,
             frames: frames.map(Arc::clone),
             path_kinds,
             groups,
@@ -64,7 +69,7 @@ impl AovRecord {
 
     /// Creates a record that only logs path events.
     pub fn logging() -> Self {
-        Self { log: Some(Box::default()), ..Self::new(&aov::NO_AOVS, None) }
+        Self { log: Some(Box::default()), ..Self::new(&aov::NO_AOVS, None, None) }
     }
 
     /// Starts samples with these filter weights.
@@ -109,6 +114,7 @@ impl AovRecord {
                 FilmAov::Normal => to_rgb(normal),
                 FilmAov::GeometricNormal => to_rgb(surface.normal),
                 FilmAov::Depth => Rgb::new(ray.t_max, 1.0, 0.0),
+                FilmAov::PlanarDepth => Rgb::new(self.planar_depth(ray), 1.0, 0.0),
                 FilmAov::Position => to_rgb(surface.point),
                 FilmAov::Motion(which) => {
                     match self
@@ -132,6 +138,13 @@ impl AovRecord {
             let ids: [u32; MASKS] = [hit.world.entry_of(vertex.shape), vertex.material.0, vertex.shape];
             *hit_ids = HitIds { ids, weight };
         }
+    }
+
+    /// Distance from the camera to the end of a camera ray along the view direction. Rays of a lens
+    /// start in the plane of the lens, which is perpendicular to the view.
+    fn planar_depth(&self, ray: &Ray) -> f32 {
+        let cosine = |camera: &ShutterCamera| camera.projection_at(ray.time).view_direction().dot(ray.direction);
+        self.camera.as_ref().map_or(ray.t_max, |camera| ray.t_max * cosine(camera))
     }
 
     /// Records the motion vector of the background.

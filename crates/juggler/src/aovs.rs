@@ -30,6 +30,9 @@ pub enum Aov {
     GeometricNormal,
     /// Distance along the camera ray, in scene units; infinite where no surface is visible.
     Depth,
+    /// Distance along the camera's view direction, in scene units; infinite where no surface is
+    /// visible.
+    PlanarDepth,
     /// Position of the visible surface, in world space.
     Position,
     /// Texture coordinates of the visible surface.
@@ -69,12 +72,13 @@ pub enum Aov {
 
 impl Aov {
     /// All AOVs, in the order of their layers in a file.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Alpha,
         Self::Albedo,
         Self::Normal,
         Self::GeometricNormal,
         Self::Depth,
+        Self::PlanarDepth,
         Self::Position,
         Self::Uv,
         Self::Motion,
@@ -102,6 +106,7 @@ impl Aov {
             Self::Normal => "normal",
             Self::GeometricNormal => "geometric_normal",
             Self::Depth => "depth",
+            Self::PlanarDepth => "planar_depth",
             Self::Position => "position",
             Self::Uv => "uv",
             Self::Motion => "motion",
@@ -137,6 +142,7 @@ impl Aov {
             Self::Normal => vec![FilmAov::Normal],
             Self::GeometricNormal => vec![FilmAov::GeometricNormal],
             Self::Depth => vec![FilmAov::Depth],
+            Self::PlanarDepth => vec![FilmAov::PlanarDepth],
             Self::Position => vec![FilmAov::Position, FilmAov::Coverage],
             Self::Uv => vec![FilmAov::Uv],
             Self::Motion => vec![FilmAov::Motion(AdjacentFrame::Next)],
@@ -307,7 +313,7 @@ impl AovSet {
             Aov::Variance => &["R", "G", "B"],
             Aov::Normal | Aov::GeometricNormal | Aov::Position => &["X", "Y", "Z"],
             Aov::Alpha => &["A"],
-            Aov::Depth => &["Z"],
+            Aov::Depth | Aov::PlanarDepth => &["Z"],
             Aov::Uv => &["U", "V"],
             Aov::Motion | Aov::MotionBack => &["X", "Y"],
             Aov::ObjectId | Aov::MaterialId | Aov::InstanceId | Aov::Samples | Aov::NotFinite | Aov::Clamped => &["Y"],

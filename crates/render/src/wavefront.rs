@@ -58,7 +58,7 @@ impl<'j> Engine<'j> {
             transmittance: Vec::new(),
             buffers: PathBuffers {
                 clamping: job.integrator.clamp().map(ClampState::new),
-                record: (!job.aovs.is_empty()).then(|| AovRecord::new(job.aovs, job.frames)),
+                record: (!job.aovs.is_empty()).then(|| AovRecord::new(job.aovs, Some(job.camera), job.frames)),
                 ..PathBuffers::default()
             },
             stack: Vec::new(),

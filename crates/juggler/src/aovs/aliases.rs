@@ -10,7 +10,8 @@ const FOREIGN: &[(&[&str], &[Aov])] = &[
     (&["cryptomatte", "crypto"], &[Aov::CryptoObject, Aov::CryptoMaterial]),
     (&["cryptoobject", "crypto_asset", "cryptoasset", "crypto_object_00"], &[Aov::CryptoObject]),
     (&["cryptomaterial", "crypto_mat"], &[Aov::CryptoMaterial]),
-    (&["z", "zdepth", "z_depth", "depth_z", "zbuffer", "distance", "vrayzdepth"], &[Aov::Depth]),
+    (&["z", "zdepth", "z_depth", "depth_z", "zbuffer", "vrayzdepth"], &[Aov::PlanarDepth]),
+    (&["distance"], &[Aov::Depth]),
     (&["n", "normals", "shading_normal", "ns", "denoising_normal", "vraynormals", "nn"], &[Aov::Normal]),
     (&["ng", "geometry_normal", "true_normal"], &[Aov::GeometricNormal]),
     (&["p", "pref", "world_position", "point", "points", "position_world"], &[Aov::Position]),
@@ -85,11 +86,12 @@ mod tests {
     fn names_of_other_programs_are_understood() {
         for (list, same) in [
             ("cryptomatte", vec![Aov::CryptoObject, Aov::CryptoMaterial]),
-            ("Z,N,P", vec![Aov::Depth, Aov::Normal, Aov::Position]),
+            ("Z,N,P", vec![Aov::PlanarDepth, Aov::Normal, Aov::Position]),
             ("beauty, diffuse_albedo", vec![Aov::Albedo]),
             ("RGBA", vec![]),
             ("DiffCol,Object Index,Vector", vec![Aov::Albedo, Aov::ObjectId, Aov::Motion, Aov::MotionBack]),
-            ("depth,zdepth,Depth", vec![Aov::Depth]),
+            ("depth,Distance,Depth", vec![Aov::Depth]),
+            ("z,zdepth,Z_Depth,Z Depth,planar-depth", vec![Aov::PlanarDepth]),
         ] {
             assert_eq!(Aov::list(list).unwrap(), same, "{list}");
         }

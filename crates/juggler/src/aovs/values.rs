@@ -87,6 +87,13 @@ impl Pixel<'_> {
         divide(sum, sum.b).into_iter().take(2)
     }
 
+    /// Returns the first channel of an AOV, averaged over the samples that hit a surface, which its
+    /// second channel counts; infinity if none does.
+    fn mean_distance(&self, aov: FilmAov) -> f32 {
+        let Rgb { r, g, .. } = self.sum(aov);
+        if g > 0.0 { r / g } else { f32::INFINITY }
+    }
+
     /// Returns the coverage by each object of a mask, in order of the objects' indices.
     fn coverages(&self, kind: usize) -> Vec<(u32, f32)> {
         let mask = self.aov_sums.masks.get(kind).map(|mask| mask.pixel(self.number)).unwrap_or_default();
@@ -109,10 +116,8 @@ impl Pixel<'_> {
             Aov::Albedo => row.extend(self.mean(FilmAov::Albedo).to_array()),
             Aov::Normal => row.extend(self.mean(FilmAov::Normal).to_array()),
             Aov::GeometricNormal => row.extend(self.mean(FilmAov::GeometricNormal).to_array()),
-            Aov::Depth => {
-                let Rgb { r, g, .. } = self.sum(FilmAov::Depth);
-                row.push(if g > 0.0 { r / g } else { f32::INFINITY });
-            }
+            Aov::Depth => row.push(self.mean_distance(FilmAov::Depth)),
+            Aov::PlanarDepth => row.push(self.mean_distance(FilmAov::PlanarDepth)),
             Aov::Position => row.extend(divide(self.sum(FilmAov::Position), self.sum(FilmAov::Coverage).r)),
             Aov::Uv => row.extend(self.mean_of_valid(FilmAov::Uv)),
             Aov::Motion => row.extend(self.mean_of_valid(FilmAov::Motion(AdjacentFrame::Next))),

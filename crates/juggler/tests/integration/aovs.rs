@@ -222,3 +222,37 @@ fn normals_integrator_shows_the_normals_of_the_aov() {
         }
     }
 }
+
+/// A wall perpendicular to the view, 4 units from the camera, with each kind of camera: the distance
+/// along the view direction is 4, and that along the ray is larger by 1 / cosine.
+#[test]
+fn planar_depth_is_measured_along_the_view_direction() {
+    let wall = r#"{"shape": {"rectangle": {"size": [40, 40]}}, "material": {"diffuse": {}}}"#;
+    let scene = |camera: &str| {
+        let render = r#""render": {"size": [32, 32], "samples": 16, "filter": "box", "integrator": "albedo"}"#;
+        format!(r#"{{"version": 1, {render}, "camera": {{{camera}}}, "objects": [{wall}]}}"#)
+    };
+    let pose = r#""eye": [0, 4, 0], "direction": [0, -1, 0], "up": [0, 0, -1]"#;
+    let cameras = [
+        format!(r#""perspective": {{{pose}, "vertical_fov_degrees": 90}}"#),
+        format!(r#""thin_lens": {{{pose}, "vertical_fov_degrees": 90, "lens_radius": 0.5, "focus_distance": 2}}"#),
+        format!(r#""orthographic": {{{pose}, "height": 2}}"#),
+    ];
+    for camera in cameras {
+        let (found, _) = layers(&scene(&camera), &[Aov::Depth, Aov::PlanarDepth]);
+        let (depth, planar) = (&found["depth.Z"], &found["planar_depth.Z"]);
+        assert!(planar.iter().all(|depth| (depth - 4.0).abs() < 1e-4), "{camera}: {planar:?}");
+        // The ray through the corner pixel of a pinhole is √(1 + 2 (31/32)²) times as long.
+        let ratio = depth[0] / planar[0];
+        let expected: std::ops::Range<f32> = match camera.as_str() {
+            camera if camera.contains("perspective") => 1.685..1.705,
+            camera if camera.contains("thin_lens") => 1.5..1.9,
+            _ => 0.9999..1.0001,
+        };
+        assert!(expected.contains(&ratio), "{camera}: {ratio}");
+    }
+    // Beside the wall there is no depth.
+    let (found, _) =
+        layers(&scene(r#""perspective": {"eye": [0, 4, 0], "direction": [0, 1, 0.1]}"#), &[Aov::PlanarDepth]);
+    assert!(found["planar_depth.Z"].iter().all(|depth| *depth == f32::INFINITY));
+}
