@@ -19,9 +19,11 @@
 
 pub mod animation;
 pub mod atomic;
+mod clamp_count;
 pub mod codec;
 pub mod compare;
 mod error;
+mod exr_windows;
 pub mod flip;
 pub mod format;
 pub mod input;
@@ -35,9 +37,11 @@ pub mod tone;
 mod viewpoint;
 
 pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
+pub use clamp_count::ClampCount;
 pub use codec::{ExrCompression, Header, ImageInfo, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
+pub use exr_windows::{CropFrame, ExrWindows, PixelWindow};
 pub use flip::Flip;
 pub use format::ImageFormat;
 pub use input::{Limits, decode, inspect, read, read_within};

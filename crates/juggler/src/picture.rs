@@ -6,7 +6,7 @@ use crate::{AovSet, Error, Limit, RenderStats, Settings};
 use juggler_camera::film::{FilmDigest, FilmSummary, FilterSampler, Rect};
 use juggler_camera::{AnyCamera, Perspective, ShutterCamera};
 use juggler_film::counts::SampleCountStats;
-use juggler_imaging::{Header, ImageFormat, Options, RowWriter, Tone};
+use juggler_imaging::{CropFrame, Header, ImageFormat, Options, RowWriter, Tone};
 use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_render::{BAND_PIXELS, Cancelled, Control, Job, Schedule, Scheduler};
@@ -219,6 +219,11 @@ impl Picture {
         &self.limit
     }
 
+    /// Returns width and height of the camera's whole frame.
+    pub fn frame_size(&self) -> [u32; 2] {
+        self.compiled.settings.size
+    }
+
     /// Returns the rendered region, in pixels.
     pub fn region(&self) -> Rect {
         self.region
@@ -249,8 +254,9 @@ impl Picture {
             let limits: Vec<String> = limits.map(|(light, limit)| format!("{light} light at {limit}")).collect();
             metadata.push(text("Clamping", &limits.join(", ")));
         }
-        let viewpoint = self.viewpoint();
-        Header { tone: self.tone.clone(), options, metadata, viewpoint, ..Header::new(width, height) }
+        let (viewpoint, corner) = (self.viewpoint(), [self.region.x, self.region.y]);
+        let crop = CropFrame::new(self.frame_size(), corner, [width, height]);
+        Header { tone: self.tone.clone(), options, metadata, viewpoint, crop, ..Header::new(width, height) }
     }
 
     /// Returns the AOVs.

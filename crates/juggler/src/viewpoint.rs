@@ -8,14 +8,15 @@ use juggler_imaging::{Matrix4, Viewpoint};
 const SHUTTER_CENTER: f32 = 0.5;
 
 impl Picture {
-    /// Returns the camera matrices at the middle of the shutter interval, relative to the rendered
-    /// region. `None` for a camera without finite matrices.
+    /// Returns the camera matrices at the middle of the shutter interval, relative to the whole frame,
+    /// which is the display window of an EXR file. `None` for a camera without finite matrices.
     pub fn viewpoint(&self) -> Option<Viewpoint> {
-        let (projection, region) = (self.job().camera.projection_at(SHUTTER_CENTER), self.region());
+        let projection = self.job().camera.projection_at(SHUTTER_CENTER);
+        let [width, height] = self.frame_size().map(f64::from);
         let mut matrix = WorldToFilm::new(&projection)?.matrix();
         for row in &mut matrix {
-            row[0] = (row[0] - row[3] * f64::from(region.x)) / f64::from(region.width);
-            row[1] = (row[1] - row[3] * f64::from(region.y)) / f64::from(region.height);
+            row[0] /= width;
+            row[1] /= height;
         }
         let (world_to_camera, world_to_ndc) = (rounded(projection.to_camera()), rounded(matrix));
         let is_finite = |matrix: &Matrix4| matrix.iter().flatten().all(|number| number.is_finite());

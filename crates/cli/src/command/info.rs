@@ -14,7 +14,7 @@ use crate::source;
 use clap::Args;
 use juggler::film;
 use juggler::imaging::layered::{LayerName, layer_names};
-use juggler::imaging::{self, ImageFormat, ImageInfo, regular};
+use juggler::imaging::{self, ExrWindows, ImageFormat, ImageInfo, PixelWindow, regular};
 use juggler::light::background::AnyBackground;
 use juggler::math::{Aabb, message};
 use juggler::scene::{Compiled, Illuminance, Scene, import};
@@ -62,7 +62,7 @@ impl Info {
     }
 
     fn picture(&self, format: ImageFormat) -> Result<String, Failure> {
-        let ImageInfo { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        let ImageInfo { width, height, mut metadata, windows, .. } = imaging::inspect(Path::new(&self.scene))?;
         let layers = layer_names(Path::new(&self.scene))?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
             *text = reproduce::with_file_name(&self.scene, text);
@@ -70,19 +70,31 @@ impl Info {
         if self.json {
             let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
             let name = format.extension();
-            let json = json!({
+            let mut json = json!({
                 "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts,
                 "layers": layers.iter().map(|layer| json!({"name": layer.name, "channels": layer.channels})).collect::<Vec<_>>(),
             });
+            if let (Some(windows), Some(json)) = (windows, json.as_object_mut()) {
+                json.insert("windows".into(), windows_json(&windows));
+            }
             return Ok(json.to_string());
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
         let keys = std::iter::once("layers").chain(std::iter::repeat(""));
         let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_text(layer)));
         let head = [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))];
-        let lines = head.into_iter().chain(layers).chain(texts);
+        let windows = windows.map(|ExrWindows { data, display }| {
+            [row("data window", &data.to_string()), row("display", &display.to_string())]
+        });
+        let lines = head.into_iter().chain(windows.into_iter().flatten()).chain(layers).chain(texts);
         Ok(lines.collect::<Vec<_>>().join("\n"))
     }
+}
+
+/// Windows of an EXR file, each as left, top, width and height.
+fn windows_json(ExrWindows { data, display }: &ExrWindows) -> Value {
+    let window = |PixelWindow { x, y, width, height }: &PixelWindow| json!([x, y, width, height]);
+    json!({"data": window(data), "display": window(display)})
 }
 
 /// Row of the output: key and value.

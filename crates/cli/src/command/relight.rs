@@ -10,7 +10,7 @@ use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::camera::film::{Rect, Tile};
 use juggler::film::{self, MergeGoal, RenderDescription};
-use juggler::imaging::{self, Header, Tone};
+use juggler::imaging::{self, CropFrame, Header, Tone};
 use juggler::math::Rgb;
 use juggler::{AovSet, MAX_GAIN};
 use std::path::Path;
@@ -58,7 +58,7 @@ impl Relight {
         effect::check(Target::Picture(encoding), &given)?;
         let Encoding { format, options } = encoding;
         let merge = film::Merge::open(&self.films, MergeGoal::Whole)?;
-        let RenderDescription { region, tone, metadata, aovs, viewpoint, .. } = merge.description();
+        let RenderDescription { size, region, tone, metadata, aovs, viewpoint, .. } = merge.description();
         let set = AovSet::from_description(aovs)?;
         let gains = gains(&self.gain, &set)?;
         let mut tone: Tone = serde_json::from_value(tone.clone()).map_err(|error| {
@@ -68,7 +68,8 @@ impl Relight {
         let mut metadata = metadata.clone();
         metadata.push(("Gain".to_owned(), self.gain.clone()));
         let viewpoint = *viewpoint;
-        let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
+        let crop = CropFrame::new(*size, [region.x, region.y], [region.width, region.height]);
+        let header = Header { tone, options, metadata, viewpoint, crop, ..Header::new(region.width, region.height) };
         let interrupts = Interrupts::watch()?;
         let mut writer = match self.output.as_str() {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
@@ -79,6 +80,9 @@ impl Relight {
             Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
         })?;
         writer.finish()?;
+        if let Some(warning) = header.clamped.warning(&self.output).filter(|_| !self.quiet) {
+            console::print_message(&warning);
+        }
         self.tell(region, start)
     }
 

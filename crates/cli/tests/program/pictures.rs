@@ -100,6 +100,55 @@ fn a_crop_is_a_rectangle_of_the_picture() {
     }
 }
 
+/// An EXR keeps the place of the crop: it is the whole picture with black around the crop, also
+/// after a merge, and a movie's frames are recognized.
+#[test]
+fn a_crop_in_an_exr_keeps_its_place() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o whole.exr");
+    folder.good("render ball.json -q -o part.exr --crop 5,2,4,3");
+    let (whole, part) = (image(&folder, "whole.exr"), image(&folder, "part.exr"));
+    assert_eq!((part.width(), part.height()), (whole.width(), whole.height()));
+    let width = whole.width() as usize;
+    for (index, pixel) in part.pixels().iter().enumerate() {
+        let inside = (5..9).contains(&(index % width)) && (2..5).contains(&(index / width));
+        let expected = if inside { whole.pixels()[index] } else { Default::default() };
+        assert_eq!(*pixel, expected, "{index}");
+    }
+    let said = folder.good("info part.exr").stdout;
+    let [w, h] = [whole.width(), whole.height()];
+    assert!(said.contains(&format!("\ndata window  4x3 at 5, 2\ndisplay      {w}x{h} at 0, 0\n")), "{said}");
+    let json: serde_json::Value = serde_json::from_str(&folder.good("info part.exr --json").stdout).unwrap();
+    assert_eq!(json["windows"], serde_json::json!({"data": [5, 2, 4, 3], "display": [0, 0, w, h]}));
+    folder.good("render ball.json -q --frames 0..2 -o f_##.exr --crop 5,2,4,3");
+    let again = folder.good("render ball.json --frames 0..2 -o f_##.exr --crop 5,2,4,3");
+    assert!(again.stdout.contains("f_00.exr: exists already"), "{}", again.stdout);
+}
+
+#[test]
+fn half_floats_that_are_clamped_are_reported() {
+    let folder = Folder::new();
+    let scene = r#"{"version": 1, "camera": {"orthographic": {"height": 2}}, "render": {"size": [8, 8], "samples": 2, "integrator": "path"},
+        "objects": [{"shape": {"sphere": {"radius": 0.4}}, "material": {"emissive": {"radiance": 1e6}}}]}"#;
+    fs::write(folder.path("bright.json"), scene).unwrap();
+    folder.good("render bright.json -q -o a.jfilm --aov light_groups");
+    for line in [
+        "render bright.json -o a.exr --bits 16",
+        "render bright.json -o a.exr --bits 16 --aov depth",
+        "merge a.jfilm -o a.exr --bits 16",
+        "relight a.jfilm --gain rest=1 -o a.exr --bits 16",
+    ] {
+        let said = folder.run(line).stderr;
+        let expected = "warning: `a.exr`: ";
+        assert!(said.contains(expected) && said.contains("beyond the range of 16-bit floats"), "{line}: {said}");
+        folder.good(&line.replace("16", "32"));
+        assert!(image(&folder, "a.exr").pixels().iter().any(|pixel| pixel.r > 9e5), "{line}");
+        folder.good(&format!("{line} -q"));
+        let largest = image(&folder, "a.exr").pixels().iter().map(|pixel| pixel.r).fold(0.0, f32::max);
+        assert_eq!(largest, 65_504.0, "{line}");
+    }
+}
+
 #[test]
 fn only_flags_that_affect_the_samples_change_the_hash() {
     let folder = Folder::new();

@@ -1,19 +1,23 @@
 //! OpenEXR with one scanline part and channels B, G, R as 32-bit or 16-bit floats, optionally
 //! compressed (OpenEXR file layout, openexr.com). Values are scene-referred, so no tone curve
 //! applies; primaries other than sRGB's are stored in the header. Writing delegates to the layered
-//! writer.
+//! writer. `exr/selection.rs` states which channels are the picture.
+
+mod selection;
 
 use super::{Header, Inspected, Metadata, ReadSeek, RowWriter, Source, UNEXPECTED_END};
-use crate::ImageError;
 use crate::layered::{self, LayerHeader, LayerRows, LayeredHeader};
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Chromaticities, Matrix};
+use crate::{ExrWindows, ImageError};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::header::Header as ExrHeader;
 use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel};
 use juggler_math::{Image, Rgb};
+pub(crate) use selection::Placement;
+use selection::Selection;
 use std::io::{self, BufRead, Read};
 
 /// Streams rows into a single unnamed layer.
@@ -78,69 +82,95 @@ fn max_pixels_per_byte(header: &ExrHeader) -> u64 {
     (8 * max_bytes / (eighths.sum::<usize>() as u64).max(1)).max(1)
 }
 
-/// Layout of [`raster`]: the first part with R, G and B, else the first with Y, plus A if present.
-pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
-    let headers = read_headers(source, bytes)?;
-    let has = |header: &ExrHeader, names: &[&str]| {
-        names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name))
-    };
-    let found = |names: &[&str]| headers.iter().find(|header| !header.deep && has(header, names));
-    let (colors, header) = match (found(&["R", "G", "B"]), found(&["Y"])) {
-        (Some(header), _) => (3, header),
-        (None, Some(header)) => (1, header),
-        (None, None) => return Err(source.malformed("it has no layer with channels R, G and B, or Y")),
-    };
-    let Vec2(width, height) = header.layer_size;
-    let size = source.size(width as u64, height as u64, max_pixels_per_byte(header))?;
-    let to_srgb = header.shared_attributes.chromaticities.filter(|_| colors == 3).and_then(to_srgb);
-    Ok(RasterLayout { to_srgb, ..source.layout(size, colors + u8::from(has(header, &["A"])), 4) })
+/// Picture of a file and its place in the display window.
+struct Picture<'h> {
+    selection: Selection<'h>,
+    placement: Placement,
+    to_srgb: Option<Matrix>,
 }
 
-/// Samples of the part that [`layout`] selects, within its data window.
+impl<'h> Picture<'h> {
+    fn new(source: Source, headers: &'h [ExrHeader]) -> Result<Self, ImageError> {
+        let selection = selection::picture(source, headers)?;
+        let header = selection.header;
+        let placement = placement(source, header)?;
+        let chromaticities = header.shared_attributes.chromaticities.filter(|_| selection.colors.len() == 3);
+        Ok(Self { selection, placement, to_srgb: chromaticities.and_then(to_srgb) })
+    }
+
+    fn layout(&self, source: Source) -> RasterLayout {
+        let channels = self.selection.colors.len() as u8 + u8::from(self.selection.alpha.is_some());
+        RasterLayout { to_srgb: self.to_srgb, ..source.layout(self.placement.size(), channels, 4) }
+    }
+}
+
+/// Place of a part's pixels in the display window, after a check of its size.
+pub(crate) fn placement(source: Source, header: &ExrHeader) -> Result<Placement, ImageError> {
+    Placement::new(source, header, max_pixels_per_byte(header))
+}
+
+/// Layout of [`raster`], the size of the display window.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
+    let headers = read_headers(source, bytes)?;
+    Ok(Picture::new(source, &headers)?.layout(source))
+}
+
+/// Samples of the picture within the display window; 0 outside of the data window.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
-    let layout = layout(source, bytes)?;
+    let headers = read_headers(source, bytes)?;
+    let picture = Picture::new(source, &headers)?;
+    let (layout, placement) = (picture.layout(source), picture.placement);
     let channels = usize::from(layout.channels);
-    let allocate = move |size: Vec2<usize>| (size.0, vec![0_f32; size.0 * size.1 * channels]);
-    let put = move |(width, samples): &mut (usize, Vec<f32>), position: Vec2<usize>, pixel: &[f32]| {
-        let start = (position.1 * *width + position.0) * channels;
-        if let Some(target) = samples.get_mut(start..start + channels) {
-            target.copy_from_slice(&pixel[..channels]);
+    let allocate = move || vec![0_f32; placement.pixels().saturating_mul(channels)];
+    let put = move |samples: &mut Vec<f32>, position: Vec2<usize>, pixel: &[f32]| {
+        let start = placement.index(position).map(|index| index * channels);
+        if let Some(target) = start.and_then(|start| samples.get_mut(start..start + channels)) {
+            target.iter_mut().zip(pixel).for_each(|(target, value)| *target = *value);
         }
     };
-    let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
-    let samples = if channels >= 3 {
-        let reader = reader.rgba_channels(
-            move |size, _| allocate(size),
-            move |image, position, (r, g, b, a): (f32, f32, f32, f32)| put(image, position, &[r, g, b, a]),
-        );
-        let reader = reader.first_valid_layer().all_attributes().non_parallel();
-        reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
-    } else {
-        let reader = reader.specific_channels().required("Y").optional("A", 1.0_f32).collect_pixels(
-            move |size, _| allocate(size),
-            move |image, position, (y, a): (f32, f32)| put(image, position, &[y, a]),
-        );
-        let reader = reader.first_valid_layer().all_attributes().non_parallel();
-        reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
+    let Selection { colors, alpha, .. } = &picture.selection;
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels();
+    let samples = match colors.as_slice() {
+        [red, green, blue] => {
+            let alpha = alpha.clone().unwrap_or_else(|| absent(red));
+            let reader = reader.required(red.as_str()).required(green.as_str()).required(blue.as_str());
+            let reader = reader.optional(alpha.as_str(), 1.0_f32).collect_pixels(
+                move |_, _| allocate(),
+                move |image, position, (r, g, b, a): (f32, f32, f32, f32)| put(image, position, &[r, g, b, a]),
+            );
+            let reader = reader.first_valid_layer().all_attributes().non_parallel();
+            reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels)
+        }
+        colors => {
+            let gray = colors.first().map(String::as_str).unwrap_or_default();
+            let alpha = alpha.clone().unwrap_or_else(|| absent(gray));
+            let reader = reader.required(gray).optional(alpha.as_str(), 1.0_f32).collect_pixels(
+                move |_, _| allocate(),
+                move |image, position, (y, a): (f32, f32)| put(image, position, &[y, a]),
+            );
+            let reader = reader.first_valid_layer().all_attributes().non_parallel();
+            reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels)
+        }
     };
     let samples = RasterSamples::Floats(samples.map_err(|e| unreadable(source, e))?);
     Ok(Raster { layout, samples, transfer_function: TransferFunction::Linear })
 }
 
-/// Reads the first part with R, G and B within its data window and converts it to sRGB primaries.
+/// Name that differs from all channels of a selection, for a channel that the file does not have.
+fn absent(color: &str) -> String {
+    format!("{color}_")
+}
+
+/// Reads the picture within the display window, black outside of the data window, and converts it
+/// to sRGB primaries.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    read_headers(source, bytes)?;
-    let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
-    let reader = reader.rgb_channels(
-        |size, _| (size.0, vec![[0f32; 3]; size.0 * size.1]),
-        |(width, pixels), position, (r, g, b): (f32, f32, f32)| pixels[position.1 * *width + position.0] = [r, g, b],
-    );
-    let reader = reader.first_valid_layer().all_attributes().non_parallel();
-    let image = reader.from_buffered(&mut *bytes).map_err(|error| unreadable(source, error))?;
-    let size = image.layer_data.size;
-    let mut pixels: Vec<Rgb> = image.layer_data.channel_data.pixels.1.into_iter().map(Rgb::from).collect();
-    super::convert_primaries(&mut pixels, image.attributes.chromaticities.and_then(to_srgb));
-    let (width, height) = source.size(size.0 as u64, size.1 as u64, u64::MAX)?;
+    let headers = read_headers(source, bytes)?;
+    let Picture { selection, placement, to_srgb } = Picture::new(source, &headers)?;
+    let names: Vec<&str> = selection.colors.iter().map(String::as_str).collect();
+    let values = layered::read_channels(bytes, &names, placement).map_err(|error| unreadable(source, error))?;
+    let mut pixels: Vec<Rgb> = values.into_iter().map(Rgb::from).collect();
+    super::convert_primaries(&mut pixels, to_srgb);
+    let (width, height) = placement.size();
     source.image(width, height, pixels)
 }
 
@@ -151,27 +181,24 @@ fn to_srgb(named: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
     Chromaticities { red, green, blue, white }.to_srgb()
 }
 
-/// Image size and all string attributes, in file order.
-pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
-    read_headers(source, bytes)?;
-    let (window, metadata) = attributes(bytes).map_err(|e| source.failed(e))?;
-    let [left, top, right, bottom] = window;
-    let [width, height] = [(left, right), (top, bottom)].map(|(first, last)| u64::try_from(last - first + 1));
-    let (Ok(width), Ok(height)) = (width, height) else {
-        return Err(source.malformed("its data window has a negative size"));
-    };
-    Ok((source.size(width, height, u64::MAX)?, metadata))
+/// Size of the display window, all string attributes in file order, and the windows.
+pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Inspected, ExrWindows), ImageError> {
+    let headers = read_headers(source, bytes)?;
+    let Some(header) = headers.first() else { return Err(source.malformed("it has no layers")) };
+    let (size, windows) = (placement(source, header)?.size(), selection::windows(header));
+    let metadata = texts(bytes).map_err(|e| source.failed(e))?;
+    Ok(((size, metadata), windows))
 }
 
-/// Data window as left, top, right, bottom, and all string attributes.
-fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Metadata)> {
-    let (mut window, mut metadata) = ([0, 0, -1, -1], Vec::new());
+/// All string attributes.
+fn texts(bytes: &mut dyn ReadSeek) -> io::Result<Metadata> {
+    let mut metadata = Vec::new();
     let mut eight = [0; 8];
     bytes.read_exact(&mut eight)?;
     for _ in 0..10_000 {
         let name = name(bytes)?;
         if name.is_empty() {
-            return Ok((window, metadata));
+            return Ok(metadata);
         }
         let kind = self::name(bytes)?;
         let mut size = [0; 4];
@@ -183,10 +210,6 @@ fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Metadata)> {
         }
         if kind == "string" {
             metadata.push((name, String::from_utf8_lossy(&value).into_owned()));
-        } else if name == "dataWindow" {
-            for (edge, four) in window.iter_mut().zip(value.chunks_exact(4)) {
-                *edge = four.iter().rev().fold(0_i32, |number, byte| number << 8 | i32::from(*byte)).into();
-            }
         }
     }
     Err(io::Error::new(io::ErrorKind::InvalidData, "it has too many attributes"))

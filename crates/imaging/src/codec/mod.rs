@@ -11,7 +11,7 @@ use crate::look::{self, DisplayLook};
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Curve, Matrix, Srgb, Tone};
-use crate::{ImageError, ImageFormat, Limits, Viewpoint};
+use crate::{ClampCount, CropFrame, ExrWindows, ImageError, ImageFormat, Limits, Viewpoint};
 use juggler_math::message::excerpt;
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Seek};
@@ -41,13 +41,18 @@ pub struct Header {
     pub metadata: Vec<(String, String)>,
     /// Camera matrices, if known; EXR stores them.
     pub viewpoint: Option<Viewpoint>,
+    /// Frame that the image is a crop of, if it is one; EXR stores it as its display window.
+    pub crop: Option<CropFrame>,
+    /// Receives the number of values that a writer clamps to the range of half floats.
+    pub clamped: ClampCount,
 }
 
 impl Header {
     /// A header for this image size with default settings.
     pub fn new(width: u32, height: u32) -> Self {
         let (tone, options) = (Tone::default(), Options::default());
-        Self { width, height, tone, options, metadata: Vec::new(), viewpoint: None }
+        let (crop, clamped) = (None, ClampCount::default());
+        Self { width, height, tone, options, metadata: Vec::new(), viewpoint: None, crop, clamped }
     }
 
     /// Checks that the format can store the tone's primaries; called before rendering.
@@ -318,21 +323,27 @@ pub struct ImageInfo {
     pub height: u32,
     /// Metadata as pairs of key and text, in order; empty for formats without metadata.
     pub metadata: Vec<(String, String)>,
+    /// Data and display windows of an EXR file.
+    pub windows: Option<ExrWindows>,
 }
 
 /// Reads image size and metadata without decoding pixels.
 pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<ImageInfo, ImageError> {
     let plain = |size| (size, Vec::new());
+    let mut windows = None;
     let inspected = match source.format {
         ImageFormat::Png => png::inspect(source, bytes),
-        ImageFormat::Exr => exr::inspect(source, bytes),
+        ImageFormat::Exr => exr::inspect(source, bytes).map(|(inspected, found)| {
+            windows = Some(found);
+            inspected
+        }),
         ImageFormat::Hdr => hdr::inspect(source, bytes),
         ImageFormat::Jpeg => jpeg::size(source, bytes).map(plain),
         ImageFormat::Webp => webp::size(source, bytes).map(plain),
         ImageFormat::Pfm => pfm::size(source, bytes).map(plain),
     };
     let ((width, height), metadata) = source.with_offset(bytes, inspected)?;
-    Ok(ImageInfo { format: source.format, width, height, metadata })
+    Ok(ImageInfo { format: source.format, width, height, metadata, windows })
 }
 
 /// Metadata as pairs of key and text, in order.

@@ -2,7 +2,7 @@
 //! equal images are equal files. (OpenEXR file layout, openexr.com.)
 
 use crate::tone::Chromaticities;
-use crate::{ExrCompression, SampleDepth, Viewpoint};
+use crate::{CropFrame, ExrCompression, ExrWindows, PixelWindow, SampleDepth, Viewpoint};
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Format version, and the flags for long names and for multi-part files.
@@ -53,18 +53,22 @@ impl Attributes {
         self.put("chromaticities", "chromaticities", &floats(eight.map(|v| v as f32)));
     }
 
-    /// Appends the other required attributes: compression, windows, scanlines from the top, square
-    /// pixels.
-    pub fn frame(&mut self, width: u32, height: u32, compression: ExrCompression) {
+    /// Appends the other required attributes: compression, windows of an image of this size, which
+    /// may be a crop, scanlines from the top, square pixels.
+    pub fn frame(&mut self, size: [u32; 2], crop: Option<CropFrame>, compression: ExrCompression) {
         let code = match compression {
             ExrCompression::None => 0,
             ExrCompression::Rle => 1,
             ExrCompression::Zip => 3,
         };
-        let window: Vec<u8> = [0, 0, width - 1, height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
+        let window = |PixelWindow { x, y, width, height }: PixelWindow| -> Vec<u8> {
+            let last = [(x, width), (y, height)].map(|(first, size)| first.saturating_add_unsigned(size) - 1);
+            [x, y].into_iter().chain(last).flat_map(|edge| (edge as i32).to_le_bytes()).collect()
+        };
+        let ExrWindows { data, display } = ExrWindows::new(size, crop);
         self.put("compression", "compression", &[code]);
-        self.put("dataWindow", "box2i", &window);
-        self.put("displayWindow", "box2i", &window);
+        self.put("dataWindow", "box2i", &window(data));
+        self.put("displayWindow", "box2i", &window(display));
         self.put("lineOrder", "lineOrder", &[0]);
         self.put("pixelAspectRatio", "float", &1f32.to_le_bytes());
         self.put("screenWindowCenter", "v2f", &[0; 8]);

@@ -3,9 +3,10 @@
 
 use super::attributes::{self, Attributes};
 use super::{LayerHeader, LayerRows, LayeredHeader};
+use crate::clamp_count::LARGEST_HALF;
 use crate::output::WriteSeek;
 use crate::tone::Matrix;
-use crate::{ExrCompression, ImageError, ImageFormat, SampleDepth};
+use crate::{ClampCount, ExrCompression, ImageError, ImageFormat, SampleDepth};
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
@@ -28,6 +29,7 @@ pub struct Writer {
     /// Offset of the chunk offset tables, and current end of the file.
     tables: u64,
     end: u64,
+    clamped: ClampCount,
 }
 
 /// State of one part.
@@ -61,7 +63,8 @@ impl Writer {
             Part { depth: layer.depth, primaries, order, pending, offsets: Vec::with_capacity(blocks) }
         };
         let parts = header.layers.iter().map(part).collect();
-        Ok(Self { bytes, file, headers, parts, width, height, block_rows, tables, end })
+        let clamped = header.clamped.clone();
+        Ok(Self { bytes, file, headers, parts, width, height, block_rows, tables, end, clamped })
     }
 
     /// Compresses and writes the buffered block of a part.
@@ -72,6 +75,7 @@ impl Writer {
         let (pixel_position, pixel_size) = (Vec2(0, y), Vec2(self.width, rows));
         let index = BlockIndex { layer: number, pixel_position, pixel_size, level: Vec2(0, 0) };
         let data = part.planes(self.width);
+        self.clamped.add(part.beyond_half());
         part.pending.iter_mut().for_each(Vec::clear);
         part.offsets.push(self.end);
         let mut chunk = Vec::new();
@@ -137,6 +141,12 @@ impl Part {
         }
     }
 
+    /// Number of buffered values that half floats cannot represent.
+    fn beyond_half(&self) -> u64 {
+        let values = self.pending.iter().flatten().filter(|_| self.depth == SampleDepth::Half);
+        values.filter(|value| value.abs() > LARGEST_HALF).count() as u64
+    }
+
     /// Samples of the buffered block: row by row, within a row channel by channel, sorted by name.
     fn planes(&self, width: usize) -> Vec<u8> {
         let rows = self.pending.first().map_or(0, Vec::len) / width.max(1);
@@ -157,10 +167,9 @@ impl Part {
     }
 }
 
-/// Nearest half float, at most the largest finite one: 65,504.
+/// Nearest half float, at most the largest finite one.
 fn to_half(value: f32) -> f16 {
-    let largest = f16::MAX.to_f32();
-    f16::from_f32(value.clamp(-largest, largest))
+    f16::from_f32(value.clamp(-LARGEST_HALF, LARGEST_HALF))
 }
 
 /// Channel indices sorted by name, as OpenEXR requires.
@@ -188,6 +197,8 @@ fn description(layer: &LayerHeader, header: &LayeredHeader) -> ExrHeader {
     let channels = names.map(|name| ChannelDescription::new(name.as_str(), sample_type, false)).collect();
     let size = (header.width as usize, header.height as usize);
     let plain = ExrHeader::new(layer.name.as_str().into(), size, channels);
+    let corner = header.crop.map_or([0, 0], |crop| crop.corner.map(|side| i32::try_from(side).unwrap_or(i32::MAX)));
+    let plain = plain.with_position(Vec2(corner[0], corner[1]));
     plain.with_encoding(exr_compression(header.compression), BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
@@ -223,7 +234,7 @@ fn part_bytes(
     if !header.primaries.is_srgb() && (layer.is_color || blocks.is_some()) {
         attributes.chromaticities(header.primaries.chromaticities());
     }
-    attributes.frame(header.width, header.height, header.compression);
+    attributes.frame([header.width, header.height], header.crop, header.compression);
     if let Some(blocks) = blocks {
         attributes.part(&layer.name, blocks);
     }

@@ -9,9 +9,10 @@ mod read;
 
 use crate::atomic::AtomicFile;
 use crate::output::{WriteSeek, whole_file};
-use crate::{ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
+use crate::{ClampCount, CropFrame, ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
 use std::path::{Path, PathBuf};
 
+pub(crate) use read::read_channels;
 pub use read::{LayerName, layer_names, read_layer};
 
 /// Placeholder for the layer name in file names.
@@ -71,6 +72,10 @@ pub struct LayeredHeader {
     pub metadata: Vec<(String, String)>,
     /// Camera matrices, if known.
     pub viewpoint: Option<Viewpoint>,
+    /// Frame that the image is a crop of; EXR files store it as their display window.
+    pub crop: Option<CropFrame>,
+    /// Receives the number of values that are clamped to the range of half floats.
+    pub clamped: ClampCount,
 }
 
 impl LayeredHeader {
@@ -84,6 +89,8 @@ impl LayeredHeader {
             primaries: header.tone.primaries,
             metadata: header.metadata.clone(),
             viewpoint: header.viewpoint,
+            crop: header.crop,
+            clamped: header.clamped.clone(),
         }
     }
 }

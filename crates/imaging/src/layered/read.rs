@@ -1,13 +1,13 @@
 //! Reading of layer names and single layers of EXR files.
 
-use crate::codec::exr::{read_headers, unreadable};
+use crate::codec::ReadSeek;
+use crate::codec::exr::{Placement, placement, read_headers, unreadable};
 use crate::input::{open, source};
 use crate::{ImageError, ImageFormat, Limits};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
-use std::io::{BufRead, Seek};
 use std::path::Path;
 
 /// Width and height of a layer, and three values per pixel, row by row.
@@ -66,41 +66,44 @@ pub fn read_layer(path: &Path, channels: &[&str]) -> Result<Option<LayerValues>,
         |header: &&Header| names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name));
     let headers = read_headers(source, &mut bytes)?;
     let Some(header) = headers.iter().filter(|header| !header.deep).find(has) else { return Ok(None) };
-    let values =
-        if second.is_none() { read_one_channel(&mut bytes, first) } else { read_three_channels(&mut bytes, names) };
+    let placement = placement(source, header)?;
+    let names = if second.is_none() { &names[..1] } else { &names };
+    let values = read_channels(&mut bytes, names, placement);
     let values = values.map_err(|error| unreadable(source, error))?;
-    // `read_headers` has checked that the sides fit 32 bits.
-    Ok(Some((header.layer_size.0 as u32, header.layer_size.1 as u32, values)))
+    let (width, height) = placement.size();
+    Ok(Some((width, height, values)))
 }
 
-type Values = (usize, Vec<[f32; 3]>);
-
-fn allocate(size: Vec2<usize>) -> Values {
-    (size.0, vec![[0.0; 3]; size.0.saturating_mul(size.1)])
-}
-
-fn put((width, values): &mut Values, position: Vec2<usize>, value: [f32; 3]) {
-    if let Some(target) = values.get_mut(position.1 * *width + position.0) {
-        *target = value;
-    }
-}
-
-fn read_one_channel(bytes: &mut (impl BufRead + Seek + Send), name: &str) -> Result<Vec<[f32; 3]>, ExrError> {
-    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels().required(name);
-    let reader = reader.collect_pixels(
-        |size, _| allocate(size),
-        |values: &mut Values, position, (value,): (f32,)| put(values, position, [value; 3]),
-    );
-    let image = reader.first_valid_layer().all_attributes().non_parallel().from_buffered(bytes)?;
-    Ok(image.layer_data.channel_data.pixels.1)
-}
-
-fn read_three_channels(bytes: &mut (impl BufRead + Seek + Send), names: [&str; 3]) -> Result<Vec<[f32; 3]>, ExrError> {
+/// Reads one channel, three times per pixel, or three different channels, within the display
+/// window; values outside of the data window are 0.
+pub(crate) fn read_channels(
+    bytes: &mut dyn ReadSeek,
+    names: &[&str],
+    placement: Placement,
+) -> Result<Vec<[f32; 3]>, ExrError> {
+    let allocate = move || vec![[0.0; 3]; placement.pixels()];
+    let put = move |values: &mut Vec<[f32; 3]>, position: Vec2<usize>, value: [f32; 3]| {
+        if let Some(target) = placement.index(position).and_then(|index| values.get_mut(index)) {
+            *target = value;
+        }
+    };
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels();
-    let reader = reader.required(names[0]).required(names[1]).required(names[2]).collect_pixels(
-        |size, _| allocate(size),
-        |values: &mut Values, position, (r, g, b): (f32, f32, f32)| put(values, position, [r, g, b]),
-    );
-    let image = reader.first_valid_layer().all_attributes().non_parallel().from_buffered(bytes)?;
-    Ok(image.layer_data.channel_data.pixels.1)
+    match names {
+        [red, green, blue] => {
+            let reader = reader.required(*red).required(*green).required(*blue).collect_pixels(
+                move |_, _| allocate(),
+                move |values, position, (r, g, b): (f32, f32, f32)| put(values, position, [r, g, b]),
+            );
+            let image = reader.first_valid_layer().all_attributes().non_parallel().from_buffered(&mut *bytes)?;
+            Ok(image.layer_data.channel_data.pixels)
+        }
+        names => {
+            let reader = reader.required(names.first().copied().unwrap_or_default()).collect_pixels(
+                move |_, _| allocate(),
+                move |values, position, (value,): (f32,)| put(values, position, [value; 3]),
+            );
+            let image = reader.first_valid_layer().all_attributes().non_parallel().from_buffered(&mut *bytes)?;
+            Ok(image.layer_data.channel_data.pixels)
+        }
+    }
 }

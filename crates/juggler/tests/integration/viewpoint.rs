@@ -40,12 +40,13 @@ fn projection_of_the_position_aov_is_its_pixel() {
         let tiles: Vec<_> = film.tiles().map(|(_, tile)| tile).collect();
         let [alpha, x, y, z] = picture.aovs().band_values(&picture.region(), &tiles, None).try_into().unwrap();
         let viewpoint = picture.header(Options::default()).viewpoint.unwrap();
-        let [width, height] = picture.size();
+        let ([width, _], [full_width, full_height]) = (picture.size(), picture.frame_size());
+        let corner = [picture.region().x, picture.region().y];
         let mut covered = 0;
         for pixel in (0..alpha.len()).filter(|pixel| alpha[*pixel] > 0.0) {
             let [u, v, _] = times(Vec3::new(x[pixel], y[pixel], z[pixel]), &viewpoint.world_to_ndc);
-            let (column, row) = (pixel as u32 % width, pixel as u32 / width);
-            let off = [u * width as f32 - column as f32 - 0.5, v * height as f32 - row as f32 - 0.5];
+            let (column, row) = (pixel as u32 % width + corner[0], pixel as u32 / width + corner[1]);
+            let off = [u * full_width as f32 - column as f32 - 0.5, v * full_height as f32 - row as f32 - 0.5];
             // At grazing angles far away, positions are exact to a hundredth of a pixel.
             assert!(off.iter().all(|off| off.abs() < 0.51), "{camera} {column} {row}: {off:?}");
             covered += 1;

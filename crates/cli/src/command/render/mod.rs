@@ -227,12 +227,16 @@ impl RenderCommand {
             self.report_existing(frame.frame_output)?;
             return Ok(false);
         }
+        let clamped = header.clamped.clone();
         let (outcome, beside) = match self.plan.output_kind {
             OutputKind::Picture(encoding) if !self.plan.needs_film(frame.frame_output) => {
                 (self.render(frame, encoding.format, &header, interrupts)?, Ok(()))
             }
             _ => film_render::render(self, frame, header, interrupts)?,
         };
+        if let Some(warning) = clamped.warning(&frame.frame_output.output).filter(|_| !self.plan.quiet) {
+            console::print_message(&warning);
+        }
         self.report(frame, &outcome)?;
         beside.map(|()| true)
     }

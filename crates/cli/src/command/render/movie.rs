@@ -5,7 +5,7 @@ use super::folder::{Access, FrameFolder};
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{FrameOutput, Movie};
-use juggler::imaging::{self, AnimationHeader, FrameWriter, Header};
+use juggler::imaging::{self, AnimationHeader, ExrWindows, FrameWriter, Header};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
@@ -81,7 +81,11 @@ pub fn is_rendered(frame_output: &FrameOutput, header: &Header) -> bool {
     let has_stats = |file: &String| file != STANDARD_OUTPUT && Path::new(file).exists();
     frame_output.stats.as_ref().is_none_or(has_stats)
         && imaging::inspect(Path::new(&frame_output.output)).is_ok_and(|facts| {
-            let same_size = (facts.width, facts.height) == (header.width, header.height);
+            let size = [header.width, header.height];
+            let same_size = match facts.windows {
+                Some(windows) => windows == ExrWindows::new(size, header.crop),
+                None => [facts.width, facts.height] == size,
+            };
             let has_tone = |texts: &[(String, String)]| texts.iter().any(|(key, _)| key == TONE);
             same_size
                 && header.metadata.iter().all(|text| facts.metadata.contains(text))
