@@ -8,7 +8,8 @@
 //! dropped, since the mesh keeps its form without them. Statements without an equivalent in a
 //! single mesh (groups, materials, smoothing groups, lines, curves) are counted and ignored, except
 //! by [`read_model`], which keeps them all but lines and curves. Positions may have sRGB colors
-//! after x, y and z, as MeshLab and Blender write them; they become the attribute `color`.
+//! after x, y and z, as MeshLab and Blender write them, or levels from 0 to 255; they become the
+//! attribute `color`.
 
 mod lenient;
 mod model;
@@ -166,7 +167,7 @@ struct ObjPiece {
     /// Whether the settings of faces are kept.
     is_model: bool,
     positions: Vec<Vec3>,
-    /// Linear colors of the positions; positions beyond the last color are white.
+    /// Encoded colors of the positions; positions beyond the last color are white.
     colors: Vec<Vec3>,
     marks: Vec<Mark>,
     uvs: Vec<Vec2>,
@@ -219,7 +220,7 @@ impl ObjPiece {
         let words = std::iter::once(first).chain(std::iter::from_fn(|| scanner.word()));
         match model::color(words) {
             Some(color) => {
-                self.colors.resize(self.positions.len().saturating_sub(1), Vec3::ONE);
+                self.colors.resize(self.positions.len().saturating_sub(1), model::NO_COLOR);
                 self.colors.push(color);
             }
             None => self.notes.weights += 1,
@@ -271,7 +272,7 @@ impl ObjPiece {
 struct ObjData {
     is_model: bool,
     positions: Vec<Vec3>,
-    /// Linear colors of the positions; positions beyond the last color are white.
+    /// Encoded colors of the positions; positions beyond the last color are white.
     colors: Vec<Vec3>,
     marks: Vec<Mark>,
     uvs: Vec<Vec2>,
@@ -298,7 +299,7 @@ impl ObjData {
 
     fn append(&mut self, piece: ObjPiece, limits: &Limits) -> Result<(), ImportErrorKind> {
         if !piece.colors.is_empty() {
-            self.colors.resize(self.positions.len(), Vec3::ONE);
+            self.colors.resize(self.positions.len(), model::NO_COLOR);
             self.colors.extend(piece.colors);
         }
         let triangles = self.welded.triangles();
@@ -327,7 +328,7 @@ impl ObjData {
         if !uvs.is_empty() && without > 0 {
             warnings.push(format!("{without} vertices have no texture coordinates and get 0 0"));
         }
-        let vertex_colors = vertex_colors(self.colors, self.positions.len(), &keys);
+        let vertex_colors = vertex_colors(self.colors, self.positions.len(), &keys, &mut warnings);
         let imported =
             MeshParts { positions, normals, uvs, vertex_colors, faces, warnings, ..MeshParts::default() }.assemble()?;
         let positions = if self.is_model { keys.iter().map(|[position, ..]| *position).collect() } else { Vec::new() };
@@ -336,11 +337,12 @@ impl ObjData {
 }
 
 /// Colors of the vertices, if positions have colors.
-fn vertex_colors(mut colors: Vec<Vec3>, positions: usize, keys: &[Key]) -> Colors {
+fn vertex_colors(mut colors: Vec<Vec3>, positions: usize, keys: &[Key], warnings: &mut Vec<String>) -> Colors {
     if colors.is_empty() {
         return Colors::default();
     }
-    colors.resize(positions, Vec3::ONE);
+    colors.resize(positions, model::NO_COLOR);
+    model::decode_colors(&mut colors, warnings);
     Colors { channels: 3, values: gather(keys, 0, &colors).iter().flat_map(Vec3::to_array).collect() }
 }
 

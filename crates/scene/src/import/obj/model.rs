@@ -93,13 +93,30 @@ fn smoothing(rest: &[u8]) -> u32 {
     integer(word).and_then(|group| u32::try_from(group).ok()).unwrap_or_default()
 }
 
-/// Linear color from the words after x, y and z of a position; `None` unless there are at least
+/// Encoded color from the words after x, y and z of a position; `None` unless there are at least
 /// three finite numbers.
 pub(super) fn color<'w>(words: impl Iterator<Item = &'w [u8]>) -> Option<Vec3> {
     let mut numbers = words.take(3).map(|word| std::str::from_utf8(word).ok()?.parse::<f32>().ok());
     let mut channel = || numbers.next().flatten().filter(|number| number.is_finite());
-    let color = Vec3::new(channel()?, channel()?, channel()?);
-    Some(Vec3::from(color.to_array().map(|encoded| srgb_decode(encoded.clamp(0.0, 1.0)))))
+    Some(Vec3::new(channel()?, channel()?, channel()?))
+}
+
+/// Color of a position without color: white in any range of numbers.
+pub(super) const NO_COLOR: Vec3 = Vec3::INFINITY;
+
+/// Largest channel of colors from 0 to 1. Larger ones in a file mean levels from 0 to 255.
+const LARGEST_FRACTION: f32 = 2.0;
+
+/// Decodes the colors of a file, which are sRGB from 0 to 1, or from 0 to 255 with a warning.
+pub(super) fn decode_colors(colors: &mut [Vec3], warnings: &mut Vec<String>) {
+    let are_levels = colors.iter().any(|color| color.is_finite() && color.max_element() > LARGEST_FRACTION);
+    if are_levels {
+        warnings.push("colors of vertices exceed 1: taken as levels from 0 to 255".to_owned());
+    }
+    let scale = if are_levels { 255.0 } else { 1.0 };
+    for color in colors {
+        *color = color.to_array().map(|channel| srgb_decode((channel / scale).clamp(0.0, 1.0))).into();
+    }
 }
 
 /// Sections and libraries of marks in the order of the file.
@@ -177,6 +194,12 @@ mod tests {
         let half = srgb_decode(0.5);
         let expected = vec![1.0, 0.0, half, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0];
         assert_eq!((color.channels, &color.data), (3, &juggler_shape::attribute::AttributeData::F32(expected)));
+        // Levels from 0 to 255; the position without color stays white.
+        let levels = read("v 0 0 0 255 0 51\nv 1 0 0\nv 0 1 0 0 1 255\nf 1 2 3\n");
+        let expected = [1.0, 0.0, 0.2, 1.0, 1.0, 1.0, 0.0, 1.0 / 255.0, 1.0].map(srgb_decode).to_vec();
+        let color = levels.mesh.attributes.get("color").unwrap();
+        assert_eq!(color.data, juggler_shape::attribute::AttributeData::F32(expected));
+        assert_eq!(levels.warnings, ["colors of vertices exceed 1: taken as levels from 0 to 255"]);
         let plain = read("v 0 0 0 1\nv 1 0 0 nan 1 1\nv 0 1 0\nf 1 2 3\n");
         assert!(plain.mesh.attributes.is_empty());
         assert_eq!(plain.warnings, ["2 vertices have numbers after x y z that are no colors: ignored"]);
