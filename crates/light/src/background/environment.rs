@@ -70,7 +70,12 @@ pub struct Panorama {
     mean: Rgb,
     /// Maximum channel of all pixels.
     max_channel: f32,
+    /// Number of pixels that were infinite in the image.
+    infinite_pixels: usize,
 }
+
+/// Largest finite half float, which replaces infinity.
+const LARGEST_HALF: f32 = 65_504.0;
 
 impl fmt::Debug for Panorama {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -103,21 +108,28 @@ impl Environment {
 
 impl Panorama {
     /// Creates a panorama from an image whose first row is up, +Y. Negative and NaN channels become
-    /// black. Returns an error if there are no pixels or some are infinite.
+    /// black, infinite ones the largest finite half float. Returns an error if there are no pixels.
     pub fn new(mut image: Image) -> Result<Self, &'static str> {
-        let light = |v: f32| if v > 0.0 { v } else { 0.0 };
+        let infinite_pixels = image.pixels().iter().filter(|pixel| pixel.max_channel() == f32::INFINITY).count();
+        let light = |v: f32| match v {
+            f32::INFINITY => LARGEST_HALF,
+            v if v > 0.0 => v,
+            _ => 0.0,
+        };
         image.pixels_mut().iter_mut().for_each(|pixel| *pixel = pixel.map(light));
         let max_channel = image.pixels().iter().fold(0.0, |most: f32, pixel| most.max(pixel.max_channel()));
-        if max_channel == f32::INFINITY {
-            return Err("has infinite pixels");
-        }
         let rows = image.height() as usize;
         let row_heights = DirectionTable::equal_angles(rows.max(1));
         let mean = mean(&image, &row_heights);
         let sampling_weights = sampling_weights(&image, mean.luminance());
         let directions =
             DirectionTable::new(image.width() as usize, row_heights, &sampling_weights).ok_or("has no pixels")?;
-        Ok(Self { image, directions, mean, max_channel })
+        Ok(Self { image, directions, mean, max_channel, infinite_pixels })
+    }
+
+    /// Number of pixels that were infinite in the image.
+    pub fn infinite_pixels(&self) -> usize {
+        self.infinite_pixels
     }
 
     /// Heap memory in bytes for a number of pixels.
@@ -309,7 +321,9 @@ mod tests {
         assert!(environment.sample(Vec2::ZERO).is_none());
         let panorama = |v: f32| Panorama::new(Image::filled(2, 1, Rgb::splat(v)));
         assert_eq!(environment.load(Image::filled(0, 0, Rgb::BLACK)).unwrap_err().field, "file");
-        assert_eq!(panorama(f32::INFINITY).err(), Some("has infinite pixels"));
+        let endless = panorama(f32::INFINITY).unwrap();
+        assert_eq!((endless.max_channel, endless.infinite_pixels()), (65_504.0, 2));
+        assert_eq!(panorama(1e30).unwrap().infinite_pixels(), 0);
         for nothing in [-3.0, f32::NAN] {
             environment.set_panorama(Arc::new(panorama(nothing).unwrap()));
             environment.prepare().unwrap();

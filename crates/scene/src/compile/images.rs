@@ -7,6 +7,7 @@ use crate::description::Description;
 use crate::import::Limits;
 use crate::item::Item;
 use crate::path::Path;
+use crate::report::Finding;
 use crate::store::Store;
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
@@ -46,6 +47,8 @@ struct ImageFile {
     pixels: Result<Arc<MipMap>, String>,
     /// Length and modification time, taken before the file was read; `None` for an asset.
     stamp: Option<(u64, SystemTime)>,
+    /// Number of pixels that are infinite in the file.
+    infinite: u64,
 }
 
 impl ImageCache {
@@ -56,6 +59,12 @@ impl ImageCache {
         let kept = entries.iter().filter(|((path, _), entry)| same(path, entry));
         let kept = kept.map(|(name, entry)| (name.clone(), Arc::clone(entry))).collect();
         Self { entries: Arc::new(Mutex::new(kept)) }
+    }
+
+    /// Number of infinite pixels of an image, if it is loaded.
+    fn infinite_pixels(&self, key: &ImageKey) -> u64 {
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        entries.get(key).map_or(0, |file| file.infinite)
     }
 
     /// Loads an image without holding the lock, as for meshes.
@@ -91,15 +100,18 @@ impl ImageFile {
         let stamp = file_stamp(path);
         let bytes = match store.read_bytes(path, &Limits::default()) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], pixels: Err(import_error_message(&error)), stamp },
+            Err(error) => {
+                return Self { digest: [0; 32], pixels: Err(import_error_message(&error)), stamp, infinite: 0 };
+            }
         };
         let digest = blake3::hash(&bytes).into();
         let raster = decode_raster(&display_name(path), Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
+        let infinite = raster.as_ref().map_or(0, infinite_pixels);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
             mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", display_name(path)))
         });
-        Self { digest, pixels, stamp }
+        Self { digest, pixels, stamp, infinite }
     }
 }
 
@@ -108,7 +120,35 @@ impl ImageFile {
     fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
         let pixels = MipMap::from_floats([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
         let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", display_name(path)));
-        Self { digest, pixels, stamp: None }
+        Self { digest, pixels, stamp: None, infinite: 0 }
+    }
+}
+
+fn infinite_pixels(raster: &Raster) -> u64 {
+    let RasterSamples::Floats(numbers) = &raster.samples else { return 0 };
+    let pixels = numbers.chunks(usize::from(raster.layout.channels).max(1));
+    pixels.filter(|pixel| pixel.iter().any(|number| number.is_infinite())).count() as u64
+}
+
+/// Warning about the infinite pixels of an image file; `None` if there are none.
+pub(super) fn infinity_warning(file: &str, count: u64) -> Option<String> {
+    let pixels = match count {
+        0 => return None,
+        1 => "1 pixel is infinite and becomes".to_owned(),
+        count => format!("{count} pixels are infinite and become"),
+    };
+    Some(format!("`{file}`: {pixels} 65504, the largest 16-bit float"))
+}
+
+/// Warns of infinite pixels in the loaded images of the scene's textures.
+pub(super) fn warn_of_infinities(scene: &Description, files: &Files<'_>, findings: &mut Vec<Finding>) {
+    for (name, texture) in &scene.textures {
+        let AnyTexture::Image(image) = &**texture else { continue };
+        let key = (files.asset_cache.store().canonical_name(&files.texture_file(name, image)), image.color_space);
+        let infinite = files.asset_cache.images().infinite_pixels(&key);
+        if let Some(message) = infinity_warning(&image.file, infinite) {
+            findings.push(Finding::warning(message).at(&files.texture_path(name)));
+        }
     }
 }
 

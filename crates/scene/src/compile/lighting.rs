@@ -1,7 +1,7 @@
 //! Files of backgrounds and lights, each read once, and prepared backgrounds.
 
 use super::file_cache::{CachedFile, FileCache};
-use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS};
+use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS, infinity_warning};
 use super::meshes::{AssetCache, Files};
 use crate::asset::display_name;
 use crate::description::{BackgroundInput, Description};
@@ -151,7 +151,12 @@ pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Find
     if let AnyBackground::Environment(environment) = &mut background {
         let path = path.key("file");
         match &files.asset_cache.panorama(&files.locate(&path, &environment.file)).content {
-            Ok(panorama) => environment.set_panorama(Arc::clone(panorama)),
+            Ok(panorama) => {
+                if let Some(message) = infinity_warning(&environment.file, panorama.infinite_pixels() as u64) {
+                    findings.push(Finding::warning(message).at(&path));
+                }
+                environment.set_panorama(Arc::clone(panorama));
+            }
             Err(message) => {
                 findings.push(Finding::error(message.clone()).at(&path));
                 return None;

@@ -1,5 +1,6 @@
 //! Compiles each material once and reports errors at the place of its description.
 
+use super::images;
 use super::labels::Names;
 use super::meshes::Files;
 use super::surface_coordinates::OverUv;
@@ -36,6 +37,7 @@ impl Materials {
             let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
+        images::warn_of_infinities(scene, &files, findings);
         for (name, material) in scene.materials.iter() {
             warn_of_ineffective_settings(material, &PathRef::Root.key("materials").key(name), findings);
         }

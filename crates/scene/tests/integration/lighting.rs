@@ -153,13 +153,22 @@ fn wrong_files_say_what_is_wrong_and_where() {
     let endless = [b"Pf\n1 1\n-1\n".as_slice(), &f32::INFINITY.to_le_bytes()].concat();
     fs::write(folder.path().join("endless.pfm"), endless).unwrap();
     assert!(Command::new("mkfifo").arg(folder.path().join("pipe.exr")).status().unwrap().success());
+    // Infinite pixels are a warning, for environments and for textures.
+    let scene = load(&folder, &panorama("endless.pfm", ""));
+    let warnings = scene.compile().unwrap().warnings.render(false);
+    assert!(warnings.contains("`endless.pfm`: 1 pixel is infinite and becomes 65504"), "{warnings}");
+    assert!(warnings.contains("at: background.environment.file"), "{warnings}");
+    let textured = r#"{"version": 1, "textures": {"wall": {"image": {"file": "endless.pfm"}}},
+        "materials": {"wall": {"diffuse": {"reflectance": "wall"}}}, "objects": [{"shape": "sphere", "material": "wall"}]}"#;
+    let warnings = load(&folder, textured).compile().unwrap().warnings.render(false);
+    assert!(warnings.contains("`endless.pfm`: 1 pixel is infinite and becomes 65504"), "{warnings}");
+    assert!(warnings.contains("at: textures.wall"), "{warnings}");
     for (file, message) in [
         ("pipe.exr", "cannot read `pipe.exr`: this is a named pipe (FIFO), not a regular file"),
         ("nowhere.exr", "cannot read `nowhere.exr`: file not found"),
         (".", "cannot read `.`: this is a folder, not a file"),
         ("text.hdr", "`text.hdr`: its first bytes match no supported format"),
         ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
-        ("endless.pfm", "`endless.pfm` has infinite pixels"),
     ] {
         let text = complaint(&folder, &panorama(file, ""));
         assert!(text.contains(message), "{file}: {text}");

@@ -2,6 +2,9 @@
 
 use super::half;
 
+/// Largest finite half-precision float.
+const LARGEST_HALF: f32 = 65_504.0;
+
 /// Samples of one image, in the smallest type that holds them exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
@@ -14,11 +17,15 @@ pub enum Texels {
 }
 
 impl Texels {
-    /// Stores numbers as halves if that loses nothing, otherwise as floats. NaN becomes 0, all
-    /// others are clamped to ±1e30.
+    /// Stores numbers as halves if that loses nothing, otherwise as floats. NaN becomes 0,
+    /// infinity the largest finite half, and all others are clamped to ±1e30.
     pub fn from_floats(mut numbers: Vec<f32>) -> Self {
         for number in &mut numbers {
-            *number = if number.is_nan() { 0.0 } else { number.clamp(-1e30, 1e30) };
+            *number = match *number {
+                number if number.is_nan() => 0.0,
+                number if number.is_infinite() => LARGEST_HALF.copysign(number),
+                number => number.clamp(-1e30, 1e30),
+            };
         }
         let is_half = |number: &f32| half::to_f32(half::from_f32(*number)).to_bits() == number.to_bits();
         if numbers.iter().all(is_half) {
@@ -117,7 +124,9 @@ mod tests {
             Texels::Halves(vec![0x3c00, 0xb800, 0x7bff, 0])
         );
         assert_eq!(Texels::from_floats(vec![1.0, 0.1]), Texels::Floats(vec![1.0, 0.1]));
-        assert_eq!(Texels::from_floats(vec![f32::INFINITY, -f32::INFINITY]), Texels::Floats(vec![1e30, -1e30]));
+        // Halves of infinity are the largest finite ones.
+        assert_eq!(Texels::from_floats(vec![f32::INFINITY, -f32::INFINITY]), Texels::Halves(vec![0x7bff, 0xfbff]));
+        assert_eq!(Texels::from_floats(vec![f32::MAX, f32::INFINITY]), Texels::Floats(vec![1e30, 65_504.0]));
         assert_eq!((Texels::Halves(vec![0; 3]).bytes(), Texels::Floats(vec![0.0; 3]).bytes()), (6, 12));
     }
 }
