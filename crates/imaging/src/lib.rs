@@ -29,6 +29,7 @@ pub mod format;
 pub mod input;
 pub mod layered;
 pub mod look;
+mod orientation;
 pub mod output;
 pub mod raster;
 pub mod regular;

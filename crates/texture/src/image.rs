@@ -20,6 +20,11 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Image texture: PNG, JPEG, WebP, OpenEXR, Radiance HDR or PFM.
+///
+/// Pictures are turned by the orientation that their Exif data states. An OpenEXR file shows its
+/// display window, black where it has no data; its picture is the channels R, G and B, a layer named
+/// `Combined`, `beauty`, `rgba`, `rgb` or `color`, the channel Y, the only color layer, or the only
+/// channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Image {
     /// Path of the image file, relative to the scene file.

@@ -2,6 +2,7 @@
 //! whole image, so 8-bit pixels are buffered.
 
 use super::{Header, ReadSeek, RowWriter, Source, UNEXPECTED_END};
+use crate::orientation::Orientation;
 use crate::output::Destination;
 use crate::raster::{Raster, RasterSamples, TransferFunction};
 use crate::tone::LevelEncoder;
@@ -69,7 +70,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, super::pixels_from_srgb(&bytes))
 }
 
-/// Reads the 8-bit RGB samples.
+/// Reads the 8-bit RGB samples, turned by the orientation that Exif states.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let (size, bytes) = samples(source, bytes)?;
     Ok(Raster {
@@ -88,8 +89,9 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<((u32, u32), Vec<
     }
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options());
     let size = decoded_size(source, &mut decoder)?;
+    let orientation = orientation(&decoder);
     let bytes = decoder.decode().map_err(|e| source.malformed(describe(&e)))?;
-    Ok((size, bytes))
+    Ok((orientation.size(size), orientation.turn(bytes, size, 3)))
 }
 
 fn options() -> DecoderOptions {
@@ -107,11 +109,17 @@ fn decoded_size<T: ZByteReaderTrait>(source: Source, decoder: &mut JpegDecoder<T
     source.size(u64::from(info.width), u64::from(info.height), MAX_PIXELS_PER_BYTE)
 }
 
+fn orientation<T: ZByteReaderTrait>(decoder: &JpegDecoder<T>) -> Orientation {
+    Orientation::from_exif(decoder.exif().map(Vec::as_slice))
+}
+
 /// Image size from the file's first bytes.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
     let mut start = Vec::new();
     bytes.take(HEAD_BYTES).read_to_end(&mut start).map_err(|e| source.failed(e))?;
-    decoded_size(source, &mut JpegDecoder::new_with_options(Cursor::new(&start), options()))
+    let mut decoder = JpegDecoder::new_with_options(Cursor::new(&start), options());
+    let size = decoded_size(source, &mut decoder)?;
+    Ok(orientation(&decoder).size(size))
 }
 
 /// Describes a decoder error in plain words.

@@ -5,6 +5,7 @@
 
 use super::{Header, Inspected, ReadSeek, RowWriter, Source, UNEXPECTED_END};
 use crate::ImageError;
+use crate::orientation::Orientation;
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Chromaticities, LevelEncoder, Matrix};
@@ -177,6 +178,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let info = reader.info();
     let (width, height) = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
     let (interlaced, transfer_function, matrix) = (info.interlaced, transfer_function(info), to_srgb(info));
+    let orientation = orientation(info);
     let (color, depth) = reader.output_color_type();
     let row = Row::new(color, depth, transfer_function, u64::from(width) * u64::from(height));
     let mut pixels = Vec::new();
@@ -190,6 +192,8 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         }
     }
     super::convert_primaries(&mut pixels, matrix);
+    let pixels = orientation.turn(pixels, (width, height), 1);
+    let (width, height) = orientation.size((width, height));
     source.image(width, height, pixels)
 }
 
@@ -205,6 +209,11 @@ fn to_srgb(info: &png::Info) -> Option<Matrix> {
     let pair = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x, y].map(|v| f64::from(v.into_value()));
     let [red, green, blue, white] = [chunk.red, chunk.green, chunk.blue, chunk.white].map(pair);
     Chromaticities { red, green, blue, white }.to_srgb()
+}
+
+/// Orientation that an eXIf chunk before the pixels states.
+fn orientation(info: &png::Info) -> Orientation {
+    Orientation::from_exif(info.exif_metadata.as_deref())
 }
 
 /// Transfer function of the file; sRGB if it names none.
@@ -231,7 +240,11 @@ fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Resu
     let info = reader.info();
     let size = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
     let (color, depth) = reader.output_color_type();
-    let layout = source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 });
+    let layout = source.layout(
+        orientation(info).size(size),
+        color.samples() as u8,
+        if depth == BitDepth::Sixteen { 2 } else { 1 },
+    );
     // White keeps its value, and so does gray.
     Ok(RasterLayout { to_srgb: to_srgb(info).filter(|_| layout.channels > 2), ..layout })
 }
@@ -244,10 +257,13 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
     let (layout, transfer_function) = (layout_of(source, &reader)?, transfer_function(reader.info()));
     let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
     reader.next_frame(&mut bytes).map_err(|e| unreadable(source, e))?;
+    let orientation = orientation(reader.info());
+    let (stored, channels) = (orientation.size((layout.width, layout.height)), usize::from(layout.channels));
     let samples = if layout.sample_bytes == 2 {
-        RasterSamples::Words(bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect())
+        let words = bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect();
+        RasterSamples::Words(orientation.turn(words, stored, channels))
     } else {
-        RasterSamples::Bytes(bytes)
+        RasterSamples::Bytes(orientation.turn(bytes, stored, channels))
     };
     Ok(Raster { layout, samples, transfer_function })
 }
@@ -307,5 +323,6 @@ pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspec
     let plain = info.uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
     let wide = info.utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap_or_default()));
     let size = source.size(u64::from(info.width), u64::from(info.height), max_pixels_per_byte(info))?;
+    let size = orientation(info).size(size);
     Ok((size, plain.chain(wide).collect()))
 }

@@ -1,6 +1,7 @@
 //! WebP, lossless (RFC 9649). The encoder needs the whole image, so 8-bit pixels are buffered.
 
 use super::{Header, ReadSeek, RowWriter, Source, UNEXPECTED_END};
+use crate::orientation::Orientation;
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::LevelEncoder;
@@ -72,7 +73,10 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(RasterLayout, Ve
     let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
     let mut samples = vec![0; size];
     decoder.read_image(&mut samples).map_err(|e| unreadable(source, e))?;
-    Ok((layout, samples))
+    let orientation = orientation(&mut decoder);
+    let samples = orientation.turn(samples, (layout.width, layout.height), usize::from(layout.channels));
+    let (width, height) = orientation.size((layout.width, layout.height));
+    Ok((RasterLayout { width, height, ..layout }, samples))
 }
 
 /// Creates a decoder after checking the file's length against its RIFF header.
@@ -94,13 +98,20 @@ fn layout_of<R: BufRead + Seek>(source: Source, decoder: &WebPDecoder<R>) -> Res
 
 /// Reads the layout of [`raster`] from the header.
 pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
-    layout_of(source, &decoder(source, bytes)?)
+    let mut decoder = decoder(source, bytes)?;
+    let layout = layout_of(source, &decoder)?;
+    let (width, height) = orientation(&mut decoder).size((layout.width, layout.height));
+    Ok(RasterLayout { width, height, ..layout })
 }
 
 /// Image size.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
-    let (width, height) = decoder(source, bytes)?.dimensions();
-    source.size(u64::from(width), u64::from(height), MAX_PIXELS_PER_BYTE)
+    layout(source, bytes).map(|layout| (layout.width, layout.height))
+}
+
+/// Orientation that Exif states; a damaged block states none.
+fn orientation<R: BufRead + Seek>(decoder: &mut WebPDecoder<R>) -> Orientation {
+    Orientation::from_exif(decoder.exif_metadata().ok().flatten().as_deref())
 }
 
 fn unreadable(source: Source, error: DecodingError) -> ImageError {

@@ -101,6 +101,73 @@ fn png_states_primaries_and_transfer_functions_by_cicp() {
     assert_eq!([1, 4, 5, 8, 13, 16, 18].map(curve), [Srgb, Gamma(2.2), Gamma(2.8), Linear, Srgb, Pq, Hlg]);
 }
 
+/// Little-endian Exif block with an orientation.
+fn exif(code: u8) -> Vec<u8> {
+    [b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".as_slice(), &[code, 0, 0, 0, 0, 0, 0, 0]].concat()
+}
+
+/// Code 6 is that of a phone held upright: the stored rows are turned clockwise.
+#[test]
+fn pictures_are_turned_by_their_exif_orientation() {
+    use png::BitDepth::{Eight, Sixteen};
+    let image = picture(19, 8, 1.0);
+    let block = exif(6);
+    let jpeg = encode(ImageFormat::Jpeg, &image, &header(&image));
+    let app1 = [&[0xff, 0xe1, 0, (2 + 6 + block.len()) as u8][..], b"Exif\0\0", &block].concat();
+    let turned_jpeg = [&jpeg[..2], &app1, &jpeg[2..]].concat();
+    let png = |with_exif: bool, depth: png::BitDepth| {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 3, 2);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(depth);
+        let mut writer = encoder.write_header().unwrap();
+        if with_exif {
+            writer.write_chunk(png::chunk::eXIf, &block).unwrap();
+        }
+        let size = if depth == Sixteen { 36 } else { 18 };
+        writer.write_image_data(&(0..size).map(|level| level * 7).collect::<Vec<u8>>()).unwrap();
+        drop(writer);
+        bytes
+    };
+    let webp = encode(ImageFormat::Webp, &image, &header(&image));
+    // An extended file: a flag for Exif, the size, the pixels, and the block.
+    let mut chunks = b"WEBPVP8X\x0a\0\0\0\x08\0\0\0\x12\0\0\x07\0\0".to_vec();
+    chunks.extend(&webp[12..]);
+    chunks.extend(b"EXIF");
+    chunks.extend((block.len() as u32).to_le_bytes());
+    chunks.extend(&block);
+    let turned_webp = [b"RIFF".as_slice(), &(chunks.len() as u32).to_le_bytes(), &chunks].concat();
+    for (plain, turned) in [
+        (jpeg, turned_jpeg),
+        (png(false, Eight), png(true, Eight)),
+        (png(false, Sixteen), png(true, Sixteen)),
+        (webp, turned_webp),
+    ] {
+        let image = |bytes: &[u8]| decode("a file", Cursor::new(bytes), &LIMITS).unwrap();
+        let (from, to) = (image(&plain), image(&turned));
+        let (width, height) = (from.width(), from.height());
+        assert_eq!((to.width(), to.height()), (height, width));
+        for (index, pixel) in to.pixels().iter().enumerate() {
+            let (x, y) = (index as u32 % height, index as u32 / height);
+            assert_eq!(*pixel, from.pixels()[((height - 1 - x) * width + y) as usize], "{x} {y}");
+        }
+        let raster = read(&turned).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        std::fs::write(&path, &turned).unwrap();
+        assert_eq!(juggler_imaging::inspect_raster(&path).unwrap(), raster.layout);
+        assert_eq!((raster.layout.width, raster.layout.height), (height, width));
+        let info = juggler_imaging::inspect(&path).unwrap();
+        assert_eq!((info.width, info.height), (height, width));
+        let levels = |bytes: &[u8]| match read(bytes).unwrap().samples {
+            RasterSamples::Bytes(levels) => levels.chunks(3).map(|pixel| u32::from(pixel[0])).collect::<Vec<u32>>(),
+            RasterSamples::Words(levels) => levels.chunks(3).map(|pixel| u32::from(pixel[0])).collect(),
+            RasterSamples::Floats(_) => panic!("levels"),
+        };
+        assert_eq!(levels(&turned)[1], levels(&plain)[((height - 2) * width) as usize]);
+    }
+}
+
 /// A Radiance file with these header lines, resolution and pixels.
 fn hdr(lines: &str, size: &str, pixels: &[u8]) -> Vec<u8> {
     let head = format!("#?RADIANCE\n{lines}FORMAT=32-bit_rle_rgbe\n\n{size}\n");
