@@ -5,9 +5,12 @@ use super::super::error::{FilePosition, ImportErrorKind, quote};
 use super::super::faces::Faces;
 use super::super::pieces::read_pieces;
 use super::super::text::finite;
+use super::super::weld::WeldedPiece;
 use super::super::{Imported, Limits};
 use super::colors::ColorColumns;
+use super::corners::{self, CornerVertices};
 use super::header::{Element, Header, Property, Scalar};
+use super::strips::read_strips;
 use super::vertices::read_vertices;
 
 /// Reads a sequence of numbers. A clone continues from the same position.
@@ -74,14 +77,23 @@ impl<'h> Body<'h> {
         check_counts(self.header, &values)?;
         let warnings = self.header.warning.iter().cloned().collect();
         let mut parts = MeshParts { warnings, ..MeshParts::default() };
+        let has_coordinates = |element: &Element| element.name == "face" && corners::column(element).is_some();
+        let mut corners = self.header.elements.iter().any(has_coordinates).then(CornerVertices::default);
         for element in &self.header.elements {
             match element.name.as_str() {
                 "vertex" => read_vertices(self, element, &mut values, &mut parts)?,
-                "face" => self.read_faces(element, &mut values, &mut parts)?,
+                "face" => self.read_faces(element, &mut values, &mut parts, &mut corners)?,
+                "tristrips" => self.read_strips(element, &mut values, &mut parts, &mut corners)?,
                 _ => skip_element(element, &mut values, &mut parts.warnings)?,
             }
         }
         values.end()?;
+        corners.map_or(Ok(()), |corners| corners.replace(&mut parts, self.limits))?;
+        let colors = &parts.face_colors;
+        if colors.values.len() != colors.channels.saturating_mul(parts.faces.len()) {
+            parts.warnings.push("colors of faces are ignored: triangle strips have none".to_owned());
+            parts.face_colors = Colors::default();
+        }
         parts.assemble()
     }
 
@@ -114,34 +126,62 @@ impl<'h> Body<'h> {
         element: &Element,
         values: &mut impl Values,
         parts: &mut MeshParts,
+        corners: &mut Option<CornerVertices>,
     ) -> Result<(), ImportErrorKind> {
-        let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
-        let Some(column) = element.properties.iter().position(is_indices) else {
-            return Err(element.place.error("expected a property 'vertex_indices' of the element 'face'"));
-        };
-        if element.properties.get(column).is_none_or(|property| property.length.is_none()) {
-            return Err(element.place.error("expected the property 'vertex_indices' to be a list"));
-        }
-        let color = ColorColumns::of(element);
-        let color = color.as_ref();
-        let is_color = |index: usize| color.is_some_and(|color| color.channel(index).is_some());
-        note_ignored(element, |index| index == column || is_color(index), &mut parts.warnings);
-        let vertices = self.header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
-        self.limits.check_vertices(vertices)?;
+        let columns = FaceColumns::of(element)?;
+        note_ignored(element, |index| columns.has(index), &mut parts.warnings);
+        let vertices = self.vertices()?;
         // All rows are known to fit into the file, and most faces are one triangle.
         let most = element.count.min(u64::from(self.limits.triangles));
-        let mut faces = Faces::with_capacity(usize::try_from(most).unwrap_or(0));
+        if corners.is_none() && parts.faces.len() == 0 {
+            parts.faces = Faces::with_capacity(usize::try_from(most).unwrap_or(0));
+        }
         self.read_rows(
             element,
             values,
-            |rows| read_piece(element, (column, color), rows, vertices, self.limits),
-            |(piece, colors)| {
+            |rows| read_piece(element, &columns, rows, vertices, self.limits),
+            |FacePiece { welded, colors, missing }| {
                 parts.face_colors.extend(colors);
-                faces.append(&piece, 0, self.limits)
+                match corners {
+                    Some(corners) => {
+                        corners.missing += missing;
+                        corners.welded.append(welded, self.limits)
+                    }
+                    None => parts.faces.append(&welded.faces, 0, self.limits),
+                }
             },
-        )?;
-        parts.faces = faces;
-        Ok(())
+        )
+    }
+
+    /// Reads triangle strips; their corners have no surface coordinates of their own.
+    fn read_strips(
+        &self,
+        element: &Element,
+        values: &mut impl Values,
+        parts: &mut MeshParts,
+        corners: &mut Option<CornerVertices>,
+    ) -> Result<(), ImportErrorKind> {
+        let column = index_column(element)?;
+        note_ignored(element, |index| index == column, &mut parts.warnings);
+        let vertices = self.vertices()?;
+        let Some(corners) = corners else {
+            let add = |triangle| parts.faces.push_triangle(triangle, self.limits);
+            return read_strips(element, column, values, vertices, add);
+        };
+        let mut piece = WeldedPiece::default();
+        let mut add = |mut triangle: [u32; 3]| {
+            corners.missing += 1;
+            corners::push(&mut piece, &mut triangle, &[], self.limits).map(|_| ())
+        };
+        read_strips(element, column, values, vertices, &mut add)?;
+        corners.welded.append(piece, self.limits)
+    }
+
+    /// Number of vertices that the header declares, within the limits.
+    fn vertices(&self) -> Result<u64, ImportErrorKind> {
+        let element = self.header.elements.iter().find(|element| element.name == "vertex");
+        let count = element.map_or(0, |element| element.count);
+        self.limits.check_vertices(count).map(|()| count)
     }
 }
 
@@ -166,47 +206,110 @@ fn row_size(element: &Element, values: &impl Values) -> u64 {
     element.properties.iter().map(|property| values.min_size(property.length.unwrap_or(property.item))).sum()
 }
 
-/// Reads rows as faces whose corners are the list in this column, and the colors of their
-/// triangles.
+/// Columns of faces.
+struct FaceColumns {
+    /// List of vertex indices.
+    indices: usize,
+    color: Option<ColorColumns>,
+    /// List of the surface coordinates of corners.
+    coordinates: Option<usize>,
+}
+
+/// Column of the list of vertex indices.
+fn index_column(element: &Element) -> Result<usize, ImportErrorKind> {
+    let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
+    let Some(column) = element.properties.iter().position(is_indices) else {
+        let message = format!("expected a property 'vertex_indices' of the element '{}'", element.name);
+        return Err(element.place.error(message));
+    };
+    if element.properties.get(column).is_none_or(|property| property.length.is_none()) {
+        return Err(element.place.error("expected the property 'vertex_indices' to be a list"));
+    }
+    Ok(column)
+}
+
+impl FaceColumns {
+    fn of(element: &Element) -> Result<Self, ImportErrorKind> {
+        let (indices, color) = (index_column(element)?, ColorColumns::of(element));
+        Ok(Self { indices, color, coordinates: corners::column(element) })
+    }
+
+    /// Whether a column is read.
+    fn has(&self, column: usize) -> bool {
+        column == self.indices || self.coordinates == Some(column) || self.channel(column).is_some()
+    }
+
+    /// Color columns, and the channel of a column.
+    fn channel(&self, column: usize) -> Option<(&ColorColumns, usize)> {
+        let color = self.color.as_ref()?;
+        color.channel(column).map(|channel| (color, channel))
+    }
+}
+
+/// Faces of a piece.
+#[derive(Default)]
+struct FacePiece {
+    /// The faces; with surface coordinates of corners, these welded.
+    welded: WeldedPiece,
+    /// Colors of the triangles.
+    colors: Colors,
+    /// Number of faces whose surface coordinates do not fit their corners.
+    missing: u64,
+}
+
+/// Reads rows as faces.
 fn read_piece(
     element: &Element,
-    (column, color): (usize, Option<&ColorColumns>),
+    columns: &FaceColumns,
     mut rows: Rows<impl Values>,
     vertices: u64,
     limits: &Limits,
-) -> Result<(Faces, Colors), ImportErrorKind> {
+) -> Result<FacePiece, ImportErrorKind> {
     let values = &mut rows.values;
-    let channels = color.map_or(0, ColorColumns::channels);
-    let mut colors = Colors { channels, values: Vec::new() };
-    let mut face_color = [0.0; 4];
-    let mut faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
-    let mut corners = Vec::new();
+    let channels = columns.color.as_ref().map_or(0, ColorColumns::channels);
+    let mut piece = FacePiece { colors: Colors { channels, values: Vec::new() }, ..FacePiece::default() };
+    piece.welded.faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
+    let (mut face_color, mut corners, mut coordinates) = ([0.0; 4], Vec::new(), Vec::new());
     for _ in 0..rows.count {
         values.begin_row()?;
         for (index, property) in element.properties.iter().enumerate() {
-            match property.length {
-                Some(length) if index == column => read_corners(values, length, property.item, vertices, &mut corners)?,
-                _ => match color.and_then(|color| Some((color, color.channel(index)?))) {
-                    Some((color, channel)) => {
-                        let place = values.place();
-                        let number = values.real(property.item, &property.name)?;
-                        finite(number, place, &property.name)?;
-                        if let Some(entry) = face_color.get_mut(channel) {
-                            *entry = color.linear(channel, number);
-                        }
+            match (property.length, columns.channel(index)) {
+                (Some(length), _) if index == columns.indices => {
+                    read_corners(values, length, property.item, vertices, &mut corners)?;
+                }
+                (Some(length), _) if columns.coordinates == Some(index) => {
+                    corners::read_coordinates(values, (length, property.item), &mut coordinates)?;
+                }
+                (None, Some((color, channel))) => {
+                    let number = finite_number(values, property)?;
+                    if let Some(entry) = face_color.get_mut(channel) {
+                        *entry = color.linear(channel, number);
                     }
-                    None => skip(property, values)?,
-                },
+                }
+                _ => skip(property, values)?,
             }
         }
         values.end_row()?;
-        faces.push(&corners, limits)?;
+        match columns.coordinates {
+            Some(_) => {
+                let fits = corners::push(&mut piece.welded, &mut corners, &coordinates, limits)?;
+                piece.missing += u64::from(!fits);
+            }
+            None => piece.welded.faces.push(&corners, limits)?,
+        }
         // A polygon of n corners becomes n - 2 triangles, all of its color.
         for _ in 2..corners.len() {
-            colors.values.extend(face_color.iter().take(channels));
+            piece.colors.values.extend(face_color.iter().take(channels));
         }
     }
-    Ok((faces, colors))
+    Ok(piece)
+}
+
+fn finite_number(values: &mut impl Values, property: &Property) -> Result<f32, ImportErrorKind> {
+    let place = values.place();
+    let number = values.real(property.item, &property.name)?;
+    finite(number, place, &property.name)?;
+    Ok(number)
 }
 
 fn read_corners(
@@ -223,14 +326,17 @@ fn read_corners(
             corners.push(corner);
             Ok(())
         }
-        _ => {
-            Err(place
-                .error(format!("vertex index {index} is out of range: there are {vertices} vertices, starting at 0")))
-        }
+        _ => Err(out_of_range(place, index, vertices)),
     })
 }
 
-fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, ImportErrorKind> {
+/// Error about a vertex index.
+pub(super) fn out_of_range(place: FilePosition, index: i64, vertices: u64) -> ImportErrorKind {
+    place.error(format!("vertex index {index} is out of range: there are {vertices} vertices, starting at 0"))
+}
+
+/// Reads the length of a list.
+pub(super) fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, ImportErrorKind> {
     let mut length = 0;
     values.integers(kind, 1, "the length of a list", |place, found| {
         length =

@@ -1,7 +1,9 @@
 //! Counts that the header of a PLY declares, for estimates made without reading the rest.
 
 use super::super::text::Scanner;
+use super::super::weld::Key;
 use super::colors::ColorColumns;
+use super::corners;
 use super::header::{Element, Encoding, Header};
 use super::vertices::bytes_of_vertex;
 
@@ -26,23 +28,35 @@ pub(in super::super) fn declared(head: &[u8], size: u64) -> Option<DeclaredCount
     let mut scanner = Scanner::new(head);
     let header = Header::read(&mut scanner).ok()?;
     let element = |name: &str| header.elements.iter().find(|element| element.name == name);
-    let (vertex, face) = (element("vertex")?, element("face")?);
+    let (vertex, strips) = (element("vertex")?, element("tristrips"));
+    let face = element("face").or(strips)?;
     if vertex.count > size || face.count > size {
         return None;
     }
     let corners = match header.encoding {
+        // Each index of a strip takes a digit and a blank, and may be a triangle.
+        Encoding::Ascii if strips.is_some() => Some(size / 2),
         Encoding::Ascii => None,
         Encoding::Binary(_) => {
             let rows: u64 =
                 header.elements.iter().map(least_bytes).fold(scanner.position() as u64, u64::saturating_add);
-            let lists = face.properties.iter().filter(|property| property.length.is_some());
+            let lists = face.properties.iter().chain(strips.iter().flat_map(|strips| &strips.properties));
+            let lists = lists.filter(|property| property.length.is_some());
             let index = lists.map(|property| property.item.size()).min().unwrap_or(4);
             Some(size.saturating_sub(rows) / index)
         }
     };
     let face_bytes = ColorColumns::of(face).map_or(0, |color| color.bytes());
     let vertex_bytes = bytes_of_vertex(vertex);
-    Some(DeclaredCounts { vertices: vertex.count, vertex_bytes, face_bytes, faces: face.count, corners })
+    // Corners with surface coordinates may all become vertices of their own.
+    let (mut vertices, mut vertex_bytes) = (vertex.count, vertex_bytes);
+    if corners::column(face).is_some() {
+        vertices = vertices.max(corners.unwrap_or(face.count.saturating_mul(3)));
+        vertex_bytes += 8 + size_of::<Key>() as u64;
+    }
+    // A strip is no face: its triangles follow from its corners.
+    let faces = if face.name == "face" { face.count } else { 0 };
+    Some(DeclaredCounts { vertices, vertex_bytes, face_bytes, faces, corners })
 }
 
 /// Bytes of all rows of an element in a binary file if its lists were empty.

@@ -317,3 +317,56 @@ fn several_elements_may_stand_on_a_line() {
     let further = error(format!("{header}{} 7", rows.replace('\n', " ")));
     assert!(further.1.starts_with("expected the end of the line"), "{further:?}");
 }
+
+/// A strip of two triangles, a restart, and a strip joined to another by repeated indices.
+#[test]
+fn triangle_strips_alternate_their_winding_and_restart() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n";
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    let points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
+    let file = |indices: &str, faces: &str, face: &str| {
+        let count = indices.split(' ').count();
+        format!("{head}{strips}{faces}end_header\n{points}{count} {indices}\n{face}")
+    };
+    let triangles = |indices: &str| read(file(indices, "", "")).mesh.triangles;
+    assert_eq!(triangles("0 1 2 3"), [[0, 1, 2], [2, 1, 3]]);
+    assert_eq!(triangles("0 1 2 3 -1 2 3 4 5"), [[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]]);
+    assert_eq!(triangles("0 1 2 2 4 3 5"), [[0, 1, 2], [4, 2, 3], [4, 3, 5]]);
+    // All triangles of a plane face the same side.
+    let Imported { mesh, warnings } = read(file("0 1 2 3 4 5", "", ""));
+    let point = |corner: u32| mesh.positions[corner as usize];
+    assert!(mesh.triangles.iter().all(|[a, b, c]| (point(*b) - point(*a)).cross(point(*c) - point(*a)).z == 1.0));
+    assert!(mesh.triangles.len() == 4 && warnings.is_empty(), "{warnings:?}");
+    // Faces and strips are joined; strips have no colors.
+    let face = "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let Imported { mesh, warnings } = read(file("0 1 2", face, "3 3 4 5 255 0 0\n"));
+    assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
+    assert_eq!(warnings, ["colors of faces are ignored: triangle strips have none"]);
+    let (_, message) = error(file("0 1 6", "", ""));
+    assert!(message.contains("vertex index 6 is out of range: there are 6 vertices"), "{message}");
+    assert!(error(file("0 1 -2", "", "")).1.contains("vertex index -2 is out of range"));
+}
+
+/// MeshLab's coordinates of wedges: corners of a vertex with other coordinates become vertices.
+#[test]
+fn coordinates_of_corners_split_vertices() {
+    let text = SQUARE
+        .replace("element face 1", "element face 2")
+        .replace("vertex_indices\n", "vertex_indices\nproperty list uchar float texcoord\nproperty int texnumber\n")
+        .replace("property float z\n", "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n")
+        .replace("0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "0 0 0 0 0 1\n1 0 0 0 1 0\n1 1 0 1 0 0\n0 1 0 0 0 1\n")
+        .replace("4 0 1 2 3\n", "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 .5 .5 0 1 0\n");
+    let Imported { mesh, warnings } = read(&text);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 4]]);
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0), Vec3::Y]);
+    assert_eq!(mesh.uvs, [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.5, 0.5), vec2(0.0, 1.0)]);
+    assert_eq!(mesh.normals, [Vec3::Z, Vec3::Y, Vec3::X, Vec3::X, Vec3::Z]);
+    assert_eq!(warnings, ["ignored properties of 'face': 'texnumber'"]);
+    // A face without coordinates.
+    let Imported { mesh, warnings } = read(text.replace("6 0 0 .5 .5 0 1 0", "0 0"));
+    assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (2, 5));
+    assert!(warnings.contains(&"1 faces have no texture coordinates and get 0 0".to_owned()), "{warnings:?}");
+    // Small pieces give the same mesh.
+    let whole = super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap();
+    assert_eq!(super::read(text.as_bytes(), &Limits::default(), 1).unwrap(), whole);
+}
