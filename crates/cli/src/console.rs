@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::ColorChoice;
+use juggler::imaging::ClampCount;
 use juggler::math::message;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
@@ -11,6 +12,13 @@ pub fn print_result(text: &str) -> Result<(), Failure> {
     match writeln!(out, "{}", text.trim_end_matches('\n')).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::file("write", "standard output", &error)),
         _ => Ok(()),
+    }
+}
+
+/// Warns of the values that the writer of `file` has clamped to the range of half floats.
+pub fn warn_of_clamping(clamped: &ClampCount, file: &str, is_quiet: bool) {
+    if let Some(warning) = clamped.warning(file).filter(|_| !is_quiet) {
+        print_message(&warning);
     }
 }
 

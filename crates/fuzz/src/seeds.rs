@@ -2,7 +2,7 @@
 
 use crate::{models, obj, streams};
 use juggler::film::{self, RenderDescription, ShardDescription};
-use juggler::imaging::{Destination, ExrCompression, Header, ImageFormat, Options, SampleDepth, writer};
+use juggler::imaging::{CropFrame, Destination, ExrCompression, Header, ImageFormat, Options, SampleDepth, writer};
 use juggler::math::{Image, Rgb};
 use juggler::prelude::{Object, Scene, Settings, Sphere};
 use juggler::render::Control;
@@ -15,6 +15,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 const OBJ: &str = "# x\nmtllib a\no b\nv 0 0 0 1 0 0\nv 1e0 0 0\nv 1 1 .5\nv 0 1 0\nv .5 .5 0\nvt 0 0\nvt 1 0\nvt 1 1\n\
                    vn 0 0 1\nvn 0 1 0\nusemtl c\ns 1\nf 1 2 3\nf 1/1 2/2 3/3 4/1\nf 1//1 2//1 \\\n -1//2\nf -5/-3/-2 2/2/1 5/1/1 4/3/2\nl 1 2\n";
 
+const STRIPS: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 1 2 3\n";
+const WEDGES: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n\
+    0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 .5 1\n3 2 1 0 6 0 0 1 0 .5 .25\n";
 const PLY: &str = "ply\nformat ascii 1.0\ncomment c\nelement face 2\nproperty list uchar int vertex_indices\nproperty uchar red\n\
                    element vertex 4\nproperty float x\nproperty double y\nproperty short z\nproperty float nx\nproperty float ny\n\
                    property float nz\nend_header\n4 0 1 2 3 9\n3 2 1 0 9\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n";
@@ -64,7 +69,7 @@ pub fn for_target(target: &str) -> Vec<Vec<u8>> {
         "expression" => texts(&EXPRESSIONS),
         "obj" => texts(&[OBJ]),
         "mtl" => texts(&obj::LIBRARIES),
-        "ply" => [texts(&[PLY]), vec![binary_ply()]].concat(),
+        "ply" => [texts(&[PLY, STRIPS, WEDGES]), vec![binary_ply()]].concat(),
         "stl" => [texts(&[STL]), vec![binary_stl()]].concat(),
         "ies" => texts(&[IES]),
         "message" => texts(&MESSAGES),
@@ -147,7 +152,9 @@ fn pictures(name: &str) -> Vec<Vec<u8>> {
     ];
     let metadata = vec![("Software".to_owned(), "Juggler".to_owned()), ("Seed".to_owned(), "é".to_owned())];
     let files = choices.into_iter().filter_map(|options| {
-        let header = Header { options, metadata: metadata.clone(), ..Header::new(19, 18) };
+        // One file is a crop of a larger frame.
+        let crop = CropFrame::new([40, 30], [3, 4], [19, 18]).filter(|_| options.exr_depth == SampleDepth::Half);
+        let header = Header { options, metadata: metadata.clone(), crop, ..Header::new(19, 18) };
         let memory = Shared::default();
         let mut writer = writer(format, Destination::seekable("memory", memory.clone()), &header).ok()?;
         writer.write_rows(image.pixels()).ok()?;

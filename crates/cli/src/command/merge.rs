@@ -20,7 +20,7 @@ use juggler::denoise::DenoiserInput;
 use juggler::film::counts::SampleCountStats;
 use juggler::film::{self, MergeGoal, RenderDescription, Stop};
 use juggler::imaging::layered::LayeredWriter;
-use juggler::imaging::{self, CropFrame, Header, Tone};
+use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
 use juggler::render::Control;
 use juggler::{AovSet, Denoiser};
@@ -163,8 +163,8 @@ impl Merge {
         interrupts: &Interrupts,
     ) -> Result<FilmSummary, Failure> {
         let Encoding { format, options } = encoding;
-        let RenderDescription { size, region, tone, metadata, viewpoint, .. } = merge.description();
-        let (mut metadata, viewpoint) = (metadata.clone(), *viewpoint);
+        let RenderDescription { region, tone, metadata, viewpoint, .. } = merge.description();
+        let (mut metadata, viewpoint, crop) = (metadata.clone(), *viewpoint, merge.description().crop_frame());
         if let Some(sample_counts) = sample_counts {
             metadata.push((SAMPLES.to_owned(), sample_counts.to_string()));
         }
@@ -174,7 +174,6 @@ impl Merge {
         if let Some(warning) = effect::ignored_tone_warning(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
             console::print_message(&warning);
         }
-        let crop = CropFrame::new(*size, [region.x, region.y], [region.width, region.height]);
         let header = Header { tone, options, metadata, viewpoint, crop, ..Header::new(region.width, region.height) };
         let set = AovSet::from_description(&merge.description().aovs)?;
         memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
@@ -197,9 +196,7 @@ impl Merge {
         })?;
         writer.map_or(Ok(()), |writer| writer.finish())?;
         aov_writer.map_or(Ok(()), |(writer, _)| writer.finish())?;
-        if let Some(warning) = header.clamped.warning(&self.output).filter(|_| !self.quiet) {
-            console::print_message(&warning);
-        }
+        console::warn_of_clamping(&header.clamped, &self.output, self.quiet);
         let Some(pixels) = denoised else { return Ok(summary) };
         let mut digest = FilmDigest::new(region.width, region.height);
         digest.update(&pixels);

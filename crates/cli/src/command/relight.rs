@@ -10,7 +10,7 @@ use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::camera::film::{Rect, Tile};
 use juggler::film::{self, MergeGoal, RenderDescription};
-use juggler::imaging::{self, CropFrame, Header, Tone};
+use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
 use juggler::{AovSet, MAX_GAIN};
 use std::path::Path;
@@ -58,7 +58,7 @@ impl Relight {
         effect::check(Target::Picture(encoding), &given)?;
         let Encoding { format, options } = encoding;
         let merge = film::Merge::open(&self.films, MergeGoal::Whole)?;
-        let RenderDescription { size, region, tone, metadata, aovs, viewpoint, .. } = merge.description();
+        let RenderDescription { region, tone, metadata, aovs, viewpoint, .. } = merge.description();
         let set = AovSet::from_description(aovs)?;
         let gains = gains(&self.gain, &set)?;
         let mut tone: Tone = serde_json::from_value(tone.clone()).map_err(|error| {
@@ -67,8 +67,7 @@ impl Relight {
         tone.exposure_stops = self.exposure.unwrap_or(tone.exposure_stops);
         let mut metadata = metadata.clone();
         metadata.push(("Gain".to_owned(), self.gain.clone()));
-        let viewpoint = *viewpoint;
-        let crop = CropFrame::new(*size, [region.x, region.y], [region.width, region.height]);
+        let (viewpoint, crop) = (*viewpoint, merge.description().crop_frame());
         let header = Header { tone, options, metadata, viewpoint, crop, ..Header::new(region.width, region.height) };
         let interrupts = Interrupts::watch()?;
         let mut writer = match self.output.as_str() {
@@ -80,9 +79,7 @@ impl Relight {
             Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
         })?;
         writer.finish()?;
-        if let Some(warning) = header.clamped.warning(&self.output).filter(|_| !self.quiet) {
-            console::print_message(&warning);
-        }
+        console::warn_of_clamping(&header.clamped, &self.output, self.quiet);
         self.tell(region, start)
     }
 

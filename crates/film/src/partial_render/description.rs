@@ -3,7 +3,7 @@
 use crate::shard::whole_tiles;
 use juggler_camera::aov::LightGroup;
 use juggler_camera::film::{BLOCK_SAMPLES, Rect, Tiling};
-use juggler_imaging::Viewpoint;
+use juggler_imaging::{CropFrame, Viewpoint};
 use juggler_math::message::{MAX_QUOTE, excerpt};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -223,6 +223,12 @@ pub struct Mismatch {
 }
 
 impl RenderDescription {
+    /// Frame that the finished image is a crop of; `None` if it is the whole frame.
+    pub fn crop_frame(&self) -> Option<CropFrame> {
+        let Rect { x, y, width, height } = self.region;
+        CropFrame::new(self.size, [x, y], [width, height])
+    }
+
     /// Layout of the image's tiles; chunks are numbered by it.
     pub fn tiling(&self) -> Tiling {
         Tiling::new(self.region)

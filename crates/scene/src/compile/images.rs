@@ -147,7 +147,7 @@ pub(super) fn warn_of_infinities(scene: &Description, files: &Files<'_>, finding
         let key = (files.asset_cache.store().canonical_name(&files.texture_file(name, image)), image.color_space);
         let infinite = files.asset_cache.images().infinite_pixels(&key);
         if let Some(message) = infinity_warning(&image.file, infinite) {
-            findings.push(Finding::warning(message).at(&files.texture_path(name)));
+            findings.push(Finding::warning(message).at(files.texture_path(name)));
         }
     }
 }

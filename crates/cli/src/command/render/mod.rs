@@ -234,9 +234,7 @@ impl RenderCommand {
             }
             _ => film_render::render(self, frame, header, interrupts)?,
         };
-        if let Some(warning) = clamped.warning(&frame.frame_output.output).filter(|_| !self.plan.quiet) {
-            console::print_message(&warning);
-        }
+        console::warn_of_clamping(&clamped, &frame.frame_output.output, self.plan.quiet);
         self.report(frame, &outcome)?;
         beside.map(|()| true)
     }
