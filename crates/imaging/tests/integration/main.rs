@@ -12,6 +12,7 @@
 mod animations;
 mod claims;
 mod common;
+mod exr_files;
 mod formats;
 mod hostile;
 mod mp4;
