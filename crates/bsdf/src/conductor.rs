@@ -2,20 +2,29 @@
 //! normals.
 //!
 //! Single scattering loses light that is reflected more than once between microfacets.
-//! [`Conductor::compensated`] adds it as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) (Kulla and
-//! Conty 2017), which is reciprocal and makes a perfect mirror white at any roughness. Its color m
-//! accounts for the absorption of every further bounce: F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)), with
-//! F the mean Fresnel reflectance and Ē the mean of E.
+//! [`Conductor::compensated`] adds it, which makes a perfect mirror white at any roughness. With E
+//! the albedo of single scattering at a perfect mirror, Ē its mean and F the mean Fresnel
+//! reflectance, every further bounce on average reflects B = F Ē / (1 - F (1 - Ē)) of the light
+//! that single scattering loses. Where this light leaves depends on the microfacets:
+//!
+//! - isotropic ones: as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) with m = F B / (π (1 - Ē))
+//!   (Kulla and Conty 2017), which is reciprocal and nearly diffuse;
+//! - anisotropic ones, which at roughness 1 along one axis lose half of the light: along the
+//!   directions of single scattering, whose lobe is scaled by 1 + B (1 - E(wo)) / E(wo) (Turquin
+//!   2019, with B for his F0, which leaves out the absorption of further bounces). The highlight
+//!   keeps its shape, and there is no light across the grooves. The scaled lobe is not reciprocal.
+//!
+//! In between, both are blended by the ratio of the alphas: see [`Conductor::scaled_fraction`].
 //!
 //! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the
 //! direction that a visible normal reflects is accepted with probability G2 / G1. Otherwise, which
-//! happens with probability 1 - E(μo), a direction is sampled in proportion to (1 - E(μi)) μi.
-//! Samples of a perfect mirror have a weight of 1 whatever the error of the tables of E: light that
-//! hits metal many times, as inside a solid that is part metal and part glass, neither gains nor
-//! loses energy.
+//! happens with probability 1 - E(wo), a direction is sampled in proportion to (1 - E(wi)) μi, or
+//! visible normals are sampled until one is accepted. Samples of a perfect mirror have a weight of
+//! 1 whatever the error of the tables of E: light that hits metal many times, as inside a solid
+//! that is part metal and part glass, neither gains nor loses energy.
 
 use super::energy::{self, SampleRng};
-use super::ggx::Ggx;
+use super::ggx::{Ggx, MicrofacetReflection};
 use super::lobe::{Deltas, delta};
 use super::{BsdfSample, Fresnel, Scatter};
 use crate::ScatteringLobe;
@@ -29,16 +38,25 @@ pub struct Conductor {
     fresnel: Fresnel,
     /// m, see above; black without compensation.
     multiple: Rgb,
-    /// m of a perfect mirror, 1 / (π (1 - Ē)), which normalizes (1 - E(μi)) μi to a density.
+    /// m of a perfect mirror, 1 / (π (1 - Ē)), which normalizes (1 - E(wi)) μi to a density.
     normalization: f32,
+    /// B, see above; black without compensation.
+    bounced: Rgb,
 }
+
+/// Ratio of the alphas at and below which light of further bounces leaves along the directions of
+/// single scattering alone.
+const BRUSHED: f32 = 0.5;
+/// Maximum number of visible normals sampled for light of further bounces. More than three in ten
+/// are accepted at any angle and roughness, so that fewer than one in 10⁹ samples needs more.
+const MAX_TRIES: u32 = 64;
 
 impl Conductor {
     /// Conductor with single scattering only. `alpha` as in [`Ggx`]: the square of a material's
     /// roughness along x and y.
     #[inline]
     pub fn new(fresnel: Fresnel, alpha: Vec2) -> Self {
-        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK, normalization: 0.0 }
+        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK, normalization: 0.0, bounced: Rgb::BLACK }
     }
 
     /// Conductor with multiple scattering between microfacets.
@@ -48,9 +66,10 @@ impl Conductor {
             let mean_loss = energy::mean_mirror_loss(conductor.ggx);
             if mean_loss > 0.0 {
                 let normalization = FRAC_1_PI / mean_loss;
-                conductor.multiple = fresnel
-                    .mean_reflectance()
-                    .map(|f| f * f * (1.0 - mean_loss) / (1.0 - f * mean_loss) * normalization);
+                let mean_reflectance = fresnel.mean_reflectance();
+                conductor.multiple =
+                    mean_reflectance.map(|f| f * f * (1.0 - mean_loss) / (1.0 - f * mean_loss) * normalization);
+                conductor.bounced = mean_reflectance.map(|f| f * (1.0 - mean_loss) / (1.0 - f * mean_loss));
                 conductor.normalization = normalization;
             }
         }
@@ -81,10 +100,28 @@ impl Conductor {
         self.ggx.is_smooth()
     }
 
+    /// Fraction of the light of further bounces that leaves along the directions of single
+    /// scattering: 0 on isotropic surfaces, 1 where one alpha is half of the other or less, and
+    /// smooth in between.
+    fn scaled_fraction(&self) -> f32 {
+        let t = ((1.0 - self.ggx.alpha_ratio()) * (1.0 / (1.0 - BRUSHED))).min(1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+
     /// Adds multiple scattering to the value and the density of single scattering.
     fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
-        let more = self.energy_loss(wo) * self.energy_loss(wi) * wi.z;
-        (single + self.multiple * more, density + self.normalization * more)
+        let (loss, scaled) = (self.energy_loss(wo), self.scaled_fraction());
+        if scaled == 0.0 {
+            let more = loss * self.energy_loss(wi) * wi.z;
+            return (single + self.multiple * more, density + self.normalization * more);
+        }
+        let more = scaled * loss / (1.0 - loss);
+        let (mut value, mut pdf) = (single + single * self.bounced * more, density + density * more);
+        if scaled < 1.0 {
+            let more = (1.0 - scaled) * loss * self.energy_loss(wi) * wi.z;
+            (value, pdf) = (value + self.multiple * more, pdf + self.normalization * more);
+        }
+        (value, pdf)
     }
 
     /// 1 - E(w): fraction of light along `w` that single scattering loses.
@@ -92,13 +129,27 @@ impl Conductor {
         energy::mirror_loss(self.ggx, w)
     }
 
+    /// Reflects `wo` at a visible normal, with probability G2 / G1.
+    fn sample_once(&self, wo: Vec3, u: Vec2, random: &mut SampleRng) -> Option<(Vec3, MicrofacetReflection)> {
+        let found = self.ggx.sample_reflection(wo, u);
+        found.filter(|(_, microfacet)| random.unit() * microfacet.pdf < microfacet.value)
+    }
+
+    /// Samples single scattering until it is accepted.
+    fn sample_again(&self, wo: Vec3, random: &mut SampleRng) -> Option<(Vec3, MicrofacetReflection)> {
+        (0..MAX_TRIES).find_map(|_| {
+            let u = Vec2::new(random.unit(), random.unit());
+            self.sample_once(wo, u, random)
+        })
+    }
+
     fn sample_compensated(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
         let mut random = SampleRng::new(u, 0.0);
-        // Accept the direction with probability G2 / G1.
-        let once = self
-            .ggx
-            .sample_reflection(wo, u)
-            .filter(|(_, microfacet)| random.unit() * microfacet.pdf < microfacet.value);
+        let once = self.sample_once(wo, u, &mut random).or_else(|| {
+            let scaled = self.scaled_fraction();
+            let is_scaled = scaled > 0.0 && random.unit() < scaled;
+            if is_scaled { self.sample_again(wo, &mut random) } else { None }
+        });
         let (wi, microfacet, scatter) = if let Some((wi, microfacet)) = once {
             (wi, microfacet, Scatter::Glossy)
         } else {
@@ -189,8 +240,13 @@ impl ScatteringLobe for Conductor {
         if self.multiple.is_black() {
             return single;
         }
+        let (loss, scaled) = (self.energy_loss(wo), self.scaled_fraction());
         let mean_loss = energy::mean_mirror_loss(self.ggx);
-        single + self.multiple * (self.energy_loss(wo) * mean_loss * std::f32::consts::PI)
+        let apart = self.multiple * (loss * mean_loss * std::f32::consts::PI);
+        if scaled == 0.0 {
+            return single + apart;
+        }
+        single + single * self.bounced * (scaled * loss / (1.0 - loss)) + apart * (1.0 - scaled)
     }
 
     /// Mirror reflection, if smooth.

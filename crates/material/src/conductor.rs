@@ -54,9 +54,10 @@ pub struct Conductor {
     /// Rotation of the anisotropy from u towards v, in full turns, -1000 to 1000.
     #[schemars(extend("x-unit" = "turns"))]
     pub anisotropy_rotation: Input<f32>,
-    /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017):
-    /// rough white metal stays white. Set it to `false` to match renderers with single scattering
-    /// only, where rough metal is darker.
+    /// Adds the energy that single scattering between microfacets loses: rough white metal stays
+    /// white. On isotropic metal it leaves in all directions (Kulla and Conty 2017), on anisotropic
+    /// metal within the highlight (Turquin 2019). Set it to `false` to match renderers with single
+    /// scattering only, where rough metal is darker.
     pub energy_compensation: bool,
     /// Sides of the surface on which the material is present: `both`, `front` (absent from behind) or
     /// `black_behind`.

@@ -121,9 +121,9 @@ pub struct Principled {
     /// behind) or `black_behind`. Has no effect with `transmission` or `diffuse_transmission`.
     #[serde(skip_serializing_if = "SurfaceSides::is_default")]
     pub sides: SurfaceSides,
-    /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017). Set
-    /// it to `false` to match renderers with single scattering only, where rough metal and glass
-    /// are darker.
+    /// Adds the energy that single scattering between microfacets loses (Kulla and Conty 2017; on
+    /// anisotropic metal within the highlight, Turquin 2019). Set it to `false` to match renderers
+    /// with single scattering only, where rough metal and glass are darker.
     pub energy_compensation: bool,
 }
 

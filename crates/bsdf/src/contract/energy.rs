@@ -41,7 +41,7 @@ fn albedo_estimates_match_furnace_integrals() {
 #[test]
 fn scattering_is_reciprocal() {
     let mut random = Random::new(91);
-    for Example { name, bsdf, .. } in examples() {
+    for Example { name, bsdf, .. } in examples().into_iter().filter(|example| example.is_reciprocal) {
         let mut seen = 0;
         for _ in 0..if bsdf.is_specular() { 0 } else { 300 } {
             let (o, i) = (random.unit_vector(), random.unit_vector());

@@ -28,11 +28,21 @@ pub(super) struct Example {
     pub white_within: f32,
     /// Width of its lobes.
     pub breadth: Breadth,
+    /// Whether it scatters alike if light goes the other way. Brushed metal with multiple scattering
+    /// does not: see `metals.rs`.
+    pub is_reciprocal: bool,
 }
 
 impl Example {
     pub fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
-        Self { name: name.into(), bsdf: bsdf.into(), both_sides: false, white_within: 0.0, breadth: Breadth::Broad }
+        Self {
+            name: name.into(),
+            bsdf: bsdf.into(),
+            both_sides: false,
+            white_within: 0.0,
+            breadth: Breadth::Broad,
+            is_reciprocal: true,
+        }
     }
 
     pub fn both_sides(self) -> Self {
@@ -41,6 +51,11 @@ impl Example {
 
     pub fn white(self, within: f32) -> Self {
         Self { white_within: within, ..self }
+    }
+
+    /// Not reciprocal if its metal is `brushed`.
+    pub fn one_way(self, brushed: bool) -> Self {
+        Self { is_reciprocal: !brushed, ..self }
     }
 
     pub fn with_breadth(self, breadth: Breadth) -> Self {
@@ -89,13 +104,15 @@ fn within(alpha: Vec2) -> f32 {
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
     let gold = Metal::named("gold").unwrap().fresnel();
+    let brushed = alpha.x != alpha.y;
     let tinted = Fresnel::tinted(Rgb::new(0.9, 0.6, 0.2), Rgb::new(0.7, 0.9, 1.0));
     vec![
         Example::new(format!("gold {alpha}"), Conductor::new(gold, alpha)),
-        Example::new(format!("compensated gold {alpha}"), Conductor::compensated(gold, alpha)),
-        Example::new(format!("tinted conductor {alpha}"), Conductor::compensated(tinted, alpha)),
+        Example::new(format!("compensated gold {alpha}"), Conductor::compensated(gold, alpha)).one_way(brushed),
+        Example::new(format!("tinted conductor {alpha}"), Conductor::compensated(tinted, alpha)).one_way(brushed),
         Example::new(format!("white conductor {alpha}"), Conductor::compensated(Fresnel::WHITE, alpha))
-            .white(within(alpha)),
+            .white(within(alpha))
+            .one_way(brushed),
     ]
 }
 

@@ -128,7 +128,7 @@ fn anisotropic_surfaces_conserve_energy() {
 }
 
 /// Reciprocity between sampled directions, where values are not all 0. Radiance over the square of
-/// the index is reciprocal.
+/// the index is reciprocal. Brushed metal is not, as `metals.rs` says.
 #[test]
 fn sampled_directions_are_reciprocal() {
     let mut random = Random::new(98);
@@ -141,7 +141,8 @@ fn sampled_directions_are_reciprocal() {
                 ThinDielectric::compensated(ior, alpha).into(),
                 Conductor::compensated(Fresnel::Dielectric { ior, color: Rgb::WHITE }, alpha).into(),
             ];
-            for (number, bsdf) in lobes.iter().enumerate() {
+            let reciprocal = if alpha.x == alpha.y { 5 } else { 4 };
+            for (number, bsdf) in lobes.iter().take(reciprocal).enumerate() {
                 let (mut crossed, mut stayed) = (0, 0);
                 for wo in directions().flat_map(|wo| [wo; 20]) {
                     let Some(sample) = bsdf.sample(wo, random.vec2(), random.f32()) else { continue };

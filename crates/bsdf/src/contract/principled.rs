@@ -34,7 +34,9 @@ pub(super) fn examples() -> Vec<Example> {
         ),
     ];
     let mut all: Vec<Example> = vec![];
-    all.extend(opaque.map(|(name, numbers)| Example::new(format!("principled {name}"), lobes(&numbers, 1.5))));
+    all.extend(opaque.map(|(name, numbers)| {
+        Example::new(format!("principled {name}"), lobes(&numbers, 1.5)).one_way(numbers.anisotropy > 0.0)
+    }));
     all.extend(
         clear.map(|(name, numbers)| Example::new(format!("principled {name}"), lobes(&numbers, 1.4)).both_sides()),
     );

@@ -48,12 +48,12 @@ impl TableSize {
     /// Maximum number of entries along a zone.
     pub(super) const MAX_COS: usize = 47;
     /// Maximum number of entries along the azimuth.
-    pub(super) const MAX_AZIMUTH: usize = 5;
+    pub(super) const MAX_AZIMUTH: usize = 9;
     /// Totally reflected light hits grazing angles dozens of times. There, at alpha 0.04,
     /// interpolation between these entries is 2 % below the loss, and between half as many 5 %.
     pub(super) const ISOTROPIC: Self = Self { alpha_ratio: 1, alpha: 18, ior: 12, azimuth: 1, zones: 3, cos: 47 };
     pub(super) const ANISOTROPIC: Self = Self { alpha_ratio: 4, alpha: 10, ior: 6, azimuth: 5, zones: 3, cos: 14 };
-    pub(super) const MIRROR: Self = Self { alpha_ratio: 6, alpha: 12, ior: 1, azimuth: 5, zones: 1, cos: 24 };
+    pub(super) const MIRROR: Self = Self { alpha_ratio: 11, alpha: 12, ior: 1, azimuth: 9, zones: 1, cos: 24 };
     /// The fourth root of [`Ggx::SMOOTH`].
     pub(super) const LEAST: f32 = 0.177_827_94;
 }
