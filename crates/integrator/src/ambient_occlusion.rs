@@ -35,8 +35,9 @@ impl Integrator for AmbientOcclusion {
         let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
         let extent = world.bounds().extent();
         let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
+        let lifted = world.lifted_surface(ray, surface);
         output.add_shadow_ray(
-            surface.spawn_ray(direction, ray.time).with_t_max(distance),
+            lifted.as_ref().unwrap_or(surface).spawn_ray(direction, ray.time).with_t_max(distance),
             Rgb::WHITE,
             LightGroup::REST,
         );

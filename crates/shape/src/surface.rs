@@ -25,6 +25,10 @@ pub struct Surface {
     pub local_normal: Vec3,
     /// Footprint of the ray, for texture filtering; a point by default.
     pub footprint: Footprint,
+    /// Offset from the point to the smooth surface that the shading normals describe, where that
+    /// lies on the viewer's side; zero elsewhere and without shading normals. See
+    /// [`Surface::lifted`].
+    pub lift: Vec3,
     /// Barycentrics of the second and third corner of a triangle, for [`MeshPoint`]; zero on other
     /// shapes.
     ///
@@ -82,6 +86,7 @@ impl Surface {
             local: point,
             local_normal: normal,
             footprint,
+            lift: Vec3::ZERO,
             barycentrics: Vec2::ZERO,
         }
     }
@@ -105,6 +110,7 @@ impl Surface {
             local: self.local,
             local_normal: self.local_normal,
             footprint: self.footprint,
+            lift: if self.lift == Vec3::ZERO { Vec3::ZERO } else { transform.vector(self.lift) },
             barycentrics: self.barycentrics,
         }
     }
@@ -126,6 +132,25 @@ impl Surface {
         let position_error = self.position_error + f32::MIN_POSITIVE;
         let origin = robust::offset_origin(self.point, position_error, self.normal, direction);
         Ray { time, ..Ray::new(origin, direction) }
+    }
+
+    /// The surface with its point on the smooth surface that the shading normals describe (Hanika,
+    /// Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays that leave from there
+    /// do not hit the triangles beside it, which would cut off their light in steps. `None` where
+    /// both points are the same up to rounding, or for the side of `wo` on which the surface was not
+    /// seen.
+    #[inline]
+    pub fn lifted(&self, wo: Vec3) -> Option<Self> {
+        if self.lift == Vec3::ZERO {
+            return None;
+        }
+        let height = self.lift.dot(self.normal);
+        let is_off = height.abs() > 8.0 * (self.position_error + f32::EPSILON * self.point.abs().max_element());
+        (is_off && height * self.normal.dot(wo) > 0.0).then(|| Self {
+            point: self.point + self.lift,
+            lift: Vec3::ZERO,
+            ..*self
+        })
     }
 
     /// Enlarges the error of this surface, which `own` states exactly, so that rays that leave it start

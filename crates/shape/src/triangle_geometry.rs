@@ -55,9 +55,11 @@ impl TriangleGeometry {
         let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size;
         let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
-        let shading_normal = self.shading_normal(normal, at);
-        let plain = Surface::new(point, error, normal, uv);
-        Surface { shading_normal, local_normal: shading_normal, barycentrics: at, ..plain }
+        let plain = Surface { barycentrics: at, ..Surface::new(point, error, normal, uv) };
+        let Some(normals) = self.front_normals(normal) else { return plain };
+        let shading_normal = smooth_normal(normals, normal, at);
+        let lift = if shading_normal == normal { Vec3::ZERO } else { self.lift(normals, &plain, ray.direction) };
+        Surface { shading_normal, local_normal: shading_normal, lift, ..plain }
     }
 
     /// Derivatives of position by surface coordinates, constant over the triangle.
@@ -101,14 +103,36 @@ impl TriangleGeometry {
         at.lerp(incenter, (margin / radius).min(0.5))
     }
 
-    /// The interpolated normal on the front: normals opposite to the winding are negated, and a
-    /// normal that is still below the surface is reflected above it.
-    fn shading_normal(&self, normal: Vec3, at: Vec2) -> Vec3 {
-        let Some([a, b, c]) = self.normals.map(|normals| normals.map(|n| n.normalize_or_zero())) else { return normal };
+    /// Unit shading normals at the corners, on the front: normals opposite to the winding are
+    /// negated.
+    fn front_normals(&self, normal: Vec3) -> Option<[Vec3; 3]> {
+        let [a, b, c] = self.normals?.map(|n| n.normalize_or_zero());
         let turned = if (a + b + c).dot(normal) < 0.0 { -1.0 } else { 1.0 };
-        let smooth = (a * (1.0 - at.x - at.y) + b * at.x + c * at.y) * turned;
-        let height = smooth.dot(normal);
-        let above = if height < 0.0 { smooth - normal * (2.0 * height) } else { smooth };
-        above.normalize_or(normal)
+        Some([a * turned, b * turned, c * turned])
     }
+
+    /// Offset from a point to the smooth surface, on the side from which a ray comes (Hanika 2021):
+    /// the mean, by barycentrics, of the offsets to the tangent planes at the corners, of which
+    /// those beyond the triangle count as 0. Neighboring triangles have the same offset on their
+    /// common edge. Zero if the normal of a corner lies in the triangle or behind it.
+    fn lift(&self, normals: [Vec3; 3], surface: &Surface, direction: Vec3) -> Vec3 {
+        if normals.iter().any(|n| n.dot(surface.normal) <= 0.0) {
+            return Vec3::ZERO;
+        }
+        let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+        let Vec2 { x, y } = surface.barycentrics;
+        let offset =
+            |corner: Vec3, normal: Vec3| normal * (side * (side * (corner - surface.point).dot(normal)).max(0.0));
+        let [a, b, c] = self.corners;
+        let [on_a, on_b, on_c] = normals;
+        offset(a, on_a) * (1.0 - x - y) + offset(b, on_b) * x + offset(c, on_c) * y
+    }
+}
+
+/// The interpolated normal: one that is below the surface is reflected above it.
+fn smooth_normal([a, b, c]: [Vec3; 3], normal: Vec3, at: Vec2) -> Vec3 {
+    let smooth = a * (1.0 - at.x - at.y) + b * at.x + c * at.y;
+    let height = smooth.dot(normal);
+    let above = if height < 0.0 { smooth - normal * (2.0 * height) } else { smooth };
+    above.normalize_or(normal)
 }

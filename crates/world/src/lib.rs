@@ -31,6 +31,7 @@ mod instance;
 mod interiors;
 mod labels;
 mod large_mesh;
+mod lift;
 pub mod manifold;
 mod merged_meshes;
 mod object;

@@ -59,6 +59,8 @@ struct ShadingPoint<'a> {
     normal: Vec3,
     /// Whether the ray arrived from outside.
     outside: bool,
+    /// Surface from which shadow rays leave: see [`World::lifted_surface`].
+    scattering: &'a Surface,
     time: f32,
 }
 
@@ -80,11 +82,11 @@ impl Integrator for Classic {
 }
 
 impl<'a> ShadingPoint<'a> {
-    fn new(ray: &Ray, surface: &'a Surface, phong: &'a PhongParameters) -> Self {
+    fn new(ray: &Ray, [surface, scattering]: [&'a Surface; 2], phong: &'a PhongParameters) -> Self {
         let wo = -ray.direction;
         let outside = surface.normal.dot(wo) >= 0.0;
         let normal = if outside { surface.shading_normal } else { -surface.shading_normal };
-        Self { surface, phong, wo, normal, outside, time: ray.time }
+        Self { surface, phong, wo, normal, outside, scattering, time: ray.time }
     }
 }
 
@@ -102,7 +104,9 @@ impl Classic {
         output: &mut VertexOutput,
     ) -> bool {
         let Some(phong) = phong else { return self.physical(world, ray, path, vertex, output) };
-        let point = ShadingPoint::new(ray, &vertex.surface, &phong);
+        let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, &vertex.surface) };
+        let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
+        let point = ShadingPoint::new(ray, surfaces, &phong);
         let mut sampler = path.sampler;
         // Record AOVs of the surface.
         if output.is_recording() {
@@ -144,7 +148,7 @@ impl Classic {
         output.add(point.phong.emission + ambient * (1.0 - point.phong.occlusion), group);
         let any = warp::uniform_sphere(sampler.next_2d());
         let direction = if any.dot(point.normal) < 0.0 { -any } else { any };
-        let ray = point.surface.spawn_ray(direction, point.time).with_t_max(distance);
+        let ray = point.scattering.spawn_ray(direction, point.time).with_t_max(distance);
         output.add_shadow_ray(ray, ambient * point.phong.occlusion, LightGroup::REST);
     }
 
@@ -230,7 +234,7 @@ impl Bundle<'_> {
 /// Adds a light's contribution, by one or more shadow rays.
 fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &Sampler, output: &mut VertexOutput) {
     let state = light.at(point.time);
-    if !point.phong.both_sides && state.is_below(point.surface.point, point.normal) {
+    if !point.phong.both_sides && state.is_below(point.scattering.point, point.normal) {
         return;
     }
     let SceneLight { samples, is_delta, is_surface, .. } = light;
@@ -238,12 +242,12 @@ fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &
     let scale = if *is_surface { 1.0 / point.phong.light_scale() } else { 1.0 };
     for i in 0..*samples {
         let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
-        let Some(sample) = state.light.sample(point.surface.point, u) else { continue };
+        let Some(sample) = state.light.sample(point.scattering.point, u) else { continue };
         let reflected = reflected_light(point, sample.wi);
         if reflected.is_black() {
             continue;
         }
-        let ray = point.surface.spawn_ray_to(sample.wi, sample.distance, point.time);
+        let ray = point.scattering.spawn_ray_to(sample.wi, sample.distance, point.time);
         let weight = sample_weight(scale, *samples, sample.pdf);
         output.add_light_shadow_ray(number, ray, reflected * sample.radiance * weight, light.group);
     }

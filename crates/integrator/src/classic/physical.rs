@@ -8,11 +8,14 @@ use juggler_bsdf::{BsdfSample, Scatter};
 use juggler_camera::sampler::Sampler;
 use juggler_material::Shading;
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
+use juggler_shape::surface::Surface;
 use juggler_world::{SceneLight, Vertex, World};
 
 /// A shading point: a vertex with its evaluated material and the direction of view.
 struct ShadingPoint<'a> {
-    vertex: &'a Vertex,
+    surface: &'a Surface,
+    /// Surface that scatters light but for specular lobes: see [`World::lifted_surface`].
+    scattering: &'a Surface,
     shading: &'a Shading,
     /// Unit vector towards the origin of the ray, in the shading frame.
     wo: Vec3,
@@ -40,7 +43,9 @@ impl Classic {
             return false;
         }
         let wo = shading.frame.to_local(-ray.direction);
-        let point = ShadingPoint { vertex, shading: &shading, wo, time: ray.time };
+        let lifted = if shading.transmissive { None } else { world.lifted_surface(ray, &vertex.surface) };
+        let scattering = lifted.as_ref().unwrap_or(&vertex.surface);
+        let point = ShadingPoint { surface: &vertex.surface, scattering, shading: &shading, wo, time: ray.time };
         // Add emission and ambient light.
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { point.shading.bsdf.albedo(wo) * ambient };
@@ -91,7 +96,8 @@ impl Classic {
             let direction = point.shading.frame.to_world(sample.wi);
             let sees_backdrop = path.history.sees_backdrop && sample.wi.z * point.wo.z < 0.0;
             let history = PathHistory { sees_backdrop, ..path.history };
-            output.trace_branch(point.vertex.surface.spawn_ray(direction, point.time), sample.weight, history, child);
+            let from = if sample.scatter == Scatter::Specular { point.surface } else { point.scattering };
+            output.trace_branch(from.spawn_ray(direction, point.time), sample.weight, history, child);
         }
     }
 }
@@ -103,10 +109,10 @@ impl ShadingPoint<'_> {
         let scale = if *is_surface { 1.0 } else { self.shading.light_scale };
         for i in 0..*samples {
             let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
-            let Some(sample) = light.at(self.time).light.sample(self.vertex.surface.point, u) else { continue };
+            let Some(sample) = light.at(self.time).light.sample(self.scattering.point, u) else { continue };
             let (scattered, _) = self.shading.bsdf.eval_pdf(self.wo, self.shading.frame.to_local(sample.wi));
             if !scattered.is_black() {
-                let ray = self.vertex.surface.spawn_ray_to(sample.wi, sample.distance, self.time);
+                let ray = self.scattering.spawn_ray_to(sample.wi, sample.distance, self.time);
                 let weight = sample_weight(scale, *samples, sample.pdf);
                 output.add_light_shadow_ray(number, ray, sample.radiance * scattered * weight, light.group);
             }

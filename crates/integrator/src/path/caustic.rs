@@ -88,7 +88,7 @@ impl Path {
         } else {
             Some(EndPoint::infinity(light.wi))
         };
-        let (Some(start), Some(end)) = (caster.sphere.end_point(point.surface.point), to) else { return };
+        let (Some(start), Some(end)) = (caster.sphere.end_point(point.scattering.point), to) else { return };
         // Connect both by all specular paths.
         for connection in connections(kind, &start, &end) {
             let pdf = probability * light.pdf * solid_angle_ratio(kind, &start, &end, connection.sine);
@@ -171,7 +171,7 @@ impl ShadingPoint<'_> {
     ) {
         // Evaluate the BSDF in the direction of the path.
         let wi = self.shading.frame.to_local(connection.direction);
-        if !self.same_hemisphere(connection.direction, wi) || !self.interiors_towards(path, wi).is_empty() {
+        if !self.scatters_into(connection.direction, wi) || !self.interiors_towards(path, wi).is_empty() {
             return;
         }
         // Only BSDF samples see the backdrop.
@@ -191,7 +191,7 @@ impl ShadingPoint<'_> {
         // Add the contribution if all segments are unoccluded.
         let contribution = radiance * scattered * sample.caster.throughput(sample.kind, connection.sine);
         let group = sample.world.light_group(sample.light.emitter);
-        let segments = sample.shadow_rays(self.surface, connection, self.time);
+        let segments = sample.shadow_rays(self.scattering, connection, self.time);
         let weight = self.light_sample_weight(sample.sampling, sample.light, pdf, bsdf_pdf);
         output.add_bent_shadow_ray(segments, contribution * weight, group);
     }

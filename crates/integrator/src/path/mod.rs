@@ -215,7 +215,10 @@ impl Path {
         // Remove lobes whose limit is reached.
         self.limit_lobes(&mut shading.bsdf, path);
         let mut visible_casters = VisibleCasters::empty();
-        let mut point = ShadingPoint::new(ray, vertex, &shading, interface);
+        let is_lifted = !shading.transmissive && !shading.bsdf.is_specular();
+        let lifted = if is_lifted { world.lifted_surface(ray, &vertex.surface) } else { None };
+        let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
+        let mut point = ShadingPoint::new(ray, surfaces, &shading, interface);
         // Sample direct illumination, also through specular spheres.
         if !point.shading.bsdf.is_specular() {
             point.find_visible_casters(world, &mut visible_casters);

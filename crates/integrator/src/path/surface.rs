@@ -17,6 +17,9 @@ const MAX_HELD: u16 = 8;
 /// A shading point: a vertex with its evaluated material and the direction of view.
 pub struct ShadingPoint<'a> {
     pub surface: &'a Surface,
+    /// Surface that scatters light: on meshes with shading normals the smooth surface that they
+    /// describe, else `surface`. Specular reflection and transmission leave from `surface`.
+    pub scattering: &'a Surface,
     pub shading: &'a Shading,
     /// Unit vector towards the origin of the ray, in world space and in the shading frame.
     wo: Vec3,
@@ -47,10 +50,15 @@ pub fn shade_into(
 
 impl<'a> ShadingPoint<'a> {
     #[inline]
-    pub fn new(ray: &Ray, vertex: &'a Vertex, shading: &'a Shading, interface: &'a Interface) -> Self {
+    pub fn new(
+        ray: &Ray,
+        [surface, scattering]: [&'a Surface; 2],
+        shading: &'a Shading,
+        interface: &'a Interface,
+    ) -> Self {
         let wo = -ray.direction;
         let local = shading.frame.to_local(wo);
-        Self { surface: &vertex.surface, shading, wo, local, time: ray.time, interface, visible_casters: None }
+        Self { surface, scattering, shading, wo, local, time: ray.time, interface, visible_casters: None }
     }
 
     /// Factor of a light sample's contribution: its multiple importance sampling weight over
@@ -74,8 +82,8 @@ impl<'a> ShadingPoint<'a> {
     /// Context of light samples at the vertex.
     fn light_sample_context(&self) -> LightSampleContext {
         LightSampleContext {
-            point: self.surface.point,
-            error: self.surface.position_error,
+            point: self.scattering.point,
+            error: self.scattering.position_error,
             normal: self.receiving_normal(),
             time: self.time,
         }
@@ -174,7 +182,7 @@ impl<'a> ShadingPoint<'a> {
         output: &mut VertexOutput,
     ) {
         let wi = self.shading.frame.to_local(light.wi);
-        if !self.same_hemisphere(light.wi, wi) {
+        if !self.scatters_into(light.wi, wi) {
             return;
         }
         // Only BSDF samples see the backdrop.
@@ -185,7 +193,7 @@ impl<'a> ShadingPoint<'a> {
         if scattered.is_black() {
             return;
         }
-        let ray = self.surface.spawn_ray_to(light.wi, light.distance, self.time);
+        let ray = self.scattering.spawn_ray_to(light.wi, light.distance, self.time);
         let inside = self.interiors_towards(path, wi);
         let radiance = light.radiance * scattered * self.light_sample_weight(sampling, light, light.pdf, pdf);
         output.add_shadow_ray_inside(ray, radiance, world.light_group(light.emitter), inside);
@@ -213,9 +221,18 @@ impl<'a> ShadingPoint<'a> {
 
     /// Whether the geometric and the shading normal have `wi` on the same side of the surface.
     /// `local` is `wi` in the shading frame.
-    pub fn same_hemisphere(&self, wi: Vec3, local: Vec3) -> bool {
+    fn same_hemisphere(&self, wi: Vec3, local: Vec3) -> bool {
         let normal = self.surface.normal;
         (normal.dot(wi) * normal.dot(self.wo) < 0.0) == (local.z * self.local.z < 0.0)
+    }
+
+    /// Whether light may be scattered into `wi`, which is `local` in the shading frame, but for
+    /// specular reflection: also behind the triangle, where the smooth surface is in front.
+    pub fn scatters_into(&self, wi: Vec3, local: Vec3) -> bool {
+        self.same_hemisphere(wi, local)
+            || !std::ptr::eq(self.surface, self.scattering)
+                && local.z * self.local.z >= 0.0
+                && self.surface.shading_normal.dot(wi) * self.surface.normal.dot(self.wo) > 0.0
     }
 
     fn history(
@@ -297,7 +314,13 @@ impl Path {
         output: &mut VertexOutput,
     ) {
         let Some((wi, sample)) = point.sample(path).map(|sampled| point.released(path, sampled)) else { return };
-        if !point.same_hemisphere(wi, sample.wi) {
+        let is_specular = sample.scatter == Scatter::Specular;
+        let (from, goes_on) = if is_specular {
+            (point.surface, point.same_hemisphere(wi, sample.wi))
+        } else {
+            (point.scattering, point.scatters_into(wi, sample.wi))
+        };
+        if !goes_on {
             return;
         }
         let history = point.history(world, shape, path, &sample, self.light_sample_count(world, path));
@@ -307,12 +330,7 @@ impl Path {
             return;
         }
         if let Some(probability) = self.roulette_survival(path, throughput) {
-            output.continue_path(
-                point.surface.spawn_ray(wi, point.time),
-                sample.weight * (1.0 / probability),
-                history,
-                1,
-            );
+            output.continue_path(from.spawn_ray(wi, point.time), sample.weight * (1.0 / probability), history, 1);
         }
     }
 }

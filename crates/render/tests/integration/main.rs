@@ -19,6 +19,7 @@ mod rooms;
 mod skies;
 mod snippets;
 mod strategies;
+mod terminator;
 mod threads;
 mod touching;
 mod views;
