@@ -6,8 +6,8 @@ use juggler_math::testing::{Random, family_wise_deviations};
 use juggler_math::{Ray, Vec3};
 use std::f64::consts::PI;
 
-/// Ball of 48 triangles, six around and from pole to pole five rings, with the normals of a sphere.
-fn ball() -> String {
+/// Sphere of 48 triangles, six around and from pole to pole five rings, with the normals of a sphere.
+fn coarse_sphere() -> String {
     let (around, rings) = (6u32, 5u32);
     let mut points = vec![Vec3::Y, Vec3::NEG_Y];
     for ring in 1..rings {
@@ -31,11 +31,11 @@ fn ball() -> String {
     format!(r#"{{"mesh": {{"positions": {points:?}, "normals": {points:?}, "triangles": {triangles:?}}}}}"#)
 }
 
-fn white_ball() -> Scene {
-    Scene::new().with(&ball(), Vec3::ZERO, r#"{"diffuse": {"reflectance": 1}}"#)
+fn white_sphere() -> Scene {
+    Scene::new().with(&coarse_sphere(), Vec3::ZERO, r#"{"diffuse": {"reflectance": 1}}"#)
 }
 
-/// Points of the ball that a camera in the direction of `eye` sees well.
+/// Points of the sphere that a camera in the direction of `eye` sees well.
 fn targets(eye: Vec3, count: usize) -> Vec<Vec3> {
     let (mut random, across) = (Random::new(63), eye.cross(Vec3::Y).normalize());
     let up = across.cross(eye).normalize();
@@ -44,10 +44,10 @@ fn targets(eye: Vec3, count: usize) -> Vec<Vec3> {
 
 /// Closed form: E / π times the cosine to the interpolated normal, up to the terminator.
 #[test]
-fn light_of_a_coarse_ball_ends_where_the_smooth_one_turns_away() {
+fn light_of_a_coarse_sphere_ends_where_the_smooth_one_turns_away() {
     let light = Vec3::new(1.0, 0.3, -0.1).normalize();
     let direction = crate::probe::json(-light);
-    let world = white_ball().lit(&format!(r#"{{"directional": {{"direction": {direction}}}}}"#)).world();
+    let world = white_sphere().lit(&format!(r#"{{"directional": {{"direction": {direction}}}}}"#)).world();
     let (eye, integrator, mut checked) = (Vec3::Z * 5.0, path(r#""max_depth": 2"#), 0);
     for target in targets(Vec3::Z, 150) {
         let mut ray = Ray::new(target + eye, Vec3::NEG_Z);
@@ -67,8 +67,8 @@ fn light_of_a_coarse_ball_ends_where_the_smooth_one_turns_away() {
 
 /// Directions below a triangle that are above the smooth surface keep their light.
 #[test]
-fn a_white_coarse_ball_vanishes_in_a_furnace() {
-    let world = white_ball().in_light(1.0).world();
+fn a_white_coarse_sphere_vanishes_in_a_furnace() {
+    let world = white_sphere().in_light(1.0).world();
     let seen = targets(Vec3::Z, 40).into_iter().map(|target| {
         let camera = looking(target + Vec3::Z * 5.0, target);
         measure(&world, &camera, &*path(r#""max_depth": 1000, "roulette_depth": null"#), 16).mean
@@ -80,10 +80,12 @@ fn a_white_coarse_ball_vanishes_in_a_furnace() {
 /// Light samples and BSDF samples leave from the same point, also close to an emitter and where a
 /// floor hides the smooth surface.
 #[test]
-fn sampling_options_agree_on_a_coarse_ball() {
+fn sampling_options_agree_on_a_coarse_sphere() {
     let scene = || {
-        let ball = white_ball().with(r#"{"plane": {}}"#, Vec3::NEG_Y * 0.97, r#"{"diffuse": {"reflectance": 0.5}}"#);
-        ball.with(r#"{"sphere": {"radius": 0.4}}"#, Vec3::new(1.3, 0.1, 0.6), r#"{"emissive": {"radiance": 4}}"#)
+        let coarse_sphere =
+            white_sphere().with(r#"{"plane": {}}"#, Vec3::NEG_Y * 0.97, r#"{"diffuse": {"reflectance": 0.5}}"#);
+        coarse_sphere
+            .with(r#"{"sphere": {"radius": 0.4}}"#, Vec3::new(1.3, 0.1, 0.6), r#"{"emissive": {"radiance": 4}}"#)
             .in_light(0.3)
     };
     let world = scene().world();
