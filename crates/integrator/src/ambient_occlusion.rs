@@ -35,7 +35,7 @@ impl Integrator for AmbientOcclusion {
         let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
         let extent = world.bounds().extent();
         let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
-        let lifted = world.lifted_surface(ray, surface);
+        let lifted = world.lifted_surface(ray, vertex);
         output.add_shadow_ray(
             lifted.as_ref().unwrap_or(surface).spawn_ray(direction, ray.time).with_t_max(distance),
             Rgb::WHITE,

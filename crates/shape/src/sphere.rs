@@ -105,7 +105,6 @@ pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surfac
         local: normal * radius,
         local_normal: normal,
         footprint: Footprint::default(),
-        lift: Vec3::ZERO,
         barycentrics: Vec2::ZERO,
     }
 }

@@ -25,10 +25,6 @@ pub struct Surface {
     pub local_normal: Vec3,
     /// Footprint of the ray, for texture filtering; a point by default.
     pub footprint: Footprint,
-    /// Offset from the point to the smooth surface that the shading normals describe, where that
-    /// lies on the viewer's side; zero elsewhere and without shading normals. See
-    /// [`Surface::lifted`].
-    pub lift: Vec3,
     /// Barycentrics of the second and third corner of a triangle, for [`MeshPoint`]; zero on other
     /// shapes.
     ///
@@ -86,7 +82,6 @@ impl Surface {
             local: point,
             local_normal: normal,
             footprint,
-            lift: Vec3::ZERO,
             barycentrics: Vec2::ZERO,
         }
     }
@@ -110,7 +105,6 @@ impl Surface {
             local: self.local,
             local_normal: self.local_normal,
             footprint: self.footprint,
-            lift: if self.lift == Vec3::ZERO { Vec3::ZERO } else { transform.vector(self.lift) },
             barycentrics: self.barycentrics,
         }
     }
@@ -134,23 +128,16 @@ impl Surface {
         Ray { time, ..Ray::new(origin, direction) }
     }
 
-    /// The surface with its point on the smooth surface that the shading normals describe (Hanika,
-    /// Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays that leave from there
-    /// do not hit the triangles beside it, which would cut off their light in steps. `None` where
-    /// both points are the same up to rounding, or for the side of `wo` on which the surface was not
-    /// seen.
+    /// The surface with its point moved by `lift`, the offset to the smooth surface that the shading
+    /// normals describe (Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4). Rays
+    /// that leave from there do not hit the triangles beside it, which would cut off their light in
+    /// steps. `None` where both points are the same up to rounding, or for the side of `wo` from which
+    /// the offset leads away.
     #[inline]
-    pub fn lifted(&self, wo: Vec3) -> Option<Self> {
-        if self.lift == Vec3::ZERO {
-            return None;
-        }
-        let height = self.lift.dot(self.normal);
+    pub fn lifted(&self, lift: Vec3, wo: Vec3) -> Option<Self> {
+        let height = lift.dot(self.normal);
         let is_off = height.abs() > 8.0 * (self.position_error + f32::EPSILON * self.point.abs().max_element());
-        (is_off && height * self.normal.dot(wo) > 0.0).then(|| Self {
-            point: self.point + self.lift,
-            lift: Vec3::ZERO,
-            ..*self
-        })
+        (is_off && height * self.normal.dot(wo) > 0.0).then(|| Self { point: self.point + lift, ..*self })
     }
 
     /// Enlarges the error of this surface, which `own` states exactly, so that rays that leave it start

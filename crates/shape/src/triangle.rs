@@ -46,7 +46,7 @@ impl Triangle {
         Self { vertices, normals: None, uvs: None }
     }
 
-    fn geometry(&self) -> TriangleGeometry {
+    pub(crate) fn geometry(&self) -> TriangleGeometry {
         TriangleGeometry { corners: self.vertices, normals: self.normals, uvs: self.uvs }
     }
 }

@@ -58,8 +58,7 @@ impl TriangleGeometry {
         let plain = Surface { barycentrics: at, ..Surface::new(point, error, normal, uv) };
         let Some(normals) = self.front_normals(normal) else { return plain };
         let shading_normal = smooth_normal(normals, normal, at);
-        let lift = if shading_normal == normal { Vec3::ZERO } else { self.lift(normals, &plain, ray.direction) };
-        Surface { shading_normal, local_normal: shading_normal, lift, ..plain }
+        Surface { shading_normal, local_normal: shading_normal, ..plain }
     }
 
     /// Derivatives of position by surface coordinates, constant over the triangle.
@@ -111,21 +110,23 @@ impl TriangleGeometry {
         Some([a * turned, b * turned, c * turned])
     }
 
-    /// Offset from a point to the smooth surface, on the side from which a ray comes (Hanika 2021):
-    /// the mean, by barycentrics, of the offsets to the tangent planes at the corners, of which
-    /// those beyond the triangle count as 0. Neighboring triangles have the same offset on their
-    /// common edge. Zero if the normal of a corner lies in the triangle or behind it.
-    fn lift(&self, normals: [Vec3; 3], surface: &Surface, direction: Vec3) -> Vec3 {
-        if normals.iter().any(|n| n.dot(surface.normal) <= 0.0) {
-            return Vec3::ZERO;
+    /// Offset from the point at barycentrics of the second and third corner to the smooth surface, on
+    /// the side from which a ray comes in this direction (Hanika 2021): the mean, by barycentrics, of
+    /// the offsets to the tangent planes at the corners, of which those beyond the triangle count as
+    /// 0. Neighboring triangles have the same offset on their common edge. `None` without shading
+    /// normals, and if the normal of a corner lies in the triangle or behind it.
+    pub fn lift(&self, barycentrics: Vec2, direction: Vec3) -> Option<Vec3> {
+        let (point, normal) = self.point(barycentrics.as_dvec2());
+        let normals = self.front_normals(normal)?;
+        if normals.iter().any(|n| n.dot(normal) <= 0.0) {
+            return None;
         }
-        let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
-        let Vec2 { x, y } = surface.barycentrics;
-        let offset =
-            |corner: Vec3, normal: Vec3| normal * (side * (side * (corner - surface.point).dot(normal)).max(0.0));
+        let side = if normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+        let Vec2 { x, y } = barycentrics;
+        let offset = |corner: Vec3, normal: Vec3| normal * (side * (side * (corner - point).dot(normal)).max(0.0));
         let [a, b, c] = self.corners;
         let [on_a, on_b, on_c] = normals;
-        offset(a, on_a) * (1.0 - x - y) + offset(b, on_b) * x + offset(c, on_c) * y
+        Some(offset(a, on_a) * (1.0 - x - y) + offset(b, on_b) * x + offset(c, on_c) * y)
     }
 }
 

@@ -267,6 +267,18 @@ impl Geometry {
         Some([frame.transformed(&instance.motion.at(time)), object_frame])
     }
 
+    /// Offset from a surface of the shape `shape_index` to the smooth surface that its shading normals
+    /// describe, in this geometry's space; see [`Surface::lifted`]. The ray hits the surface.
+    pub(super) fn lift(&self, ray: &Ray, surface: &Surface, shape_index: u32, primitive: u32) -> Option<Vec3> {
+        let (instance, shape_index) = self.find(shape_index);
+        let local = instance.ray_to_object(ray);
+        let lift = match &instance.content {
+            Content::Shape(shape) => shape.lift(primitive, surface, &local)?,
+            Content::Geometry(geometry) => geometry.lift(&local, surface, shape_index, primitive)?,
+        };
+        Some(instance.motion.at(ray.time).vector(lift))
+    }
+
     /// Point of a mesh with attributes or a second set of surface coordinates, at a surface of the
     /// shape `shape_index`.
     #[inline(never)]

@@ -104,7 +104,7 @@ impl Classic {
         output: &mut VertexOutput,
     ) -> bool {
         let Some(phong) = phong else { return self.physical(world, ray, path, vertex, output) };
-        let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, &vertex.surface) };
+        let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, vertex) };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
         let point = ShadingPoint::new(ray, surfaces, &phong);
         let mut sampler = path.sampler;

@@ -25,7 +25,6 @@ struct ShadingPoint<'a> {
 impl Classic {
     /// Shades a vertex whose material is not the classic one. Returns `false` if opacity lets the ray
     /// pass.
-    #[inline(always)]
     pub(super) fn physical(
         &self,
         world: &World,
@@ -43,7 +42,7 @@ impl Classic {
             return false;
         }
         let wo = shading.frame.to_local(-ray.direction);
-        let lifted = if shading.transmissive { None } else { world.lifted_surface(ray, &vertex.surface) };
+        let lifted = if shading.transmissive { None } else { world.lifted_surface(ray, vertex) };
         let scattering = lifted.as_ref().unwrap_or(&vertex.surface);
         let point = ShadingPoint { surface: &vertex.surface, scattering, shading: &shading, wo, time: ray.time };
         // Add emission and ambient light.

@@ -216,7 +216,7 @@ impl Path {
         self.limit_lobes(&mut shading.bsdf, path);
         let mut visible_casters = VisibleCasters::empty();
         let is_lifted = !shading.transmissive && !shading.bsdf.is_specular();
-        let lifted = if is_lifted { world.lifted_surface(ray, &vertex.surface) } else { None };
+        let lifted = if is_lifted { world.lifted_surface(ray, vertex) } else { None };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
         let mut point = ShadingPoint::new(ray, surfaces, &shading, interface);
         // Sample direct illumination, also through specular spheres.

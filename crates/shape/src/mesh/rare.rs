@@ -5,6 +5,7 @@ use super::{Mesh, MeshPoint};
 use crate::derivatives::dpdu_about_y;
 use crate::surface::Surface;
 use crate::{AnyShape, SurfaceDerivatives};
+use juggler_math::{Ray, Vec3};
 
 impl Mesh {
     /// Whether the mesh has attributes or a second set of surface coordinates.
@@ -41,5 +42,17 @@ impl AnyShape {
         let given = prepared.tangent(primitive as usize, surface.barycentrics, time);
         let (tangent, sign) = given.or_else(about_axis)?;
         SurfaceDerivatives::new(tangent, surface.local_normal.cross(tangent) * sign)
+    }
+
+    /// Offset from a point of this shape to the smooth surface that its shading normals describe, in
+    /// object space; see [`Surface::lifted`]. `ray` hits the surface, in object space. `None` without
+    /// shading normals.
+    pub fn lift(&self, primitive: u32, surface: &Surface, ray: &Ray) -> Option<Vec3> {
+        let triangle = match self {
+            Self::Mesh(mesh) => mesh.triangle_geometry(primitive, ray.time)?,
+            Self::Triangle(triangle) => triangle.geometry(),
+            _ => return None,
+        };
+        triangle.lift(surface.barycentrics, ray.direction)
     }
 }
