@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use crate::model_args::ModelArgs;
+use juggler::memory::solids_bytes;
 use juggler::scene::document::{bytes_to_read, read_text};
 use juggler::scene::import::{Content, estimate};
 use juggler::scene::{Loader, Scene, named};
@@ -34,6 +35,7 @@ fn load_by(loader: Loader, name: &str, most: Option<u64>) -> Result<Scene, Failu
         check_memory(estimate(path).map_or(0, |mesh| mesh.peak_bytes), name, most)?;
     } else if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
+        check_memory(solids_bytes(loader.solids(path)), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
     Ok(loader.named(name)?)

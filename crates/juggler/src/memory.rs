@@ -26,6 +26,9 @@ const EMITTER: u64 = 768;
 /// Bytes of a triangle written in the scene file itself, while the world is built.
 const TRIANGLE: u64 = 160;
 
+/// Bytes of the arrays of a point or a line segment while its model file is read.
+const SOLID: u64 = 160;
+
 /// Description of the worlds at the neighboring frames.
 const NEIGHBOR_WORLDS: &str = "the scene at the neighboring frames";
 
@@ -211,6 +214,12 @@ impl Memory {
         let efforts = sizes.map(|band_pixels| Effort { threads, band_pixels });
         Ok(efforts.into_iter().find(|effort| self.bytes(effort) <= most).unwrap_or(least(threads)))
     }
+}
+
+/// Bytes to read the points and lines of a model file, and to build a world of the `solids`, spheres
+/// and cylinders, that they become.
+pub fn solids_bytes(solids: u64) -> u64 {
+    if solids == 0 { 0 } else { PROGRAM.saturating_add(solids.saturating_mul(SOLID.saturating_add(OBJECT))) }
 }
 
 fn scene_bytes(needs: &Needs) -> u64 {

@@ -1,6 +1,7 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::compile::AssetCache;
+use crate::import::Limits;
 use crate::model::{ModelCache, ModelFormat};
 use crate::store::{Bundle, Store};
 use crate::{Scene, SceneError};
@@ -50,6 +51,14 @@ impl Loader {
     pub fn is_model(self, path: &Path) -> bool {
         let cache = self.cache(Store::default());
         cache.is_model(path) && !cache.is_plain_mesh(path)
+    }
+
+    /// Number of spheres and cylinders that the points and lines of a model file become, from its
+    /// head alone; 0 for other files.
+    pub fn solids(self, path: &Path) -> u64 {
+        let (store, models) = (Store::default(), ModelCache::new(self.formats, self.is_lenient));
+        let bytes = store.read_bytes(path, &Limits::default()).unwrap_or_default();
+        models.format(path, &bytes).map_or(0, |format| format.solids(&bytes))
     }
 
     fn cache(self, store: Store) -> AssetCache {

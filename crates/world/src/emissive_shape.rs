@@ -2,7 +2,7 @@
 
 use super::emitters::{EmitterId, EmitterSample, LightSampleContext, bsdf_sampled};
 use super::world_shapes::{WorldMotion, WorldShape, collect_shapes};
-use super::{Geometry, Vertex};
+use super::{Geometry, InstanceAttributes, Vertex};
 use juggler_light::emitter::LightBounds;
 use juggler_material::{MaterialId, MaterialTable, ShadingView, Sides, SurfaceEmission, TexturedPoint};
 use juggler_math::{Ray, Rgb, Transform, Vec2, Vec3};
@@ -21,6 +21,7 @@ pub struct EmissiveShape {
     sphere_motion: Option<Box<WorldMotion>>,
     material: MaterialId,
     emission: SurfaceEmission,
+    attributes: Option<InstanceAttributes>,
 }
 
 impl EmissiveShape {
@@ -29,8 +30,9 @@ impl EmissiveShape {
         let emission = |shape: &AnyShape, id| materials.emission(id).filter(|_| shape.area().is_finite());
         let emissive = collect_shapes(top, usize::MAX, &|shape, id| emission(shape, id).is_some());
         let with_emission = |world_shape: WorldShape| {
-            let WorldShape { shape_index, shape, motion, sphere_motion, material } = world_shape;
-            Some(Self { shape_index, emission: emission(&shape, material)?, shape, motion, sphere_motion, material })
+            let WorldShape { shape_index, shape, motion, sphere_motion, material, attributes } = world_shape;
+            let emission = emission(&shape, material)?;
+            Some(Self { shape_index, emission, shape, motion, sphere_motion, material, attributes })
         };
         emissive.into_iter().filter_map(with_emission).collect()
     }
@@ -122,7 +124,8 @@ impl EmissiveShape {
         let ray = transform.ray_to_local(&Ray { time: context.time, ..Ray::new(context.point, wi) });
         let hit = self.shape.intersect(&ray)?;
         let surface = self.shape.surface(&ray, &hit).to_world(transform);
-        let mesh = self.shape.mesh_point(hit.primitive, &surface);
+        let own = || Some(self.attributes.as_ref()?.point(&surface));
+        let mesh = self.shape.mesh_point(hit.primitive, &surface).or_else(own);
         let point = TexturedPoint { surface: &surface, mesh: mesh.as_ref() };
         let view = ShadingView { wo: -wi, ..ShadingView::along_normal(point) };
         Some(materials.radiance(self.material, &view)).filter(|light| !light.is_black())

@@ -5,7 +5,7 @@ use super::hierarchy_entries::HierarchyEntries;
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::{self, LargeMesh, RayCoherence};
 use super::merged_meshes::{self, MergedMeshes};
-use super::{Content, Object, Vertex, WorldHit};
+use super::{Content, InstanceAttributes, Object, Vertex, WorldHit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Ray, Transform, Vec3};
@@ -43,9 +43,11 @@ pub struct Geometry {
     pub(super) merged_meshes: Option<MergedMeshes>,
     /// Indices of the unbounded objects.
     pub(super) unbounded: Vec<u32>,
+    /// Attributes of each object; empty if no object has any.
+    pub(super) attributes: Vec<Option<InstanceAttributes>>,
     bounds: Aabb,
     moves: bool,
-    /// Whether any mesh has attributes or a second set of surface coordinates.
+    /// Whether any object or mesh has attributes or a second set of surface coordinates.
     pub(super) has_mesh_attributes: bool,
     totals: GeometryTotals,
 }
@@ -122,7 +124,9 @@ impl Geometry {
         let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
         let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);
-        let has_mesh_attributes = objects.iter().any(|object| object.content.has_mesh_attributes());
+        let has_attributes = objects.iter().any(|object| object.attributes.is_some());
+        let attributes = objects.iter().filter(|_| has_attributes).map(|object| object.attributes.clone()).collect();
+        let has_mesh_attributes = has_attributes || objects.iter().any(|o| o.content.has_mesh_attributes());
         let objects = objects.into_iter().map(Instance::new).collect();
         Self {
             objects,
@@ -132,6 +136,7 @@ impl Geometry {
             large_meshes,
             merged_meshes,
             unbounded,
+            attributes,
             bounds,
             moves,
             has_mesh_attributes,
@@ -189,7 +194,7 @@ impl Geometry {
         if self.first_shapes.is_empty() {
             return (&self.objects[shape_index as usize], 0);
         }
-        let object_index = self.first_shapes.partition_point(|first| *first <= shape_index) - 1;
+        let object_index = self.object_index(shape_index) as usize;
         (&self.objects[object_index], shape_index - self.first_shapes[object_index])
     }
 
@@ -279,15 +284,30 @@ impl Geometry {
         Some(instance.motion.at(ray.time).vector(lift))
     }
 
-    /// Point of a mesh with attributes or a second set of surface coordinates, at a surface of the
-    /// shape `shape_index`.
+    /// Point of a mesh with attributes or a second set of surface coordinates, or else of an object with
+    /// attributes, at a surface of the shape `shape_index`.
     #[inline(never)]
     pub(super) fn mesh_point(&self, surface: &Surface, shape_index: u32, primitive: u32) -> Option<MeshPoint<'_>> {
-        let (instance, shape_index) = self.find(shape_index);
-        match &instance.content {
+        let (instance, inner_index) = self.find(shape_index);
+        let point = match &instance.content {
             Content::Shape(shape) => shape.mesh_point(primitive, surface),
-            Content::Geometry(geometry) => geometry.mesh_point(surface, shape_index, primitive),
+            Content::Geometry(geometry) => geometry.mesh_point(surface, inner_index, primitive),
+        };
+        point.or_else(|| Some(self.attributes_of(self.object_index(shape_index))?.point(surface)))
+    }
+
+    /// Attributes of the object of index `object_index`.
+    pub(super) fn attributes_of(&self, object_index: u32) -> Option<&InstanceAttributes> {
+        self.attributes.get(object_index as usize)?.as_ref()
+    }
+
+    /// Index of the object that contains the shape `shape_index`.
+    #[inline(always)]
+    fn object_index(&self, shape_index: u32) -> u32 {
+        if self.first_shapes.is_empty() {
+            return shape_index;
         }
+        self.first_shapes.partition_point(|first| *first <= shape_index) as u32 - 1
     }
 
     /// Bounding box of the shape `shape_index`, in this geometry's space; empty if it is unbounded.

@@ -49,6 +49,7 @@ impl GeometryStats {
         for geometry in geometries(top) {
             stats.bvh_bytes += geometry.bvh.bytes() + geometry.merged_meshes.as_ref().map_or(0, MergedMeshes::bytes);
             stats.geometry_bytes += size_of_val(geometry.objects.as_slice()) + size_of_val(geometry.items.as_slice());
+            stats.geometry_bytes += size_of_val(geometry.attributes.as_slice());
             let shapes = geometry.objects.iter().filter_map(|instance| instance.content.as_shape());
             shapes.for_each(|shape| stored.add(shape));
         }

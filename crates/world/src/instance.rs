@@ -75,7 +75,7 @@ impl SphereKeys {
 impl Instance {
     pub fn new(object: Object) -> Self {
         let sphere = SphereKeys::from_object(&object);
-        let Object { content, motion, material } = object;
+        let Object { content, motion, material, .. } = object;
         Self { sphere, material, is_identity: motion == Motion::Still(Transform::IDENTITY), content, motion }
     }
 

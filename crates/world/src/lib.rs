@@ -56,7 +56,7 @@ pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
 pub use geometry_stats::GeometryStats;
 pub use juggler_bvh::{SimdLevel, simd_levels};
 pub use labels::{Labels, LightSource, SeparateLights};
-pub use object::{Content, Object};
+pub use object::{Content, InstanceAttributes, Object};
 pub use scene_light::{LightState, SceneLight};
 pub use trace::{MAX_PASS_THROUGHS, ShadowMode};
 

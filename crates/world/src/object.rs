@@ -2,8 +2,9 @@
 
 use super::Geometry;
 use juggler_material::MaterialId;
-use juggler_math::{Aabb, Motion};
-use juggler_shape::{AnyShape, Mesh};
+use juggler_math::{Aabb, Motion, Vec2};
+use juggler_shape::surface::Surface;
+use juggler_shape::{AnyShape, Mesh, MeshData, MeshPoint};
 use std::sync::Arc;
 
 /// A shape or an instance of a geometry.
@@ -16,6 +17,25 @@ pub struct Object {
     /// Material; `None` inherits that of the enclosing instance, which is black if no instance has
     /// one.
     pub material: Option<MaterialId>,
+    /// Attributes of surfaces that have none of their own.
+    pub attributes: Option<InstanceAttributes>,
+}
+
+/// Attributes of one instance: a triangle of arrays that all instances share. Its first and its
+/// third corner hold the values at the surface coordinate v = 0 and v = 1.
+#[derive(Clone, Debug)]
+pub struct InstanceAttributes {
+    /// Attributes of the vertices, and a triangle for each instance.
+    pub arrays: Arc<MeshData>,
+    /// Index of the triangle.
+    pub triangle: u32,
+}
+
+impl InstanceAttributes {
+    /// Point that has the instance's attributes at a surface.
+    pub(super) fn point(&self, surface: &Surface) -> MeshPoint<'_> {
+        MeshPoint::new(&self.arrays, self.triangle, Vec2::new(0.0, surface.uv.y.clamp(0.0, 1.0)))
+    }
 }
 
 /// Content of an object.
@@ -48,7 +68,12 @@ impl Content {
 impl Object {
     /// Creates an object from a prepared shape.
     pub fn new(shape: AnyShape, motion: impl Into<Motion>, material: MaterialId) -> Self {
-        Self { content: Content::Shape(Arc::new(shape)), motion: motion.into(), material: Some(material) }
+        Self {
+            content: Content::Shape(Arc::new(shape)),
+            motion: motion.into(),
+            material: Some(material),
+            attributes: None,
+        }
     }
 
     /// Whether the object has a finite extent.

@@ -29,7 +29,12 @@ fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec
             }
             let place = Transform::translation(random.point(20.0));
             let transform = random.transform().then(&place);
-            objects.push(Object { content: Content::Shape(Arc::new(shape)), motion: transform.into(), material });
+            objects.push(Object {
+                content: Content::Shape(Arc::new(shape)),
+                motion: transform.into(),
+                material,
+                attributes: None,
+            });
         }
     }
     objects
@@ -55,6 +60,7 @@ fn nested(random: &mut Random) -> World {
                 content: Content::Geometry(Arc::clone(geometry)),
                 motion: transform.into(),
                 material: material.filter(|_| i.is_multiple_of(3)),
+                attributes: None,
             }
         };
         (0..count).map(one).collect()
@@ -89,12 +95,22 @@ fn grove(random: &mut Random) -> World {
             let material = Some(MaterialId(material));
             objects.insert(
                 objects.len() / 2,
-                Object { content: Content::Geometry(Arc::clone(&content)), motion: transform.into(), material },
+                Object {
+                    content: Content::Geometry(Arc::clone(&content)),
+                    motion: transform.into(),
+                    material,
+                    attributes: None,
+                },
             );
         }
         content = Arc::new(Geometry::new(objects));
     }
-    world_of(vec![Object { content: Content::Geometry(content), motion: random.transform().into(), material: None }])
+    world_of(vec![Object {
+        content: Content::Geometry(content),
+        motion: random.transform().into(),
+        material: None,
+        attributes: None,
+    }])
 }
 
 /// The same shapes without instances, at a time: transforms are composed and materials inherited.
@@ -103,7 +119,9 @@ fn expanded_at(objects: &[Instance], parent: &Transform, inherited: Option<Mater
         let Instance { content, motion, material, .. } = instance;
         let (place, material) = (motion.at(time).then(parent), material.or(inherited));
         match content {
-            Content::Shape(_) => vec![Object { content: content.clone(), motion: place.into(), material }],
+            Content::Shape(_) => {
+                vec![Object { content: content.clone(), motion: place.into(), material, attributes: None }]
+            }
             Content::Geometry(geometry) => expanded_at(&geometry.objects, &place, material, time),
         }
     };
@@ -199,7 +217,12 @@ fn coincident_instances_hit_the_lowest_index() {
     let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
     objects.retain(Object::is_bounded);
     let geometry = Arc::new(Geometry::new(objects));
-    let instance = Object { content: Content::Geometry(geometry), motion: random.rotation().into(), material: None };
+    let instance = Object {
+        content: Content::Geometry(geometry),
+        motion: random.rotation().into(),
+        material: None,
+        attributes: None,
+    };
     let mut objects = crowd(&mut random, 1, Some(MaterialId(1)));
     objects.extend(objects.clone());
     for place in [0, objects.len() / 2, objects.len()] {
@@ -317,11 +340,16 @@ fn shared_geometry_is_stored_once() {
     let mut step = 1.0;
     for _ in 0..3 {
         let place = |i: u16| Transform::translation(Vec3::new(f32::from(i % 32), 0.0, f32::from(i / 32)) * step);
-        let object = |i| Object { content: content.clone(), motion: place(i).into(), material: None };
+        let object = |i| Object { content: content.clone(), motion: place(i).into(), material: None, attributes: None };
         content = Content::Geometry(Arc::new(Geometry::new((0..1024).map(object).collect())));
         step *= 32.0;
     }
-    let world = world_of(vec![Object { content, motion: Transform::IDENTITY.into(), material: Some(MaterialId(0)) }]);
+    let world = world_of(vec![Object {
+        content,
+        motion: Transform::IDENTITY.into(),
+        material: Some(MaterialId(0)),
+        attributes: None,
+    }]);
     let stats = world.geometry_stats();
     assert_eq!((stats.shapes, stats.instances), (1 << 30, 1 + 1024 + (1 << 20)));
     assert!(stats.geometry_bytes + stats.bvh_bytes < 1 << 21, "{stats:?}");

@@ -1,6 +1,6 @@
 //! Shapes in world space, including the contents of instances.
 
-use super::{Content, Geometry};
+use super::{Content, Geometry, InstanceAttributes};
 use juggler_material::MaterialId;
 use juggler_math::{Aabb, Motion, Transform};
 use juggler_shape::AnyShape;
@@ -18,6 +18,8 @@ pub struct WorldShape {
     /// Motion without rotation of a sphere that moves.
     pub sphere_motion: Option<Box<WorldMotion>>,
     pub material: MaterialId,
+    /// Attributes of the shape's instance, the innermost that has any.
+    pub attributes: Option<InstanceAttributes>,
 }
 
 /// Transform of a shape to world space as a function of shutter time. It equals the transforms that
@@ -84,7 +86,7 @@ pub fn collect_shapes(
 ) -> Vec<WorldShape> {
     let mut search = Search { predicate, limit, found: Vec::new(), contains_match: BTreeMap::new() };
     let motion = WorldMotion::Single(Transform::IDENTITY.into());
-    search.collect(top, &InstanceContext { motion, first: 0, inherited: None });
+    search.collect(top, &InstanceContext { motion, first: 0, inherited: None, attributes: None });
     search.found
 }
 
@@ -93,6 +95,7 @@ struct InstanceContext {
     motion: WorldMotion,
     first: u32,
     inherited: Option<MaterialId>,
+    attributes: Option<InstanceAttributes>,
 }
 
 struct Search<'a> {
@@ -112,18 +115,21 @@ impl Search<'_> {
             }
             let shape_index = context.first + geometry.first_shape(object_index);
             let material = instance.material.or(context.inherited);
+            let attributes = || geometry.attributes_of(object_index).or(context.attributes.as_ref()).cloned();
             match &instance.content {
                 Content::Shape(shape) => {
                     if let Some(material) = material.filter(|material| (self.predicate)(shape, *material)) {
                         let to_world = |motion: &Motion| WorldMotion::of_instance(motion, &context.motion);
                         let sphere_motion = instance.sphere_motion(shape).map(|motion| Box::new(to_world(&motion)));
                         let (motion, shape) = (to_world(&instance.motion), Arc::clone(shape));
-                        self.found.push(WorldShape { shape_index, shape, motion, sphere_motion, material });
+                        let attributes = attributes();
+                        self.found.push(WorldShape { shape_index, shape, motion, sphere_motion, material, attributes });
                     }
                 }
                 Content::Geometry(below) if self.has_any(below, material) => {
                     let motion = WorldMotion::of_instance(&instance.motion, &context.motion);
-                    self.collect(below, &InstanceContext { motion, first: shape_index, inherited: material });
+                    let (inherited, attributes) = (material, attributes());
+                    self.collect(below, &InstanceContext { motion, first: shape_index, inherited, attributes });
                 }
                 Content::Geometry(_) => {}
             }

@@ -257,3 +257,31 @@ fn memory_of_stored_objects_is_estimated() {
     let (peak, expected) = peaks(&stats);
     assert!(peak <= expected && expected < 2 * peak, "{peak} of {expected}");
 }
+
+/// Points and lines of a glTF file are counted by its head, before their arrays are read.
+#[test]
+fn memory_of_points_and_lines_is_estimated() {
+    let folder = Folder::new();
+    let count: u32 = 100_000;
+    let at = |i: u32| [(i % 300) as f32, (i / 300) as f32, 0.0].map(f32::to_le_bytes);
+    fs::write(folder.path("points.bin"), (0..count).flat_map(at).flatten().collect::<Vec<u8>>()).unwrap();
+    for mode in [0, 3] {
+        let text = format!(
+            r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+                "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": {mode}}}]}}],
+                "buffers": [{{"uri": "points.bin", "byteLength": {0}}}],
+                "bufferViews": [{{"buffer": 0, "byteLength": {0}}}],
+                "accessors": [{{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": {count}}}]}}"#,
+            12 * count,
+        );
+        fs::write(folder.path("points.gltf"), text).unwrap();
+        let line = "points.gltf --size 64x36 --samples 1 -o a.png";
+        fits(&folder, line, budget(260), 2);
+        let message = folder.bad(&format!("render {line} --max-memory {}", budget(60)), 2);
+        assert!(message.contains("to be read, more than --max-memory"), "{message}");
+    }
+    // The file is refused before its arrays are read, since they are missing.
+    fs::write(folder.path("points.bin"), [0; 12]).unwrap();
+    let message = folder.bad(&format!("render points.gltf -o a.png --max-memory {}", budget(60)), 2);
+    assert!(message.contains("more than --max-memory"), "{message}");
+}

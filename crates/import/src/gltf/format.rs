@@ -4,7 +4,7 @@ use super::document::Document;
 use super::error::{Fault, GltfError};
 use super::limits::Limits;
 use super::open::Gltf;
-use super::translate::Content;
+use super::translate::{Content, Meshes};
 use super::{is_binary, summary};
 use glam::DAffine3;
 use juggler_scene::model::{
@@ -31,6 +31,12 @@ impl ModelFormat for GltfFormat {
 
     fn is_content(&self, head: &[u8]) -> bool {
         is_binary(head)
+    }
+
+    fn solids(&self, bytes: &[u8]) -> u64 {
+        let limits = self.limits.unwrap_or_default();
+        let document = Gltf::open("", bytes.to_vec(), &limits).map(|gltf| gltf.document);
+        document.map_or(0, |document| Meshes::new(&document, &limits).solids(&document))
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {

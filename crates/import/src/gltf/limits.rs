@@ -25,7 +25,7 @@ pub struct Limits {
     pub vertices: u64,
     /// Number of triangles of a primitive.
     pub triangles: u64,
-    /// Number of points or line segments of a primitive. A larger primitive is left out with a
+    /// Number of points and line segments of a file. Primitives that exceed it are left out with a
     /// warning.
     pub points_and_lines: u64,
     /// Number of instances of a node (EXT_mesh_gpu_instancing).

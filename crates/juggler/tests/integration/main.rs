@@ -18,6 +18,7 @@ mod cryptomatte;
 mod edits;
 mod gallery;
 mod instances;
+mod models;
 mod motion;
 mod noise;
 mod probe;

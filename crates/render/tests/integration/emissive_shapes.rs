@@ -61,8 +61,12 @@ fn nested_instances_of_an_emitter_match_the_closed_form() {
         let scale = Transform::scale(Vec3::new(mirror * 0.7, 1.2, 0.5)).unwrap();
         let outer = scale.then(&Transform::translation(Vec3::new(0.4, 1.5, 0.3)));
         let mut square = Object::new(prepared(SQUARE), inner, emitter);
-        let mut group =
-            Object { content: Content::Geometry(geometry(Vec::new())), motion: outer.into(), material: None };
+        let mut group = Object {
+            content: Content::Geometry(geometry(Vec::new())),
+            motion: outer.into(),
+            material: None,
+            attributes: None,
+        };
         if inherits {
             (square.material, group.material) = (None, Some(emitter));
         }

@@ -44,7 +44,7 @@ impl Item {
         let material = scene.material(&self.material);
         let object = Object::new(prepared(&self.shape), Transform::IDENTITY, material);
         scene.objects.push(if self.is_instance {
-            Object { content: instance(object), motion: self.motion.clone(), material: None }
+            Object { content: instance(object), motion: self.motion.clone(), material: None, attributes: None }
         } else {
             Object { motion: self.motion.clone(), ..object }
         });

@@ -30,6 +30,7 @@ mod materials;
 mod meshes;
 mod needs;
 mod placing;
+mod prepared_instances;
 mod settings;
 mod shutter_motion;
 mod surface_coordinates;

@@ -3,6 +3,7 @@
 use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
+use super::prepared_instances::PreparedInstances;
 use super::times::Times;
 use super::transform_motion;
 use crate::description::{ChainSphere, Description, Instances, Object, TransformStep};
@@ -51,8 +52,8 @@ struct Prepared<'s> {
     /// Index in its list.
     index: usize,
     motion: Motion,
-    /// Motions of the instances to the object's space; `None` for an object without instances.
-    instances: Option<Vec<Motion>>,
+    /// `None` for an object without instances.
+    instances: Option<PreparedInstances<'s>>,
     material: Option<MaterialId>,
     content: Content<'s>,
 }
@@ -225,21 +226,21 @@ impl Preparer<'_> {
         Some(motion.unwrap_or(still.into()))
     }
 
-    /// Motions of an object's instances. They move if there are as many `at` all other times.
-    fn instances(&mut self, instances: &Instances, at: &[&Object], path: &PathRef<'_>) -> Option<Vec<Motion>> {
-        let still = match instances.transforms() {
-            Ok(transforms) => transforms,
-            Err(wrong) => return self.fail(wrong.message, path.join(wrong.field)),
-        };
+    /// Instances of an object. They move if there are as many `at` all other times.
+    fn instances<'s>(
+        &mut self,
+        still: &'s Instances,
+        at: &[&Object],
+        path: &PathRef<'_>,
+    ) -> Option<PreparedInstances<'s>> {
+        if let Err(wrong) = still.check() {
+            return self.fail(wrong.message, path.join(wrong.field));
+        }
         let others = collect_all(at, |at| at.instances.as_ref());
-        let moves = others.iter().any(|other| *other != instances);
+        let moves = others.iter().any(|other| *other != still);
         let keys = if moves { collect_all(at, |at| at.instances.as_ref()?.transforms().ok()) } else { Vec::new() };
-        let keys = if keys.iter().all(|list| list.len() == still.len()) { keys } else { Vec::new() };
-        let motion = |(index, transform): (usize, Transform)| {
-            let keys = keys.iter().filter_map(|list| list.get(index).copied()).collect();
-            Motion::from_keys(keys).unwrap_or(transform.into())
-        };
-        Some(still.into_iter().enumerate().map(motion).collect())
+        let keys = if keys.iter().all(|list| list.len() == still.count()) { keys } else { Vec::new() };
+        Some(PreparedInstances::new(still, keys))
     }
 
     fn transform(&mut self, steps: &[TransformStep], path: &PathRef<'_>) -> Option<Transform> {
@@ -282,7 +283,7 @@ fn size(motion: &Motion, content: &WorldContent) -> f32 {
 /// Creates an object of the world. Resamples its motion so that rotations follow arcs.
 pub fn new_object(content: WorldContent, motion: Motion, material: Option<MaterialId>) -> juggler_world::Object {
     let motion = if motion.moves() { motion.clone().smoothed(size(&motion, &content)) } else { motion };
-    juggler_world::Object { content, motion, material }
+    juggler_world::Object { content, motion, material, attributes: None }
 }
 
 struct Placer<'s> {
@@ -332,9 +333,13 @@ impl Placer<'_> {
             match &object.instances {
                 None => self.place_content(&object.content, motion, material, found),
                 Some(instances) => {
-                    found.reserve(instances.len());
-                    for instance in instances {
+                    found.reserve(instances.count());
+                    for index in 0..instances.count() {
+                        let (before, instance) = (found.len(), instances.motion(index));
                         self.place_content(&object.content, instance.then(&motion), material, found);
+                        let attributes = instances.attributes(index);
+                        let without = found.iter_mut().skip(before).filter(|object| object.attributes.is_none());
+                        without.for_each(|object| object.attributes.clone_from(&attributes));
                     }
                 }
             }

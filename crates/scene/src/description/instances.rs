@@ -2,11 +2,14 @@
 //!
 //! ```json
 //! {"group": "tree", "instances": {
-//!   "positions": [[0, 0, 0], [3, 0, 1], [5, 0, -2]], "scales": [1, 0.8, [1, 1.3, 1]]}}
+//!   "positions": [[0, 0, 0], [3, 0, 1], [5, 0, -2]], "scales": [1, 0.8, [1, 1.3, 1]],
+//!   "colors": [[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1]]}}
 //! ```
 
 use super::{PlacementError, ScaleFactors, transform};
 use juggler_math::{Mat3, Transform, Vec3, quaternion};
+use juggler_shape::MeshData;
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -30,11 +33,22 @@ pub struct Instances {
     #[serde(skip_serializing_if = "InstanceArray::is_empty")]
     #[schemars(with = "Vec<ScaleFactors>")]
     pub scales: InstanceArray<ScaleFactors>,
-    /// Affine maps in place of the other arrays: the 12 numbers of 3 rows of a matrix that
+    /// Affine maps in place of positions, rotations and scales: the 12 numbers of 3 rows of a matrix that
     /// multiplies column vectors. The matrices must be invertible.
     #[serde(skip_serializing_if = "InstanceArray::is_empty")]
     #[schemars(with = "Vec<[f32; 12]>")]
     pub matrices: InstanceArray<[f32; 12]>,
+    /// Colors: red, green, blue and alpha of each instance, from 0 to 1 in linear light. They are
+    /// the attribute `color` of surfaces without attributes of their own; a material shows them by
+    /// the texture [`attribute`](#texture-attribute).
+    #[serde(skip_serializing_if = "InstanceArray::is_empty")]
+    #[schemars(with = "Vec<[f32; 4]>")]
+    pub colors: InstanceArray<[f32; 4]>,
+    /// Colors at the surface coordinate v = 1, such as the upper end of a `cylinder`. `colors` are
+    /// then those at v = 0, and the colors between are interpolated linearly. Needs `colors`.
+    #[serde(skip_serializing_if = "InstanceArray::is_empty")]
+    #[schemars(with = "Vec<[f32; 4]>")]
+    pub end_colors: InstanceArray<[f32; 4]>,
 }
 
 impl Instances {
@@ -54,22 +68,51 @@ impl Instances {
         self.lengths().into_iter().map(|(_, length)| length).fold(0, usize::max)
     }
 
-    fn lengths(&self) -> [(&'static str, usize); 4] {
+    fn lengths(&self) -> [(&'static str, usize); 6] {
         [
             ("positions", self.positions.len()),
             ("rotations", self.rotations.len()),
             ("scales", self.scales.len()),
             ("matrices", self.matrices.len()),
+            ("colors", self.colors.len()),
+            ("end_colors", self.end_colors.len()),
         ]
+    }
+
+    /// Colors as arrays with a triangle for each instance, whose first and third corner have the
+    /// colors at v = 0 and v = 1. `None` without colors.
+    pub(crate) fn color_arrays(&self) -> Option<MeshData> {
+        let count = u32::try_from(self.colors.len()).ok().filter(|count| *count > 0)?;
+        let end = if self.end_colors.is_empty() { 0 } else { count };
+        let numbers = self.colors.iter().chain(self.end_colors.iter()).flatten().copied();
+        let data = AttributeData::F32(numbers.collect());
+        let attribute = MeshAttribute { domain: AttributeDomain::Vertex, channels: 4, data };
+        let triangles = (0..count).map(|index| [index, index, index.saturating_add(end)]);
+        Some(MeshData {
+            triangles: triangles.collect(),
+            attributes: [("color".to_owned(), attribute)].into(),
+            ..MeshData::default()
+        })
     }
 
     /// Transforms of all instances to the object's space.
     ///
     /// # Errors
     ///
-    /// Two arrays have different lengths, `matrices` are given with other arrays, or a transform is
-    /// degenerate.
+    /// Two arrays have different lengths, `matrices` are given with other transforms, `end_colors`
+    /// without `colors`, or a transform is degenerate.
     pub fn transforms(&self) -> Result<Vec<Transform>, PlacementError> {
+        self.check_lengths()?;
+        (0..self.count()).map(|index| self.transform(index)).collect()
+    }
+
+    /// Checks all that [`Instances::transforms`] checks, without keeping the transforms.
+    pub(crate) fn check(&self) -> Result<(), PlacementError> {
+        self.check_lengths()?;
+        (0..self.count()).try_for_each(|index| self.transform(index).map(drop))
+    }
+
+    fn check_lengths(&self) -> Result<(), PlacementError> {
         let count = self.count();
         for (field, length) in self.lengths() {
             if length != 0 && length != count {
@@ -77,13 +120,21 @@ impl Instances {
                 return Err(PlacementError::new(field, message));
             }
         }
-        if !self.matrices.is_empty() && self.lengths().iter().filter(|(_, length)| *length > 0).count() > 1 {
-            return Err(PlacementError::new("matrices", "`matrices` stand in place of the other arrays"));
+        let has_steps = !(self.positions.is_empty() && self.rotations.is_empty() && self.scales.is_empty());
+        if !self.matrices.is_empty() && has_steps {
+            return Err(PlacementError::new(
+                "matrices",
+                "`matrices` stand in place of `positions`, `rotations` and `scales`",
+            ));
         }
-        (0..count).map(|index| self.transform(index)).collect()
+        if self.colors.is_empty() && !self.end_colors.is_empty() {
+            return Err(PlacementError::new("end_colors", "`end_colors` need `colors`"));
+        }
+        Ok(())
     }
 
-    fn transform(&self, index: usize) -> Result<Transform, PlacementError> {
+    /// Transform of an instance to the object's space.
+    pub(crate) fn transform(&self, index: usize) -> Result<Transform, PlacementError> {
         if let Some(rows) = self.matrices.get(index) {
             let at = |message| PlacementError::new("matrices", format!("instance {index}: {message}"));
             return transform::matrix(rows).map_err(at);
@@ -213,6 +264,8 @@ mod tests {
         let rows = "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]";
         assert_eq!(error(&format!(r#"{{"positions": [[0, 0, 0]], "matrices": [{rows}]}}"#)).0, "matrices");
         assert!(error(r#"{"matrices": [[1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0]]}"#).1.starts_with("instance 0: "));
+        assert_eq!(error(r#"{"positions": [[0, 0, 0]], "end_colors": [[1, 1, 1, 1]]}"#).0, "end_colors");
+        assert_eq!(error(r#"{"positions": [[0, 0, 0]], "colors": [[1, 1, 1, 1], [0, 0, 0, 1]]}"#).0, "positions");
     }
 
     #[test]

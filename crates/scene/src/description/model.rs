@@ -81,6 +81,7 @@ impl Model {
             seconds: self.at.unwrap_or(scene_seconds),
             repeat: self.repeat,
             photometric: self.photometric,
+            picture_size: None,
         }
     }
 }

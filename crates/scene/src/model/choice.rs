@@ -18,6 +18,8 @@ pub struct ModelChoice {
     pub repeat: ModelRepeat,
     /// Whether light intensities are photometric (candela, lux) and are divided by 683 lm/W.
     pub photometric: bool,
+    /// Width and height of the picture in pixels. Points and lines get a width that it shows.
+    pub picture_size: Option<[u32; 2]>,
 }
 
 /// Name of a part of a file, or its index, counted from 0.

@@ -31,7 +31,8 @@ pub struct Expansion {
     pub asset_cache: AssetCache,
     /// Errors and warnings about models.
     pub findings: Vec<Finding>,
-    /// What determines the models' contents, for fingerprints: hash of the file, and times.
+    /// What determines the models' contents, for fingerprints: hash of the file, and times; the size
+    /// of the picture too if points and lines depend on it.
     pub identities: Vec<([u8; 32], Vec<f64>)>,
 }
 

@@ -22,6 +22,12 @@ pub trait ModelFormat: Debug + Send + Sync {
         false
     }
 
+    /// Number of spheres and cylinders that a file's points and lines become, from its head alone;
+    /// 0 for a file that is not valid. Defaults to 0: the format has neither.
+    fn solids(&self, _bytes: &[u8]) -> u64 {
+        0
+    }
+
     /// Opens a model file. `name` is the file's name in messages; `files` reads the files that it
     /// names.
     ///

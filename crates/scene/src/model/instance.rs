@@ -65,7 +65,8 @@ impl Expander<'_> {
     ) -> Vec<Object> {
         let file = self.files.locate(&Path::from(path).key("file"), &model.file);
         let opened = self.asset_cache.model(&file);
-        let choice = model.choice(seconds);
+        let size = self.description.render.size;
+        let choice = ModelChoice { picture_size: Some(size), ..model.choice(seconds) };
         let prefix = self.prefix(&file, model, replaced, path, place);
         let mut parts = match open_parts(&opened, &choice, &prefix) {
             Ok(parts) => parts,
@@ -79,7 +80,8 @@ impl Expander<'_> {
             self.identities.last_mut().iter_mut().for_each(|(_, times)| times.push(choice.seconds));
         } else {
             let digest = opened.file.as_ref().map_or([0; 32], |file| file.digest());
-            self.identities.push((digest, vec![choice.seconds]));
+            let size = size.map(f64::from).into_iter().filter(|_| parts.depends_on_size);
+            self.identities.push((digest, std::iter::once(choice.seconds).chain(size).collect()));
         }
         self.check_names(model, &parts, &prefix, path, place);
         let mut objects = selected(model, std::mem::take(&mut parts.objects));

@@ -26,6 +26,8 @@ pub struct ModelParts {
     /// Objects, one for each drawn node, in depth-first order. Their names are paths of node names,
     /// such as "Root/Body/Head". A hidden node's objects are there and not visible.
     pub objects: Vec<Object>,
+    /// Whether the objects depend on the size of the picture.
+    pub depends_on_size: bool,
     /// Image-based light of the file.
     pub background: Option<AnyBackground>,
     /// Warnings about approximated, repaired and ignored content, one per kind with a count.

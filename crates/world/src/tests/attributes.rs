@@ -31,10 +31,18 @@ fn world(mesh: Mesh, transform: Transform, texture: &str, material: &str) -> Wor
     let mut compiler = MaterialCompiler::new(TextureTable::new(textures), []);
     let material = compiler.compile(&serde_json::from_str(material).unwrap()).unwrap();
     let half = Transform::scale(Vec3::splat(0.5)).unwrap();
-    let geometry =
-        Geometry::new(vec![Object { content: Content::Shape(Arc::new(mesh)), motion: half.into(), material: None }]);
-    let object =
-        Object { content: Content::Geometry(Arc::new(geometry)), motion: transform.into(), material: Some(material) };
+    let geometry = Geometry::new(vec![Object {
+        content: Content::Shape(Arc::new(mesh)),
+        motion: half.into(),
+        material: None,
+        attributes: None,
+    }]);
+    let object = Object {
+        content: Content::Geometry(Arc::new(geometry)),
+        motion: transform.into(),
+        material: Some(material),
+        attributes: None,
+    };
     World::new(vec![object], compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
 }
 
@@ -59,6 +67,63 @@ fn attributes_reach_materials_of_instances() {
     let emitter = world(triangle(1.0), transform, r#"{"attribute": {}}"#, r#"{"emissive": {"radiance": "t"}}"#);
     let emission = emitter.shade(&vertex, vertex.surface.normal, 1.0, 0.5).emission;
     assert!(close3(Vec3::from(emission.to_array()), Vec3::new(0.25, 0.25, 0.5), 1e-5), "{emission:?}");
+}
+
+/// World of a sphere in a geometry, each with attributes or not, and with a material of the texture
+/// `attribute`.
+fn sphere_world(inner: Option<InstanceAttributes>, outer: Option<InstanceAttributes>, material: &str) -> World {
+    let materials = world(triangle(1.0), Transform::IDENTITY, r#"{"attribute": {}}"#, material).materials().clone();
+    let mut sphere = AnyShape::from(Sphere { radius: 1.0 });
+    sphere.prepare().unwrap();
+    let motion = juggler_math::Motion::from(Transform::IDENTITY);
+    let content = Content::Shape(Arc::new(sphere));
+    let sphere = Object { content, motion: motion.clone(), material: None, attributes: inner };
+    let content = Content::Geometry(Arc::new(Geometry::new(vec![sphere])));
+    let instance = Object { content, motion, material: Some(MaterialId(0)), attributes: outer };
+    World::new(vec![instance], materials, NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+}
+
+/// The second of two instances, from red at v = 0 to this color at v = 1.
+fn attributes(end: [f32; 3]) -> Option<InstanceAttributes> {
+    let numbers = [[0.5; 3], [1.0, 0.0, 0.0], [0.5; 3], end];
+    let data = AttributeData::F32(numbers.as_flattened().to_vec());
+    let color = MeshAttribute { channels: 3, data, ..Default::default() };
+    let mut arrays = MeshData { triangles: vec![[0, 0, 2], [1, 1, 3]], ..MeshData::default() };
+    arrays.attributes.insert("color".to_owned(), color);
+    Some(InstanceAttributes { arrays: Arc::new(arrays), triangle: 1 })
+}
+
+/// Instances give attributes to shapes without any: at a vertex, and to light samples of it. Those
+/// of the innermost instance count, and are interpolated along v.
+#[test]
+fn instances_give_attributes_to_shapes() {
+    let (green, blue) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let cases = [(attributes(green), None), (None, attributes(green)), (attributes(green), attributes(blue))];
+    for (inner, outer) in cases {
+        let world = sphere_world(inner, outer, r#"{"emissive": {"radiance": "t"}}"#);
+        for y in [-0.9_f32, 0.0, 0.5] {
+            let normal = Vec3::new((1.0 - y * y).sqrt(), y, 0.0);
+            let mut ray = Ray::new(normal * 2.0, -normal);
+            let hit = world.closest(&mut ray);
+            let vertex = world.vertex(&ray, &hit);
+            let v = vertex.surface.uv.y;
+            let expected = Vec3::new(1.0 - v, v, 0.0);
+            let emission = world.shade(&vertex, normal, 1.0, 0.5).emission;
+            assert!(close3(Vec3::from(emission.to_array()), expected, 1e-5), "{y}: {emission:?}, not {expected}");
+        }
+        let context = LightSampleContext { point: Vec3::new(2.0, 0.0, 0.0), error: 0.0, normal: Vec3::ZERO, time: 0.0 };
+        let mut random = Random::new(5);
+        for _ in 0..20 {
+            let sample = world.sample_light(&context, Vec2::new(random.f32(), random.f32())).unwrap();
+            let mut ray = Ray::new(context.point, sample.wi);
+            let hit = world.closest(&mut ray);
+            let seen = world.shade(&world.vertex(&ray, &hit), -sample.wi, 1.0, 0.5).emission;
+            let (seen, sampled) = (Vec3::from(seen.to_array()), Vec3::from(sample.radiance.to_array()));
+            assert!(close3(seen, sampled, 1e-3), "{seen} is seen, {sampled} sampled");
+        }
+    }
+    let without = sphere_world(None, None, r#"{"emissive": {"radiance": "t"}}"#);
+    assert!(!without.has_mesh_attributes);
 }
 
 #[test]

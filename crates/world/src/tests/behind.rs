@@ -17,7 +17,7 @@ fn doubled(random: &mut Random) -> Vec<Object> {
     objects.push(Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1)));
     for content in [Content::Geometry(Arc::new(Geometry::new(crowd(random, 1, None)))), objects[0].content.clone()] {
         let keys = vec![random.transform(), random.transform()];
-        objects.push(Object { content, motion: Motion::from_keys(keys).unwrap(), material: None });
+        objects.push(Object { content, motion: Motion::from_keys(keys).unwrap(), material: None, attributes: None });
     }
     let corners = |y: f32| MeshData {
         positions: vec![Vec3::new(-30.0, y, -30.0), Vec3::new(30.0, y, -30.0), Vec3::new(0.0, y, 40.0)],

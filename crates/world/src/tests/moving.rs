@@ -23,7 +23,12 @@ fn in_motion(random: &mut Random) -> World {
     };
     let mut objects = moving(crowd(&mut Random::new(41), 2, Some(MaterialId(0))));
     let geometry = Arc::new(Geometry::new(moving(crowd(&mut Random::new(42), 1, None))));
-    let instance = Object { content: Content::Geometry(geometry), motion: Transform::IDENTITY.into(), material: None };
+    let instance = Object {
+        content: Content::Geometry(geometry),
+        motion: Transform::IDENTITY.into(),
+        material: None,
+        attributes: None,
+    };
     objects.extend(moving(vec![instance.clone(), instance.clone(), instance]));
     objects.extend(crowd(&mut Random::new(43), 1, Some(MaterialId(2))));
     objects.extend(moving(vec![Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1))]));
@@ -82,7 +87,7 @@ fn objects_on_long_curves_equal_brute_force_in_all_segments_of_time() {
         (0..40).flat_map(|_| [turning(Sphere { radius: 3.5 }.into()), turning(cuboid().into())]).collect();
     let below = Arc::new(Geometry::new(vec![turning(Sphere { radius: 0.2 }.into()), turning(cuboid().into())]));
     let motion = turning(Sphere { radius: 1.0 }.into()).motion;
-    objects.push(Object { content: Content::Geometry(below), motion, material: Some(MaterialId(1)) });
+    objects.push(Object { content: Content::Geometry(below), motion, material: Some(MaterialId(1)), attributes: None });
     let world = world_of(objects);
     assert!(world.top.items.len() > 4 * world.top.objects.len(), "{}", world.top.items.len());
     equals_brute_force(&world, 300);

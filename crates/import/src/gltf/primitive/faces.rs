@@ -10,7 +10,7 @@
 //! | triangle fan | {i + 1, i + 2, 0} |
 
 use super::Assembler;
-use crate::gltf::document::{ComponentType, Mode};
+use crate::gltf::document::{ComponentType, Document, Mode, Primitive, Semantic};
 use crate::gltf::error::Fault;
 
 /// Faces of a primitive by the indices of their vertices.
@@ -44,6 +44,17 @@ impl Faces {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// Number of points or line segments of a primitive by the counts of its accessors; 0 for surfaces.
+pub fn points_and_lines(document: &Document, primitive: &Primitive) -> u64 {
+    let is_surface = matches!(primitive.mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
+    if is_surface || primitive.extensions.draco.is_some() {
+        return 0;
+    }
+    let accessor = primitive.indices.or_else(|| primitive.attributes.find(&Semantic::Position));
+    let corners = accessor.and_then(|index| document.accessors.get(index.get())).map_or(0, |found| found.count.get());
+    face_count(primitive.mode, usize::try_from(corners).unwrap_or(usize::MAX)) as u64
 }
 
 impl Assembler<'_> {

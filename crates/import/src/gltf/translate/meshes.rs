@@ -3,11 +3,14 @@
 
 use super::materials::{add_tangents, tangent_uv_set};
 use crate::gltf::data::GltfData;
-use crate::gltf::document::{Document, Primitive, Semantic};
+use crate::gltf::document::{Document, Mode, Primitive, Semantic};
 use crate::gltf::draco::{self, DracoAttribute};
 use crate::gltf::error::Fault;
+use crate::gltf::limits::Limits;
 use crate::gltf::pose::Vertices;
-use crate::gltf::primitive::{Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays};
+use crate::gltf::primitive::{
+    Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays, points_and_lines,
+};
 use crate::gltf::warning::Warnings;
 use juggler_math::{Aabb, Vec3};
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
@@ -54,12 +57,15 @@ struct Entry {
     part: usize,
     /// Set of texture coordinates along which the material needs tangents.
     tangent_set: Option<u32>,
+    /// Whether the file has too many points and lines before and in the primitive.
+    is_excess: bool,
     decoded: OnceLock<Result<(Option<Geometry>, Warnings), Fault>>,
 }
 
 impl Meshes {
     /// Primitives of a document, none of them decoded.
-    pub fn new(document: &Document) -> Self {
+    pub fn new(document: &Document, limits: &Limits) -> Self {
+        let mut thin_left = limits.points_and_lines;
         let mut known = BTreeMap::new();
         let mut meshes = Self::default();
         for (mesh, found) in document.meshes.iter().enumerate() {
@@ -67,13 +73,33 @@ impl Meshes {
             let slots = found.primitives.iter().enumerate().map(|(part, primitive)| {
                 let tangent_set = tangent_set(document, primitive);
                 *known.entry((GeometryKey::new(primitive), tangent_set)).or_insert_with(|| {
-                    entries.push(Entry { mesh, part, tangent_set, decoded: OnceLock::new() });
+                    let left = thin_left.checked_sub(points_and_lines(document, primitive));
+                    thin_left = left.unwrap_or(thin_left);
+                    let is_excess = left.is_none();
+                    entries.push(Entry { mesh, part, tangent_set, is_excess, decoded: OnceLock::new() });
                     entries.len() - 1
                 })
             });
             meshes.slots.push(slots.collect());
         }
         meshes
+    }
+
+    /// Largest number of spheres and cylinders of the file's points and lines: of distinct
+    /// primitives that are not left out, without equal points and lines.
+    pub fn solids(&self, document: &Document) -> u64 {
+        let solids = |entry: &Entry| {
+            let primitive = document.meshes.get(entry.mesh)?.primitives.get(entry.part)?;
+            let positions = document.accessors.get(primitive.attributes.find(&Semantic::Position)?.get())?.count.get();
+            let count = points_and_lines(document, primitive);
+            Some(if primitive.mode == Mode::Points {
+                count.min(positions)
+            } else {
+                let pairs = positions.saturating_mul(positions) / 2;
+                count.saturating_mul(2).min(positions).saturating_add(count.min(pairs))
+            })
+        };
+        self.entries.iter().filter(|entry| !entry.is_excess).filter_map(solids).fold(0, u64::saturating_add)
     }
 
     /// Number of distinct primitives.
@@ -102,7 +128,14 @@ impl Meshes {
 
 /// Decodes a primitive.
 fn decode(data: &GltfData, entry: &Entry) -> Result<(Option<Geometry>, Warnings), Fault> {
-    let Entry { mesh, part, tangent_set, .. } = *entry;
+    let Entry { mesh, part, tangent_set, is_excess, .. } = *entry;
+    if is_excess {
+        let limit = data.gltf.limits.points_and_lines;
+        let text = format!("is left out: the file has more than {limit} points and lines, the limit");
+        let mut warnings = Warnings::default();
+        warnings.add(pointer(mesh, part), text, 1);
+        return Ok((None, warnings));
+    }
     let assembly = match data.assemble(mesh, part)? {
         Assembly::Draco(stream) => data.assemble_draco(mesh, part, &decompress(data, mesh, part, &stream)?)?,
         assembly => assembly,
@@ -167,7 +200,12 @@ fn geometry(arrays: Box<PrimitiveArrays>) -> Geometry {
             let form = Form::Surface(mesh(arrays.vertices.clone(), triangles.clone()));
             (form, Some(Box::new(PrimitiveArrays { faces: Faces::Triangles(triangles), ..*arrays })))
         }
-        (faces, _) => (Form::Thin, Some(Box::new(PrimitiveArrays { faces, ..*arrays }))),
+        (faces, true) => (Form::Thin, Some(Box::new(PrimitiveArrays { faces, ..*arrays }))),
+        (faces, false) => {
+            let Vertices { positions, colors, .. } = arrays.vertices;
+            let vertices = Vertices { positions, colors, ..Vertices::default() };
+            (Form::Thin, Some(Box::new(PrimitiveArrays { vertices, faces, ..PrimitiveArrays::default() })))
+        }
     };
     Geometry { form, has_color, has_normals, bounds, deformable }
 }

@@ -33,6 +33,7 @@ mod thin;
 mod tree;
 
 pub(super) use cameras::camera_aspects;
+pub(super) use meshes::Meshes;
 pub(super) use names::Names;
 pub(super) use objects::View;
 pub(super) use select::Selection;
@@ -48,7 +49,6 @@ use image_based::ImageBased;
 use instances::Instances;
 use juggler_scene::model::{ModelChoice, ModelParts};
 use materials::MaterialSet;
-use meshes::Meshes;
 use objects::{Findings, Objects};
 use tree::{NodeTree, SceneNode};
 
@@ -77,6 +77,8 @@ pub(super) struct Content {
 pub(super) struct Posed {
     /// What the choice selects.
     pub selection: Selection,
+    /// Size of the picture in pixels.
+    pub picture_size: Option<[u32; 2]>,
     /// Nodes of the scene, depth first.
     pub nodes: Vec<SceneNode>,
     pose: Pose,
@@ -99,7 +101,8 @@ impl Content {
         if !faults.is_empty() {
             return Err(faults.into_error(&data.gltf.name));
         }
-        let (meshes, skins, instances) = (Meshes::new(document), Skins::new(document), Instances::new(document));
+        let (meshes, skins, instances) =
+            (Meshes::new(document, &data.gltf.limits), Skins::new(document), Instances::new(document));
         let image_based = ImageBased::new(document);
         Ok(Self { names, clips, warnings, meshes, tree, skins, instances, image_based, data })
     }
@@ -118,7 +121,7 @@ impl Content {
         let pose = clips::pose_of(selection.clip.and_then(|clip| self.clips.get(clip)), choice);
         let nodes = self.tree.scene(&self.data.gltf.document, &self.names, selection.scene);
         let (worlds, visible) = (self.tree.world_transforms(&pose), self.tree.visibility(&pose));
-        Ok(Posed { selection, nodes, pose, worlds, visible })
+        Ok(Posed { selection, picture_size: choice.picture_size, nodes, pose, worlds, visible })
     }
 
     /// Transform of a node to world space in the pose of a choice. `node` is a name or a path of
@@ -138,8 +141,9 @@ impl Content {
 
     /// View of a scene in a pose.
     pub fn view<'a>(&'a self, posed: &'a Posed, prefix: &'a str) -> View<'a> {
-        let Posed { selection, nodes, pose, worlds, visible } = posed;
-        View { content: self, pose, worlds, visible, nodes, selection: *selection, prefix }
+        let Posed { selection, picture_size, nodes, pose, worlds, visible } = posed;
+        let (selection, picture_size) = (*selection, *picture_size);
+        View { content: self, pose, worlds, visible, nodes, selection, picture_size, prefix }
     }
 
     /// Translates the chosen scene. The names of all parts begin with `prefix`.
@@ -164,7 +168,7 @@ impl Content {
         let efficacy = if choice.photometric { lights::EFFICACY } else { 1.0 };
         let environment = self.image_based.environment(&view, &document, efficacy);
         let environment = findings.faults.take(environment).flatten();
-        let Objects { materials, groups, objects, .. } = objects;
+        let Objects { materials, groups, objects, radius, .. } = objects;
         let materials = materials.finish();
         findings.warnings.append(materials.warnings);
         if !findings.faults.is_empty() {
@@ -184,6 +188,7 @@ impl Content {
             cameras: cameras::cameras(&view, &document),
             lights: lights.lights,
             objects,
+            depends_on_size: radius.is_some(),
             background,
             warnings: findings.warnings.texts(),
         })

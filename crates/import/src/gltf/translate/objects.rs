@@ -8,7 +8,7 @@ use super::materials::{MaterialSet, PrimitiveSurface};
 use super::matrix::{matrix_rows, matrix_step};
 use super::meshes::{Form, Geometry, have_area, pointer};
 use super::select::Selection;
-use super::thin::{RELATIVE_RADIUS, local_radius, solids};
+use super::thin::{local_radius, relative_radius, solids};
 use super::tree::SceneNode;
 use crate::gltf::document::Primitive;
 use crate::gltf::error::Fault;
@@ -37,6 +37,8 @@ pub struct View<'a> {
     pub nodes: &'a [SceneNode],
     /// What the choice selects.
     pub selection: Selection,
+    /// Size of the picture in pixels, which determines the width of points and lines.
+    pub picture_size: Option<[u32; 2]>,
     /// Beginning of the names of all parts.
     pub prefix: &'a str,
 }
@@ -51,7 +53,7 @@ pub struct Objects<'a> {
     /// Whether the warnings about a distinct primitive were taken over.
     reported: Vec<bool>,
     /// Radius of points and lines in world space.
-    radius: Option<f64>,
+    pub radius: Option<f64>,
     /// Points and lines that may still be made.
     thin_left: u64,
     /// Instances that may still be placed.
@@ -290,17 +292,17 @@ impl<'a> Objects<'a> {
         let is_skinned = deformation.joints.is_some();
         let radius = match self.radius {
             Some(radius) => radius,
-            None => RELATIVE_RADIUS * self.diagonal(&mut findings.faults),
+            None => relative_radius(self.view.picture_size) * self.diagonal(&mut findings.faults),
         };
         self.radius = Some(radius);
-        let positions = if deformation.moves(arrays) {
+        let vertices = if deformation.moves(arrays) {
             self.reserve(arrays, at)?;
-            Cow::Owned(deformation.apply(arrays, at)?.vertices.positions)
+            Cow::Owned(deformation.apply(arrays, at)?.vertices)
         } else {
-            Cow::Borrowed(&arrays.vertices.positions)
+            Cow::Borrowed(&arrays.vertices)
         };
         let radius = local_radius(radius, if is_skinned { &DAffine3::IDENTITY } else { world });
-        Ok(Some(Object::several(solids(&positions, &arrays.faces, radius))))
+        Ok(Some(Object::several(solids(&vertices, &arrays.faces, radius))))
     }
 
     /// Diagonal of the bounding box of the scene in the rest pose, which is the same at all times.

@@ -3,6 +3,7 @@
 mod animation;
 mod lenient;
 mod nodes;
+mod thin;
 mod views;
 
 use crate::gltf::GltfFormat;
