@@ -113,7 +113,8 @@ fn is_convex(shape: &AnyShape) -> bool {
 
 /// Bounding box of an object over the shutter interval, which may be infinite.
 fn extent(instance: &Instance) -> Aabb {
-    let object = Object { content: instance.content.clone(), motion: instance.motion.clone(), material: None };
+    let object =
+        Object { content: instance.content.clone(), motion: instance.motion.clone(), material: None, attributes: None };
     let bounds = object.bounds();
     if object.is_bounded_by(&bounds) { bounds } else { Aabb::INFINITE }
 }

@@ -17,7 +17,7 @@ fn sphere_and(other: Content, motion: Motion) -> World {
     let mut material = |json: &str| compiler.compile(&serde_json::from_str(json).unwrap()).unwrap();
     let (glass, diffuse) = (material(r#"{"dielectric": {"ior": 1.5}}"#), material(r#"{"diffuse": {}}"#));
     let solid = Object::new(shape(r#"{"sphere": {"radius": 1}}"#), Transform::translation(Vec3::Y), glass);
-    let objects = vec![solid, Object { content: other, motion, material: Some(diffuse) }];
+    let objects = vec![solid, Object { content: other, motion, material: Some(diffuse), attributes: None }];
     let background = AnyBackground::Solid(Solid::default());
     World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
 }
@@ -91,13 +91,19 @@ fn a_solid_touches_planes_at_any_angle_and_whatever_moves() {
 
 #[test]
 fn contents_of_instances_count() {
-    let plane = Object { content: content(r#"{"plane": {}}"#), motion: Transform::IDENTITY.into(), material: None };
+    let plane = Object {
+        content: content(r#"{"plane": {}}"#),
+        motion: Transform::IDENTITY.into(),
+        material: None,
+        attributes: None,
+    };
     let unbounded = Content::Geometry(Arc::new(Geometry::new(vec![plane])));
     assert!(fraction_apart(&sphere_and(unbounded, Transform::IDENTITY.into())) == 0.0);
     let tile = Object {
         content: content(r#"{"rectangle": {"size": [1, 1]}}"#),
         motion: Transform::IDENTITY.into(),
         material: None,
+        attributes: None,
     };
     let tiles = Content::Geometry(Arc::new(Geometry::new(vec![tile])));
     let world = sphere_and(tiles, Transform::IDENTITY.into());
