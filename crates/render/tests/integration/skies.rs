@@ -150,7 +150,7 @@ fn glass_shows_the_backdrop() {
             assert!(furnace(Some(2.0)) > plain + 0.3, "{integrator} {glass}");
         }
     }
-    // Classic glass: no Fresnel reflection unless it is asked for.
+    // Classic glass: no Fresnel reflection unless the material has it.
     let classic = r#"{"phong": {"diffuse": 0, "transparency": 1, "ior": 1.5}}"#;
     assert_eq!(seen_with(slab(classic), uniform(Some(3.0)), r#"{"classic": {}}"#, 1), 3.0);
 }
