@@ -28,7 +28,9 @@ pub struct Dielectric {
     pub ior: f32,
     /// Dispersion: 20 divided by the Abbe number of the glass, 0 to 20; 0.34 for crown glass, 0.36
     /// for diamond, 0.7 for flint glass. The default, 0, refracts all wavelengths alike. Only the
-    /// integrator `path` shows dispersion.
+    /// integrator `path` shows dispersion. Paths do not sample lights through spheres of dispersive
+    /// glass, so such spheres cast caustics of emissive objects and environments, but none of
+    /// `point`, `spot` and `directional` lights.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 20))]
     pub dispersion: f32,

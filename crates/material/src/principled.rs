@@ -43,7 +43,8 @@ pub struct Principled {
     #[schemars(range(min = 0, max = 10))]
     pub ior: f32,
     /// Dispersion of the light that glass refracts: 20 divided by the Abbe number, 0 to 20. The
-    /// default, 0, refracts all wavelengths alike. Only the integrator `path` shows dispersion.
+    /// default, 0, refracts all wavelengths alike. Only the integrator `path` shows dispersion, and
+    /// spheres of dispersive glass cast no caustics of `point`, `spot` and `directional` lights.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 20))]
     pub dispersion: f32,
