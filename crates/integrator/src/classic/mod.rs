@@ -132,6 +132,7 @@ impl Classic {
 
     /// Adds emission and ambient light. One ray, uniform over the hemisphere, decides about the
     /// fraction that is subject to occlusion.
+    #[inline(always)]
     fn ambient(
         &self,
         world: &World,
@@ -153,6 +154,7 @@ impl Classic {
     }
 
     /// Traces reflected and refracted rays.
+    #[inline(always)]
     fn trace_secondary_rays(
         &self,
         path: &PathState,
@@ -232,6 +234,7 @@ impl Bundle<'_> {
 }
 
 /// Adds a light's contribution, by one or more shadow rays.
+#[inline(always)]
 fn add_light(light: &SceneLight, number: usize, point: &ShadingPoint, sampler: &Sampler, output: &mut VertexOutput) {
     let state = light.at(point.time);
     if !point.phong.both_sides && state.is_below(point.scattering.point, point.normal) {

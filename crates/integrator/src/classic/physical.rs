@@ -25,6 +25,7 @@ struct ShadingPoint<'a> {
 impl Classic {
     /// Shades a vertex whose material is not the classic one. Returns `false` if opacity lets the ray
     /// pass.
+    #[inline(always)]
     pub(super) fn physical(
         &self,
         world: &World,
@@ -68,6 +69,7 @@ impl Classic {
     }
 
     /// Traces one ray for each specular lobe, and one for all glossy lobes.
+    #[inline(always)]
     fn reflect(&self, point: &ShadingPoint, path: &PathState, mut sampler: Sampler, output: &mut VertexOutput) {
         let mut child = 0;
         for sample in point.shading.bsdf.deltas(point.wo) {
@@ -103,6 +105,7 @@ impl Classic {
 
 impl ShadingPoint<'_> {
     /// Adds a light's contribution, by one or more shadow rays.
+    #[inline(always)]
     fn add_light(&self, light: &SceneLight, number: usize, sampler: &Sampler, output: &mut VertexOutput) {
         let SceneLight { samples, is_delta, is_surface, .. } = light;
         let scale = if *is_surface { 1.0 } else { self.shading.light_scale };
