@@ -139,17 +139,11 @@ impl<'a> ShadingPoint<'a> {
         Some((direction, BsdfSample { weight, pdf, ..sample }))
     }
 
-    /// Replaces a total reflection about a perturbed normal after many specular events: see
-    /// [`Bsdf::sample_exit`].
-    fn released(&self, path: &PathState, (wi, sample): (Vec3, BsdfSample)) -> (Vec3, BsdfSample) {
-        if path.history.events.specular < MAX_HELD || sample.scatter != Scatter::Specular {
-            return (wi, sample);
-        }
-        let u = path.sampler.skipped(Dimension::Exit as u32).next_2d();
-        match self.shading.bsdf.sample_exit(self.local, &sample, u) {
-            Some(exit) => (self.shading.frame.to_world(exit.wi), exit),
-            None => (wi, sample),
-        }
+    /// Sample that replaces a total reflection about a perturbed normal: see [`Bsdf::sample_exit`].
+    #[cold]
+    #[inline(never)]
+    fn sample_exit(&self, path: &PathState, reflected: &BsdfSample) -> Option<BsdfSample> {
+        self.shading.bsdf.sample_exit(self.local, reflected, path.sampler.skipped(Dimension::Exit as u32).next_2d())
     }
 
     /// Samples `count` lights.
@@ -313,7 +307,12 @@ impl Path {
         path: &PathState,
         output: &mut VertexOutput,
     ) {
-        let Some((wi, sample)) = point.sample(path).map(|sampled| point.released(path, sampled)) else { return };
+        let Some((mut wi, mut sample)) = point.sample(path) else { return };
+        if path.history.events.specular >= MAX_HELD
+            && let Some(exit) = point.sample_exit(path, &sample)
+        {
+            (wi, sample) = (point.shading.frame.to_world(exit.wi), exit);
+        }
         let is_specular = sample.scatter == Scatter::Specular;
         let (from, goes_on) = if is_specular {
             (point.surface, point.same_hemisphere(wi, sample.wi))
