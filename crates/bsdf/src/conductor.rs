@@ -14,7 +14,7 @@
 //!   2019, with B for his F0, which leaves out the absorption of further bounces). The highlight
 //!   keeps its shape, and there is no light across the grooves. The scaled lobe is not reciprocal.
 //!
-//! In between, both are blended by the ratio of the alphas: see [`Conductor::scaled_fraction`].
+//! In between, both are blended by the ratio of the alphas: see `Conductor::scaled_fraction`.
 //!
 //! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the
 //! direction that a visible normal reflects is accepted with probability G2 / G1. Otherwise, which
