@@ -74,6 +74,7 @@ impl ModelArgs {
         model.animation = chosen(&self.animation).or(model.animation.take());
         model.scene = chosen(&self.model_scene).or(model.scene.take());
         scene.fit_animation();
+        scene.fit_background();
         Ok(())
     }
 }

@@ -6,7 +6,7 @@
 
 use super::input::{check_color, check_number, emitted_color};
 use super::mask::CompiledMask;
-use super::{CompiledMaterial, Material, MaterialError, MaterialResolver, ShadingView};
+use super::{CompiledMaterial, Material, MaterialError, MaterialId, MaterialResolver, MaterialTable, ShadingView};
 use juggler_math::{MAX_LIGHT, Rgb};
 use juggler_texture::{Input, Slot, TextureTable};
 use schemars::JsonSchema;
@@ -64,6 +64,16 @@ impl CompiledUnlit {
     /// Whether the color varies over the surface.
     pub fn is_textured(&self) -> bool {
         self.color.is_texture()
+    }
+}
+
+impl MaterialTable {
+    /// Whether material `id`, or one inside it, shows its color without light.
+    pub fn shows_unlit(&self, id: MaterialId) -> bool {
+        let Some(compiled) = self.compiled(id) else { return false };
+        // The recursion ends, since nested materials have smaller ids.
+        matches!(compiled, CompiledMaterial::Unlit(_))
+            || compiled.nested_materials().into_iter().any(|inner| self.shows_unlit(inner))
     }
 }
 

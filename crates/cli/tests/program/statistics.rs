@@ -139,3 +139,21 @@ fn samples_that_are_not_finite_are_counted_and_black() {
     let run = folder.run("render wild.json -q -o wild.exr");
     assert!(run.stderr.contains("samples not finite, counted as black"), "{}", run.stderr);
 }
+
+/// A render says that its picture is black, and `check` why.
+#[test]
+fn a_black_picture_is_reported() {
+    let folder = Folder::new();
+    let text = r#"{"version": 1, "objects": [{"shape": "sphere"}],
+        "lights": [{"point": {"position": [0, 3, 0], "intensity": INTENSITY}}]}"#;
+    fs::write(folder.path("dark.json"), text.replace("INTENSITY", "0")).unwrap();
+    let run = folder.run("render dark.json --size 8x8 --samples 1 -o a.png");
+    assert_eq!(run.status, 0);
+    assert!(run.stderr.contains("a.png: all pixels are black: no light reaches the camera"), "{}", run.stderr);
+    let check = folder.run("check dark.json");
+    let report = format!("{}{}", check.stdout, check.stderr);
+    assert!(check.status == 0 && report.contains("no light reaches the camera"), "{report}");
+    fs::write(folder.path("lit.json"), text.replace("INTENSITY", "9")).unwrap();
+    let run = folder.good("render lit.json --size 8x8 --samples 1 -o a.png");
+    assert!(!run.stderr.contains("black"), "{}", run.stderr);
+}

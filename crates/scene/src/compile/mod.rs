@@ -17,6 +17,7 @@ use std::sync::Arc;
 mod ambiguities;
 pub(crate) mod area_lights;
 mod count;
+mod darkness;
 mod defaults;
 mod emitter_count;
 mod facing;
@@ -151,6 +152,7 @@ impl Assembly {
             bounds,
             object_materials,
         };
+        findings.extend(darkness::warning(scene, &assembly));
         (assembly, findings)
     }
 
@@ -219,7 +221,8 @@ impl LightingInputs<'_> {
         findings: &mut Vec<Finding>,
     ) -> (Vec<SceneLight>, Option<Illuminance>, AnyBackground) {
         let Self { scene, integrator, bounds, sources, tracks, files } = *self;
-        let has_emission = has_emission || background.as_ref().is_some_and(|b| is_light_source(integrator, b));
+        let has_emission =
+            has_emission || background.as_ref().is_some_and(|b| darkness::is_light_source(integrator, b));
         let has_lights = has_emission || !scene.lights.is_empty();
         let default = || defaults::lights(bounds, scene, integrator).into_iter().map(SceneLight::from).collect();
         let lights = if has_lights { compile_sources(sources, tracks, files, names) } else { default() };
@@ -299,14 +302,6 @@ pub fn cameras_of(
     settings::check(&scene.render, &mut findings);
     let (cameras, camera_keys) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
     (cameras, camera_keys, findings)
-}
-
-/// Whether a background lights the scene: environments, skies and studios do, and with path tracing
-/// every background that is not black.
-fn is_light_source(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
-    let is_light =
-        matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_) | AnyBackground::Studio(_));
-    is_light || integrator.follows_paths() && !background.mean_radiance().is_black()
 }
 
 /// Bounding box of all bounded objects; the box of [`or_some`] if there are none.

@@ -7,7 +7,7 @@
 use super::instance::{ModelNames, Place};
 use super::{ModelChoice, find_camera};
 use crate::compile::{AssetCache, Files};
-use crate::description::{CameraName, Description, Object, Objects};
+use crate::description::{BackgroundInput, CameraName, Description, Object, Objects};
 use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, PathRef};
@@ -17,7 +17,9 @@ use crate::suggest::did_you_mean_or_list;
 use indexmap::IndexMap;
 use juggler_camera::AnyCamera;
 use juggler_light::AnyLight;
+use juggler_light::background::AnyBackground;
 use juggler_math::Transform;
+use juggler_math::range::format_number;
 use std::sync::Arc;
 
 /// A scene whose models are expanded.
@@ -143,6 +145,7 @@ pub(super) struct Expander<'s> {
 
 impl Expander<'_> {
     fn finish(mut self, mut tracks: Tracks) -> Expansion {
+        self.findings.extend(self.dimmed_studio());
         for (name, camera) in self.cameras.into_values() {
             if let Some(keys) = camera.moving() {
                 tracks.cameras.insert(name.clone(), keys.iter().cloned().map(Item::from).collect());
@@ -164,6 +167,22 @@ impl Expander<'_> {
             findings: self.findings,
             identities: self.identities,
         }
+    }
+
+    /// Tells of the studio around a file with lights.
+    fn dimmed_studio(&self) -> Option<Finding> {
+        let scene = self.files.scene;
+        let is_around_model = self.files.sources.names().next().is_none();
+        let Some(BackgroundInput::Kind(AnyBackground::Studio(studio))) = scene.background.as_deref() else {
+            return None;
+        };
+        if !is_around_model || self.lights.is_empty() || studio.scale == 1.0 {
+            return None;
+        }
+        let scale = format_number(studio.scale);
+        let message = format!("the file has lights of its own, so the studio around it is dimmed to {scale}");
+        let finding = Finding::warning(message).at(Path::root().key("background"));
+        Some(finding.help("`juggler convert` writes a scene, whose `background` you can change"))
     }
 
     /// Expands the objects of a list, and their tracks.

@@ -1,11 +1,12 @@
 //! A scene that shows a model file that was given in place of a scene.
 
+use super::model_light::background;
 use super::{ModelChoice, ModelFile};
-use crate::description::{Animation, BackgroundInput, Description, Model, Object, Render};
+use crate::description::{Animation, Description, Model, Object, Render};
+use crate::item::Item;
 use juggler_imaging::{AnyCurve, Tone};
 use juggler_integrator::Path as PathIntegrator;
-use juggler_light::background::Studio;
-use juggler_math::{Rgb, Vec3};
+use juggler_math::Vec3;
 use std::path::Path;
 
 /// Frames per second of a model's movie.
@@ -37,7 +38,7 @@ pub fn describe_model_scene(file: &str, model: &dyn ModelFile) -> Description {
         render: render.into(),
         tone: Tone { curve: AnyCurve::PbrNeutral(Default::default()), ..Tone::default() }.into(),
         animation: Animation { frames: frames_of(seconds), frames_per_second: FRAMES_PER_SECOND },
-        background: (!summary.is_lit).then(|| background().into()),
+        background: background(&summary).map(Item::from),
         ..Description::default()
     };
     let object = Object::model(Model::new(file)).named(title);
@@ -49,12 +50,4 @@ pub fn describe_model_scene(file: &str, model: &dyn ModelFile) -> Description {
 /// Frames of a clip; 1 without clip.
 pub fn frames_of(seconds: f64) -> u32 {
     (seconds * FRAMES_PER_SECOND).round().clamp(1.0, 1e6) as u32
-}
-
-/// A studio around a model without lights, which the camera sees as light gray. A model with lights
-/// has a black background, or the image-based light of its file.
-fn background() -> BackgroundInput {
-    let mut studio = Studio::default();
-    studio.visible_as = Some(Rgb::splat(0.9));
-    BackgroundInput::Kind(studio.into())
 }

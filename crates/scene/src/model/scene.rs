@@ -82,6 +82,14 @@ impl Scene {
             && matches!(self.description.objects.as_slice(), [object] if object.model.is_some())
     }
 
+    /// Sets the background of a scene around a model file to that of the chosen scene of the file.
+    pub fn fit_background(&mut self) {
+        if self.is_around_model() {
+            let summary = self.model_summaries().into_iter().next().map(|found| found.summary);
+            self.description.background = summary.as_ref().and_then(super::model_light::background).map(Item::from);
+        }
+    }
+
     /// Sets the length of the animation to that of the chosen clip of the scene's first model.
     pub fn fit_animation(&mut self) {
         let summary = self.model_summaries().into_iter().next().map(|found| found.summary);

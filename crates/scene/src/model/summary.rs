@@ -21,8 +21,12 @@ pub struct ModelSummary {
     pub cameras: Vec<(String, Option<f32>)>,
     /// Names of the lights.
     pub lights: Vec<String>,
-    /// Whether the chosen scene has lights or an image-based light.
-    pub is_lit: bool,
+    /// Typical illuminance by the lights of the chosen scene, see [`illuminance`]; 0 without lights.
+    ///
+    /// [`illuminance`]: super::illuminance
+    pub illuminance: f32,
+    /// Whether the chosen scene has an image-based light.
+    pub has_environment: bool,
     /// Nodes of the file.
     pub nodes: usize,
     /// Triangles of the file's distinct meshes.

@@ -122,7 +122,7 @@ fn colors_that_look_like_8_bit_levels_cause_warnings() {
         (r#""background": [135, 206, 235]"#, 1),
         (r#""lights": [{"point": {"color": [255, 255, 255]}}]"#, 1),
         (r#""lights": [{"point": {"color": [20, 15, 10]}}]"#, 0),
-        (r#""materials": {"a": {"emissive": {"radiance": [60, 50, 40]}}}"#, 0),
+        (r#""background": 1, "materials": {"a": {"emissive": {"radiance": [60, 50, 40]}}}"#, 0),
         (r#""materials": {"a": {"phong": {"diffuse": [1, 0, 0]}}}"#, 0),
         (r#""background": [2, 2, 2.5]"#, 0),
     ] {

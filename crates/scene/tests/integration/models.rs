@@ -127,7 +127,7 @@ impl ModelFile for Toy {
             clips: if self.has_clip { vec![clip] } else { Vec::new() },
             clip: self.clip(choice)?,
             cameras: vec![("Eye".into(), Some(2.0))],
-            is_lit: self.is_lit,
+            illuminance: if self.is_lit { 1.0 } else { 0.0 },
             ..ModelSummary::default()
         })
     }
@@ -338,7 +338,12 @@ fn a_model_file_is_a_scene_and_is_read_again_when_its_files_change() {
     assert!(fs::read_to_string(&saved).unwrap().contains("\"../a.toy\""));
     assert_eq!(LOADER.load(&saved).unwrap().compile().unwrap().bounds, scene.compile().unwrap().bounds);
     fs::write(&path, "toy\nlit\n").unwrap();
-    assert!(LOADER.load(&path).unwrap().description.background.is_none());
+    // Beside the light of the file, the studio is dimmed to a tenth of its irradiance, which is 1 here.
+    let scene = LOADER.load(&path).unwrap();
+    let background = serde_json::to_value(&scene.description.background).unwrap();
+    assert_eq!(background.pointer("/studio/scale").and_then(serde_json::Value::as_f64), Some(f64::from(0.032_f32)));
+    let report = scene.check().to_string();
+    assert!(report.contains("lights of its own, so the studio around it is dimmed to 0.032"), "{report}");
     assert!(Scene::load(Path::new(&path)).is_err());
 }
 

@@ -303,13 +303,7 @@ impl RenderCommand {
             stats.expected_memory(frame.expected);
             output::write_text(file, &stats.to_json())?;
         }
-        let lost = match outcome.rays.not_finite {
-            0 => String::new(),
-            lost => format!(", {} not finite", counted(lost.into(), "sample")),
-        };
-        if !lost.is_empty() {
-            console::print_message(&format!("warning: {}{lost}, counted as black", frame_output.output));
-        }
+        let lost = self.warn_of_pixels(frame_output, outcome);
         let clamping = if picture.is_clamped() { format!(", {}", clamping(&outcome.film)) } else { String::new() };
         if self.plan.quiet || self.plan.movie.is_some() {
             // For frames of a movie, report only clamping.
@@ -326,6 +320,27 @@ impl RenderCommand {
             "{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}{lost}",
             frame_output.output
         ))
+    }
+
+    /// Warns of samples that are not finite, and of a picture that is black. Returns the former as
+    /// text.
+    fn warn_of_pixels(&self, frame_output: &FrameOutput, outcome: &RenderStats) -> String {
+        let output = &frame_output.output;
+        let lost = match outcome.rays.not_finite {
+            0 => String::new(),
+            lost => format!(", {} not finite", counted(lost.into(), "sample")),
+        };
+        if !lost.is_empty() {
+            console::print_message(&format!("warning: {output}{lost}, counted as black"));
+        }
+        // A frame of a movie may be black on purpose.
+        if outcome.film.mean == [0.0; 3] && self.plan.movie.is_none() && !self.plan.quiet {
+            let help = "`juggler check` names lights without power, `juggler probe` explains a pixel";
+            console::print_message(&format!(
+                "warning: {output}: all pixels are black: no light reaches the camera; {help}"
+            ));
+        }
+        lost
     }
 
     /// Reports the frames of a shard, before the movie is encoded.

@@ -272,7 +272,7 @@ mod tests {
         // The rotation takes the faces +x, +z, -x, -z to -z, +x, +z, -x. Half of each pixel's
         // samples are of the face below, a quarter of each of two neighbors.
         let levels: Vec<f32> = image.row(1).unwrap().iter().map(|pixel| pixel.r).collect();
-        assert!(model.summary(&ModelChoice::default()).unwrap().is_lit);
+        assert!(model.summary(&ModelChoice::default()).unwrap().has_environment);
         assert_eq!(levels, [3.5, 3.75, 4.0, 3.75]);
     }
 

@@ -9,6 +9,7 @@
 //! | `meshes`, `thin` | primitives to meshes, each decoded once; points and lines to solids |
 //! | `deformed` | skins and morph targets in a pose |
 //! | `objects`, `instances` | nodes to objects and groups |
+//! | `rest_bounds` | the bounding box of a scene |
 //! | `materials` | materials with their textures |
 //! | `cameras`, `lights` | cameras and lights of nodes |
 //! | `image_based` | image-based lights of scenes |
@@ -26,6 +27,7 @@ mod meshes;
 mod names;
 mod objects;
 mod pointers;
+mod rest_bounds;
 mod select;
 #[cfg(test)]
 mod tests;
@@ -47,6 +49,7 @@ use faults::Faults;
 use glam::DAffine3;
 use image_based::ImageBased;
 use instances::Instances;
+use juggler_light::AnyLight;
 use juggler_scene::model::{ModelChoice, ModelParts};
 use materials::MaterialSet;
 use objects::{Findings, Objects};
@@ -144,6 +147,17 @@ impl Content {
         let Posed { selection, picture_size, nodes, pose, worlds, visible } = posed;
         let (selection, picture_size) = (*selection, *picture_size);
         View { content: self, pose, worlds, visible, nodes, selection, picture_size, prefix }
+    }
+
+    /// Typical illuminance by `lights` among the meshes of a scene; 0 without lights.
+    pub fn illuminance(&self, posed: &Posed, lights: &[(String, AnyLight)]) -> f32 {
+        if lights.is_empty() {
+            return 0.0;
+        }
+        let mut faults = Faults::new(0);
+        let bounds = rest_bounds::rest_bounds(&self.view(posed, ""), &mut faults);
+        let lights: Vec<&AnyLight> = lights.iter().map(|(_, light)| light).collect();
+        juggler_scene::model::illuminance(&lights, &bounds)
     }
 
     /// Translates the chosen scene. The names of all parts begin with `prefix`.

@@ -7,6 +7,7 @@ use super::faults::Faults;
 use super::materials::{MaterialSet, PrimitiveSurface};
 use super::matrix::{matrix_rows, matrix_step};
 use super::meshes::{Form, Geometry, have_area, pointer};
+use super::rest_bounds::{diagonal, rest_bounds};
 use super::select::Selection;
 use super::thin::{local_radius, relative_radius, solids};
 use super::tree::SceneNode;
@@ -17,7 +18,7 @@ use crate::gltf::primitive::{Faces, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
-use juggler_math::{Aabb, Vec3};
+use juggler_math::Vec3;
 use juggler_scene::{Instances, Object};
 use juggler_shape::{Mesh, MeshData};
 use std::borrow::Cow;
@@ -292,7 +293,7 @@ impl<'a> Objects<'a> {
         let is_skinned = deformation.joints.is_some();
         let radius = match self.radius {
             Some(radius) => radius,
-            None => relative_radius(self.view.picture_size) * self.diagonal(&mut findings.faults),
+            None => relative_radius(self.view.picture_size) * diagonal(&rest_bounds(&self.view, &mut findings.faults)),
         };
         self.radius = Some(radius);
         let vertices = if deformation.moves(arrays) {
@@ -303,37 +304,6 @@ impl<'a> Objects<'a> {
         };
         let radius = local_radius(radius, if is_skinned { &DAffine3::IDENTITY } else { world });
         Ok(Some(Object::several(solids(&vertices, &arrays.faces, radius))))
-    }
-
-    /// Diagonal of the bounding box of the scene in the rest pose, which is the same at all times.
-    fn diagonal(&self, faults: &mut Faults) -> f64 {
-        let content = self.view.content;
-        let document = &content.data.gltf.document;
-        let worlds = content.tree.world_transforms(&Pose::default());
-        let mut bounds = Aabb::EMPTY;
-        for node in self.view.nodes {
-            let Some(mesh) = document.nodes.get(node.index).and_then(|node| node.mesh) else { continue };
-            let world = worlds.get(node.index).copied().unwrap_or_default();
-            let parts = document.meshes.get(mesh.get()).map_or(0, |mesh| mesh.primitives.len());
-            let slots = (0..parts).filter_map(|part| content.meshes.slot(mesh.get(), part));
-            for slot in slots {
-                let Some((Some(geometry), _)) = faults.take(content.meshes.get(&content.data, slot)) else { continue };
-                let Aabb { min, max } = geometry.bounds;
-                let corners = (0..8).map(|i| {
-                    Vec3::new(
-                        if i & 1 == 0 { min.x } else { max.x },
-                        if i & 2 == 0 { min.y } else { max.y },
-                        if i & 4 == 0 { min.z } else { max.z },
-                    )
-                });
-                corners.for_each(|corner| {
-                    let corner = world.transform_point3(corner.as_dvec3()).as_vec3();
-                    bounds = Aabb { min: bounds.min.min(corner), max: bounds.max.max(corner) };
-                });
-            }
-        }
-        let diagonal = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
-        if diagonal.is_finite() && diagonal > 0.0 { diagonal } else { 1.0 }
     }
 }
 
