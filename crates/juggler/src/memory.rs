@@ -11,7 +11,7 @@ use juggler_scene::{Names, Scene};
 use std::ops::Range;
 
 /// Bytes of the program itself; unoptimized code takes more.
-pub const PROGRAM: u64 = if cfg!(debug_assertions) { 36 << 20 } else { 20 << 20 };
+pub const PROGRAM: u64 = if cfg!(debug_assertions) { 38 << 20 } else { 20 << 20 };
 /// Bytes of a thread: ray queues and file buffers.
 const THREAD: u64 = 2 << 20;
 /// Rays of a sample that are traced together, then bytes of each ray and each shadow ray that one
