@@ -1,7 +1,7 @@
 //! Regions in which a transparent solid may touch other surfaces. Outside of them, a surface of the
 //! solid has no other one at its place, so that a path crosses it without a search.
 
-use super::{Content, Geometry, Object, Vertex};
+use super::{Content, Geometry, Vertex};
 use crate::instance::Instance;
 use arrayvec::ArrayVec;
 use juggler_material::MaterialTable;
@@ -113,10 +113,8 @@ fn is_convex(shape: &AnyShape) -> bool {
 
 /// Bounding box of an object over the shutter interval, which may be infinite.
 fn extent(instance: &Instance) -> Aabb {
-    let object =
-        Object { content: instance.content.clone(), motion: instance.motion.clone(), material: None, attributes: None };
-    let bounds = object.bounds();
-    if object.is_bounded_by(&bounds) { bounds } else { Aabb::INFINITE }
+    let bounds = instance.content.bounds(&instance.motion);
+    if instance.content.is_bounded_by(&bounds) { bounds } else { Aabb::INFINITE }
 }
 
 /// Points that two boxes have in common.

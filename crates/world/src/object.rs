@@ -56,6 +56,24 @@ impl Content {
         }
     }
 
+    /// Bounding box of the bounded parts of an object of this content and `motion` over the shutter
+    /// interval; empty if nothing is bounded.
+    pub(super) fn bounds(&self, motion: &Motion) -> Aabb {
+        let bounds = match self {
+            Self::Shape(shape) => motion.aabb(&shape.bounds()),
+            Self::Geometry(geometry) => motion.aabb(&geometry.bounds()),
+        };
+        if bounds.is_finite() { bounds } else { Aabb::EMPTY }
+    }
+
+    /// Whether an object of this content, whose [`Content::bounds`] are `bounds`, has a finite extent.
+    pub(super) fn is_bounded_by(&self, bounds: &Aabb) -> bool {
+        match self {
+            Self::Shape(_) => !bounds.is_empty(),
+            Self::Geometry(geometry) => geometry.is_bounded() && bounds.is_empty() == geometry.bounds().is_empty(),
+        }
+    }
+
     /// Whether any mesh has attributes or a second set of surface coordinates.
     pub(super) fn has_mesh_attributes(&self) -> bool {
         match self {
@@ -83,20 +101,13 @@ impl Object {
 
     /// Whether the object, whose [`Object::bounds`] are `bounds`, has a finite extent.
     pub(super) fn is_bounded_by(&self, bounds: &Aabb) -> bool {
-        match &self.content {
-            Content::Shape(_) => !bounds.is_empty(),
-            Content::Geometry(geometry) => geometry.is_bounded() && bounds.is_empty() == geometry.bounds().is_empty(),
-        }
+        self.content.is_bounded_by(bounds)
     }
 
     /// Bounding box of the bounded parts over the shutter interval, in the space of the containing
     /// geometry; empty if nothing is bounded.
     pub fn bounds(&self) -> Aabb {
-        let bounds = match &self.content {
-            Content::Shape(shape) => self.motion.aabb(&shape.bounds()),
-            Content::Geometry(geometry) => self.motion.aabb(&geometry.bounds()),
-        };
-        if bounds.is_finite() { bounds } else { Aabb::EMPTY }
+        self.content.bounds(&self.motion)
     }
 
     /// Whether the object, or anything in it, moves while the shutter is open.

@@ -174,9 +174,9 @@ impl ShadingPoint<'_> {
         if !self.scatters_into(connection.direction, wi) || !self.interiors_towards(path, wi).is_empty() {
             return;
         }
-        // Only BSDF samples see the backdrop.
-        let is_backdrop = sample.light.emitter == EmitterId::Background && sample.world.backdrop().is_some();
-        if is_backdrop && sample.kind != SpecularPath::Reflected && self.sees_backdrop(path, wi) {
+        if sample.kind != SpecularPath::Reflected
+            && self.replaces_by_backdrop(sample.light.emitter, sample.world, path, wi)
+        {
             return;
         }
         let (scattered, bsdf_pdf) = self.eval_pdf(connection.direction, wi);

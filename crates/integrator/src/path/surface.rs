@@ -179,8 +179,7 @@ impl<'a> ShadingPoint<'a> {
         if !self.scatters_into(light.wi, wi) {
             return;
         }
-        // Only BSDF samples see the backdrop.
-        if light.emitter == EmitterId::Background && world.backdrop().is_some() && self.sees_backdrop(path, wi) {
+        if self.replaces_by_backdrop(light.emitter, world, path, wi) {
             return;
         }
         let (scattered, pdf) = self.eval_pdf(light.wi, wi);
@@ -204,8 +203,15 @@ impl<'a> ShadingPoint<'a> {
 
     /// Whether a path that continues in the direction `wi`, in the shading frame, sees the backdrop:
     /// only transmission through glass has changed its direction since the camera.
-    pub fn sees_backdrop(&self, path: &PathState, wi: Vec3) -> bool {
+    fn sees_backdrop(&self, path: &PathState, wi: Vec3) -> bool {
         path.history.sees_backdrop && wi.z * self.local.z < 0.0 && !self.shading.bsdf.transmits_diffusely()
+    }
+
+    /// Whether a path that continues in the direction `wi`, in the shading frame, sees the backdrop in
+    /// place of the light of `emitter`. Only BSDF samples add the backdrop.
+    #[inline]
+    pub fn replaces_by_backdrop(&self, emitter: EmitterId, world: &World, path: &PathState, wi: Vec3) -> bool {
+        emitter == EmitterId::Background && world.backdrop().is_some() && self.sees_backdrop(path, wi)
     }
 
     /// Shading normal on the illuminated side; zero if light may arrive from both.

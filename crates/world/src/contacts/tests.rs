@@ -1,7 +1,7 @@
 //! Contact regions against all surfaces that rays find near a solid.
 
 use super::*;
-use crate::World;
+use crate::{Object, World};
 use juggler_light::AnyLight;
 use juggler_light::background::{AnyBackground, Solid};
 use juggler_material::MaterialCompiler;

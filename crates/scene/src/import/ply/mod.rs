@@ -3,8 +3,8 @@
 //!
 //! The reader uses the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
 //! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
-//! `vertex_index`), in any order and of any number type, and triangle strips in
-//! `tristrips`. The list `texcoord` of faces has u and v of each corner. Colors `red green blue` of vertices or
+//! `vertex_index`), in any order and of any number type, and triangle strips in `tristrips`. The
+//! list `texcoord` of faces has u and v of each corner. Colors `red green blue` of vertices or
 //! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
 //! are linear. The columns `u1 v1` are the second set of surface coordinates, and `tx ty tz tw` the
 //! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile`
