@@ -148,7 +148,7 @@ def candle(document, at):
     wick = document.material("Wick", (0.01, 0.009, 0.008), 0.9)
     put(document, "Wick", tube([(0, 0.12, 0), (0, 0.13, 0), (0.002, 0.138, 0)], 0.0015, 8), wick, node)
     flame = document.material("Flame", (0, 0, 0), 1.0, emissiveFactor=srgb("ffb45a"), extensions={
-        "KHR_materials_emissive_strength": {"emissiveStrength": 14.0}})
+        "KHR_materials_emissive_strength": {"emissiveStrength": 4.0}})
     drop = smooth_profile([(0, 0.131), (0.0055, 0.137), (0.0075, 0.147), (0.0045, 0.162), (0.0, 0.178)], 6)
     put(document, "Flame", lathe(drop, 28), flame, node)
 

@@ -1,11 +1,12 @@
 //! Limit of single bright pixels, relative to their surroundings.
 //!
 //! After the scaling of neighborhoods, a pixel may be several times as bright as each of the 48
-//! pixels around it. A viewer takes such a pixel for a firefly. Agreement of both halves of the
-//! input is no proof of a highlight: where few of the samples hit a small light, both halves often
-//! have the same number of hits. A true highlight seldom ends at the edges of a pixel. So the pixels
-//! next to it first get their input back, which the filter has taken for noise, and then the pixel
-//! is limited. The coarse grids of [`energy`](crate::energy) restore the energy.
+//! pixels around it, as a whole or in one channel. A viewer takes such a pixel for a firefly; a
+//! colored one stands out more than a gray one. Agreement of both halves of the input is no proof of
+//! a highlight: where few of the samples hit a small light, both halves often have the same number
+//! of hits. A true highlight seldom ends at the edges of a pixel. So the pixels next to it first get
+//! their input back, which the filter has taken for noise, and then the pixel is limited. The coarse
+//! grids of [`energy`](crate::energy) restore the energy.
 
 use crate::prepare::brightness;
 use crate::speckles::WINDOW_RADIUS;
@@ -14,7 +15,8 @@ use crate::{Noisy, speckles};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
-/// Maximum brightness of a pixel, relative to the brightest pixel in its window. The factor is less
+/// Maximum brightness of a pixel, relative to the brightest pixel in its window, and maximum of each
+/// channel, relative to the greatest value of the channel in the window. The factor is less
 /// than 3, because the coarse grids scale neighboring pixels by slightly different factors.
 const FACTOR: f32 = 2.75;
 /// Maximum typical difference of the halves around a highlight that stays, relative to the
@@ -22,57 +24,91 @@ const FACTOR: f32 = 2.75;
 /// such as a star.
 const MAX_NOISE: f32 = 0.0025;
 
+/// Brightest values of a window.
+#[derive(Clone, Copy)]
+struct Brightest {
+    /// Brightness of the brightest pixel.
+    brightness: f32,
+    /// Greatest value of each channel.
+    channels: Rgb,
+}
+
+impl Brightest {
+    /// Brightest values of the other pixels in the window around pixel `i`, at least 0.
+    fn around(width: usize, pixels: &[Rgb], i: usize, radius: usize) -> Self {
+        neighbors(width, pixels.len(), i, radius).fold(Self { brightness: 0.0, channels: Rgb::BLACK }, |found, at| {
+            Self { brightness: brightness(pixels[at]).max(found.brightness), channels: max(pixels[at], found.channels) }
+        })
+    }
+
+    /// Whether a pixel is too bright beside these values, as a whole or in a channel.
+    fn is_exceeded_by(self, pixel: Rgb) -> bool {
+        let limit = self.channels * FACTOR;
+        brightness(pixel) > FACTOR * self.brightness || pixel.r > limit.r || pixel.g > limit.g || pixel.b > limit.b
+    }
+}
+
 /// Limits single bright pixels. Pixels with black surroundings stay as they are. `differences` are
 /// the [typical differences](crate::noise::typical_differences) of the halves.
 pub(crate) fn limit(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
-    let brightness: Vec<f32> = pixels.par_iter().map(|color| brightness(*color)).collect();
     let single = |i: usize| {
-        // Skip the search of the window in the common case: a direct neighbor is bright enough.
-        if brightness[i] <= FACTOR * brightest(noisy.width, &brightness, i, 1) {
+        // Skip the search of the window in the common case: the direct neighbors are bright enough.
+        if !Brightest::around(noisy.width, pixels, i, 1).is_exceeded_by(pixels[i]) {
             return None;
         }
-        let around = brightest(noisy.width, &brightness, i, WINDOW_RADIUS);
-        (around > 0.0 && brightness[i] > FACTOR * around).then_some((i, around))
+        let around = Brightest::around(noisy.width, pixels, i, WINDOW_RADIUS);
+        (around.brightness > 0.0 && around.is_exceeded_by(pixels[i])).then_some((i, around))
     };
-    let limited = |(i, around): (usize, f32)| {
-        let is_certain = differences[i] <= MAX_NOISE * around;
+    let limited = |(i, around): (usize, Brightest)| {
+        let is_certain = differences[i] <= MAX_NOISE * around.brightness;
         changes(noisy, pixels[i], i, around, is_certain)
     };
-    // Single bright pixels are more than 3 pixels apart, so their changes do not overlap.
+    // Pixels that are single by brightness are more than 3 pixels apart. Of those that are single in
+    // different channels, the last in the order of the picture decides about a pixel between them.
     let changes: Vec<_> = (0..pixels.len()).into_par_iter().filter_map(single).flat_map_iter(limited).collect();
     for (i, color) in changes {
         pixels[i] = color;
     }
 }
 
-/// New colors of single bright pixel `i` and of pixels next to it. `around` is the brightness of the
-/// brightest pixel in its window. If `is_certain`, a highlight that both halves confirm stays.
-fn changes(noisy: &Noisy, pixel: Rgb, i: usize, around: f32, is_certain: bool) -> Vec<(usize, Rgb)> {
+/// New colors of single bright pixel `i` and of pixels next to it, given the brightest values of its
+/// window. If `is_certain`, a highlight that both halves confirm stays, and so does its hue.
+fn changes(noisy: &Noisy, pixel: Rgb, i: usize, around: Brightest, is_certain: bool) -> Vec<(usize, Rgb)> {
     let own = brightness(pixel);
     let confirmed = speckles::confirmed_brightness(noisy, i).min(own);
-    let (mut changes, mut limit) = (Vec::new(), FACTOR * around);
+    let (mut changes, mut limit) = (Vec::new(), FACTOR * around.brightness);
+    let mut channels = around.channels;
     if confirmed > limit {
         for at in neighbors(noisy.width, noisy.width * noisy.height, i, 1) {
             let input = noisy.mean(at).unwrap_or(Rgb::BLACK);
             let restored = brightness(input).min(confirmed / FACTOR);
-            if restored > around {
-                changes.push((at, input * (restored / brightness(input))));
+            if restored > around.brightness {
+                let color = input * (restored / brightness(input));
+                changes.push((at, color));
                 limit = limit.max(FACTOR * restored);
+                channels = max(channels, color);
             }
         }
         if is_certain {
             limit = limit.max(confirmed);
         }
     }
-    if own > limit {
-        changes.push((i, pixel * (limit / own)));
+    let dimmed = if own > limit { pixel * (limit / own) } else { pixel };
+    let limited = if is_certain { dimmed } else { min(dimmed, channels * FACTOR) };
+    if limited != pixel {
+        changes.push((i, limited));
     }
     changes
 }
 
-/// Brightness of the brightest other pixel of a window, at least 0.
-fn brightest(width: usize, brightness: &[f32], i: usize, radius: usize) -> f32 {
-    neighbors(width, brightness.len(), i, radius).fold(0.0, |brightest, at| brightness[at].max(brightest))
+/// Greater value of each channel.
+fn max(a: Rgb, b: Rgb) -> Rgb {
+    Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))
+}
+
+/// Smaller value of each channel.
+fn min(a: Rgb, b: Rgb) -> Rgb {
+    Rgb::new(a.r.min(b.r), a.g.min(b.g), a.b.min(b.b))
 }
 
 #[cfg(test)]
@@ -125,6 +161,31 @@ mod tests {
             let found = limited_pixel(at, [0.5, 0.1], [20.0, 20.0], 19.0);
             assert!((found - 0.5 * FACTOR).abs() < 1e-5, "{found}");
         }
+    }
+
+    /// Limits a pixel of this color on a red wall of this noise, with the color in both halves;
+    /// returns the pixel.
+    fn limited_on_red(color: Rgb, noise: f32) -> Rgb {
+        let at = PLACES[0];
+        let red = |half: usize, noise: f32| -> Vec<Rgb> {
+            let mut red: Vec<Rgb> = wall(0.5, noise, half, &[]).iter().map(|gray| Rgb::new(gray.r, 0.1, 0.2)).collect();
+            red[at] = color;
+            red
+        };
+        let halves = [0, 1].map(|half| red(half, noise));
+        limited(&halves, red(0, 0.0))[at]
+    }
+
+    #[test]
+    fn each_channel_of_a_firefly_is_limited() {
+        assert_eq!(limited_on_red(Rgb::new(0.5, 0.2, 1.5), 0.1), Rgb::new(0.5, 0.2, 0.2 * FACTOR));
+        assert_eq!(limited_on_red(Rgb::new(0.1, 0.9, 0.1), 0.1), Rgb::new(0.1, 0.1 * FACTOR, 0.1));
+        assert_eq!(limited_on_red(Rgb::new(0.5, 0.2, 0.4), 0.1), Rgb::new(0.5, 0.2, 0.4));
+    }
+
+    #[test]
+    fn a_colored_light_stays_where_there_is_no_noise() {
+        assert_eq!(limited_on_red(Rgb::new(0.5, 0.2, 1.5), 0.0), Rgb::new(0.5, 0.2, 1.5));
     }
 
     #[test]
