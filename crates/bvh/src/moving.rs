@@ -70,7 +70,7 @@ impl MovingBvh {
 
     /// [`MovingBvh::build`] with explicit [`BuildOptions`].
     pub fn build_with(boxes: &[[Aabb; 2]], shutter: f32, options: &BuildOptions) -> Self {
-        let bvh = Bvh::build_with(&boxes.par_iter().map(swept_bounds).collect::<Vec<_>>(), options);
+        let bvh = Bvh::build_with(boxes.par_iter().map(swept_bounds).collect::<Vec<_>>(), options);
         let ends = [0, 1].map(|end| nodes_with(&bvh, |item| padded(boxes[item][end])));
         let mut motion: Pages<NodeMotion> = Pages::zeroed(bvh.nodes.len());
         motion.par_iter_mut().enumerate().for_each(|(i, motion)| {

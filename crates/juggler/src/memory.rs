@@ -21,6 +21,8 @@ const RAY: u64 = 1024;
 const SHADOW: u64 = 96;
 /// Bytes of a stored object while the world is built.
 const OBJECT: u64 = 768;
+/// Bytes of an instance of a shape, from a list of an object, while the world is built.
+const INSTANCE: u64 = 448;
 /// Bytes of an emitting shape while the world is built.
 const EMITTER: u64 = 768;
 /// Bytes of a triangle written in the scene file itself, while the world is built.
@@ -219,14 +221,15 @@ impl Memory {
 /// Bytes to read the points and lines of a model file, and to build a world of the `solids`, spheres
 /// and cylinders, that they become.
 pub fn solids_bytes(solids: u64) -> u64 {
-    if solids == 0 { 0 } else { PROGRAM.saturating_add(solids.saturating_mul(SOLID.saturating_add(OBJECT))) }
+    if solids == 0 { 0 } else { PROGRAM.saturating_add(solids.saturating_mul(SOLID.saturating_add(INSTANCE))) }
 }
 
 fn scene_bytes(needs: &Needs) -> u64 {
     let objects = needs.objects.saturating_mul(OBJECT);
+    let instances = needs.instances.saturating_mul(INSTANCE);
     let triangles = needs.triangles.saturating_mul(TRIANGLE);
     let emitters = needs.emitters.saturating_mul(EMITTER);
-    [objects, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
+    [objects, instances, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
 }
 
 fn part(what: impl Into<String>, bytes: u64) -> MemoryPart {

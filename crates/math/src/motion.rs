@@ -6,8 +6,9 @@
 //! the origin follows the arc about that center (a screw motion, Chasles 1830).
 
 use crate::polar::{self, PolarDecomposition};
-use crate::{Aabb, Transform, Vec3};
+use crate::{Aabb, Ray, Transform, Vec3};
 use glam::Mat3;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Maximum rotation between two keys, in radians. The sagitta of the chord is at most 1.2e-4 of the
@@ -19,35 +20,75 @@ const MAX_KEYS: usize = 4097;
 /// size.
 const TOLERANCE: f32 = 2e-4;
 
-/// Object-to-world transform as a function of shutter time.
-#[derive(Clone, Debug, PartialEq)]
+/// Object-to-world transform as a function of shutter time: 24 bytes, since a world has millions.
+/// Still motions may share their linear part, which [`Motion::sharing`] arranges.
+#[derive(Clone, Debug)]
 pub enum Motion {
-    /// The same transform at all times.
-    Still(Transform),
+    /// The same translation at all times.
+    Translation(Vec3),
+    /// The same transform at all times: that of its linear part, with another translation.
+    Still(Vec3, Arc<Transform>),
     /// At least two keys at equal intervals from 0 to 1; matrices are interpolated linearly.
     Moving(Arc<[Transform]>),
 }
 
 impl From<Transform> for Motion {
     fn from(transform: Transform) -> Self {
-        Self::Still(transform)
+        let (origin, linear) = (transform.origin(), transform.with_translation(Vec3::ZERO));
+        if linear.has_bits_of(&Transform::IDENTITY) {
+            Self::Translation(origin)
+        } else {
+            Self::Still(origin, Arc::new(linear))
+        }
+    }
+}
+
+impl PartialEq for Motion {
+    fn eq(&self, other: &Self) -> bool {
+        *self.keys() == *other.keys()
     }
 }
 
 impl Motion {
-    /// Constructs a motion from keys at equal intervals; `Still` if all are equal, `None` if there
-    /// are none.
+    /// Constructs a motion from keys at equal intervals; still if all are equal, `None` if there are
+    /// none.
     pub fn from_keys(keys: Vec<Transform>) -> Option<Self> {
         let first = *keys.first()?;
         let moves = keys.iter().any(|key| *key != first);
-        Some(if moves { Self::Moving(keys.into()) } else { Self::Still(first) })
+        Some(if moves { Self::Moving(keys.into()) } else { first.into() })
     }
 
-    /// Keys; one for `Still`.
-    pub fn keys(&self) -> &[Transform] {
+    /// Keys; one if nothing moves.
+    pub fn keys(&self) -> Cow<'_, [Transform]> {
         match self {
-            Self::Still(transform) => std::slice::from_ref(transform),
-            Self::Moving(keys) => keys,
+            Self::Moving(keys) => Cow::Borrowed(keys),
+            still => Cow::Owned(vec![still.at(0.0)]),
+        }
+    }
+
+    /// The transform, if it is the same at all times.
+    #[inline]
+    pub fn still(&self) -> Option<Transform> {
+        (!self.moves()).then(|| self.at(0.0))
+    }
+
+    fn key_count(&self) -> usize {
+        if let Self::Moving(keys) = self { keys.len() } else { 1 }
+    }
+
+    /// Whether the transform is the identity at all times.
+    pub fn is_identity(&self) -> bool {
+        self.still() == Some(Transform::IDENTITY)
+    }
+
+    /// Stores the linear part together with that of `other` if both are still and equal.
+    #[must_use]
+    pub fn sharing(self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Still(origin, linear), Self::Still(_, shared)) if linear.has_bits_of(shared) => {
+                Self::Still(origin, Arc::clone(shared))
+            }
+            (motion, _) => motion,
         }
     }
 
@@ -56,11 +97,32 @@ impl Motion {
         matches!(self, Self::Moving(_))
     }
 
+    /// Transforms a ray to object space at the time of the ray.
+    #[inline(always)]
+    pub fn ray_to_local(&self, ray: &Ray) -> Ray {
+        match self {
+            Self::Still(origin, linear) => Ray {
+                origin: linear.vector_to_local(ray.origin - *origin),
+                direction: linear.vector_to_local(ray.direction),
+                ..*ray
+            },
+            Self::Translation(origin) => Transform::translation(*origin).ray_to_local(ray),
+            moving => moving.moving_ray_to_local(ray),
+        }
+    }
+
+    /// Kept out of line, since motion is rare.
+    #[inline(never)]
+    fn moving_ray_to_local(&self, ray: &Ray) -> Ray {
+        self.at(ray.time).ray_to_local(ray)
+    }
+
     /// Transform at a time, which is clamped to 0 to 1.
     #[inline]
     pub fn at(&self, time: f32) -> Transform {
         match self {
-            Self::Still(transform) => *transform,
+            Self::Translation(origin) => Transform::translation(*origin),
+            Self::Still(origin, linear) => linear.with_translation(*origin),
             Self::Moving(keys) => {
                 let (key, fraction) = key_interval(keys.len(), time);
                 keys[key].lerp(&keys[key + 1], fraction)
@@ -70,10 +132,10 @@ impl Motion {
 
     /// Composition at each time: applies `self` first, then `next`.
     pub fn then(&self, next: &Self) -> Self {
-        if let (Self::Still(first), Self::Still(next)) = (self, next) {
-            return Self::Still(first.then(next));
+        if let (Some(first), Some(next)) = (self.still(), next.still()) {
+            return first.then(&next).into();
         }
-        let count = self.keys().len().max(next.keys().len());
+        let count = self.key_count().max(next.key_count());
         let at = |motion: &Self, key: usize| match motion {
             Self::Moving(keys) if keys.len() == count => keys[key],
             other => other.at(key as f32 / (count - 1) as f32),
@@ -209,14 +271,14 @@ mod tests {
         }
         assert!(close3(motion.at(0.375).origin(), (keys[1].origin() + keys[2].origin()) * 0.5, 1e-6));
         assert!(motion.at(-1.0) == keys[0] && motion.at(7.0) == keys[4]);
-        assert_eq!(Motion::from_keys(vec![keys[0]; 4]), Some(Motion::Still(keys[0])));
+        assert_eq!(Motion::from_keys(vec![keys[0]; 4]), Some(keys[0].into()));
         assert_eq!(Motion::from_keys(Vec::new()), None);
     }
 
     #[test]
     fn then_composes_motions_at_each_time() {
         let mut random = Random::new(32);
-        let still = Motion::Still(random.transform());
+        let still = Motion::from(random.transform());
         let a = Motion::from_keys((0..3).map(|_| Transform::translation(random.point(2.0))).collect()).unwrap();
         let b = Motion::from_keys((0..5).map(|_| Transform::translation(random.point(2.0))).collect()).unwrap();
         for (first, next) in [(&a, &b), (&b, &a), (&a, &still), (&still, &b), (&still, &still)] {
@@ -234,7 +296,7 @@ mod tests {
         let wide = Transform::scale(Vec3::new(3.0, -0.5, 1.0)).unwrap();
         for turns in [0.1, 1.0, -3.7] {
             let motion = spin(turns, 17);
-            let stretched = Motion::Still(wide).then(&motion);
+            let stretched = Motion::from(wide).then(&motion);
             let (round, stretched) = (motion.smoothed(1.0), stretched.smoothed(3.0));
             for _ in 0..200 {
                 let (time, p) = (random.f32(), random.point(1.0));
@@ -247,8 +309,8 @@ mod tests {
 
     #[test]
     fn smoothed_rotation_about_a_distant_axis_follows_the_circle() {
-        let arm = Motion::Still(Transform::translation(Vec3::new(1.0, 0.0, 0.3)));
-        let aside = Motion::Still(Transform::translation(Vec3::new(-4.0, 2.0, 0.0)));
+        let arm = Motion::from(Transform::translation(Vec3::new(1.0, 0.0, 0.3)));
+        let aside = Motion::from(Transform::translation(Vec3::new(-4.0, 2.0, 0.0)));
         for turns in [0.25, 2.0, -6.0] {
             let round = arm.then(&spin(turns, 17)).then(&aside).smoothed(0.1);
             for i in 0..=1000 {
@@ -280,7 +342,7 @@ mod tests {
         let count = thrown.clone().smoothed(0.5).keys().len();
         assert!((5..=17).contains(&count), "{count}");
         assert_eq!(thrown.smoothed(1e6).keys().len(), 2);
-        assert_eq!(Motion::Still(Transform::IDENTITY).smoothed(1.0), Motion::Still(Transform::IDENTITY));
+        assert_eq!(Motion::from(Transform::IDENTITY).smoothed(1.0), Motion::from(Transform::IDENTITY));
     }
 
     #[test]

@@ -46,6 +46,14 @@ impl Transform {
         Self { translation, ..*self }
     }
 
+    /// Whether all numbers have the same bits.
+    pub fn has_bits_of(&self, other: &Self) -> bool {
+        let bits = |matrix: &Mat3| matrix.to_cols_array().map(f32::to_bits);
+        bits(&self.matrix) == bits(&other.matrix)
+            && bits(&self.inverse_matrix) == bits(&other.inverse_matrix)
+            && self.translation.to_array().map(f32::to_bits) == other.translation.to_array().map(f32::to_bits)
+    }
+
     /// Composition: applies `self` first, then `next`.
     pub fn then(&self, next: &Self) -> Self {
         Self {

@@ -5,7 +5,7 @@ use super::{Content, Geometry, Vertex};
 use crate::instance::Instance;
 use arrayvec::ArrayVec;
 use juggler_material::MaterialTable;
-use juggler_math::{Aabb, Motion, Vec3};
+use juggler_math::{Aabb, Vec3};
 use juggler_shape::AnyShape;
 
 /// Maximum number of pairs of a solid and another object that are compared.
@@ -37,7 +37,7 @@ impl Contacts {
     pub fn new(top: &Geometry, materials: &MaterialTable) -> Self {
         let is_solid = |instance: &Instance| {
             let transmits = |id| materials.interior(id).is_some() || materials.is_transparent(id);
-            let transmits = instance.material.is_some_and(transmits);
+            let transmits = instance.material().is_some_and(transmits);
             transmits && matches!(&instance.content, Content::Shape(shape) if is_convex(shape))
         };
         let solids: Vec<usize> = (0..top.objects.len()).filter(|i| is_solid(&top.objects[*i])).collect();
@@ -73,12 +73,12 @@ impl Regions {
     /// Adds the surfaces of an object inside the solid's bounding box `own`.
     fn add_object(&mut self, object: &Instance, own: &Aabb, bounds: &Aabb) {
         let Content::Shape(shape) = &object.content else { return self.add(own, bounds) };
-        match (&object.motion, shape.mesh().and_then(|mesh| mesh.data())) {
-            (Motion::Still(transform), _) if shape.is_plane() => {
+        match (object.motion.still(), shape.mesh().and_then(|mesh| mesh.data())) {
+            (Some(transform), _) if shape.is_plane() => {
                 let section = section(own, |point| transform.point_to_local(point).y);
                 self.add(own, &section.grown(self.margin));
             }
-            (Motion::Still(transform), Some(mesh)) if mesh.triangles.len() <= MAX_TRIANGLES => {
+            (Some(transform), Some(mesh)) if mesh.triangles.len() <= MAX_TRIANGLES => {
                 for corners in &mesh.triangles {
                     let corner = |index: &u32| mesh.positions.get(*index as usize).copied();
                     let corners = corners.iter().filter_map(corner).map(|corner| transform.point(corner));

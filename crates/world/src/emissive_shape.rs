@@ -43,7 +43,7 @@ impl EmissiveShape {
     }
 
     /// Transform to world space; `None` if the shape moves or deforms.
-    pub fn static_transform(&self) -> Option<&Transform> {
+    pub fn static_transform(&self) -> Option<Transform> {
         self.motion.static_transform().filter(|_| self.moving_mesh().is_none())
     }
 

@@ -151,7 +151,7 @@ impl Emitters {
         for (entry_index, EmissiveShapeEntry { shape, first_emitter, emitter_indices }) in (0..).zip(&mut self.shapes) {
             *first_emitter = self.finite.len() as u32;
             let Some(emissive) =
-                shape.static_transform().and_then(|transform| EmissiveSurfaces::from_shape(shape.shape(), transform))
+                shape.static_transform().and_then(|transform| EmissiveSurfaces::from_shape(shape.shape(), &transform))
             else {
                 bounds.push(shape.bounds());
                 self.finite.push(Emitter::Shape(entry_index));

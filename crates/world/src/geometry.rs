@@ -5,7 +5,8 @@ use super::hierarchy_entries::HierarchyEntries;
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::{self, LargeMesh, RayCoherence};
 use super::merged_meshes::{self, MergedMeshes};
-use super::{Content, InstanceAttributes, Object, Vertex, WorldHit};
+use super::object::ObjectAttributes;
+use super::{Content, Object, Vertex, WorldHit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Ray, Transform, Vec3};
@@ -43,8 +44,7 @@ pub struct Geometry {
     pub(super) merged_meshes: Option<MergedMeshes>,
     /// Indices of the unbounded objects.
     pub(super) unbounded: Vec<u32>,
-    /// Attributes of each object; empty if no object has any.
-    pub(super) attributes: Vec<Option<InstanceAttributes>>,
+    pub(super) attributes: ObjectAttributes,
     bounds: Aabb,
     moves: bool,
     /// Whether any object or mesh has attributes or a second set of surface coordinates.
@@ -113,21 +113,20 @@ impl Geometry {
         let bounds = all_boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
         let (bounded, unbounded): (Vec<u32>, Vec<u32>) =
             indices.partition(|i| objects[*i as usize].is_bounded_by(&all_boxes[*i as usize]));
-        let mut entries = HierarchyEntries::new(&objects, bounded, &all_boxes);
-        drop(all_boxes);
-        let bvh = Bvh::build(&std::mem::take(&mut entries.boxes), Quality::Balanced);
+        let mut entries = HierarchyEntries::new(&objects, bounded, all_boxes);
+        let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
+        let large_meshes = large_meshes.iter().map(large_mesh).collect();
+        let moves = objects.iter().any(Object::moves);
+        let attributes = ObjectAttributes::new(&objects);
+        let has_mesh_attributes = !attributes.is_empty() || objects.iter().any(|o| o.content.has_mesh_attributes());
+        // Free the descriptions of the objects before the hierarchy is built.
+        let objects = Instance::from_objects(objects);
+        let bvh = Bvh::build(std::mem::take(&mut entries.boxes), Quality::Balanced);
         let item = |entry: &u32| {
             let (object_index, times) = (entries.objects[*entry as usize], entries.times(*entry as usize));
             LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
         };
         let items = bvh.order().iter().map(item).collect();
-        let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
-        let large_meshes = large_meshes.iter().map(large_mesh).collect();
-        let moves = objects.iter().any(Object::moves);
-        let has_attributes = objects.iter().any(|object| object.attributes.is_some());
-        let attributes = objects.iter().filter(|_| has_attributes).map(|object| object.attributes.clone()).collect();
-        let has_mesh_attributes = has_attributes || objects.iter().any(|o| o.content.has_mesh_attributes());
-        let objects = objects.into_iter().map(Instance::new).collect();
         Self {
             objects,
             first_shapes,
@@ -210,7 +209,7 @@ impl Geometry {
         materials: &MaterialTable,
     ) -> Vertex {
         let (instance, shape_index) = self.find(shape_index);
-        let material = instance.material.or(inherited);
+        let material = instance.material().or(inherited);
         match &instance.content {
             Content::Shape(shape) => {
                 let material = material.unwrap_or(MaterialId::NONE);
@@ -293,12 +292,7 @@ impl Geometry {
             Content::Shape(shape) => shape.mesh_point(primitive, surface),
             Content::Geometry(geometry) => geometry.mesh_point(surface, inner_index, primitive),
         };
-        point.or_else(|| Some(self.attributes_of(self.object_index(shape_index))?.point(surface)))
-    }
-
-    /// Attributes of the object of index `object_index`.
-    pub(super) fn attributes_of(&self, object_index: u32) -> Option<&InstanceAttributes> {
-        self.attributes.get(object_index as usize)?.as_ref()
+        point.or_else(|| self.attributes.point(self.object_index(shape_index), surface))
     }
 
     /// Index of the object that contains the shape `shape_index`.

@@ -1,5 +1,6 @@
 //! Counts and memory use of the geometry, for reports.
 
+use super::instance::Instance;
 use super::merged_meshes::MergedMeshes;
 use super::{Content, Geometry};
 use juggler_shape::{AnyShape, Mesh};
@@ -49,7 +50,8 @@ impl GeometryStats {
         for geometry in geometries(top) {
             stats.bvh_bytes += geometry.bvh.bytes() + geometry.merged_meshes.as_ref().map_or(0, MergedMeshes::bytes);
             stats.geometry_bytes += size_of_val(geometry.objects.as_slice()) + size_of_val(geometry.items.as_slice());
-            stats.geometry_bytes += size_of_val(geometry.attributes.as_slice());
+            stats.geometry_bytes += geometry.attributes.bytes();
+            stats.geometry_bytes += heap_bytes(&geometry.objects);
             let shapes = geometry.objects.iter().filter_map(|instance| instance.content.as_shape());
             shapes.for_each(|shape| stored.add(shape));
         }
@@ -58,6 +60,12 @@ impl GeometryStats {
         stats.bvh_bytes += stored.bvh_bytes;
         stats
     }
+}
+
+/// Bytes beside the instances.
+fn heap_bytes(instances: &[Instance]) -> usize {
+    let first = instances.first().map_or(0, |first| first.heap_bytes(None));
+    instances.iter().skip(1).zip(instances).fold(first, |sum, (next, previous)| sum + next.heap_bytes(Some(previous)))
 }
 
 /// Shapes counted once, however many objects share them.

@@ -32,11 +32,14 @@ pub struct HierarchyEntries {
 
 impl HierarchyEntries {
     /// Entries of the objects `bounded`. `boxes` holds the bounds of all objects.
-    pub fn new(objects: &[Object], bounded: Vec<u32>, boxes: &[Aabb]) -> Self {
+    pub fn new(objects: &[Object], bounded: Vec<u32>, boxes: Vec<Aabb>) -> Self {
         let bounds = |index: &u32| boxes.get(*index as usize).copied().unwrap_or(Aabb::EMPTY);
         let moving = objects.iter().filter(|object| object.motion.moves()).count();
         let limit = (MAX_ENTRIES / moving.max(1)).min(MAX_SEGMENTS);
         if moving == 0 || limit < 2 {
+            if bounded.len() == boxes.len() {
+                return Self { boxes, objects: bounded, times: Vec::new() };
+            }
             return Self { boxes: bounded.iter().map(bounds).collect(), objects: bounded, times: Vec::new() };
         }
         let mut entries = Self::default();
@@ -69,7 +72,7 @@ impl HierarchyEntries {
 /// is as good.
 fn segments(object: &Object, limit: usize) -> Vec<Aabb> {
     let (motion, local) = match SphereKeys::from_object(object) {
-        SphereKeys::Moving(keys) => {
+        Some(SphereKeys::Moving(keys)) => {
             (SphereKeys::motion(&keys), Aabb { min: -juggler_math::Vec3::ONE, max: juggler_math::Vec3::ONE })
         }
         _ => (Some(object.motion.clone()), local_bounds(object)),

@@ -9,45 +9,46 @@ use juggler_shape::surface::Surface;
 use juggler_shape::{AnyShape, Hit, Shape, Sphere, intersect_sphere, longitude_latitude, sphere_surface};
 use std::sync::Arc;
 
-/// An object with precomputed data. The fields that intersection reads come first, in one cache
-/// line if possible.
+/// An object with precomputed data: 56 bytes and what it shares with the objects before it, since a
+/// geometry may have millions.
 #[derive(Clone, Debug)]
-#[repr(C)]
 pub struct Instance {
-    /// Sphere in the geometry's space, if the object is one.
-    sphere: SphereKeys,
-    pub material: Option<MaterialId>,
+    pub motion: Motion,
+    pub content: Content,
+    /// Sphere in the geometry's space, if the object is one. Successive spheres share it if their radii
+    /// are equal, as those of the points of a cloud.
+    sphere: Option<Arc<SphereKeys>>,
+    material: MaterialId,
+    inherits_material: bool,
     /// Whether object space equals the geometry's space, as for most ground planes.
     is_identity: bool,
-    pub content: Content,
-    pub motion: Motion,
 }
+
+/// Bytes of the counters of a shared allocation.
+const ARC: usize = 2 * size_of::<usize>();
 
 /// A sphere in its geometry's space.
 #[derive(Clone, Debug)]
 pub enum SphereKeys {
-    /// The object is no sphere in the geometry's space.
-    None,
     /// A sphere that becomes an ellipsoid in the geometry's space.
     Ellipsoid(Sphere),
-    /// Center and radius.
-    Still(Vec3, f32),
+    /// Radius; the center is the origin of the motion.
+    Still(f32),
     /// Centers and radii at the keys of the motion.
     Moving(Arc<[(Vec3, f32)]>),
 }
 
 impl SphereKeys {
-    /// Converts an object that is a sphere and stays one at every key of its motion.
-    pub fn from_object(object: &Object) -> Self {
-        let Content::Shape(shape) = &object.content else { return Self::None };
-        let Some(sphere) = shape.sphere() else { return Self::None };
+    /// Converts an object that is a sphere; `None` for any other shape.
+    pub fn from_object(object: &Object) -> Option<Self> {
+        let sphere = object.content.as_shape()?.sphere()?;
         let at_key = |key: &Transform| Some((key.origin(), sphere.radius * key.uniform_scale()?));
         let keys: Option<Vec<(Vec3, f32)>> = object.motion.keys().iter().map(at_key).collect();
-        match keys.as_deref() {
+        Some(match keys.as_deref() {
             None | Some([]) => Self::Ellipsoid(sphere.clone()),
-            Some([(center, radius)]) => Self::Still(*center, *radius),
+            Some([(_, radius)]) => Self::Still(*radius),
             Some(keys) => Self::Moving(keys.into()),
-        }
+        })
     }
 
     /// Motion of the unit sphere to the spheres at the keys, without rotation.
@@ -57,61 +58,118 @@ impl SphereKeys {
         Motion::from_keys(keys.iter().map(at_key).collect::<Option<_>>()?)
     }
 
-    /// Center and radius at a time.
+    /// The sphere as `previous` stores it, if both stay and their radii are equal.
+    fn sharing(self, previous: Option<&Arc<Self>>) -> Arc<Self> {
+        match (&self, previous.map(|previous| (previous, &**previous))) {
+            (Self::Still(radius), Some((previous, Self::Still(other)))) if radius.to_bits() == other.to_bits() => {
+                Arc::clone(previous)
+            }
+            _ => Arc::new(self),
+        }
+    }
+}
+
+impl Instance {
+    /// Instance of an object, which shares what it can with `previous`.
+    pub fn new(object: Object, previous: Option<&Self>) -> Self {
+        let sphere = SphereKeys::from_object(&object);
+        let Object { content, motion, material, .. } = object;
+        let shared = previous.and_then(|previous| previous.sphere.as_ref());
+        Self {
+            is_identity: motion.is_identity(),
+            motion: previous.map_or(motion.clone(), |previous| motion.sharing(&previous.motion)),
+            content,
+            sphere: sphere.map(|sphere| sphere.sharing(shared)),
+            material: material.unwrap_or(MaterialId::NONE),
+            inherits_material: material.is_none(),
+        }
+    }
+
+    /// Instances of objects.
+    pub fn from_objects(objects: Vec<Object>) -> Vec<Self> {
+        let mut instances: Vec<Self> = Vec::with_capacity(objects.len());
+        for object in objects {
+            let instance = Self::new(object, instances.last());
+            instances.push(instance);
+        }
+        instances
+    }
+
+    /// Bytes beside the instance that it does not share with `previous`.
+    pub fn heap_bytes(&self, previous: Option<&Self>) -> usize {
+        let sphere = |instance: &Self| instance.sphere.as_ref().map(Arc::as_ptr);
+        let linear = |instance: &Self| match &instance.motion {
+            Motion::Still(_, linear) => Some(Arc::as_ptr(linear)),
+            Motion::Translation(_) | Motion::Moving(_) => None,
+        };
+        let mut bytes = 0;
+        if sphere(self).is_some() && sphere(self) != previous.and_then(sphere) {
+            bytes += ARC + size_of::<SphereKeys>();
+        }
+        if linear(self).is_some() && linear(self) != previous.and_then(linear) {
+            bytes += ARC + size_of::<Transform>();
+        }
+        match &self.motion {
+            Motion::Moving(keys) => bytes + ARC + size_of_val(&**keys),
+            Motion::Still(..) | Motion::Translation(_) => bytes,
+        }
+    }
+
+    /// Material; `None` inherits that of the enclosing instance.
     #[inline(always)]
-    fn at(&self, time: f32) -> Option<(Vec3, f32)> {
-        match self {
-            Self::None | Self::Ellipsoid(_) => None,
-            Self::Still(center, radius) => Some((*center, *radius)),
-            Self::Moving(keys) => {
+    pub fn material(&self) -> Option<MaterialId> {
+        (!self.inherits_material).then_some(self.material)
+    }
+
+    /// Center and radius at a time, if the object is a sphere in the geometry's space.
+    #[inline(always)]
+    fn sphere_at(&self, time: f32) -> Option<(Vec3, f32)> {
+        match &**self.sphere.as_ref()? {
+            SphereKeys::Ellipsoid(_) => None,
+            SphereKeys::Still(radius) => Some((self.origin(), *radius)),
+            SphereKeys::Moving(keys) => {
                 let (key, fraction) = key_interval(keys.len(), time);
                 let ((from, from_radius), (to, to_radius)) = (keys[key], keys[key + 1]);
                 Some((lerp(from, to, fraction), from_radius * (1.0 - fraction) + to_radius * fraction))
             }
         }
     }
-}
 
-impl Instance {
-    pub fn new(object: Object) -> Self {
-        let sphere = SphereKeys::from_object(&object);
-        let Object { content, motion, material, .. } = object;
-        Self { sphere, material, is_identity: motion == Motion::Still(Transform::IDENTITY), content, motion }
+    /// Origin of object space; of a moving object, when the shutter opens.
+    #[inline(always)]
+    fn origin(&self) -> Vec3 {
+        match &self.motion {
+            Motion::Translation(origin) | Motion::Still(origin, _) => *origin,
+            moving @ Motion::Moving(_) => moving.at(0.0).origin(),
+        }
     }
 
     /// Motion that takes `shape` to the sphere that rays hit, without rotation; `None` unless the
     /// object is a sphere that moves. Between keys, the object's own motion shrinks a sphere that
     /// rotates.
     pub fn sphere_motion(&self, shape: &AnyShape) -> Option<Motion> {
-        let (SphereKeys::Moving(keys), Some(sphere)) = (&self.sphere, shape.sphere()) else { return None };
+        let (Some(SphereKeys::Moving(keys)), Some(sphere)) = (self.sphere.as_deref(), shape.sphere()) else {
+            return None;
+        };
         let to_unit = Transform::scale(Vec3::splat(1.0 / sphere.radius))?;
-        Some(Motion::Still(to_unit).then(&SphereKeys::motion(keys)?))
+        Some(Motion::from(to_unit).then(&SphereKeys::motion(keys)?))
     }
 
     /// Transforms a ray to object space.
     #[inline(always)]
     pub fn ray_to_object(&self, ray: &Ray) -> Ray {
-        if self.is_identity { *ray } else { self.to_object_space(ray) }
-    }
-
-    /// Transforms a ray to object space if that differs from the geometry's space.
-    #[inline(always)]
-    fn to_object_space(&self, ray: &Ray) -> Ray {
-        match &self.motion {
-            Motion::Still(transform) => transform.ray_to_local(ray),
-            moving => ray_to_object_at(moving, ray),
-        }
+        if self.is_identity { *ray } else { self.motion.ray_to_local(ray) }
     }
 
     /// Replaces `best` by a nearer hit in the ray's range. `shape_index` is the index of the
     /// object's first shape.
     #[inline(never)]
     pub fn closest(&self, ray: &mut Ray, shape_index: u32, best: &mut WorldHit) {
-        let hit = match (&self.content, self.sphere.at(ray.time)) {
+        let hit = match (&self.content, self.sphere_at(ray.time)) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
-            (Content::Shape(shape), None) => match &self.sphere {
+            (Content::Shape(shape), None) => match self.sphere.as_deref() {
                 // Avoid a virtual call.
-                SphereKeys::Ellipsoid(sphere) => sphere.intersect(&self.ray_to_object(ray)),
+                Some(SphereKeys::Ellipsoid(sphere)) => sphere.intersect(&self.ray_to_object(ray)),
                 _ => self.intersect(&***shape, ray),
             },
             (Content::Geometry(geometry), _) => {
@@ -129,7 +187,7 @@ impl Instance {
     /// [`Instance::closest`] for several rays, with one dispatch on the kind of object.
     pub fn closest_each(&self, rays: &mut [Ray], shape_index: u32, hits: &mut [WorldHit]) {
         let rays = rays.iter_mut().zip(hits);
-        let (Content::Shape(shape), SphereKeys::None) = (&self.content, &self.sphere) else {
+        let (Content::Shape(shape), None) = (&self.content, &self.sphere) else {
             return rays.for_each(|(ray, best)| self.closest(ray, shape_index, best));
         };
         let shape: &dyn Shape = &***shape;
@@ -144,18 +202,18 @@ impl Instance {
     #[inline(always)]
     fn intersect(&self, shape: &dyn Shape, ray: &Ray) -> Option<Hit> {
         // Avoid copying the ray if possible.
-        if self.is_identity { shape.intersect(ray) } else { shape.intersect(&self.to_object_space(ray)) }
+        if self.is_identity { shape.intersect(ray) } else { shape.intersect(&self.motion.ray_to_local(ray)) }
     }
 
     /// Whether the ray hits anything in its range.
     #[inline]
     pub fn occludes(&self, ray: &Ray) -> bool {
-        match (&self.content, self.sphere.at(ray.time)) {
+        match (&self.content, self.sphere_at(ray.time)) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
-            (Content::Shape(shape), None) => match &self.sphere {
-                SphereKeys::Ellipsoid(sphere) => sphere.intersect(&self.ray_to_object(ray)).is_some(),
+            (Content::Shape(shape), None) => match self.sphere.as_deref() {
+                Some(SphereKeys::Ellipsoid(sphere)) => sphere.intersect(&self.ray_to_object(ray)).is_some(),
                 _ if self.is_identity => shape.occludes(ray),
-                _ => shape.occludes(&self.to_object_space(ray)),
+                _ => shape.occludes(&self.motion.ray_to_local(ray)),
             },
             (Content::Geometry(geometry), _) => geometry.occludes(&self.ray_to_object(ray)),
         }
@@ -165,25 +223,18 @@ impl Instance {
     /// `plain`, without textures, (u, v) and object coordinates may be omitted.
     #[inline(always)]
     pub fn surface(&self, shape: &AnyShape, ray: &Ray, hit: &Hit, plain: bool) -> Surface {
-        match (self.sphere.at(ray.time), &self.motion) {
-            (Some((center, radius)), motion) => {
+        match self.sphere_at(ray.time) {
+            Some((center, radius)) => {
                 let surface = sphere_surface(center, radius, ray, hit);
-                if plain { surface } else { with_texture_coordinates(shape, surface, &motion.at(ray.time)) }
+                if plain { surface } else { with_texture_coordinates(shape, surface, &self.motion.at(ray.time)) }
             }
-            (None, _) if self.is_identity => shape.surface(ray, hit),
-            (None, Motion::Still(transform)) => shape.surface(&transform.ray_to_local(ray), hit).to_world(transform),
-            (None, moving) => {
-                let transform = moving.at(ray.time);
+            None if self.is_identity => shape.surface(ray, hit),
+            None => {
+                let transform = self.motion.at(ray.time);
                 shape.surface(&transform.ray_to_local(ray), hit).to_world(&transform)
             }
         }
     }
-}
-
-/// Kept out of line, since motion is rare.
-#[inline(never)]
-fn ray_to_object_at(motion: &Motion, ray: &Ray) -> Ray {
-    motion.at(ray.time).ray_to_local(ray)
 }
 
 /// Adds texture and object coordinates to the surface of a sphere in the geometry's space. The
@@ -244,12 +295,12 @@ pub(super) fn is_within(ray: &Ray, [from, to]: [f32; 2]) -> bool {
 impl LeafItem {
     /// Creates the entry of an object. With `times`, it counts only from the first to the second of
     /// them.
-    pub fn new(object: &Object, object_index: u32, shape_index: u32, times: Option<[f32; 2]>) -> Self {
+    pub fn new(object: &Instance, object_index: u32, shape_index: u32, times: Option<[f32; 2]>) -> Self {
         if let Some(times) = times {
             return Self::Segment { times, object_index, shape_index };
         }
-        match SphereKeys::from_object(object) {
-            SphereKeys::Still(center, radius) => Self::Sphere { center, radius, shape_index },
+        match object.sphere.as_deref() {
+            Some(SphereKeys::Still(radius)) => Self::Sphere { center: object.origin(), radius: *radius, shape_index },
             _ if object.content.as_shape().is_some() => Self::Shape { object_index, shape_index },
             _ => Self::Geometry { object_index, shape_index },
         }

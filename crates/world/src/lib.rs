@@ -168,7 +168,8 @@ impl World {
         background: AnyBackground,
     ) -> Self {
         let geometries = geometry_stats::geometries(&top);
-        let used = || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material);
+        let used =
+            || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material());
         let has_transparency = used().any(|id| materials.is_transparent(id));
         let has_opacity = used().any(|id| materials.has_opacity(id));
         let has_absence = used().any(|id| materials.has_absence(id));

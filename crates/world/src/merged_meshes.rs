@@ -6,7 +6,7 @@ use super::closest_after::HitKey;
 use super::large_mesh::RayCoherence;
 use super::{Object, WorldHit};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
-use juggler_math::{Motion, Ray, Transform, Vec2, Vec3};
+use juggler_math::{Ray, Vec2, Vec3};
 use juggler_shape::{Hit, Mesh, Shape, clamp_to_f32_range};
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ pub fn indices(objects: &[Object], separate: &[u32]) -> Vec<u32> {
 
 /// Mesh of an object that neither moves nor has a transform.
 fn mesh(object: &Object) -> Option<&Mesh> {
-    let is_static = object.motion == Motion::Still(Transform::IDENTITY) && object.is_bounded();
+    let is_static = object.motion.is_identity() && object.is_bounded();
     object.content.as_shape().filter(|_| is_static)?.mesh().filter(|mesh| !mesh.moves())
 }
 

@@ -14,6 +14,7 @@ mod attributes;
 mod behind;
 mod coplanar;
 mod moving;
+mod points;
 
 const NO_LIGHTS: [SceneLight; 0] = [];
 
@@ -116,7 +117,7 @@ fn grove(random: &mut Random) -> World {
 /// The same shapes without instances, at a time: transforms are composed and materials inherited.
 fn expanded_at(objects: &[Instance], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
     let expand = |instance: &Instance| {
-        let Instance { content, motion, material, .. } = instance;
+        let (content, motion, material) = (&instance.content, &instance.motion, instance.material());
         let (place, material) = (motion.at(time).then(parent), material.or(inherited));
         match content {
             Content::Shape(_) => {

@@ -44,10 +44,10 @@ impl WorldMotion {
     }
 
     /// Transform to world space; `None` if the shape moves.
-    pub fn static_transform(&self) -> Option<&Transform> {
+    pub fn static_transform(&self) -> Option<Transform> {
         match self {
-            Self::Single(Motion::Still(transform)) => Some(transform),
-            Self::Single(Motion::Moving(_)) | Self::Nested(_) => None,
+            Self::Single(motion) => motion.still(),
+            Self::Nested(_) => None,
         }
     }
 
@@ -114,8 +114,8 @@ impl Search<'_> {
                 return;
             }
             let shape_index = context.first + geometry.first_shape(object_index);
-            let material = instance.material.or(context.inherited);
-            let attributes = || geometry.attributes_of(object_index).or(context.attributes.as_ref()).cloned();
+            let material = instance.material().or(context.inherited);
+            let attributes = || geometry.attributes.of_object(object_index).or_else(|| context.attributes.clone());
             match &instance.content {
                 Content::Shape(shape) => {
                     if let Some(material) = material.filter(|material| (self.predicate)(shape, *material)) {
@@ -143,7 +143,7 @@ impl Search<'_> {
             return *known;
         }
         let has_any = geometry.objects.iter().any(|instance| {
-            let material = instance.material.or(inherited);
+            let material = instance.material().or(inherited);
             match &instance.content {
                 Content::Shape(shape) => material.is_some_and(|material| (self.predicate)(shape, material)),
                 Content::Geometry(below) => self.has_any(below, material),
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn nested_motions_equal_one_motion_after_another() {
         let mut random = Random::new(71);
-        let still = Motion::Still(random.transform());
+        let still = Motion::from(random.transform());
         let all = [motion(&mut random), still, motion(&mut random), motion(&mut random)];
         let top = WorldMotion::Single(Transform::IDENTITY.into());
         let nested = all.iter().rev().fold(top, |outer, inner| WorldMotion::of_instance(inner, &outer));

@@ -126,15 +126,17 @@ impl Bvh {
     ///
     /// Empty boxes and boxes with a NaN are left out of [`Bvh::order`]. Infinite bounds are clamped
     /// to the largest finite number. Boxes beyond [`MAX_ITEMS`] are ignored; the caller must reject
-    /// larger inputs.
-    pub fn build(boxes: &[Aabb], quality: Quality) -> Self {
+    /// larger inputs. A list of boxes given by value is freed before the tree is built.
+    pub fn build(boxes: impl AsRef<[Aabb]>, quality: Quality) -> Self {
         Self::build_with(boxes, &quality.into())
     }
 
     /// [`Bvh::build`] with explicit [`BuildOptions`].
-    pub fn build_with(boxes: &[Aabb], options: &BuildOptions) -> Self {
-        let boxes = &boxes[..boxes.len().min(MAX_ITEMS)];
-        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(SimdBox::raw(&boxes[i])));
+    pub fn build_with(boxes: impl AsRef<[Aabb]>, options: &BuildOptions) -> Self {
+        let list = boxes.as_ref();
+        let list = &list[..list.len().min(MAX_ITEMS)];
+        let Ok(items) = Items::new(list.len(), |i| Ok::<_, Infallible>(SimdBox::raw(&list[i])));
+        drop(boxes);
         Self::from_items(items, options)
     }
 

@@ -8,7 +8,7 @@ use juggler_math::{Aabb, Ray, Vec3, vec3};
 #[test]
 fn empty_tree_has_no_hits() {
     for quality in Quality::ALL {
-        let bvh = Bvh::build(&[], quality);
+        let bvh = Bvh::build([], quality);
         assert!(bvh.order().is_empty() && bvh.bounds().is_empty());
         let mut leaf = Keep::<Aabb>::new(&[], bvh.order(), 8);
         let mut rays = [Ray::new(Vec3::ZERO, Vec3::X); 8];
@@ -33,7 +33,7 @@ fn empty_and_nan_boxes_are_skipped() {
         good,
     ];
     for quality in Quality::ALL {
-        let bvh = Bvh::build(&boxes, quality);
+        let bvh = Bvh::build(boxes, quality);
         let mut order = bvh.order().to_vec();
         order.sort_unstable();
         assert_eq!(order, [1, 5]);
@@ -68,7 +68,7 @@ fn infinite_boxes_are_hit() {
     let half_space = Aabb { min: Vec3::NEG_INFINITY, max: vec3(f32::INFINITY, -1.0, f32::INFINITY) };
     let boxes = [Aabb::INFINITE, half_space, Aabb { min: Vec3::ZERO, max: Vec3::ONE }];
     for quality in Quality::ALL {
-        let bvh = Bvh::build(&boxes, quality);
+        let bvh = Bvh::build(boxes, quality);
         assert_eq!(bvh.stats().items, 3);
         for direction in [Vec3::X, -Vec3::Y, vec3(0.3, -0.0, -0.5)] {
             let mut leaf = Keep::new(&boxes, bvh.order(), 1);

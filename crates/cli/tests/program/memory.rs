@@ -276,7 +276,7 @@ fn memory_of_points_and_lines_is_estimated() {
         );
         fs::write(folder.path("points.gltf"), text).unwrap();
         let line = "points.gltf --size 64x36 --samples 1 -o a.png";
-        fits(&folder, line, budget(260), 2);
+        fits(&folder, line, budget(150), 2);
         let message = folder.bad(&format!("render {line} --max-memory {}", budget(60)), 2);
         assert!(message.contains("to be read, more than --max-memory"), "{message}");
     }

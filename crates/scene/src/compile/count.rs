@@ -75,6 +75,21 @@ pub fn stored(scene: &Description, counts: &Counts<'_>) -> u64 {
     shared.fold(count_list(&scene.objects, counts).0, u64::saturating_add)
 }
 
+/// Least number of stored objects that are instances of a shape from one list, which share most of
+/// their memory.
+pub fn instances(scene: &Description, counts: &Counts<'_>) -> u64 {
+    let placed = scene.groups.iter().filter(|(name, _)| counts.get(name.as_str()).is_some_and(|c| c.placements > 0));
+    placed.map(|(_, objects)| listed_instances(objects)).fold(listed_instances(&scene.objects), u64::saturating_add)
+}
+
+fn listed_instances(objects: &[Item<Object>]) -> u64 {
+    let own = |object: &Object| if object.shape.is_some() { object.instance_count() } else { 0 };
+    objects.iter().filter(|object| object.is_visible()).fold(0, |sum: u64, object| {
+        let listed = if object.instances.is_some() { own(object) } else { 0 };
+        sum.saturating_add(listed).saturating_add(listed_instances(object.inner()))
+    })
+}
+
 fn too_many(placed: u64, stored: u64) -> Option<Finding> {
     if placed > MAX_OBJECTS {
         let message = format!("the scene places {placed} objects, the limit is {MAX_OBJECTS}");

@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::report::Finding;
 use juggler_camera::AnyCamera;
 use juggler_material::{MaterialId, MaterialTable, Sides};
-use juggler_math::{Aabb, Motion, Ray, Transform, Vec3};
+use juggler_math::{Aabb, Ray, Transform, Vec3};
 use juggler_shape::SolidAngleShape;
 use juggler_world::{Content, Object};
 
@@ -46,7 +46,8 @@ pub struct SceneObjects<'s> {
 
 impl Emitter {
     fn of(place: usize, number: u32, object: &Object, materials: &MaterialTable) -> Option<Self> {
-        let (Content::Shape(shape), Motion::Still(transform)) = (&object.content, &object.motion) else { return None };
+        let Content::Shape(shape) = &object.content else { return None };
+        let transform = object.motion.still()?;
         let (kind, x, z) = match shape.solid_angle_shape()? {
             SolidAngleShape::Rectangle { size } => ("rectangle", 0.5 * size[0], 0.5 * size[1]),
             SolidAngleShape::Disk { radius } => ("disk", radius, radius),
@@ -174,11 +175,8 @@ impl SceneObjects<'_> {
 }
 
 /// Transform of a static object that is an infinite plane.
-fn plane(object: &Object) -> Option<&Transform> {
-    match (&object.content, &object.motion) {
-        (Content::Shape(shape), Motion::Still(transform)) => shape.is_plane().then_some(transform),
-        _ => None,
-    }
+fn plane(object: &Object) -> Option<Transform> {
+    object.content.as_shape().filter(|shape| shape.is_plane()).and_then(|_| object.motion.still())
 }
 
 fn corners(bounds: &Aabb) -> [Vec3; 8] {

@@ -1,7 +1,7 @@
 //! Memory requirements of a scene, known before its files are read and its world is built.
 
 use super::area_lights;
-use super::count::{count, stored};
+use super::count::{count, instances, stored};
 use super::emitter_count::emitters;
 use super::images::image_files;
 use super::lighting::{self, Purpose};
@@ -29,8 +29,10 @@ pub struct Needs {
     pub images: u64,
     /// Triangles of inline meshes.
     pub triangles: u64,
-    /// Stored objects; objects of a shared group count once.
+    /// Stored objects, without instances from lists; objects of a shared group count once.
     pub objects: u64,
+    /// Stored instances of shapes, from lists of an object.
+    pub instances: u64,
     /// Emissive shapes; shapes of a group count once per placement.
     pub emitters: u64,
     /// Maximum number of secondary rays from one point.
@@ -45,11 +47,13 @@ impl Needs {
         // Placement reports too many objects.
         let areas = area_lights::iter(&scene.lights).count() as u64;
         let counts = count(scene).ok();
+        let instances = counts.as_ref().map_or(0, |counts| instances(scene, counts));
         let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts).saturating_add(areas));
+        let objects = objects.saturating_sub(instances);
         let emitters = counts.as_ref().map_or(0, |_| emitters(scene).saturating_add(areas));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.sources.bytes_to_read();
-        let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };
+        let mut needs = Self { text, objects, instances, emitters, shadows, ..Self::default() };
         let images: Vec<PathBuf> = image_files(scene, &files).into_iter().map(|(file, _)| file).collect();
         let panoramas = lighting::files(scene, &files).into_iter();
         let panoramas: Vec<PathBuf> =

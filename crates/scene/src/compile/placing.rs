@@ -357,7 +357,7 @@ impl Placer<'_> {
             Content::Shapes(shapes) => objects_of(shapes, &motion, material, found),
             Content::Objects(objects) => self.place(objects, &motion, material, found),
             Content::Group(name) => match self.levels.get(name) {
-                Some(level) => found.push(new_object(WorldContent::Geometry(Arc::clone(level)), motion, material)),
+                Some(level) => add(new_object(WorldContent::Geometry(Arc::clone(level)), motion, material), found),
                 None => {
                     let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
                     self.place(objects, &motion, material, found);
@@ -373,8 +373,16 @@ fn objects_of(
     material: Option<MaterialId>,
     found: &mut Vec<juggler_world::Object>,
 ) {
-    let object = |(place, shape): &(Motion, Arc<AnyShape>)| {
-        new_object(WorldContent::Shape(Arc::clone(shape)), place.then(motion), material)
+    for (place, shape) in shapes {
+        add(new_object(WorldContent::Shape(Arc::clone(shape)), place.then(motion), material), found);
+    }
+}
+
+/// Adds an object, which shares the linear part of its transform with the one before if they are equal.
+fn add(object: juggler_world::Object, found: &mut Vec<juggler_world::Object>) {
+    let motion = match found.last() {
+        Some(previous) => object.motion.sharing(&previous.motion),
+        None => object.motion,
     };
-    found.extend(shapes.iter().map(object));
+    found.push(juggler_world::Object { motion, ..object });
 }

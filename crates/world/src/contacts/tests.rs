@@ -6,7 +6,7 @@ use juggler_light::AnyLight;
 use juggler_light::background::{AnyBackground, Solid};
 use juggler_material::MaterialCompiler;
 use juggler_math::testing::Random;
-use juggler_math::{Ray, Transform};
+use juggler_math::{Motion, Ray, Transform};
 use juggler_shape::Mesh;
 use juggler_texture::TextureTable;
 use std::sync::Arc;

@@ -77,7 +77,7 @@ fn objects_on_long_curves_equal_brute_force_in_all_segments_of_time() {
     let mut turning = |shape: AnyShape| {
         let mut shape = shape;
         shape.prepare().unwrap();
-        let arm = Motion::Still(Transform::translation(Vec3::X * 20.0 + random.point(20.0)));
+        let arm = Motion::from(Transform::translation(Vec3::X * 20.0 + random.point(20.0)));
         let start = 6.0 * random.f32();
         let keys = (0..65).map(|i| Transform::rotation(Vec3::Z, start + 0.2 * i as f32).unwrap()).collect();
         Object::new(shape, arm.then(&Motion::from_keys(keys).unwrap()).smoothed(0.5), MaterialId(0))
