@@ -79,7 +79,34 @@ pub fn for_target(target: &str) -> Vec<Vec<u8>> {
         "ktx2" => streams::ktx2(),
         "gltf" => models::texts(),
         "glb" => models::binaries(),
+        "tiff" | "tga" | "bmp" | "gif" => foreign_pictures(target),
         other => pictures(other),
+    }
+}
+
+/// Pictures in formats that the program does not write, by Pillow and libtiff.
+fn foreign_pictures(target: &str) -> Vec<Vec<u8>> {
+    macro_rules! files {
+        ($($name:literal),*) => { vec![$(include_bytes!(concat!("../../imaging/tests/pictures/", $name)).to_vec()),*] };
+    }
+    match target {
+        "tiff" => files!(
+            "rgb-lzw.tif",
+            "rgb-deflate.tif",
+            "rgb-packbits.tif",
+            "rgba.tif",
+            "gray-alpha.tif",
+            "palette.tif",
+            "bit.tif",
+            "gray16.tif",
+            "float.tif",
+            "pages.tif",
+            "turned.tif",
+            "cmyk.tif"
+        ),
+        "tga" => files!("rgb.tga", "rgba-runs.tga", "gray-alpha-runs.tga", "gray.tga", "palette-runs.tga"),
+        "bmp" => files!("rgb.bmp", "rgba.bmp", "palette.bmp", "bit.bmp"),
+        _ => files!("palette.gif", "interlaced.gif", "transparent.gif", "movie.gif"),
     }
 }
 

@@ -36,7 +36,7 @@ pub struct Target {
 }
 
 /// All readers.
-pub const TARGETS: [Target; 20] = [
+pub const TARGETS: [Target; 24] = [
     Target { name: "scene", read: scene },
     Target { name: "expression", read: expression },
     Target { name: "obj", read: |bytes| mesh("a.obj", bytes) & obj::read_model(bytes) },
@@ -49,6 +49,10 @@ pub const TARGETS: [Target; 20] = [
     Target { name: "hdr", read: picture },
     Target { name: "pfm", read: picture },
     Target { name: "webp", read: picture },
+    Target { name: "tiff", read: picture },
+    Target { name: "tga", read: |bytes| picture_named("fuzz.tga", bytes) },
+    Target { name: "bmp", read: picture },
+    Target { name: "gif", read: picture },
     Target { name: "ies", read: ies },
     Target { name: "jfilm", read: part },
     Target { name: "message", read: message },
@@ -108,14 +112,19 @@ fn stl_model(bytes: &[u8]) -> bool {
 }
 
 fn picture(bytes: &[u8]) -> bool {
+    picture_named("fuzz", bytes)
+}
+
+/// Reads a picture by its name, which selects the format TGA.
+fn picture_named(name: &str, bytes: &[u8]) -> bool {
     let limits = Limits { max_pixels: MAX_PIXELS, ..Limits::default() };
-    let image = decode("fuzz", Cursor::new(bytes), &limits);
-    let raster = decode_raster("fuzz", Cursor::new(bytes), &limits);
-    in_file(bytes, |path| (imaging::inspect(path).is_ok(), inspect_raster(path).is_ok()));
+    let image = decode(name, Cursor::new(bytes), &limits);
+    let raster = decode_raster(name, Cursor::new(bytes), &limits);
+    in_file_named(name, bytes, |path| (imaging::inspect(path).is_ok(), inspect_raster(path).is_ok()));
     for error in [image.as_ref().err(), raster.as_ref().err()].into_iter().flatten() {
         let message_text = error.to_string();
         assert!(
-            message_text.starts_with("cannot read `fuzz`: ") && !message_text.contains(['{', '\u{1b}']),
+            message_text.starts_with(&format!("cannot read `{name}`: ")) && !message_text.contains(['{', '\u{1b}']),
             "no plain words: {message_text}"
         );
     }
@@ -178,8 +187,12 @@ fn ktx2_file(bytes: &[u8]) -> bool {
 
 /// Writes the bytes to a temporary file and returns the result of `read`.
 fn in_file<T: Default>(bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
+    in_file_named("fuzz", bytes, read)
+}
+
+fn in_file_named<T: Default>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     let Ok(folder) = tempfile::tempdir() else { return T::default() };
-    let path = folder.path().join("fuzz");
+    let path = folder.path().join(name);
     if std::fs::write(&path, bytes).is_err() {
         return T::default();
     }

@@ -12,6 +12,14 @@ pub enum ImageError {
         /// Name of the file.
         file: String,
     },
+    /// The file extension names a format that is read but not written.
+    #[error("`{file}`: Juggler reads {format} pictures but does not write them; use {}", ImageFormat::extensions())]
+    ReadOnly {
+        /// Name of the file.
+        file: String,
+        /// Format of the file.
+        format: ImageFormat,
+    },
     /// Layers need an EXR file, or a file name with a placeholder for the layer.
     #[error(
         "`{file}`: write AOVs to one .exr file, or to one .exr or .npy file each with `{{}}` in the name for the AOV"
@@ -83,7 +91,7 @@ pub enum ImageError {
         bytes: u64,
     },
     /// The first bytes match no supported image format.
-    #[error("cannot read `{file}`: its first bytes match no supported format ({})", ImageFormat::extensions())]
+    #[error("cannot read `{file}`: its first bytes match no supported format ({})", ImageFormat::readable_extensions())]
     UnknownContent {
         /// Name of the file.
         file: String,

@@ -4,7 +4,7 @@ use crate::{Header, ImageError, SampleDepth};
 use std::fmt;
 use std::path::Path;
 
-/// Still image file format.
+/// Still image file format. Juggler reads all formats and writes those of [`ImageFormat::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageFormat {
     /// Portable Network Graphics, 8 or 16 bits, lossless.
@@ -19,27 +19,58 @@ pub enum ImageFormat {
     Webp,
     /// Portable Float Map, linear floats.
     Pfm,
+    /// TIFF, 8 or 16 bits or floats; read only.
+    Tiff,
+    /// Truevision TGA, 8 bits; read only.
+    Tga,
+    /// Windows bitmap, 8 bits; read only.
+    Bmp,
+    /// GIF, 256 colors; read only, except as a movie.
+    Gif,
 }
 
 impl ImageFormat {
-    /// All image formats.
+    /// All image formats that are written.
     pub const ALL: [Self; 6] = [Self::Png, Self::Jpeg, Self::Exr, Self::Hdr, Self::Webp, Self::Pfm];
 
-    /// Format for the path's file extension, ignoring case.
+    /// All image formats that are read but not written.
+    pub const READ_ONLY: [Self; 4] = [Self::Tiff, Self::Tga, Self::Bmp, Self::Gif];
+
+    /// Format of an image to write, for the path's file extension, ignoring case.
     ///
     /// # Errors
     ///
+    /// [`ImageError::ReadOnly`] if the extension is that of a format that is only read,
     /// [`ImageError::UnknownFormat`] if no format has this extension.
     pub fn from_path(path: &Path) -> Result<Self, ImageError> {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        let found = match extension.as_str() {
-            "jpeg" => Some(Self::Jpeg),
-            other => Self::ALL.into_iter().find(|f| f.extension() == other),
-        };
-        found.ok_or_else(|| ImageError::UnknownFormat { file: path.display().to_string() })
+        let file = || path.display().to_string();
+        let format = Self::from_extension(path).ok_or_else(|| ImageError::UnknownFormat { file: file() })?;
+        if format.is_written() { Ok(format) } else { Err(ImageError::ReadOnly { file: file(), format }) }
     }
 
-    /// Format by the file's first bytes (12 suffice).
+    /// Format of an image to read or write, for the path's file extension, ignoring case.
+    pub fn from_extension(path: &Path) -> Option<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        match extension.as_str() {
+            "jpeg" => Some(Self::Jpeg),
+            "tiff" => Some(Self::Tiff),
+            other => Self::ALL.into_iter().chain(Self::READ_ONLY).find(|f| f.extension() == other),
+        }
+    }
+
+    /// Whether images of the format are written, not only read.
+    pub fn is_written(self) -> bool {
+        Self::ALL.contains(&self)
+    }
+
+    /// Format of an image to read, by the file's first bytes (12 suffice). TGA files begin with no
+    /// magic number, so their file extension counts.
+    pub fn detect(bytes: &[u8], path: &Path) -> Option<Self> {
+        let tga = || Self::from_extension(path).filter(|format| *format == Self::Tga);
+        Self::from_first_bytes(bytes).or_else(tga)
+    }
+
+    /// Format by the file's first bytes (12 suffice); TGA files cannot be detected.
     pub fn from_first_bytes(bytes: &[u8]) -> Option<Self> {
         let starts = |magic: &[u8]| bytes.starts_with(magic);
         match bytes {
@@ -49,6 +80,10 @@ impl ImageFormat {
             _ if starts(b"#?RADIANCE") || starts(b"#?RGBE") => Some(Self::Hdr),
             _ if starts(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") => Some(Self::Webp),
             _ if starts(b"PF\n") || starts(b"Pf\n") => Some(Self::Pfm),
+            // Classic TIFF and BigTIFF in both byte orders.
+            _ if starts(b"II*\0") || starts(b"MM\0*") || starts(b"II+\0") || starts(b"MM\0+") => Some(Self::Tiff),
+            _ if starts(b"GIF87a") || starts(b"GIF89a") => Some(Self::Gif),
+            _ if starts(b"BM") => Some(Self::Bmp),
             _ => None,
         }
     }
@@ -62,16 +97,25 @@ impl ImageFormat {
             Self::Hdr => "hdr",
             Self::Webp => "webp",
             Self::Pfm => "pfm",
+            Self::Tiff => "tif",
+            Self::Tga => "tga",
+            Self::Bmp => "bmp",
+            Self::Gif => "gif",
         }
     }
 
-    /// All file extensions, for messages.
+    /// File extensions of all formats that are written, for messages.
     pub fn extensions() -> String {
         Self::ALL.map(|f| format!(".{}", f.extension())).join(" ")
     }
 
-    /// Whether files store tone-mapped levels; the other formats store linear, scene-referred
-    /// values.
+    /// File extensions of all formats that are read, for messages.
+    pub fn readable_extensions() -> String {
+        format!("{} {}", Self::extensions(), Self::READ_ONLY.map(|f| format!(".{}", f.extension())).join(" "))
+    }
+
+    /// Whether written files store tone-mapped levels; the other formats that are written store
+    /// linear, scene-referred values. [`crate::ImageInfo`] tells it of files that are read.
     pub fn is_tone_mapped(self) -> bool {
         matches!(self, Self::Png | Self::Jpeg | Self::Webp)
     }
@@ -88,7 +132,8 @@ impl ImageFormat {
             // OpenEXR limits box coordinates to half of the 32-bit range, so that differences do
             // not overflow.
             Self::Exr => i32::MAX as u32 / 2,
-            Self::Jpeg => 65_535,
+            Self::Tiff => u32::MAX,
+            Self::Jpeg | Self::Tga | Self::Bmp | Self::Gif => 65_535,
             Self::Webp => 16_383,
         }
     }
@@ -126,6 +171,8 @@ impl ImageFormat {
             // 8-bit pixels with and without alpha, and the growing output.
             Self::Webp => whole(3 + 4 + 8).saturating_add(width * 64),
             Self::Pfm => (width * 24).saturating_add(if seekable { 0 } else { whole(24) }),
+            // These are not written.
+            Self::Tiff | Self::Tga | Self::Bmp | Self::Gif => 0,
         };
         let look = if self.supports_display_looks() { header.options.look.bytes_per_pixel() } else { 0 };
         bytes.saturating_add(whole(look)).saturating_add(FIXED)
@@ -141,6 +188,10 @@ impl fmt::Display for ImageFormat {
             Self::Hdr => "Radiance HDR",
             Self::Webp => "WebP",
             Self::Pfm => "PFM",
+            Self::Tiff => "TIFF",
+            Self::Tga => "TGA",
+            Self::Bmp => "BMP",
+            Self::Gif => "GIF",
         })
     }
 }
@@ -162,12 +213,39 @@ mod tests {
         ] {
             assert_eq!(ImageFormat::from_path(Path::new(name)).unwrap(), format);
         }
-        for wrong in ["png", "a.tga", "", ".png", "a.png/"] {
+        for wrong in ["png", "a.psd", "", ".png", "a.png/"] {
             let result = ImageFormat::from_path(Path::new(wrong));
             assert!(result.is_err() || wrong == "a.png/", "{wrong}");
         }
-        let message = ImageFormat::from_path(Path::new("a.tga")).unwrap_err().to_string();
-        assert!(message.contains("a.tga") && message.contains(".png .jpg .exr .hdr .webp .pfm"), "{message}");
+        let message = ImageFormat::from_path(Path::new("a.psd")).unwrap_err().to_string();
+        assert_eq!(message, "`a.psd` has an unknown extension; supported: .png .jpg .exr .hdr .webp .pfm");
+    }
+
+    #[test]
+    fn formats_that_are_only_read_are_refused_as_outputs() {
+        for (name, format) in [
+            ("a.tif", ImageFormat::Tiff),
+            ("a.TIFF", ImageFormat::Tiff),
+            ("a.tga", ImageFormat::Tga),
+            ("a.bmp", ImageFormat::Bmp),
+            ("a.gif", ImageFormat::Gif),
+        ] {
+            let path = Path::new(name);
+            assert_eq!(ImageFormat::from_extension(path), Some(format));
+            let message = ImageFormat::from_path(path).unwrap_err().to_string();
+            let expected = format!(
+                "`{name}`: Juggler reads {format} pictures but does not write them; use .png .jpg .exr .hdr .webp .pfm"
+            );
+            assert_eq!(message, expected);
+        }
+    }
+
+    #[test]
+    fn tga_files_are_known_by_their_name_alone() {
+        let (bytes, png) = (b"\0\0\x02\0\0\0\0\0\0\0\0\0", b"\x89PNG\r\n\x1a\n");
+        assert_eq!(ImageFormat::detect(bytes, Path::new("a/b.TGA")), Some(ImageFormat::Tga));
+        assert_eq!(ImageFormat::detect(bytes, Path::new("a/b.png")), None);
+        assert_eq!(ImageFormat::detect(png, Path::new("a/b.tga")), Some(ImageFormat::Png));
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Reading of images. The first bytes of a file determine its format, not its name.
+//! Reading of images. The first bytes of a file determine its format, not its name, except for TGA
+//! files, which begin with no magic number.
 
 use crate::codec::{self, ImageInfo, Source};
 use crate::{ImageError, ImageFormat, regular};
@@ -66,7 +67,7 @@ pub(crate) fn source<'a>(
     bytes.by_ref().take(12).read_to_end(&mut start).map_err(failed)?;
     let length = bytes.seek(SeekFrom::End(0)).map_err(failed)?;
     bytes.rewind().map_err(failed)?;
-    let format = ImageFormat::from_first_bytes(&start);
+    let format = ImageFormat::detect(&start, Path::new(file));
     let format = format.ok_or_else(|| ImageError::UnknownContent { file: file.to_owned() })?;
     Ok(Source { file, format, limits, length })
 }

@@ -1,6 +1,9 @@
 //! Orientation of pictures by Exif (CIPA DC-008, tag 0x0112): cameras store rows as the sensor has
 //! them, and state how to turn them. Readers turn the pixels, as browsers and Pillow do.
 
+use crate::codec::tiff::directory::Directory;
+use std::io::Cursor;
+
 /// Orientation that an Exif block states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Orientation {
@@ -12,11 +15,11 @@ pub struct Orientation {
     mirrors_y: bool,
 }
 
-const ORIENTATION: u16 = 0x0112;
+pub(crate) const ORIENTATION: u16 = 0x0112;
 
 impl Orientation {
     /// Orientation of one of the eight codes; the stored one for other codes.
-    fn from_code(code: u16) -> Self {
+    pub(crate) fn from_code(code: u16) -> Self {
         let [transposes, mirrors_x, mirrors_y] = match code {
             2 => [false, true, false],
             3 => [false, true, true],
@@ -63,28 +66,11 @@ impl Orientation {
     }
 }
 
-/// Code of the tag in the first directory of an Exif block (TIFF 6.0, section 2).
+/// Code of the tag in the first directory of an Exif block.
 fn code(exif: &[u8]) -> Option<u16> {
-    let tiff = exif.strip_prefix(b"Exif\0\0").unwrap_or(exif);
-    let is_little = match tiff.get(..2)? {
-        b"II" => true,
-        b"MM" => false,
-        _ => return None,
-    };
-    let word = |at: usize| {
-        let bytes: [u8; 2] = tiff.get(at..at.checked_add(2)?)?.try_into().ok()?;
-        Some(if is_little { u16::from_le_bytes(bytes) } else { u16::from_be_bytes(bytes) })
-    };
-    let double = |at: usize| {
-        let (first, second) = (u32::from(word(at)?), u32::from(word(at.checked_add(2)?)?));
-        Some(if is_little { second << 16 | first } else { first << 16 | second })
-    };
-    let start = usize::try_from(double(4)?).ok()?;
-    let entries = usize::from(word(start)?);
-    let entry = |number: usize| start.checked_add(2 + 12 * number);
-    let tag = (0..entries).filter_map(entry).find(|at| word(*at) == Some(ORIENTATION))?;
-    // A short is stored in the entry itself.
-    word(tag.checked_add(8)?).filter(|_| word(tag + 2) == Some(3))
+    let mut tiff = Cursor::new(exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
+    let directory = Directory::first(&mut tiff).ok()??;
+    directory.number(ORIENTATION)?.try_into().ok()
 }
 
 #[cfg(test)]

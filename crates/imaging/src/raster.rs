@@ -5,6 +5,7 @@ use crate::codec;
 use crate::input::{open, source};
 use crate::tone::{Curve, Gamma, Matrix, Srgb, high_dynamic_range};
 use crate::{ImageError, ImageFormat, Limits};
+use juggler_math::Rgb;
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
@@ -17,12 +18,54 @@ pub struct Raster {
     pub samples: RasterSamples,
     /// Transfer function of the color samples.
     pub transfer_function: TransferFunction,
+    /// Whether the file holds more images, such as frames of a movie or pages of a document. The
+    /// raster is the first.
+    pub is_first_of_several: bool,
+}
+
+impl Raster {
+    /// Linear RGB pixels with sRGB primaries. Gray becomes equal channels; alpha is ignored.
+    pub(crate) fn to_pixels(&self) -> Vec<Rgb> {
+        let RasterLayout { channels, to_srgb, .. } = self.layout;
+        let channels = usize::from(channels).max(1);
+        let table = |count: u32| -> Vec<f32> {
+            let top = f64::from(count - 1);
+            (0..count).map(|level| self.transfer_function.decode(f64::from(level) / top) as f32).collect()
+        };
+        let linear = |table: &[f32], level: usize| table.get(level).copied().unwrap_or_default();
+        let mut pixels = match &self.samples {
+            RasterSamples::Bytes(levels) => {
+                let table = table(1 << 8);
+                colors(levels, channels, |level| linear(&table, usize::from(level)))
+            }
+            RasterSamples::Words(levels) => {
+                let table = table(1 << 16);
+                colors(levels, channels, |level| linear(&table, usize::from(level)))
+            }
+            RasterSamples::Floats(values) => colors(values, channels, |value| match self.transfer_function {
+                TransferFunction::Linear => value,
+                curve => curve.decode(f64::from(value)) as f32,
+            }),
+        };
+        codec::convert_primaries(&mut pixels, to_srgb);
+        pixels
+    }
+}
+
+/// Colors of pixels whose samples have these linear values.
+fn colors<T: Copy>(samples: &[T], channels: usize, linear: impl Fn(T) -> f32) -> Vec<Rgb> {
+    let color = |pixel: &[T]| match *pixel {
+        [r, g, b, ..] => Rgb::new(linear(r), linear(g), linear(b)),
+        [gray, ..] => Rgb::splat(linear(gray)),
+        [] => Rgb::BLACK,
+    };
+    samples.chunks_exact(channels).map(color).collect()
 }
 
 /// Size, sample format and primaries of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterLayout {
-    /// Format, detected by the first bytes.
+    /// Format, detected by the first bytes (TGA by the file extension).
     pub format: ImageFormat,
     /// Width in pixels.
     pub width: u32,

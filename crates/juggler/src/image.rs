@@ -23,7 +23,7 @@ use std::path::Path;
 pub trait ImageExt {
     /// Writes the image to a file, whose extension (`png`, `jpg`, `exr`, `hdr`, `webp`, `pfm`)
     /// selects the format. Integer formats are encoded as sRGB. The file replaces an existing one
-    /// once it is complete. Fails for an unknown extension, a size that the format cannot hold, and
+    /// once it is complete. Fails for an unknown extension or that of a format that is only read, a size that the format cannot hold, and
     /// a file that cannot be written.
     fn save(&self, path: impl AsRef<Path>) -> Result<(), Error>;
 

@@ -19,7 +19,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Image texture: PNG, JPEG, WebP, OpenEXR, Radiance HDR or PFM.
+/// Image texture: PNG, JPEG, WebP, TIFF, TGA, BMP, GIF (the first frame), OpenEXR, Radiance HDR or PFM.
 ///
 /// Pictures are turned by the orientation that their Exif data states. An OpenEXR file shows its
 /// display window, black where it has no data; its picture is the channels R, G and B, a layer named
@@ -62,7 +62,8 @@ pub struct Image {
 #[serde(rename_all = "snake_case")]
 pub enum ColorSpace {
     /// The file's own statement of transfer function and primaries, converted to linear sRGB;
-    /// without it, sRGB for integers (PNG, JPEG, WebP) and linear light for floats (EXR, HDR, PFM).
+    /// without it, sRGB for integers (PNG, JPEG, WebP, TIFF, TGA, BMP, GIF) and linear light for
+    /// floats (EXR, HDR, PFM, TIFF of floats).
     #[default]
     Auto,
     /// Transfer function and primaries of sRGB, whatever the file states.

@@ -48,7 +48,7 @@ impl Info {
             return Ok(mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();
-        let named = ImageFormat::from_path(path).ok().filter(|_| path.is_file());
+        let named = ImageFormat::from_extension(path).filter(|_| path.is_file());
         if let Some(format) = ImageFormat::from_first_bytes(&start).or(named) {
             return self.picture(format);
         }

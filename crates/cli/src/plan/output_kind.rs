@@ -3,7 +3,7 @@
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
-use juggler::imaging::{AnimationFormat, DisplayLook, ImageFormat, Options, SampleDepth};
+use juggler::imaging::{AnimationFormat, DisplayLook, ImageError, ImageFormat, Options, SampleDepth};
 use std::path::Path;
 
 /// Extension of partial renders.
@@ -58,6 +58,9 @@ fn is_picture(output: &str) -> bool {
 
 /// Error message for an unknown extension, with all supported ones.
 fn unknown_extension(output: &str) -> String {
+    if let Err(error @ ImageError::ReadOnly { .. }) = ImageFormat::from_path(Path::new(output)) {
+        return error.to_string();
+    }
     let ending = Path::new(output).extension().map(|ending| ending.to_string_lossy());
     let wrong = match ending {
         Some(ending) => format!("unknown extension `.{ending}`"),
@@ -105,7 +108,7 @@ fn set_bits(options: &mut Options, format: ImageFormat, bits: u8) -> Result<(), 
         ImageFormat::Png => &[8, 16],
         ImageFormat::Exr => &[16, 32],
         ImageFormat::Pfm => &[32],
-        ImageFormat::Jpeg | ImageFormat::Webp | ImageFormat::Hdr => &[8],
+        _ => &[8],
     };
     if !possible.contains(&bits) {
         let possible = possible.iter().map(u8::to_string).collect::<Vec<_>>().join(" or ");

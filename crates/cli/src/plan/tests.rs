@@ -29,7 +29,9 @@ fn the_output_is_named_after_the_scene() {
     assert_eq!(encoding("a -o b.exr").format, ImageFormat::Exr);
     assert_eq!(encoding("a -o -").format, ImageFormat::Png);
     assert_eq!(encoding("a -o - --format jpg").format, ImageFormat::Jpeg);
-    assert!(refused("a -o b.tga").contains(".png"));
+    assert!(refused("a -o b.psd").contains(".png"));
+    let message = refused("a -o b.tif");
+    assert!(message.contains("Juggler reads TIFF pictures but does not write them; use .png"), "{message}");
     assert!(refused("a -o - --format tga").contains("tga"));
 }
 

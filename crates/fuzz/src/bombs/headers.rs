@@ -59,6 +59,14 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
     add("c.exr", exr(12, 16_777_240));
     add("a.jpg", jpeg(65_535, 65_535));
     add("a.webp", webp(16_383, 16_383));
+    let sides = [255; 4];
+    add("a.gif", put(seed("gif"), 6, &sides));
+    add("a.tga", put(seed("tga"), 12, &sides));
+    add("a.bmp", put(seed("bmp"), 18, &[0xff, 0xff, 0, 0, 0xff, 0xff, 0, 0]));
+    // The seed states its width and height first, each as a number of 32 bits.
+    let tiff = seed("tiff");
+    let width = after(&tiff, &[0, 1, 4, 0, 1, 0, 0, 0]);
+    add("a.tif", put(put(tiff, width, &[255; 4]), width + 12, &[255; 4]));
     found
 }
 

@@ -153,7 +153,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
         }
     };
     let samples = RasterSamples::Floats(samples.map_err(|e| unreadable(source, e))?);
-    Ok(Raster { layout, samples, transfer_function: TransferFunction::Linear })
+    Ok(Raster { layout, samples, transfer_function: TransferFunction::Linear, is_first_of_several: false })
 }
 
 /// Name that differs from all channels of a selection, for a channel that the file does not have.

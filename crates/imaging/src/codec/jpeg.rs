@@ -77,6 +77,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
         layout: source.layout(size, 3, 1),
         samples: RasterSamples::Bytes(bytes),
         transfer_function: TransferFunction::Srgb,
+        is_first_of_several: false,
     })
 }
 

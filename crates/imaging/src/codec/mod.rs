@@ -1,10 +1,17 @@
-//! Image file formats, each with a streaming writer and a reader.
+//! Image file formats, each with a reader and, if images of the format are written, a streaming
+//! writer.
 
+mod bmp;
 pub(crate) mod exr;
+mod gif;
 mod hdr;
+mod image_crate;
 mod jpeg;
 mod pfm;
 mod png;
+mod row_count;
+mod tga;
+pub(crate) mod tiff;
 mod webp;
 
 use crate::look::{self, DisplayLook};
@@ -14,6 +21,7 @@ use crate::tone::{Curve, Matrix, Srgb, Tone};
 use crate::{ClampCount, CropFrame, ExrWindows, ImageError, ImageFormat, Limits, Viewpoint};
 use juggler_math::message::excerpt;
 use juggler_math::{Image, Rgb};
+use row_count::RowCountCheck;
 use std::io::{self, BufRead, Seek};
 
 /// Encoder that takes rows from top to bottom.
@@ -61,7 +69,7 @@ impl Header {
         let takes = match format {
             ImageFormat::Exr => true,
             ImageFormat::Png => primaries.code_point().is_some(),
-            ImageFormat::Jpeg | ImageFormat::Webp | ImageFormat::Hdr | ImageFormat::Pfm => primaries.is_srgb(),
+            _ => primaries.is_srgb(),
         };
         // Display looks quantize for the sRGB displays of their time.
         let takes = takes && (primaries.is_srgb() || self.options.look == DisplayLook::Plain);
@@ -135,7 +143,7 @@ pub fn writer(
     } else {
         encoder(format, destination, header)?
     };
-    Ok(Box::new(RowCountCheck { inner, width: u64::from(header.width), left: header.pixels() }))
+    Ok(Box::new(RowCountCheck::new(inner, header)))
 }
 
 fn encoder(format: ImageFormat, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
@@ -146,33 +154,10 @@ fn encoder(format: ImageFormat, destination: Destination, header: &Header) -> Re
         ImageFormat::Hdr => Box::new(hdr::Writer::new(destination, header)?),
         ImageFormat::Webp => Box::new(webp::Writer::new(destination, header)),
         ImageFormat::Pfm => Box::new(pfm::Writer::new(destination, header)?),
+        ImageFormat::Tiff | ImageFormat::Tga | ImageFormat::Bmp | ImageFormat::Gif => {
+            return Err(ImageError::ReadOnly { file: destination.name().to_owned(), format });
+        }
     })
-}
-
-/// Checks that the encoder gets whole rows, as many as the header announces.
-struct RowCountCheck {
-    inner: Box<dyn RowWriter>,
-    width: u64,
-    /// Pixels still missing.
-    left: u64,
-}
-
-impl RowWriter for RowCountCheck {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        let given = rows.len() as u64;
-        if given > self.left || !given.is_multiple_of(self.width) {
-            return Err(ImageError::Rows { expected: self.left.min(self.width), given });
-        }
-        self.left -= given;
-        if rows.is_empty() { Ok(()) } else { self.inner.write_rows(rows) }
-    }
-
-    fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        if self.left > 0 {
-            return Err(ImageError::Rows { expected: self.left, given: 0 });
-        }
-        self.inner.finish()
-    }
 }
 
 /// Quotes a text from a file for a message: shortened, and only if it is printable.
@@ -249,8 +234,9 @@ impl Source<'_> {
     /// Adds the file offset where decoding stopped to an error.
     fn with_offset<T>(self, bytes: &mut dyn ReadSeek, result: Result<T, ImageError>) -> Result<T, ImageError> {
         let Err(ImageError::Malformed { file, format, message, at: None }) = result else { return result };
-        // JPEG files are read completely before decoding.
-        let at = bytes.stream_position().ok().filter(|_| self.format != ImageFormat::Jpeg);
+        // The decoders of these formats read ahead, or the parts of a file in another order.
+        let is_elsewhere = matches!(self.format, ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Gif);
+        let at = bytes.stream_position().ok().filter(|_| !is_elsewhere);
         Err(match at {
             at if message == UNEXPECTED_END && at.is_none_or(|at| at >= self.length) => self.truncated(),
             at => ImageError::Malformed { file, format, message, at },
@@ -265,7 +251,8 @@ impl Source<'_> {
     fn float_raster(self, image: &Image, to_srgb: Option<Matrix>) -> Raster {
         let samples = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
         let layout = RasterLayout { to_srgb, ..self.layout((image.width(), image.height()), 3, 4) };
-        Raster { layout, samples: RasterSamples::Floats(samples), transfer_function: TransferFunction::Linear }
+        let samples = RasterSamples::Floats(samples);
+        Raster { layout, samples, transfer_function: TransferFunction::Linear, is_first_of_several: false }
     }
 
     fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
@@ -282,45 +269,65 @@ pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         ImageFormat::Hdr => hdr::read(source, bytes),
         ImageFormat::Webp => webp::read(source, bytes),
         ImageFormat::Pfm => pfm::read(source, bytes),
+        ImageFormat::Tiff | ImageFormat::Tga | ImageFormat::Bmp | ImageFormat::Gif => stored(source, bytes)
+            .and_then(|raster| source.image(raster.layout.width, raster.layout.height, raster.to_pixels())),
     };
     source.with_offset(bytes, image)
 }
 
 /// Reads an image's samples without conversion.
 pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
-    let raster = match source.format {
+    let raster = stored(source, bytes);
+    source.with_offset(bytes, raster)
+}
+
+fn stored(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    match source.format {
         ImageFormat::Png => png::raster(source, bytes),
         ImageFormat::Jpeg => jpeg::raster(source, bytes),
         ImageFormat::Exr => exr::raster(source, bytes),
         ImageFormat::Webp => webp::raster(source, bytes),
         ImageFormat::Hdr => hdr::pixels(source, bytes).map(|(image, to_srgb)| source.float_raster(&image, to_srgb)),
         ImageFormat::Pfm => pfm::read(source, bytes).map(|image| source.float_raster(&image, None)),
-    };
-    source.with_offset(bytes, raster)
+        ImageFormat::Tiff => tiff::raster(source, bytes),
+        ImageFormat::Tga => tga::raster(source, bytes),
+        ImageFormat::Bmp => bmp::raster(source, bytes),
+        ImageFormat::Gif => gif::raster(source, bytes),
+    }
 }
 
 /// Reads the layout of [`raster`] from the header.
 pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
-    let layout = match source.format {
+    let layout = stored_layout(source, bytes);
+    source.with_offset(bytes, layout)
+}
+
+fn stored_layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
+    match source.format {
         ImageFormat::Png => png::layout(source, bytes),
         ImageFormat::Webp => webp::layout(source, bytes),
         ImageFormat::Exr => exr::layout(source, bytes),
         ImageFormat::Jpeg => jpeg::size(source, bytes).map(|size| source.layout(size, 3, 1)),
         ImageFormat::Hdr => hdr::layout(source, bytes),
         ImageFormat::Pfm => pfm::size(source, bytes).map(|size| source.layout(size, 3, 4)),
-    };
-    source.with_offset(bytes, layout)
+        ImageFormat::Tiff => tiff::layout(source, bytes),
+        ImageFormat::Tga => tga::layout(source, bytes),
+        ImageFormat::Bmp => bmp::layout(source, bytes),
+        ImageFormat::Gif => gif::layout(source, bytes),
+    }
 }
 
 /// Properties of an image file, read from its header.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageInfo {
-    /// Format, detected by the first bytes.
+    /// Format, detected by the first bytes (TGA by the file extension).
     pub format: ImageFormat,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Whether the file stores tone-mapped levels instead of linear, scene-referred values.
+    pub is_tone_mapped: bool,
     /// Metadata as pairs of key and text, in order; empty for formats without metadata.
     pub metadata: Vec<(String, String)>,
     /// Data and display windows of an EXR file.
@@ -330,7 +337,7 @@ pub struct ImageInfo {
 /// Reads image size and metadata without decoding pixels.
 pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<ImageInfo, ImageError> {
     let plain = |size| (size, Vec::new());
-    let mut windows = None;
+    let (mut windows, mut is_tone_mapped) = (None, source.format.is_tone_mapped());
     let inspected = match source.format {
         ImageFormat::Png => png::inspect(source, bytes),
         ImageFormat::Exr => exr::inspect(source, bytes).map(|(inspected, found)| {
@@ -341,9 +348,15 @@ pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<ImageI
         ImageFormat::Jpeg => jpeg::size(source, bytes).map(plain),
         ImageFormat::Webp => webp::size(source, bytes).map(plain),
         ImageFormat::Pfm => pfm::size(source, bytes).map(plain),
+        ImageFormat::Tiff | ImageFormat::Tga | ImageFormat::Bmp | ImageFormat::Gif => {
+            stored_layout(source, bytes).map(|RasterLayout { width, height, sample_bytes, .. }| {
+                is_tone_mapped = sample_bytes < 4;
+                plain((width, height))
+            })
+        }
     };
     let ((width, height), metadata) = source.with_offset(bytes, inspected)?;
-    Ok(ImageInfo { format: source.format, width, height, metadata, windows })
+    Ok(ImageInfo { format: source.format, width, height, is_tone_mapped, metadata, windows })
 }
 
 /// Metadata as pairs of key and text, in order.
@@ -358,7 +371,7 @@ fn srgb_levels() -> [f32; 256] {
 }
 
 /// Converts pixels from a file's primaries to sRGB's.
-fn convert_primaries(pixels: &mut [Rgb], to_srgb: Option<Matrix>) {
+pub(crate) fn convert_primaries(pixels: &mut [Rgb], to_srgb: Option<Matrix>) {
     if let Some(matrix) = to_srgb {
         pixels.iter_mut().for_each(|pixel| *pixel = matrix.color(*pixel));
     }

@@ -258,6 +258,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
     let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
     reader.next_frame(&mut bytes).map_err(|e| unreadable(source, e))?;
     let orientation = orientation(reader.info());
+    let is_first_of_several = reader.info().animation_control.is_some_and(|movie| movie.num_frames > 1);
     let (stored, channels) = (orientation.size((layout.width, layout.height)), usize::from(layout.channels));
     let samples = if layout.sample_bytes == 2 {
         let words = bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect();
@@ -265,7 +266,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
     } else {
         RasterSamples::Bytes(orientation.turn(bytes, stored, channels))
     };
-    Ok(Raster { layout, samples, transfer_function })
+    Ok(Raster { layout, samples, transfer_function, is_first_of_several })
 }
 
 /// Reads the layout of [`raster`] from the header.

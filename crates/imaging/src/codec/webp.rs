@@ -54,7 +54,7 @@ impl RowWriter for Writer {
 
 /// Reads a still image, lossless or lossy, as sRGB; alpha is ignored.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let (layout, mut bytes) = samples(source, bytes)?;
+    let (layout, mut bytes, _) = samples(source, bytes)?;
     if layout.channels == 4 {
         bytes = bytes.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect();
     }
@@ -63,11 +63,13 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
 
 /// Reads the samples of a still image.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
-    let (layout, bytes) = samples(source, bytes)?;
-    Ok(Raster { layout, samples: RasterSamples::Bytes(bytes), transfer_function: TransferFunction::Srgb })
+    let (layout, bytes, is_first_of_several) = samples(source, bytes)?;
+    let samples = RasterSamples::Bytes(bytes);
+    Ok(Raster { layout, samples, transfer_function: TransferFunction::Srgb, is_first_of_several })
 }
 
-fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(RasterLayout, Vec<u8>), ImageError> {
+/// Layout and samples of the image, and whether it is the first frame of a movie.
+fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(RasterLayout, Vec<u8>, bool), ImageError> {
     let mut decoder = decoder(source, bytes)?;
     let layout = layout_of(source, &decoder)?;
     let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
@@ -76,7 +78,7 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(RasterLayout, Ve
     let orientation = orientation(&mut decoder);
     let samples = orientation.turn(samples, (layout.width, layout.height), usize::from(layout.channels));
     let (width, height) = orientation.size((layout.width, layout.height));
-    Ok((RasterLayout { width, height, ..layout }, samples))
+    Ok((RasterLayout { width, height, ..layout }, samples, decoder.num_frames() > 1))
 }
 
 /// Creates a decoder after checking the file's length against its RIFF header.

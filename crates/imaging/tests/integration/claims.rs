@@ -53,6 +53,7 @@ fn claiming(format: ImageFormat, [width, height]: [u32; 2]) -> Vec<u8> {
             let rest = bytes.split_off(after(&bytes, b"19 18\n"));
             bytes = [format!("PF\n{width} {height}\n").as_bytes(), &rest].concat();
         }
+        _ => panic!("{format} files are not written"),
     }
     bytes
 }
@@ -62,7 +63,7 @@ fn sides(format: ImageFormat) -> [u32; 2] {
         ImageFormat::Jpeg => [65_535, 65_535],
         ImageFormat::Webp => [16_383, 16_383],
         ImageFormat::Exr => [16_777_240, 12],
-        ImageFormat::Png | ImageFormat::Hdr | ImageFormat::Pfm => [20_000, 20_000],
+        _ => [20_000, 20_000],
     }
 }
 

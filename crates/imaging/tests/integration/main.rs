@@ -17,4 +17,5 @@ mod formats;
 mod hostile;
 mod mp4;
 mod rasters;
+mod read_only;
 mod tones;

@@ -52,7 +52,8 @@ fn png_raster_keeps_alpha_16_bit_samples_and_transfer_function() {
     let layout =
         RasterLayout { format: ImageFormat::Png, width: 2, height: 1, channels: 4, sample_bytes: 1, to_srgb: None };
     let samples = RasterSamples::Bytes(vec![1, 2, 3, 4, 5, 6, 7, 8]);
-    assert_eq!(raster, Raster { layout, samples, transfer_function: TransferFunction::Srgb });
+    let transfer_function = TransferFunction::Srgb;
+    assert_eq!(raster, Raster { layout, samples, transfer_function, is_first_of_several: false });
     let raster = read(&png(ColorType::Grayscale, BitDepth::Sixteen, Some(1.0), &[1, 2, 255, 255])).unwrap();
     assert_eq!(
         (raster.samples, raster.transfer_function),

@@ -24,8 +24,9 @@ use std::sync::Arc;
 /// Environment map: an equirectangular image of infinitely distant surroundings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Environment {
-    /// Path of the image (OpenEXR, Radiance HDR, PNG, JPEG), relative to the scene file. The image
-    /// is equirectangular, twice as wide as high, with the first row up.
+    /// Path of the image (OpenEXR, Radiance HDR, TIFF, PNG, JPEG or another format of textures),
+    /// relative to the scene file. The image is equirectangular, twice as wide as high, with the
+    /// first row up.
     pub file: String,
     /// Factor on the radiance of the image.
     #[serde(default = "one")]

@@ -49,6 +49,8 @@ struct ImageFile {
     stamp: Option<(u64, SystemTime)>,
     /// Number of pixels that are infinite in the file.
     infinite: u64,
+    /// Whether the file holds more images than the one that is used.
+    is_first_of_several: bool,
 }
 
 impl ImageCache {
@@ -61,10 +63,9 @@ impl ImageCache {
         Self { entries: Arc::new(Mutex::new(kept)) }
     }
 
-    /// Number of infinite pixels of an image, if it is loaded.
-    fn infinite_pixels(&self, key: &ImageKey) -> u64 {
-        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        entries.get(key).map_or(0, |file| file.infinite)
+    /// Loaded image of this key.
+    fn loaded(&self, key: &ImageKey) -> Option<Arc<ImageFile>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
     /// Loads an image without holding the lock, as for meshes.
@@ -101,26 +102,29 @@ impl ImageFile {
         let bytes = match store.read_bytes(path, &Limits::default()) {
             Ok(bytes) => bytes,
             Err(error) => {
-                return Self { digest: [0; 32], pixels: Err(import_error_message(&error)), stamp, infinite: 0 };
+                return Self { stamp, ..Self::new([0; 32], Err(import_error_message(&error))) };
             }
         };
         let digest = blake3::hash(&bytes).into();
         let raster = decode_raster(&display_name(path), Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
         let infinite = raster.as_ref().map_or(0, infinite_pixels);
+        let is_first_of_several = raster.as_ref().is_ok_and(|raster| raster.is_first_of_several);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
             mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", display_name(path)))
         });
-        Self { digest, pixels, stamp, infinite }
+        Self { stamp, infinite, is_first_of_several, ..Self::new(digest, pixels) }
     }
-}
 
-impl ImageFile {
+    fn new(digest: [u8; 32], pixels: Result<Arc<MipMap>, String>) -> Self {
+        Self { digest, pixels, stamp: None, infinite: 0, is_first_of_several: false }
+    }
+
     /// Creates an image from pixels in linear light; the color space of textures has no effect.
     fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
         let pixels = MipMap::from_floats([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
         let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", display_name(path)));
-        Self { digest, pixels, stamp: None, infinite: 0 }
+        Self::new(digest, pixels)
     }
 }
 
@@ -140,13 +144,16 @@ pub(super) fn infinity_warning(file: &str, count: u64) -> Option<String> {
     Some(format!("`{file}`: {pixels} 65504, the largest 16-bit float"))
 }
 
-/// Warns of infinite pixels in the loaded images of the scene's textures.
-pub(super) fn warn_of_infinities(scene: &Description, files: &Files<'_>, findings: &mut Vec<Finding>) {
+/// Warns of infinite pixels in the loaded images of the scene's textures, and of images of which the
+/// file holds several.
+pub(super) fn warn_of_images(scene: &Description, files: &Files<'_>, findings: &mut Vec<Finding>) {
     for (name, texture) in &scene.textures {
         let AnyTexture::Image(image) = &**texture else { continue };
         let key = (files.asset_cache.store().canonical_name(&files.texture_file(name, image)), image.color_space);
-        let infinite = files.asset_cache.images().infinite_pixels(&key);
-        if let Some(message) = infinity_warning(&image.file, infinite) {
+        let Some(loaded) = files.asset_cache.images().loaded(&key) else { continue };
+        let several = format!("`{}` holds several pictures; the texture shows the first", image.file);
+        let several = loaded.is_first_of_several.then_some(several);
+        for message in infinity_warning(&image.file, loaded.infinite).into_iter().chain(several) {
             findings.push(Finding::warning(message).at(files.texture_path(name)));
         }
     }

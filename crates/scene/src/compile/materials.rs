@@ -37,7 +37,7 @@ impl Materials {
             let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
-        images::warn_of_infinities(scene, &files, findings);
+        images::warn_of_images(scene, &files, findings);
         for (name, material) in scene.materials.iter() {
             warn_of_ineffective_settings(material, &PathRef::Root.key("materials").key(name), findings);
         }

@@ -181,7 +181,10 @@ fn wrong_files_say_what_is_wrong_and_where() {
         (".", "cannot read `.`: this is a folder, not a file"),
         ("pipe.png", "cannot read `pipe.png`: this is a named pipe (FIFO), not a regular file"),
         ("/dev/zero", "cannot read `/dev/zero`: this is a device, not a regular file"),
-        ("text.png", "`text.png`: its first bytes match no supported format (.png .jpg .exr .hdr .webp .pfm)"),
+        (
+            "text.png",
+            "`text.png`: its first bytes match no supported format (.png .jpg .exr .hdr .webp .pfm .tif .tga .bmp .gif)",
+        ),
         ("empty.png", "`empty.png`: its first bytes match no supported format"),
         ("huge.hdr", "`huge.hdr`: 100000 × 100000 pixels are more than a Radiance HDR file of 119 bytes can hold"),
         ("long.pfm", "`long.pfm`: 70000 × 1 pixels; the limit is 65536 pixels per side"),

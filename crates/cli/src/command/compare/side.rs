@@ -53,11 +53,11 @@ impl ComparedPicture {
 
     fn from_picture(path: &Path) -> Result<Self, Failure> {
         let image = imaging::read(path)?;
-        let ImageInfo { format, metadata, .. } = imaging::inspect(path)?;
+        let ImageInfo { format, is_tone_mapped, metadata, .. } = imaging::inspect(path)?;
         let estimate = if format == ImageFormat::Exr { variances(path, &image, &metadata)? } else { None };
         let command = text(&metadata, "Command");
         let is_denoised = command.is_some_and(|command| command.contains(" --denoise"));
-        Ok(Self { image, estimate, is_tone_mapped: format.is_tone_mapped(), is_denoised, metadata })
+        Ok(Self { image, estimate, is_tone_mapped, is_denoised, metadata })
     }
 
     /// Metadata of this key.

@@ -231,7 +231,8 @@ mod tests {
         };
         let samples = RasterSamples::Bytes(vec![255, 188, 0, 51, 255, 255, 255, 0]);
         let transfer_function = juggler_imaging::TransferFunction::Srgb;
-        let [color, clear] = linear(&Raster { layout, samples, transfer_function })[..] else { panic!("two pixels") };
+        let raster = Raster { layout, samples, transfer_function, is_first_of_several: false };
+        let [color, clear] = linear(&raster)[..] else { panic!("two pixels") };
         let expected = Rgb::new(5.0, 5.0 * juggler_math::color::srgb_decode(188.0 / 255.0), 0.0);
         assert!((color - expected).max_channel().abs() < 1e-5, "{color:?}");
         assert_eq!(clear, Rgb::BLACK);
