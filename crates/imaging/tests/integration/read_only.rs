@@ -44,6 +44,43 @@ fn levels(channels: &[usize]) -> RasterSamples {
     RasterSamples::Bytes(places.flat_map(|(x, y)| channels.iter().map(move |k| color(x, y)[*k])).collect())
 }
 
+/// Name of a file without its extension.
+fn stem(name: &str) -> &str {
+    name.split('.').next().unwrap_or_default()
+}
+
+/// Samples of a picture.
+fn expected(name: &str) -> RasterSamples {
+    match stem(name).trim_end_matches("-runs") {
+        "gray" if name == "gray.bmp" => levels(&[2, 2, 2]),
+        "gray" => levels(&[2]),
+        "gray-alpha" => levels(&[2, 3]),
+        "rgba" if !name.ends_with("bmp") => levels(&[0, 1, 2, 3]),
+        "gray16" => {
+            let RasterSamples::Bytes(levels) = levels(&[2]) else { panic!("bytes") };
+            RasterSamples::Words(levels.into_iter().map(|level| 257 * u16::from(level)).collect())
+        }
+        "float" => {
+            let RasterSamples::Bytes(levels) = levels(&[2]) else { panic!("bytes") };
+            RasterSamples::Floats(levels.into_iter().map(|level| f32::from(level) / 64.0).collect())
+        }
+        "bit" => {
+            let channels = if name.ends_with("bmp") { 3 } else { 1 };
+            let level = |k: usize| if (k % WIDTH + k / WIDTH) % 2 == 1 { 255 } else { 0 };
+            RasterSamples::Bytes((0..WIDTH * HEIGHT).flat_map(|k| vec![level(k); channels]).collect())
+        }
+        "transparent" => {
+            let RasterSamples::Bytes(levels) = levels(&[0, 1, 2]) else { panic!("bytes") };
+            let pixels = levels.chunks(3).enumerate();
+            RasterSamples::Bytes(
+                pixels.flat_map(|(k, rgb)| [rgb[0], rgb[1], rgb[2], if k == 7 { 0 } else { 255 }]).collect(),
+            )
+        }
+        // Windows ignores the fourth byte of a pixel unless the header has a mask for alpha.
+        _ => levels(&[0, 1, 2]),
+    }
+}
+
 #[test]
 fn pictures_of_other_writers_have_their_pixels() {
     for (name, bytes) in files() {
@@ -51,35 +88,7 @@ fn pictures_of_other_writers_have_their_pixels() {
         assert_eq!((raster.layout.width, raster.layout.height), (WIDTH as u32, HEIGHT as u32), "{name}");
         let several = ["pages.tif", "movie.gif"].contains(&name.as_str());
         assert_eq!(raster.is_first_of_several, several, "{name}");
-        let stem = name.split('.').next().unwrap_or_default();
-        let expected = match stem.trim_end_matches("-runs") {
-            "gray" if name == "gray.bmp" => levels(&[2, 2, 2]),
-            "gray" => levels(&[2]),
-            "gray-alpha" => levels(&[2, 3]),
-            "rgba" if !name.ends_with("bmp") => levels(&[0, 1, 2, 3]),
-            "gray16" => {
-                let RasterSamples::Bytes(levels) = levels(&[2]) else { panic!("bytes") };
-                RasterSamples::Words(levels.into_iter().map(|level| 257 * u16::from(level)).collect())
-            }
-            "float" => {
-                let RasterSamples::Bytes(levels) = levels(&[2]) else { panic!("bytes") };
-                RasterSamples::Floats(levels.into_iter().map(|level| f32::from(level) / 64.0).collect())
-            }
-            "bit" => {
-                let channels = if name.ends_with("bmp") { 3 } else { 1 };
-                let level = |k: usize| if (k % WIDTH + k / WIDTH) % 2 == 1 { 255 } else { 0 };
-                RasterSamples::Bytes((0..WIDTH * HEIGHT).flat_map(|k| vec![level(k); channels]).collect())
-            }
-            "transparent" => {
-                let RasterSamples::Bytes(levels) = levels(&[0, 1, 2]) else { panic!("bytes") };
-                let pixels = levels.chunks(3).enumerate();
-                RasterSamples::Bytes(
-                    pixels.flat_map(|(k, rgb)| [rgb[0], rgb[1], rgb[2], if k == 7 { 0 } else { 255 }]).collect(),
-                )
-            }
-            // Windows ignores the fourth byte of a pixel unless the header has a mask for alpha.
-            _ => levels(&[0, 1, 2]),
-        };
+        let (stem, expected) = (stem(&name), expected(&name));
         assert_eq!(raster.samples, expected, "{name}");
         let is_float = stem == "float";
         let curve = if is_float { TransferFunction::Linear } else { TransferFunction::Srgb };
@@ -270,8 +279,8 @@ fn frames_of_a_gif_lie_on_their_canvas() {
     moved[start + 1] = 2;
     moved[start + 3] = 1;
     let raster = read("a", &moved).unwrap();
-    let RasterSamples::Bytes(levels) = raster.samples else { panic!("bytes") };
-    for (k, pixel) in levels.chunks(4).enumerate() {
+    let RasterSamples::Bytes(canvas) = raster.samples else { panic!("bytes") };
+    for (k, pixel) in canvas.chunks(4).enumerate() {
         let (x, y) = (k % 6, k / 6);
         let expected = if x >= 2 && y >= 1 {
             let [r, g, b, _] = color(x - 2, y - 1);
