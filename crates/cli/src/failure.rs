@@ -123,9 +123,10 @@ impl From<ImageError> for Failure {
         match error {
             ImageError::Read { file, source } => Self::file("read", file, &source),
             ImageError::Write { file, source } => Self::file("write", file, &source),
-            ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } | ImageError::Primaries { .. } => {
-                Self::Invalid(message)
-            }
+            ImageError::UnknownFormat { .. }
+            | ImageError::ReadOnly { .. }
+            | ImageError::Dimensions { .. }
+            | ImageError::Primaries { .. } => Self::Invalid(message),
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
         }

@@ -206,7 +206,8 @@ fn errors_suggest_a_remedy() {
     let folder = Folder::new();
     for (line, said) in [
         ("render ball.json -o a.webm", ".mp4"),
-        ("render ball.json -o a.tif", "movies .apng"),
+        ("render ball.json -o a.ppm", "movies .apng"),
+        ("render ball.json -o a.tif", "reads TIFF pictures but does not write them; use .png"),
         ("render ball.json --format avi", "movies apng"),
         ("render ball.json --size 65536x65536 -o a.png", "for '--size <WxH>': these are"),
         ("render ball.json --samples -4", "'-4'"),
