@@ -194,3 +194,19 @@ fn wrong_files_say_what_is_wrong_and_where() {
         assert!(text.contains(message), "{file}: {text}");
     }
 }
+
+#[test]
+fn a_file_of_several_pictures_gives_the_first_and_a_warning() {
+    // A GIF of one red pixel, and the same with a second frame.
+    let head = b"GIF89a\x01\x00\x01\x00\x80\x00\x00\xff\x00\x00\x00\xff\x00";
+    let frame = |pixel: u8| [&b",\x00\x00\x00\x00\x01\x00\x01\x00\x00\x02\x02"[..], &[pixel, 0x01, 0x00]].concat();
+    let folder = tempfile::tempdir().unwrap();
+    let warnings = |frames: &[u8]| {
+        let movie = [head.to_vec(), frames.iter().flat_map(|pixel| frame(*pixel)).collect(), b";".to_vec()].concat();
+        fs::write(folder.path().join("a.gif"), movie).unwrap();
+        let text = load(&folder, "a.gif", "").compile().unwrap().warnings.render(false);
+        text.matches("holds several pictures; the texture shows the first").count()
+    };
+    assert_eq!(warnings(&[0x44]), 0);
+    assert_eq!(warnings(&[0x44, 0x4c]), 1);
+}
