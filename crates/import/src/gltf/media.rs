@@ -1,5 +1,5 @@
 //! Pictures and light profiles of a file, which are read when it is opened. Exif data turns pictures,
-//! as in viewers that run in a browser; the specification does not mention it.
+//! as in viewers that run in a browser.
 
 use super::Files;
 use super::data::GltfData;

@@ -64,10 +64,10 @@ impl Notes {
             warnings.push(format!("{} vertices have numbers after x y z that are no colors: ignored", self.weights));
         }
         if self.glued_comments > 0 {
-            warnings.push(format!("{} comments follow a face vertex without a blank", self.glued_comments));
+            warnings.push(format!("comments that follow a face vertex without a blank: {}", self.glued_comments));
         }
         if self.nan_words > 0 {
-            warnings.push(format!("{} numbers of normals are no numbers: taken as missing", self.nan_words));
+            warnings.push(format!("numbers of normals that are no numbers and count as missing: {}", self.nan_words));
         }
         let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {

@@ -192,7 +192,7 @@ fn limits_are_kept_and_named() {
 fn comments_may_touch_the_last_face_vertex() {
     let Imported { mesh, warnings } = read(&format!("{SQUARE}f 1 2 3 # comment\nf 1 3 4#c 7 8\n"));
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
-    assert_eq!(warnings, ["1 comments follow a face vertex without a blank"]);
+    assert_eq!(warnings, ["comments that follow a face vertex without a blank: 1"]);
     assert_eq!(error(&format!("{SQUARE}f 1 2 #3\nf 1 3 x#c\n")).0, 6);
 }
 
@@ -203,7 +203,10 @@ fn normals_that_are_no_numbers_in_c_are_missing() {
     for word in ["-nan(ind)", "nan(snan)", "-1.#IND", "1.#QNAN0"] {
         let Imported { mesh, warnings } = with(word);
         assert_eq!(mesh.triangles, expected.mesh.triangles, "{word}");
-        assert!(warnings.contains(&"1 numbers of normals are no numbers: taken as missing".to_owned()), "{warnings:?}");
+        assert!(
+            warnings.contains(&"numbers of normals that are no numbers and count as missing: 1".to_owned()),
+            "{warnings:?}"
+        );
         assert_eq!(warnings.len(), expected.warnings.len() + 1, "{warnings:?}");
     }
     assert_eq!(error(&format!("{SQUARE}vn nano 0 0\n")), (5, "expected a number for x, found 'nano'".into()));

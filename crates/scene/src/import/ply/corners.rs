@@ -66,7 +66,7 @@ impl CornerVertices {
     pub fn replace(self, parts: &mut MeshParts, limits: &Limits) -> Result<(), ImportErrorKind> {
         let (keys, faces) = self.welded.finish(limits)?;
         if self.missing > 0 {
-            parts.warnings.push(format!("{} faces have no texture coordinates and get 0 0", self.missing));
+            parts.warnings.push(format!("faces without texture coordinates, which get 0 0: {}", self.missing));
         }
         parts.positions = gather(&keys, &parts.positions);
         parts.normals = gather(&keys, &parts.normals);

@@ -365,7 +365,7 @@ fn coordinates_of_corners_split_vertices() {
     // A face without coordinates.
     let Imported { mesh, warnings } = read(text.replace("6 0 0 .5 .5 0 1 0", "0 0"));
     assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (2, 5));
-    assert!(warnings.contains(&"1 faces have no texture coordinates and get 0 0".to_owned()), "{warnings:?}");
+    assert!(warnings.contains(&"faces without texture coordinates, which get 0 0: 1".to_owned()), "{warnings:?}");
     // Small pieces give the same mesh.
     let whole = super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap();
     assert_eq!(super::read(text.as_bytes(), &Limits::default(), 1).unwrap(), whole);

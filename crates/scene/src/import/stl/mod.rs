@@ -113,7 +113,7 @@ impl AllFacets {
             warnings.push(format!("{} facets with infinite or NaN coordinates ignored", self.dropped));
         }
         if self.without_normal > 0 {
-            warnings.push(format!("{} facets have no 'normal', which STL requires", self.without_normal));
+            warnings.push(format!("facets without 'normal', which STL requires: {}", self.without_normal));
         }
         let (keys, faces) = self.welded.finish(limits)?;
         let positions = keys.into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();

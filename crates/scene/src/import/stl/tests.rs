@@ -135,5 +135,5 @@ fn facets_without_a_normal_are_read() {
     let text = format!("solid\n{}{}endsolid\n", facet(LOWER).replace(" normal 0 0 0", ""), facet(UPPER));
     let Imported { mesh, warnings } = read(text.as_bytes());
     assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
-    assert_eq!(warnings, ["1 facets have no 'normal', which STL requires"]);
+    assert_eq!(warnings, ["facets without 'normal', which STL requires: 1"]);
 }
