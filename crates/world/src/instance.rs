@@ -77,7 +77,10 @@ impl Instance {
         let shared = previous.and_then(|previous| previous.sphere.as_ref());
         Self {
             is_identity: motion.is_identity(),
-            motion: previous.map_or(motion.clone(), |previous| motion.sharing(&previous.motion)),
+            motion: match previous {
+                Some(previous) => motion.sharing(&previous.motion),
+                None => motion,
+            },
             content,
             sphere: sphere.map(|sphere| sphere.sharing(shared)),
             material: material.unwrap_or(MaterialId::NONE),
