@@ -61,10 +61,11 @@ deep_rays() {
 }
 
 # Runs white furnaces over whole grids of every material's parameters, furnaces in rooms with every
-# emissive shape, and heaps of 1 to 40 specular spheres with and without specular paths.
+# emissive shape, heaps of 1 to 40 specular spheres with and without specular paths, and 200 stacks of
+# touching surfaces in all orders.
 deep_furnaces() {
   JUGGLER_FURNACES=all cargo test --release --locked -p juggler-bsdf --lib contract::white
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-render --test integration -- white_worlds:: white_kinds:: rooms:: caustics::
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-render --test integration -- touching:: white_worlds:: white_kinds:: rooms:: caustics::
 }
 
 # Tests `--max-memory` with the optimized program; the step `unit` tests the unoptimized one.
