@@ -36,6 +36,7 @@ mod sum;
 pub mod thin;
 pub mod thin_film;
 pub mod tilted;
+mod tilted_diffuse;
 pub mod whitted;
 
 #[cfg(test)]
@@ -66,6 +67,7 @@ juggler_math::closed_set! {
         highlight::PhongHighlight,
         whitted::Whitted,
         tilted::TiltedConductor,
+        tilted_diffuse::TiltedDiffuse,
     }
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
     fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample>;

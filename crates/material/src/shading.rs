@@ -100,6 +100,15 @@ impl Shading {
         self.bsdf.set_geometric_normal(self.frame.to_local(normal));
     }
 
+    /// Turns diffuse reflection about the normal of a map, where the frame's normal was bent towards
+    /// the viewer: see [`facing_normal`].
+    pub(super) fn tilt_diffuse(&mut self, view: &ShadingView) {
+        let mapped = if view.is_outside() { view.normal } else { -view.normal };
+        if mapped != self.frame.normal {
+            self.bsdf.tilt_diffuse(self.frame.to_local(mapped));
+        }
+    }
+
     /// Directional albedo for `wo`, a unit vector in world space.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         self.bsdf.albedo(self.frame.to_local(wo))

@@ -242,6 +242,9 @@ impl MaterialTable {
         material.add_lobes(&self.textures, view, &shading.frame, &mut shading.bsdf);
         if is_perturbed {
             shading.set_geometric_normal(surface.normal);
+            if material.interior().is_none() {
+                shading.tilt_diffuse(view);
+            }
         }
     }
 
@@ -253,6 +256,7 @@ impl MaterialTable {
         shading.light_scale = lobe.light_scale();
         if view.normal != view.surface.shading_normal {
             shading.set_geometric_normal(view.surface.normal);
+            shading.tilt_diffuse(view);
         }
     }
 

@@ -21,13 +21,15 @@
 //!
 //! Diffuse reflection keeps to n·l instead, as Cycles, three.js and Filament do: light in a lune is
 //! absorbed, so that a bump has the contrast of a surface with the shading normal. Its furnace is
-//! (1 + cos β) / 2, the part of the cosine lobe above both planes.
+//! (1 + cos β) / 2, the part of the cosine lobe above both planes. Where the shading normal of the
+//! other lobes is bent towards the viewer, n stays the normal of the map ([`Bsdf::tilt_diffuse`]).
 //!
 //! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3). Reflections
 //! at shading normals inside of a solid may therefore gather light in orbits of total reflection,
 //! which it never leaves and which no light entered. [`Bsdf::sample_exit`] ends them.
 
 use super::{Bsdf, Role, WeightedLobe};
+use crate::tilted_diffuse::{Diffuse, TiltedDiffuse};
 use crate::{BsdfSample, Lobe, Scatter};
 use juggler_math::{Frame, Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::PI;
@@ -95,7 +97,7 @@ impl Horizon {
 /// Whether a lobe is the diffuse reflection of an opaque surface.
 #[inline]
 fn is_diffuse_reflection(one: &WeightedLobe) -> bool {
-    one.role == Role::Upright && matches!(one.lobe, Lobe::Lambert(_) | Lobe::OrenNayar(_))
+    one.role == Role::Upright && matches!(one.lobe, Lobe::Lambert(_) | Lobe::OrenNayar(_) | Lobe::TiltedDiffuse(_))
 }
 
 impl Bsdf {
@@ -105,6 +107,19 @@ impl Bsdf {
     /// that of diffuse reflection, which is absorbed.
     pub fn set_geometric_normal(&mut self, normal: Vec3) {
         self.horizon = Horizon::new(if normal.z < 0.0 { -normal } else { normal });
+    }
+
+    /// Turns diffuse reflection about `normal`, a unit vector in the frame of the lobes: the normal of
+    /// a map, where the frame has another.
+    pub fn tilt_diffuse(&mut self, normal: Vec3) {
+        for one in &mut self.lobes {
+            let diffuse = match one.lobe {
+                Lobe::Lambert(lobe) if one.role == Role::Upright => Diffuse::Lambert(lobe),
+                Lobe::OrenNayar(lobe) if one.role == Role::Upright => Diffuse::OrenNayar(lobe),
+                _ => continue,
+            };
+            one.lobe = TiltedDiffuse::new(diffuse, normal).into();
+        }
     }
 
     /// [`Bsdf::eval_pdf`] with a horizon.
