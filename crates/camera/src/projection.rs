@@ -1,10 +1,15 @@
 //! Projection of a camera for one picture size.
 
 use super::pose::CameraAxes;
-use juggler_math::{Ray, UVec2, Vec2, Vec3, warp};
+use juggler_math::quaternion::slerp;
+use juggler_math::{DMat3, DQuat, Ray, UVec2, Vec2, Vec3, warp};
 
 /// Number of rays that [`Projection::rays`] generates together.
 pub const LANES: usize = 8;
+
+/// Difference of the components of two axes up to which they count as the same: rounding errors of
+/// single precision.
+const SAME_AXES: f64 = 1e-6;
 
 /// Camera for one picture size, with everything that ray generation needs.
 ///
@@ -65,10 +70,17 @@ impl Projection {
         Self { right: self.right * scale.x, down: self.down * scale.y, ..*self }
     }
 
-    /// Interpolates linearly to another projection. If the lenses are of different kinds, the
-    /// nearer one is used.
+    /// Interpolates to another projection: the rotation spherically, all else linearly. If the lenses
+    /// are of different kinds, the nearer one is used.
     pub(super) fn interpolated(&self, other: &Self, fraction: f32) -> Self {
-        let between = |from: Vec3, to: Vec3| juggler_math::motion::lerp(from, to, fraction);
+        let turns = self.turns_to(other, fraction);
+        let between = |from: Vec3, to: Vec3| {
+            let [from, to] = match turns {
+                Some([first, second]) => [(first * from.as_dvec3()).as_vec3(), (second * to.as_dvec3()).as_vec3()],
+                None => [from, to],
+            };
+            juggler_math::motion::lerp(from, to, fraction)
+        };
         let lens = match (self.lens, other.lens) {
             (Lens::Disk { right, up, focus }, Lens::Disk { right: to_right, up: to_up, focus: to_focus }) => {
                 Lens::Disk {
@@ -89,12 +101,28 @@ impl Projection {
             }
         };
         Self {
-            origin: between(self.origin, other.origin),
+            origin: juggler_math::motion::lerp(self.origin, other.origin, fraction),
             corner: between(self.corner, other.corner),
             right: between(self.right, other.right),
             down: between(self.down, other.down),
             lens,
         }
+    }
+
+    /// Rotations of this projection and of another one to the orientation between them; `None` if both
+    /// have the same orientation.
+    fn turns_to(&self, other: &Self, fraction: f32) -> Option<[DQuat; 2]> {
+        let axes = |projection: &Self| {
+            let [right, down] = [projection.right, projection.down].map(|axis| axis.as_dvec3().normalize_or_zero());
+            DMat3::from_cols(right, down, right.cross(down))
+        };
+        let [from, to] = [axes(self), axes(other)];
+        if from.abs_diff_eq(to, SAME_AXES) {
+            return None;
+        }
+        let [from, to] = [from, to].map(|axes| DQuat::from_mat3(&axes));
+        let middle = slerp(from, to, f64::from(fraction));
+        Some([middle * from.inverse(), middle * to.inverse()])
     }
 
     /// Eye of the camera, in world space.

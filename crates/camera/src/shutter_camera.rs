@@ -8,8 +8,8 @@ use juggler_math::{Ray, UVec2, Vec2};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShutterCamera {
     first: Projection,
-    /// Keys at equal intervals after the first, up to the end of the shutter interval, interpolated
-    /// linearly; empty for a static camera.
+    /// Keys at equal intervals after the first, up to the end of the shutter interval; empty for a
+    /// static camera.
     later_keys: Vec<Projection>,
 }
 
@@ -105,6 +105,30 @@ mod tests {
             assert!((ray.origin.x - x).abs() < 1e-6 && ray.time == time);
         }
         assert!(!ShutterCamera::from_keys(keys[0], vec![keys[0]; 3]).moves());
+    }
+
+    /// A rolling camera keeps its field of view between two keys.
+    #[test]
+    fn rotation_is_interpolated_as_rotation() {
+        let keys = [0.0, 120.0].map(|roll| {
+            ["orthographic", "perspective"].map(|kind| {
+                projection(&format!(
+                    r#"{{"{kind}": {{"eye": [1, 2, 5], "look_at": [1, 2, 0], "roll_degrees": {roll}}}}}"#
+                ))
+            })
+        });
+        for kind in 0..2 {
+            let camera = ShutterCamera::from_keys(keys[0][kind], vec![keys[1][kind]]);
+            for (time, degrees) in [(0.0, 0.0f32), (0.25, 30.0), (0.5, 60.0), (1.0, 120.0)] {
+                let Projection { right, down, corner, .. } = camera.projection_at(time);
+                let first = keys[0][kind];
+                assert!((right.length() / first.right.length() - 1.0).abs() < 1e-5, "{time}: {right}");
+                assert!((corner.length() / first.corner.length() - 1.0).abs() < 1e-5, "{time}: {corner}");
+                assert!(right.dot(down).abs() < 1e-6 * right.length());
+                let cosine = right.normalize().dot(first.right.normalize());
+                assert!((cosine - degrees.to_radians().cos()).abs() < 1e-5, "{time}: {cosine}");
+            }
+        }
     }
 
     /// A resampled film shows the same picture with other numbers of columns and rows.

@@ -14,6 +14,8 @@ pub(super) struct MaterialProperties {
     pub has_absence: bool,
     /// Whether light may pass straight through the front.
     pub passes_front: bool,
+    /// Whether light may pass through, straight or not.
+    pub transmits: bool,
     /// Whether shading varies over the surface.
     pub textured: bool,
     /// Whether shading needs the surface's tangents.
@@ -30,6 +32,7 @@ impl MaterialProperties {
         has_opacity: false,
         has_absence: false,
         passes_front: false,
+        transmits: false,
         textured: false,
         tangents: false,
         emission: None,

@@ -45,12 +45,14 @@ impl MaterialTable {
         let has_opacity = has_opacity || absent || nested_opacity;
         // A material that is absent from behind is as opaque on the front as the one inside it.
         let emits_partly = has_opacity && (nested_opacity || !absent);
+        let transmissive = matches!(&compiled, CompiledMaterial::Scattering(material) if material.is_transmissive());
         let tangents = compiled.needs_tangents() || any(|properties| properties.tangents);
         let properties = MaterialProperties {
             transparent: has_opacity || classic || any(|properties| properties.transparent),
             has_opacity,
             has_absence: absent || any(|properties| properties.has_absence),
             passes_front,
+            transmits: transmissive || classic || any(|properties| properties.transmits),
             // Tangents are computed from the point in object space, which untextured surfaces lack.
             textured: tangents || compiled.is_textured() || any(|properties| properties.textured),
             tangents,
@@ -330,6 +332,14 @@ impl MaterialTable {
     #[inline]
     pub fn passes_front(&self, id: MaterialId) -> bool {
         self.properties(id).passes_front
+    }
+
+    /// Whether light may pass through a surface of material `id` that bounds no solid, such as a pane
+    /// or a translucent sheet.
+    #[inline]
+    pub fn is_sheet(&self, id: MaterialId) -> bool {
+        let MaterialProperties { transmits, interior, .. } = self.properties(id);
+        transmits && interior.is_none()
     }
 
     /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.

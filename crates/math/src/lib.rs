@@ -32,7 +32,7 @@ pub mod testing;
 pub use aabb::Aabb;
 pub use color::Rgb;
 pub use frame::Frame;
-pub use glam::{DVec2, DVec3, Mat3, UVec2, Vec2, Vec3, vec2, vec3};
+pub use glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3, vec2, vec3};
 pub use image::Image;
 pub use motion::Motion;
 pub use range::MAX_LIGHT;

@@ -23,20 +23,35 @@ const HALF_BRANCH: u32 = 1 << 31;
 /// already filters textures.
 const CONE_WIDTH: f32 = 0.5;
 
+/// Middle of the shutter interval.
+const MIDDLE: f32 = 0.5;
+/// Number of steps of the shutter interval at whose ends the solids around the camera are compared.
+const INTERIOR_STEPS: u32 = 16;
+
 /// Initial state of camera paths.
 #[derive(Clone, Copy, Debug)]
 pub struct PathStart {
     history: PathHistory,
     cone: RayCone,
+    /// Whether the camera enters or leaves a solid while the shutter is open.
+    interiors_change: bool,
 }
 
-/// Initial state of paths: the solids that contain the camera at mid-shutter, and the ray cone.
+/// Initial state of paths: the solids that contain the camera, and the ray cone at mid-shutter.
 pub fn path_start(job: &Job) -> PathStart {
-    const MIDDLE: f32 = 0.5;
-    let camera = job.camera.projection_at(MIDDLE);
-    let [width, spread] = camera.pixel_footprint().map(|size| size * CONE_WIDTH);
-    let history = PathHistory { interiors: job.world.interiors_at(camera.eye(), MIDDLE), ..PathHistory::CAMERA };
-    PathStart { history, cone: RayCone { width, spread } }
+    let [width, spread] = job.camera.projection_at(MIDDLE).pixel_footprint().map(|size| size * CONE_WIDTH);
+    let history = history_at(job, MIDDLE);
+    let changes = |step: u32| history_at(job, step as f32 / INTERIOR_STEPS as f32).interiors != history.interiors;
+    let may_change = !job.world.interiors().is_empty() && (job.world.moves() || job.camera.moves());
+    let interiors_change = may_change && (0..=INTERIOR_STEPS).any(changes);
+    PathStart { history, cone: RayCone { width, spread }, interiors_change }
+}
+
+/// History of a path that starts at a time of the shutter interval: the solids that contain the
+/// camera.
+fn history_at(job: &Job, time: f32) -> PathHistory {
+    let eye = job.camera.projection_at(time).eye();
+    PathHistory { interiors: job.world.interiors_at(eye, time), ..PathHistory::CAMERA }
 }
 
 /// Pushes the camera rays of `slots`, indices into the samples of `work`, pixel by pixel with
@@ -77,9 +92,9 @@ fn push_center_rays(context: &PixelContext, work: &Work, range: Range<u64>, queu
         });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
-        context.job.camera.rays(&films, &lenses, &[0.5; LANES], count, &mut queue.rays);
+        context.job.camera.rays(&films, &lenses, &[MIDDLE; LANES], count, &mut queue.rays);
         let slot = (start - range.start) as u32;
-        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
+        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, MIDDLE, slot + i, 1.0);
         queue.paths.extend((0..).zip(&pixels).take(count).map(path));
     }
 }
@@ -145,12 +160,15 @@ impl<'j> Pixel<'j> {
         if self.needs_time { self.sampler(sample, TIME_DIMENSION).next_1d() } else { 0.0 }
     }
 
-    fn path(&self, sample: u32, slot: u32, weight: f32) -> PathState {
+    /// Path of a camera ray at a time.
+    fn path(&self, sample: u32, time: f32, slot: u32, weight: f32) -> PathState {
+        let PathStart { history, interiors_change, .. } = *self.start;
+        let history = if interiors_change { history_at(self.job, time) } else { history };
         PathState {
             beta: Rgb::splat(weight),
             depth: 0,
             sampler: self.sampler(sample, FILM_DIMENSIONS + LENS_DIMENSIONS),
-            history: self.start.history,
+            history,
             cone: self.start.cone,
             slot,
         }
@@ -187,8 +205,8 @@ impl<'j> Pixel<'j> {
         let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
         let times = std::array::from_fn(|i| self.time(first + i as u32));
         camera.rays(&films, &lenses, &times, points.len(), &mut queue.rays);
-        let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
-        queue.paths.extend((0..).zip(&weights).take(points.len()).map(path));
+        let path = |(i, (weight, time)): (u32, (&f32, &f32))| self.path(first + i, *time, slot + i, *weight);
+        queue.paths.extend((0..).zip(weights.iter().zip(&times)).take(points.len()).map(path));
     }
 }
 

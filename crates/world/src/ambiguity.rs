@@ -1,5 +1,5 @@
-//! Places where the order of objects decides what is seen, since nothing else does: opaque surfaces
-//! of unlike materials at one place, and overlapping solids of equal priority.
+//! Places where the order of objects decides what is seen, since nothing else does: surfaces of unlike
+//! materials at one place, and overlapping solids of equal priority.
 
 use super::{Cluster, Member, Vertex, World};
 use juggler_material::medium::InteriorId;
@@ -16,7 +16,7 @@ const MIN_DIFFERENCE: f32 = 1e-3;
 /// What the order of objects decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ambiguity {
-    /// Which of two opaque surfaces at one place is seen.
+    /// Which of two surfaces at one place is seen.
     Surfaces,
     /// Which of two overlapping solids fills the overlap.
     Solids,
@@ -72,15 +72,26 @@ impl World {
         }
     }
 
-    /// Compares the opaque surfaces at one place. Where solids stand on each other, their surfaces
-    /// face each other and nobody sees them, so only surfaces that face the same side count.
+    /// Compares the surfaces at one place that bound no transparent solid and are not absent. Where
+    /// opaque solids stand on each other, their surfaces face each other and nobody sees them, so only
+    /// surfaces that face the same side count.
     fn compare_surfaces(&self, members: &[Member], ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
-        let mut opaque = members.iter().filter(|member| !self.may_pass(&member.vertex));
-        let Some(first) = opaque.next() else { return };
-        let has_same_side = |other: &&Member| other.is_entered(ray) == first.is_entered(ray);
-        let look_unlike = |other: &&Member| self.look_unlike(&first.vertex, &other.vertex, -ray.direction);
-        for other in opaque.filter(has_same_side).filter(look_unlike) {
-            self.report(Ambiguity::Surfaces, &first.vertex, &other.vertex, found);
+        let wo = -ray.direction;
+        let is_seen = |member: &&Member| {
+            self.interior(&member.vertex).is_none()
+                && !self.is_absent(&member.vertex, wo)
+                && !self.is_cut_out(&member.vertex, wo, || 0.5)
+        };
+        let seen: Vec<&Member> = members.iter().filter(is_seen).collect();
+        let has_two_sides = |member: &Member| self.may_be_open(&member.vertex) || self.is_sheet(&member.vertex);
+        for (number, first) in seen.iter().enumerate() {
+            for other in seen.iter().skip(number + 1) {
+                let has_same_side =
+                    other.is_entered(ray) == first.is_entered(ray) || has_two_sides(first) || has_two_sides(other);
+                if has_same_side && self.look_unlike(&first.vertex, &other.vertex, wo) {
+                    self.report(Ambiguity::Surfaces, &first.vertex, &other.vertex, found);
+                }
+            }
         }
     }
 

@@ -32,11 +32,11 @@ impl Member {
 }
 
 /// Whether a ray starts at the place of a surface that it hits: on the surface's tangent plane, within
-/// rounding errors. Such a ray left another surface there, which hides this one if it may be absent.
-pub fn starts_at(ray: &Ray, vertex: &Vertex) -> bool {
+/// `error`, that of the surfaces at its place, and rounding. Such a ray left another surface there.
+pub fn starts_at(ray: &Ray, vertex: &Vertex, error: f32) -> bool {
     let surface = &vertex.surface;
     let rounding = f32::EPSILON * surface.point.abs().max_element();
-    surface.normal.dot(surface.point - ray.origin).abs() <= 4.0 * (surface.position_error + rounding)
+    surface.normal.dot(surface.point - ray.origin).abs() <= 16.0 * (error + rounding)
 }
 
 /// Distance along the ray, from the vertex that it hits at its `t_max`, up to which other surfaces are

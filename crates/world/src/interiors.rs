@@ -1,7 +1,7 @@
 //! Solids that contain a point: those whose surface encloses it in most of several directions.
 
 use super::{Cluster, Member, World};
-use juggler_material::medium::{InteriorId, Interiors};
+use juggler_material::medium::{InteriorId, Interiors, Wavelength};
 use juggler_math::{Ray, Vec3};
 
 /// Directions of the test rays, chosen off the axes and diagonals along which scenes are built.
@@ -50,6 +50,12 @@ impl World {
         // solids, the first counts.
         let most = candidates.rev().max_by_key(Vec::len).unwrap_or_default();
         most.into_iter().rev().fold(Interiors::NONE, Interiors::entered)
+    }
+
+    /// Index of refraction of the medium in these solids; at 587.56 nm without a wavelength.
+    #[inline]
+    pub fn ior_in(&self, solids: Interiors, wavelength: Option<Wavelength>) -> f32 {
+        solids.top(self.interiors()).map_or(1.0, |interior| interior.ior_at(wavelength))
     }
 
     /// Follows a ray until it leaves the world; `None` after too many surfaces.

@@ -49,7 +49,8 @@ mod tests;
 pub use ambiguity::Ambiguity;
 pub use casters::{CasterId, CausticCaster, VisibleCasters};
 pub use closest_after::HitKey;
-pub use cluster::{Cluster, Member, starts_at};
+use cluster::starts_at;
+pub use cluster::{Cluster, Member};
 pub use differential::SurfaceDifferential;
 pub use emitters::{EmitterId, EmitterSample, LightSampleContext};
 pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
@@ -127,6 +128,8 @@ pub struct World {
     has_opacity: bool,
     /// Whether any surface is absent for some rays: see [`MaterialTable::is_absent`].
     has_absence: bool,
+    /// Whether light passes through any surface that bounds no solid.
+    has_sheets: bool,
     has_media: bool,
     /// Whether the index of refraction of any material depends on the wavelength.
     has_dispersion: bool,
@@ -173,6 +176,7 @@ impl World {
         let has_transparency = used().any(|id| materials.is_transparent(id));
         let has_opacity = used().any(|id| materials.has_opacity(id));
         let has_absence = used().any(|id| materials.has_absence(id));
+        let has_sheets = used().any(|id| materials.is_sheet(id));
         let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
         let has_dispersion = materials.interiors().iter().any(|interior| interior.dispersion > 0.0);
         let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
@@ -197,6 +201,7 @@ impl World {
             has_transparency,
             has_opacity,
             has_absence,
+            has_sheets,
             has_media,
             has_dispersion,
             has_image_textures,

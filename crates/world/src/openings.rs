@@ -42,7 +42,34 @@ impl World {
             || self.may_be_open(vertex)
                 && (self.materials.passes_front(vertex.material)
                     || self.is_absent(vertex, -ray.direction)
-                    || starts_at(ray, vertex))
+                    || starts_at(ray, vertex, vertex.surface.position_error))
+    }
+
+    /// Whether light may pass through the surface, which bounds no solid: a pane or a translucent
+    /// sheet.
+    #[inline]
+    pub fn is_sheet(&self, vertex: &Vertex) -> bool {
+        self.has_sheets && self.materials.is_sheet(vertex.material)
+    }
+
+    /// Whether a ray that leaves a surface at the place of this one passes this one: surfaces that may
+    /// be absent, and sheets, exist for light that arrives at their place only. `error` is the largest
+    /// error of the surfaces at the place: see [`World::place_error`].
+    #[inline]
+    pub fn is_left(&self, ray: &Ray, vertex: &Vertex, error: f32) -> bool {
+        self.interior(vertex).is_none()
+            && (self.may_be_open(vertex) || self.is_sheet(vertex))
+            && starts_at(ray, vertex, error)
+    }
+
+    /// Largest error of the surfaces at one place, as far as rays start beyond all of them: where
+    /// sheets transmit light. Elsewhere the error of the first one.
+    pub fn place_error(&self, first: &Vertex, others: impl Iterator<Item = Vertex>) -> f32 {
+        let own = first.surface.position_error;
+        if !self.has_sheets {
+            return own;
+        }
+        others.fold(own, |error, other| error.max(other.surface.position_error))
     }
 
     /// Whether the material has an opacity below 1, or is absent for some rays.

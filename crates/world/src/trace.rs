@@ -1,6 +1,6 @@
 //! Ray queries: nearest hit, occlusion, and transmittance of shadow rays.
 
-use super::cluster::{Cluster, starts_at};
+use super::cluster::Cluster;
 use super::instance::{Instance, LeafItem};
 use super::large_mesh::RayCoherence;
 use super::{Content, Geometry, Vertex, World, WorldHit};
@@ -321,6 +321,9 @@ impl World {
         };
         if transmittance > 0.0 && !is_hidden {
             transmittance *= interfaces.iter().map(|(vertex, ..)| of_surface(vertex)).product::<f32>();
+            // Radiance over n² stays the same.
+            let [before, after] = [inside, behind].map(|solids| self.ior_in(solids, None));
+            transmittance *= (before / after) * (before / after);
         }
         (transmittance, behind)
     }
@@ -352,13 +355,13 @@ impl World {
             if self.may_be_open(&first) && !self.may_pass_along(&rest, &first) {
                 return Rgb::BLACK;
             }
-            // Skip a surface that the ray leaves, beside the one that it starts from.
-            let is_left = |vertex: &Vertex| self.may_be_open(vertex) && starts_at(&ray, vertex);
-            let mut place: ArrayVec<Vertex, MAX_PLACE> = ArrayVec::new();
-            place.extend((!is_left(&first)).then_some(first));
             let mut cluster = Cluster::new(self, &rest, &first).up_to(ray.t_max);
-            let others = cluster.by_ref().map(|member| member.vertex).filter(|vertex| !is_left(vertex));
-            place.extend(others.take(MAX_PLACE - 1));
+            let mut place: ArrayVec<Vertex, MAX_PLACE> = ArrayVec::new();
+            place.push(first);
+            place.extend(cluster.by_ref().map(|member| member.vertex).take(MAX_PLACE - 1));
+            // Skip a surface that the ray leaves, beside the one that it starts from.
+            let error = self.place_error(&first, place.iter().copied());
+            place.retain(|vertex| !self.is_left(&ray, vertex, error));
             transmittance *= filter(&place);
             if transmittance.is_black() {
                 return transmittance;

@@ -4,7 +4,7 @@
 
 use super::Classic;
 use crate::{PathHistory, PathState, VertexOutput};
-use juggler_math::Ray;
+use juggler_math::{Ray, Vec2};
 use juggler_world::{Cluster, Member, Vertex, World};
 
 impl Classic {
@@ -22,13 +22,10 @@ impl Classic {
         let (mut member, mut path) = (Member { vertex: *vertex, t: ray.t_max }, *path);
         loop {
             let here = &mut output.at(&path);
-            let is_straight = match surface(world, ray, member, &mut cluster) {
+            let is_straight = match surface(world, ray, &path, member, &mut cluster) {
                 Some((Member { vertex, t }, ior)) => {
-                    let mut phong = world.phong(&vertex);
-                    if let (Some(phong), Some(ior)) = (&mut phong, ior) {
-                        phong.to_mut().ior = ior;
-                    }
-                    !self.interact(world, &ray.with_t_max(t), &path, &vertex, phong, here)
+                    let phong = world.phong(&vertex);
+                    !self.interact(world, &ray.with_t_max(t), &path, &vertex, phong, ior, here)
                 }
                 None => true,
             };
@@ -47,34 +44,45 @@ impl Classic {
 }
 
 /// Surface of all those at the place of `member` that the ray interacts with, and the index of
-/// refraction relative to the other side if two solids touch; `None` if the ray goes straight on,
-/// from one solid into another of the same index.
-fn surface(world: &World, ray: &Ray, member: Member, cluster: &mut Cluster) -> Option<(Member, Option<f32>)> {
+/// refraction of the medium outside of it; `None` if the ray goes straight on, from one solid into
+/// another of the same index.
+fn surface(world: &World, ray: &Ray, path: &PathState, member: Member, cluster: &mut Cluster) -> Option<(Member, f32)> {
     if !is_transparent(world, &member.vertex) {
-        return Some((member, None));
+        return Some((member, 1.0));
     }
     let mut touching = None;
     for other in cluster {
         if !is_transparent(world, &other.vertex) {
-            if world.is_cut_out(&other.vertex, -ray.direction, || 0.0) {
+            // The choice by which the surface itself decides.
+            if world.is_open(&other.vertex, -ray.direction, true, || opacity_choice(path)) {
                 continue;
             }
-            return Some((grown(other, &member), None));
+            return Some((grown(other, &member), 1.0));
         }
         if other.is_entered(ray) != member.is_entered(ray) {
             touching = touching.or(Some(other));
         }
     }
-    let Some(other) = touching else { return Some((member, None)) };
+    let Some(other) = touching else { return Some((member, 1.0)) };
     let (entered, left) = if member.is_entered(ray) { (member, other) } else { (other, member) };
-    let ior = |vertex: &Vertex| world.phong(vertex).map_or(1.0, |phong| phong.ior);
-    let (inside, outside) = (ior(&entered.vertex), ior(&left.vertex));
-    (inside != outside).then(|| (grown(entered, &left), Some(inside / outside)))
+    let [inside, outside] = [&entered, &left].map(|member| ior(world, &member.vertex));
+    (inside != outside).then(|| (grown(entered, &left), outside))
+}
+
+/// Numbers in [0, 1) that select among mixed materials and decide whether opacity lets a ray pass.
+pub(super) fn opacity_choice(path: &PathState) -> Vec2 {
+    path.sampler.skipped(0).next_2d()
 }
 
 /// Whether the ray may be refracted into the solid behind the surface.
 fn is_transparent(world: &World, vertex: &Vertex) -> bool {
-    world.phong(vertex).is_some_and(|phong| !phong.transparency.is_black())
+    world.interior(vertex).is_some() || world.phong(vertex).is_some_and(|phong| !phong.transparency.is_black())
+}
+
+/// Index of refraction of the solid behind the surface.
+fn ior(world: &World, vertex: &Vertex) -> f32 {
+    let interior = || world.interior(vertex).and_then(|id| world.interior_at(id)).map_or(1.0, |interior| interior.ior);
+    world.phong(vertex).map_or_else(interior, |phong| phong.ior)
 }
 
 /// The surface with an error that reaches beyond another one at its place.

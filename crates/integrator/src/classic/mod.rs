@@ -67,10 +67,14 @@ struct ShadingPoint<'a> {
 impl Integrator for Classic {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
         let phong = world.phong(vertex);
-        if world.has_transparency() && phong.as_deref().is_none_or(|phong| !phong.transparency.is_black()) {
+        let may_pass = match phong.as_deref() {
+            Some(phong) => !phong.transparency.is_black(),
+            None => world.has_transparency() || world.interior(vertex).is_some(),
+        };
+        if may_pass {
             return self.cross_surfaces(world, ray, path, vertex, output);
         }
-        self.interact(world, ray, path, vertex, phong, output);
+        self.interact(world, ray, path, vertex, phong, 1.0, output);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
@@ -92,7 +96,7 @@ impl<'a> ShadingPoint<'a> {
 
 impl Classic {
     /// Shades a vertex, by its classic material if it has one, and traces shadow rays and secondary
-    /// rays. Returns `false` if opacity lets the ray pass.
+    /// rays. `outside_ior` is the index of refraction of a solid that touches the surface. Returns `false` if opacity lets the ray pass.
     #[inline(always)]
     fn interact(
         &self,
@@ -101,9 +105,13 @@ impl Classic {
         path: &PathState,
         vertex: &Vertex,
         phong: Option<Cow<PhongParameters>>,
+        outside_ior: f32,
         output: &mut VertexOutput,
     ) -> bool {
-        let Some(phong) = phong else { return self.physical(world, ray, path, vertex, output) };
+        let Some(mut phong) = phong else { return self.physical(world, ray, path, vertex, outside_ior, output) };
+        if outside_ior != 1.0 {
+            phong.to_mut().ior /= outside_ior;
+        }
         let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, vertex) };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
         let point = ShadingPoint::new(ray, surfaces, &phong);

@@ -2,6 +2,7 @@
 //! traced, and one ray samples all glossy lobes. Their diffuse interreflection is limited to the
 //! ambient light.
 
+use super::crossing::opacity_choice;
 use super::{Classic, sample_weight};
 use crate::{PathHistory, PathState, VertexOutput};
 use juggler_bsdf::{BsdfSample, Scatter};
@@ -23,7 +24,8 @@ struct ShadingPoint<'a> {
 }
 
 impl Classic {
-    /// Shades a vertex whose material is not the classic one. Returns `false` if opacity lets the ray
+    /// Shades a vertex whose material is not the classic one, with this index of refraction outside of
+    /// it. Returns `false` if opacity lets the ray
     /// pass.
     #[inline(always)]
     pub(super) fn physical(
@@ -32,12 +34,13 @@ impl Classic {
         ray: &Ray,
         path: &PathState,
         vertex: &Vertex,
+        outside_ior: f32,
         output: &mut VertexOutput,
     ) -> bool {
         let mut sampler = path.sampler.skipped(1);
-        let choices = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.skipped(0).next_2d() };
+        let choices = if world.is_simple(vertex) { Vec2::ZERO } else { opacity_choice(path) };
         let mut shading = Shading::black();
-        world.shade_into(vertex, -ray.direction, 1.0, choices.x, &mut shading);
+        world.shade_into(vertex, -ray.direction, outside_ior, choices.x, &mut shading);
         let room = path.depth < self.max_depth;
         if shading.opacity < 1.0 && choices.y >= shading.opacity {
             return false;

@@ -2,7 +2,8 @@
 //! Budge 2002), opacity, and surfaces that touch.
 //!
 //! Surfaces that a path passes straight through keep its ray, so that no surface at the same place
-//! is lost. Of the others, an opaque surface ends the passage. Interfaces of solids at one place act
+//! is lost. Of the others, an opaque surface ends the passage. A path meets a sheet that transmits
+//! light, such as a pane, before the solids at its place. Interfaces of solids at one place act
 //! as one interface, between the medium before all of them and the medium behind all of them. The
 //! order in which surfaces are listed therefore does not matter.
 
@@ -11,7 +12,7 @@ use super::{Dimension, Path};
 use arrayvec::ArrayVec;
 use juggler_material::medium::{Interior, InteriorId, Interiors};
 use juggler_math::Ray;
-use juggler_world::{Cluster, MAX_PASS_THROUGHS, Member, Vertex, World, starts_at};
+use juggler_world::{Cluster, MAX_PASS_THROUGHS, Member, Vertex, World};
 
 /// Maximum number of interfaces at one place.
 const MAX_INTERFACES: usize = 8;
@@ -23,6 +24,9 @@ pub struct Interface {
     pub interior: Option<InteriorId>,
     /// Whether the surface is known to exist for the path, so that opacity no longer decides.
     pub is_present: bool,
+    /// Whether the surface is a sheet with others at its place. Light passes the sheet first, so rays
+    /// that it transmits start before the others.
+    pub has_others_behind: bool,
     /// Medium on the other side and solids behind, if other interfaces are at the same place.
     net: Option<NetInterface>,
 }
@@ -49,7 +53,7 @@ enum Passage {
 
 impl Interface {
     /// Surface that transmits no light.
-    pub const OPAQUE: Self = Self { interior: None, is_present: false, net: None };
+    pub const OPAQUE: Self = Self { interior: None, is_present: false, has_others_behind: false, net: None };
 
     /// Interface at a vertex that is known to be the only surface at its place; `None` if other
     /// surfaces or opacity may matter, or if a solid hides the interface.
@@ -99,6 +103,13 @@ fn crossed(inside: Interiors, interior: Option<InteriorId>, inwards: bool) -> In
     interior.map_or(inside, |id| inside.crossed(id, inwards))
 }
 
+/// Radiance before surfaces that a path passes straight through over the radiance behind them: a hole
+/// in glass and fog within glass do not refract, but radiance over n² stays the same.
+fn radiance_ratio(world: &World, before: &PathState, behind: &PathState) -> f32 {
+    let [a, b] = [before, behind].map(|path| world.ior_in(path.history.interiors, path.history.wavelength));
+    (a / b) * (a / b)
+}
+
 /// State of a path that passes straight through a surface, into the solids `interiors`; `None` after
 /// too many surfaces. Shadow rays through specular spheres pass only surfaces that are absent for
 /// them, so only those keep the state of the path through a sphere.
@@ -138,15 +149,16 @@ impl Path {
         let mut cluster = Cluster::new(world, ray, vertex);
         let mut member = Member { vertex: *vertex, t: ray.t_max };
         let mut path = PathState { beta: output.beta(), ..*path };
+        let error = world.place_error(vertex, cluster.clone().map(|member| member.vertex));
         loop {
             let ray = ray.with_t_max(member.t);
             let mut here = output.at(&path);
             // Skip a surface that the ray leaves, beside the one that it starts from.
-            let is_sheet = world.interior(&member.vertex).is_none() && world.may_be_open(&member.vertex);
-            let passage = if is_sheet && starts_at(&ray, &member.vertex) {
+            let passage = if world.is_left(&ray, &member.vertex, error) {
                 Passage::Straight(path.history.interiors)
             } else {
-                self.interface(world, &ray, &path, member, &mut cluster)
+                let is_left = |vertex: &Vertex| world.is_left(&ray, vertex, error);
+                self.interface(world, &ray, &path, member, &mut cluster, is_left)
             };
             let (vertex, interiors, history) = match passage {
                 Passage::Straight(interiors) => (member.vertex, Some(interiors), path.history),
@@ -160,7 +172,7 @@ impl Path {
             };
             let state = PathState { beta: here.beta(), history, ..path };
             match passed(world, &ray, &state, &vertex, interiors) {
-                Some(next) => path = next,
+                Some(next) => path = PathState { beta: next.beta * radiance_ratio(world, &path, &next), ..next },
                 None => return,
             }
             match cluster.next() {
@@ -171,13 +183,25 @@ impl Path {
     }
 
     /// Determines the surface of all those at the place of `member` that the path interacts with.
+    /// `is_left` holds for a surface at the place that the ray leaves.
     #[inline]
-    fn interface(&self, world: &World, ray: &Ray, path: &PathState, member: Member, cluster: &mut Cluster) -> Passage {
+    fn interface(
+        &self,
+        world: &World,
+        ray: &Ray,
+        path: &PathState,
+        member: Member,
+        cluster: &mut Cluster,
+        is_left: impl Fn(&Vertex) -> bool,
+    ) -> Passage {
         if world.interior(&member.vertex).is_none() {
             // Rays that leave an opaque surface inside a medium start before the interfaces at its
             // place.
-            let touching = (!path.history.interiors.is_empty()).then(|| cluster.clone());
-            return Passage::Surface(grown(member, touching.into_iter().flatten()), Interface::OPAQUE);
+            let is_sheet = world.is_sheet(&member.vertex);
+            let touching = (is_sheet || !path.history.interiors.is_empty()).then(|| cluster.clone());
+            let mut others = touching.into_iter().flatten().peekable();
+            let has_others_behind = is_sheet && others.peek().is_some();
+            return Passage::Surface(grown(member, others), Interface { has_others_behind, ..Interface::OPAQUE });
         }
         let mut sampler = path.sampler;
         let mut is_open = |vertex: &Vertex| {
@@ -196,9 +220,11 @@ impl Path {
             if let Some(id) = interior {
                 behind = behind.crossed(id, other.is_entered(ray));
                 _ = interfaces.try_push((other, id, is_open));
-            } else if !is_open {
+            } else if !is_open && !is_left(&other.vertex) {
                 let others = interfaces.into_iter().map(|(member, ..)| member).chain(cluster);
-                return Passage::Surface(grown(other, others), Interface { is_present: true, ..Interface::OPAQUE });
+                let has_others_behind = world.is_sheet(&other.vertex);
+                let interface = Interface { is_present: true, has_others_behind, ..Interface::OPAQUE };
+                return Passage::Surface(grown(other, others), interface);
             }
             next = cluster.next();
         }
@@ -220,7 +246,7 @@ impl Path {
 fn lone_interface(world: &World, path: &PathState, vertex: &Vertex, inwards: bool) -> Option<Interface> {
     let interior = world.interior(vertex);
     let is_hidden = |id| path.history.interiors.hides_interface(id, inwards, world.interiors());
-    (!interior.is_some_and(is_hidden)).then_some(Interface { interior, is_present: true, net: None })
+    (!interior.is_some_and(is_hidden)).then_some(Interface { interior, is_present: true, ..Interface::OPAQUE })
 }
 
 /// Interface between the medium before several interfaces and the medium behind them: that of the
@@ -245,7 +271,7 @@ fn net_interface(world: &World, ray: &Ray, path: &PathState, interfaces: &Interf
     let net = Some(NetInterface { exterior, behind });
     Passage::Surface(
         grown(*chosen, interfaces.iter().map(|(member, ..)| *member)),
-        Interface { interior, is_present: true, net },
+        Interface { interior, is_present: true, net, ..Interface::OPAQUE },
     )
 }
 

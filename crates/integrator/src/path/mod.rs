@@ -258,7 +258,8 @@ impl Integrator for Path {
             return;
         }
         // Follow the path through all surfaces at this place, if there may be several.
-        let interface = if !world.may_pass_along(ray, vertex) && path.history.interiors.is_empty() {
+        let is_opaque = !world.may_pass_along(ray, vertex) && !world.is_sheet(vertex);
+        let interface = if is_opaque && path.history.interiors.is_empty() {
             Interface::OPAQUE
         } else if let Some(interface) = Interface::alone(world, ray, path, vertex) {
             interface

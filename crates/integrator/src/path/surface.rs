@@ -187,9 +187,20 @@ impl<'a> ShadingPoint<'a> {
             return;
         }
         let ray = self.scattering.spawn_ray_to(light.wi, light.distance, self.time);
+        let ray = self.before_others(ray, self.scattering, wi);
         let inside = self.interiors_towards(path, wi);
         let radiance = light.radiance * scattered * self.light_sample_weight(sampling, light, light.pdf, pdf);
         output.add_shadow_ray_inside(ray, radiance, world.light_group(light.emitter), inside);
+    }
+
+    /// A ray that leaves the surface `from` in the direction `wi`, in the shading frame: it starts before
+    /// other surfaces at the place of a sheet that transmits it.
+    #[inline]
+    fn before_others(&self, ray: Ray, from: &Surface, wi: Vec3) -> Ray {
+        if !self.interface.has_others_behind || wi.z * self.local.z >= 0.0 {
+            return ray;
+        }
+        Ray { origin: from.spawn_ray(-ray.direction, self.time).origin, ..ray }
     }
 
     /// Solids that contain a ray that continues in the direction `wi`, in the shading frame.
@@ -335,7 +346,8 @@ impl Path {
             return;
         }
         if let Some(probability) = self.roulette_survival(path, throughput) {
-            output.continue_path(from.spawn_ray(wi, point.time), sample.weight * (1.0 / probability), history, 1);
+            let ray = point.before_others(from.spawn_ray(wi, point.time), from, sample.wi);
+            output.continue_path(ray, sample.weight * (1.0 / probability), history, 1);
         }
     }
 }

@@ -22,6 +22,7 @@ mod strategies;
 mod terminator;
 mod threads;
 mod touching;
+mod touching_sheets;
 mod views;
 mod white_kinds;
 mod white_worlds;

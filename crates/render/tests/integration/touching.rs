@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// An object of a test scene.
 #[derive(Clone, Debug)]
-struct Item {
+pub struct Item {
     shape: String,
     motion: Motion,
     material: String,
@@ -18,21 +18,21 @@ struct Item {
 }
 
 impl Item {
-    fn new(shape: impl Into<String>, material: impl Into<String>) -> Self {
+    pub fn new(shape: impl Into<String>, material: impl Into<String>) -> Self {
         let (shape, material) = (shape.into(), material.into());
         Self { shape, motion: Transform::IDENTITY.into(), material, is_instance: false }
     }
 
-    fn cuboid(min: [f64; 3], max: [f64; 3], material: impl Into<String>) -> Self {
+    pub fn cuboid(min: [f64; 3], max: [f64; 3], material: impl Into<String>) -> Self {
         Self::new(format!(r#"{{"cuboid": {{"min": {min:?}, "max": {max:?}}}}}"#), material)
     }
 
-    fn moved(self, motion: impl Into<Motion>) -> Self {
+    pub fn moved(self, motion: impl Into<Motion>) -> Self {
         Self { motion: motion.into(), ..self }
     }
 
     /// The same surface in another representation: 0 as it is, 1 as a mesh, 2 in an instance.
-    fn represented(self, kind: usize) -> Self {
+    pub fn represented(self, kind: usize) -> Self {
         match kind {
             1 => Self { shape: mesh_of(&self.shape), ..self },
             2 => Self { is_instance: true, ..self },
@@ -85,7 +85,7 @@ fn mesh_of(shape: &str) -> String {
 }
 
 /// All orders of a list.
-fn orders<T: Clone>(items: &[T]) -> Vec<Vec<T>> {
+pub fn orders<T: Clone>(items: &[T]) -> Vec<Vec<T>> {
     let [first, rest @ ..] = items else { return vec![Vec::new()] };
     let mut all = Vec::new();
     for order in orders(rest) {
@@ -98,30 +98,30 @@ fn orders<T: Clone>(items: &[T]) -> Vec<Vec<T>> {
     all
 }
 
-fn scene(items: &[Item]) -> Scene {
+pub fn scene(items: &[Item]) -> Scene {
     let mut scene = Scene::new();
     items.iter().for_each(|item| item.add_to(&mut scene));
     scene
 }
 
-fn glass(ior: f64) -> String {
+pub fn glass(ior: f64) -> String {
     format!(r#"{{"dielectric": {{"ior": {ior}}}}}"#)
 }
 
 /// Fog that lets a fraction of light through a distance of 1.
-fn fog(fraction: f64) -> String {
+pub fn fog(fraction: f64) -> String {
     format!(r#"{{"boundary": {{"medium": {{"color": {fraction}, "distance": 1}}}}}}"#)
 }
 
 const EMITTER: &str = r#"{"emissive": {"radiance": 1}}"#;
 const CUT_OUT: &str = r#"{"mask": {"opacity": 0, "material": {"diffuse": {}}}}"#;
 
-fn floor(size: f64) -> String {
+pub fn floor(size: f64) -> String {
     format!(r#"{{"rectangle": {{"size": [{size}, {size}]}}}}"#)
 }
 
 /// Turns, shifts and motions of whole scenes, by number; a few of them unless all cases are run.
-fn placements() -> Vec<(usize, Motion)> {
+pub fn placements() -> Vec<(usize, Motion)> {
     let all = all_placements().into_iter().enumerate();
     all.filter(|(number, _)| is_deep() || [0, 7, 17, 18].contains(number)).collect()
 }
@@ -137,7 +137,7 @@ fn all_placements() -> Vec<Motion> {
 }
 
 /// Radiance along rays around the origin of `placement`, from the direction `from` before it.
-fn seen(items: &[Item], placement: &Motion, from: Vec3, background: f32, integrator: &AnyIntegrator) -> Estimate {
+pub fn seen(items: &[Item], placement: &Motion, from: Vec3, background: f32, integrator: &AnyIntegrator) -> Estimate {
     let middle = placement.at(0.5);
     let moved: Vec<Item> = items.iter().map(|item| item.clone().moved(item.motion.then(placement))).collect();
     let camera = looking(middle.point(from), middle.point(Vec3::ZERO));
@@ -145,7 +145,7 @@ fn seen(items: &[Item], placement: &Motion, from: Vec3, background: f32, integra
 }
 
 #[track_caller]
-fn is_near(what: &str, seen: Estimate, expected: f64, tolerance: f64) {
+pub fn is_near(what: &str, seen: Estimate, expected: f64, tolerance: f64) {
     assert!((seen.mean - expected).abs() <= tolerance, "{what}: {seen:?} instead of {expected}");
 }
 

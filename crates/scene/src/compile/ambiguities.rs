@@ -8,7 +8,7 @@ use juggler_world::{Ambiguity, World};
 const MAX_WARNINGS: usize = 5;
 
 impl Assembly {
-    /// Builds the world and returns warnings about opaque surfaces of unlike materials at one place,
+    /// Builds the world and returns warnings about surfaces of unlike materials at one place,
     /// and about overlapping solids of equal priority.
     pub fn ambiguity_warnings(self) -> Vec<Finding> {
         let Self { objects, materials, lights, background, labels, names, .. } = self;
@@ -29,9 +29,8 @@ impl Assembly {
 }
 
 fn surfaces(first: &str, second: &str) -> Finding {
-    let message = format!(
-        "`{first}` and `{second}` have opaque surfaces at one place: which of them is seen depends on their order"
-    );
+    let message =
+        format!("`{first}` and `{second}` have surfaces at one place: which of them is seen depends on their order");
     Finding::warning(message).help("move one of them, or leave out the surface that is hidden")
 }
 

@@ -115,6 +115,14 @@ fn only_objects_that_share_a_visible_surface_or_an_overlap_are_ambiguous() {
     assert!(ambiguous(&[([0.0, 1.0], white), ([1.5, 2.0], red)]).is_empty());
     assert_eq!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], red)]), [(Ambiguity::Surfaces, 0, 1)]);
     assert!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], white)]).is_empty());
+    // A surface that is partly open or transmits light, on another one.
+    let half = r#"{"mask": {"opacity": 0.5, "material": {"diffuse": {"reflectance": [1, 0, 0]}}}}"#;
+    let pane = r#"{"dielectric": {"thin": true, "reflection_tint": [0.5, 0, 0]}}"#;
+    let open = r#"{"mask": {"opacity": 0, "material": {"diffuse": {"reflectance": [1, 0, 0]}}}}"#;
+    for material in [half, pane] {
+        assert_eq!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], material)]), [(Ambiguity::Surfaces, 0, 1)]);
+    }
+    assert!(ambiguous(&[([0.0, 1.0], white), ([0.5, 2.0], open)]).is_empty());
     // Solids that touch, are alike or differ in priority are none.
     assert!(ambiguous(&[([0.0, 1.0], &low), ([1.0, 2.0], &low)]).is_empty());
     assert!(ambiguous(&[([0.0, 1.0], &low), ([0.5, 2.0], &high)]).is_empty());
