@@ -26,6 +26,36 @@ pub fn first_bytes(path: &Path, count: u64) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
+/// Error of [`read`].
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be opened or read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The file exceeds the limit.
+    #[error("at least {found} bytes, the limit is {limit}")]
+    TooLarge {
+        /// Number of bytes known when reading stopped.
+        found: u64,
+        /// Maximum number of bytes.
+        limit: u64,
+    },
+}
+
+/// Reads a regular file of at most `limit` bytes. The size is checked before memory is allocated.
+pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
+    let check = |found: u64| if found > limit { Err(ReadError::TooLarge { found, limit }) } else { Ok(()) };
+    let file = open(path)?;
+    let size = file.metadata()?.len();
+    check(size)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(io::Error::other)?;
+    // The file may have grown: one byte beyond the limit suffices to detect that.
+    file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    check(bytes.len() as u64)?;
+    Ok(bytes)
+}
+
 /// Whether an error of [`open`] means that the path exists but is not a regular file.
 pub fn is_not_regular(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported)

@@ -15,6 +15,20 @@ fn regular_files_are_opened_through_links() {
 }
 
 #[test]
+fn files_beyond_the_limit_are_rejected() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a");
+    fs::write(&file, "hello").unwrap();
+    assert_eq!(read(&file, 5).unwrap(), b"hello");
+    let error = read(&file, 4).unwrap_err();
+    assert!(matches!(error, ReadError::TooLarge { found: 5, limit: 4 }));
+    assert_eq!(error.to_string(), "at least 5 bytes, the limit is 4");
+    // The length of a file of the system is 0 before it is read.
+    assert!(matches!(read(Path::new("/proc/self/status"), 9), Err(ReadError::TooLarge { found: 10, limit: 9 })));
+    assert!(matches!(read(folder.path(), 9), Err(ReadError::Io(_))));
+}
+
+#[test]
 fn pipes_and_folders_are_rejected_without_blocking() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);

@@ -1,9 +1,8 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::compile::AssetCache;
-use crate::import::Limits;
 use crate::model::{ModelCache, ModelFormat};
-use crate::store::{Bundle, Store};
+use crate::store::{Bundle, MAX_FILE_BYTES, Store};
 use crate::{Scene, SceneError};
 use std::path::Path;
 
@@ -57,7 +56,7 @@ impl Loader {
     /// head alone; 0 for other files.
     pub fn solids(self, path: &Path) -> u64 {
         let (store, models) = (Store::default(), ModelCache::new(self.formats, self.is_lenient));
-        let bytes = store.read_bytes(path, &Limits::default()).unwrap_or_default();
+        let bytes = store.read_bytes(path, MAX_FILE_BYTES).unwrap_or_default();
         models.format(path, &bytes).map_or(0, |format| format.solids(&bytes))
     }
 

@@ -2,12 +2,19 @@
 
 use crate::asset::Assets;
 use crate::document::{self, Unreadable, text_of};
-use crate::import::{self, Content, ImportError, Limits};
+use crate::import::Content;
+use juggler_imaging::regular::{self, ReadError};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+
+/// Maximum number of bytes of a file, unless its reader has a lower limit: 4 GiB.
+pub(crate) const MAX_FILE_BYTES: u64 = 1 << 32;
+
+/// Number of first bytes by which formats of models are recognized.
+const HEAD: usize = 16;
 
 /// Storage of a scene's files and assets.
 #[derive(Clone, Debug, Default)]
@@ -83,28 +90,26 @@ impl Store {
     /// First bytes of a file, by which formats are recognized; none if the file cannot be read.
     pub(crate) fn head(&self, path: &Path) -> Vec<u8> {
         match &self.backend {
-            Backend::Disk => import::head(path),
+            Backend::Disk => regular::first_bytes(path, HEAD as u64).unwrap_or_default(),
             Backend::Memory(bundle) => {
                 let bytes = bundle.find(path).map(|(_, bytes)| bytes.as_slice()).unwrap_or_default();
-                bytes.get(..16.min(bytes.len())).unwrap_or_default().to_vec()
+                bytes.get(..HEAD).unwrap_or(bytes).to_vec()
             }
         }
     }
 
-    /// Reads the bytes of a file or asset.
-    pub(crate) fn read_bytes(&self, path: &Path, limits: &Limits) -> Result<Cow<'_, [u8]>, ImportError> {
+    /// Reads the bytes of a file or asset. Files are limited to `limit` bytes.
+    pub(crate) fn read_bytes(&self, path: &Path, limit: u64) -> Result<Cow<'_, [u8]>, ReadError> {
         if let Some(asset) = self.assets.at(path) {
             let wrong = || std::io::Error::other("the asset of this name contains pixels, not the bytes of a file");
             let bytes = asset.bytes().map(Cow::Borrowed);
-            return bytes.ok_or_else(|| ImportError { path: path.to_owned(), kind: wrong().into() });
+            return bytes.ok_or_else(|| wrong().into());
         }
         match &self.backend {
-            Backend::Disk => import::read(path, limits).map(Cow::Owned),
+            Backend::Disk => regular::read(path, limit).map(Cow::Owned),
             Backend::Memory(bundle) => match bundle.find(path) {
                 Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
-                None => {
-                    Err(ImportError { path: path.to_owned(), kind: std::io::Error::from(ErrorKind::NotFound).into() })
-                }
+                None => Err(std::io::Error::from(ErrorKind::NotFound).into()),
             },
         }
     }
@@ -148,14 +153,14 @@ mod tests {
     fn bundled_files_are_found_by_path_then_by_file_name() {
         let store = bundle(&["scene.json", "models/a.obj", "b.obj", "./c/../d.obj"]);
         let found = |path: &str| {
-            store
-                .read_bytes(Path::new(path), &Limits::default())
-                .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+            let bytes = store.read_bytes(Path::new(path), MAX_FILE_BYTES);
+            bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
         };
         assert_eq!(found("./models/x/../a.obj").unwrap(), "models/a.obj");
         assert_eq!(found("elsewhere/b.obj").unwrap(), "b.obj", "by its name alone");
         assert_eq!(found("d.obj").unwrap(), "./c/../d.obj");
-        assert!(found("a.obj").unwrap_err().to_string().contains("a.obj"), "in a folder nobody named");
+        let missing = |error: &ReadError| matches!(error, ReadError::Io(error) if error.kind() == ErrorKind::NotFound);
+        assert!(found("a.obj").is_err_and(|error| missing(&error)), "in a folder nobody named");
         assert_eq!(store.canonical_name(Path::new("elsewhere/b.obj")), Path::new("b.obj"));
         assert_eq!(store.canonical_name(Path::new("x/../y.obj")), Path::new("y.obj"));
         assert!(matches!(store.text(Path::new("none.json")), Err(Unreadable::Io(_))));

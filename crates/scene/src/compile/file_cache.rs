@@ -1,7 +1,6 @@
 //! Cache of files, each read once.
 
-use super::meshes::{file_stamp, import_error_message};
-use crate::import::Limits;
+use super::meshes::{file_stamp, read_error_message};
 use crate::store::Store;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,23 +43,23 @@ impl<T> FileCache<T> {
         Self(Arc::new(Mutex::new(kept.map(|(path, item)| (path.clone(), Arc::clone(item))).collect())))
     }
 
-    /// Content of a file, which `read` converts from bytes or rejects with a message. Reads the
-    /// file without holding the lock, as for meshes.
+    /// Content of a file of at most `limit` bytes, which `read` converts from bytes or rejects with
+    /// a message. Reads the file without holding the lock, as for meshes.
     pub fn load(
         &self,
         path: &Path,
         store: &Store,
-        limits: &Limits,
+        limit: u64,
         read: impl FnOnce(&[u8]) -> Result<T, String>,
     ) -> Arc<CachedFile<T>> {
         self.get_or_insert_with(store.canonical_name(path), || {
             let stamp = file_stamp(path);
-            match store.read_bytes(path, limits) {
+            match store.read_bytes(path, limit) {
                 Ok(bytes) => {
                     let digest = blake3::hash(&bytes).into();
                     CachedFile { digest, content: read(&bytes).map(Arc::new), stamp }
                 }
-                Err(error) => CachedFile { digest: [0; 32], content: Err(import_error_message(&error)), stamp },
+                Err(error) => CachedFile { digest: [0; 32], content: Err(read_error_message(path, &error)), stamp },
             }
         })
     }

@@ -1,14 +1,13 @@
 //! Image files of textures. Each file is read and prepared once and shared by all textures, frames
 //! and copies of a scene.
 
-use super::meshes::{AssetCache, Files, file_stamp, import_error_message};
+use super::meshes::{AssetCache, Files, file_stamp, read_error_message};
 use crate::asset::display_name;
 use crate::description::Description;
-use crate::import::Limits;
 use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
-use crate::store::Store;
+use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
 use juggler_math::Rgb;
@@ -99,10 +98,10 @@ impl ImageFile {
             return Self::from_image(image, digest, path);
         }
         let stamp = file_stamp(path);
-        let bytes = match store.read_bytes(path, &Limits::default()) {
+        let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes,
             Err(error) => {
-                return Self { stamp, ..Self::new([0; 32], Err(import_error_message(&error))) };
+                return Self { stamp, ..Self::new([0; 32], Err(read_error_message(path, &error))) };
             }
         };
         let digest = blake3::hash(&bytes).into();

@@ -5,11 +5,11 @@ use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS, infinity_warning};
 use super::meshes::{AssetCache, Files};
 use crate::asset::display_name;
 use crate::description::{BackgroundInput, Description};
-use crate::import::Limits;
 use crate::item::Item;
 use crate::kind::name_of;
 use crate::path::Path;
 use crate::report::Finding;
+use crate::store::MAX_FILE_BYTES;
 use juggler_imaging::raster::inspect_raster;
 use juggler_light::background::{AnyBackground, Panorama};
 use juggler_light::{AnyLight, IesProfile};
@@ -72,7 +72,7 @@ impl AssetCache {
         if let Some((image, digest)) = self.store().assets.image_at(path) {
             return self.light_files().panoramas.insert_asset(path, digest, || panorama(image.clone()));
         }
-        self.light_files().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
+        self.light_files().panoramas.load(path, self.store(), MAX_FILE_BYTES, |bytes| {
             let image = juggler_imaging::decode(&shown, Cursor::new(bytes), &IMAGE_LIMITS);
             panorama(image.map_err(|error| error.to_string())?)
         })
@@ -80,8 +80,7 @@ impl AssetCache {
 
     fn profile(&self, path: &std::path::Path) -> Arc<CachedFile<IesProfile>> {
         let shown = display_name(path);
-        let limits = Limits { file_bytes: MAX_PROFILE_BYTES, ..Limits::default() };
-        self.light_files().profiles.load(path, self.store(), &limits, |bytes| {
+        self.light_files().profiles.load(path, self.store(), MAX_PROFILE_BYTES, |bytes| {
             // Decode lossily: old files contain names in local encodings, but the numbers are
             // ASCII.
             let wrong = |error| format!("cannot read `{shown}`: {error}");

@@ -7,12 +7,13 @@ use super::lighting::LightFiles;
 use crate::asset::{Asset, display_name};
 use crate::description::Description;
 use crate::document::Sources;
-use crate::import::{ImportError, ImportErrorKind, Limits, parse, texture_file};
+use crate::import::{ImportError, Limits, parse, texture_file};
 use crate::mesh_scene::MeshOverview;
 use crate::model::{ModelCache, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
-use crate::store::Store;
+use crate::store::{MAX_FILE_BYTES, Store};
+use juggler_imaging::regular::ReadError;
 use juggler_shape::{InvalidShape, Mesh, MeshData, MorphArrays, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -77,7 +78,7 @@ impl AssetCache {
             return false;
         }
         self.models.format(path, &self.store.head(path)).is_some_and(|format| {
-            let bytes = self.store.read_bytes(path, &Limits::default());
+            let bytes = self.store.read_bytes(path, MAX_FILE_BYTES);
             format.is_plain_mesh(&bytes.unwrap_or_default())
         })
     }
@@ -153,10 +154,10 @@ impl AssetCache {
 impl Entry {
     fn load(path: &std::path::Path, store: &Store) -> Self {
         let (limits, stamp) = (Limits::default(), file_stamp(path));
-        let bytes = match store.read_bytes(path, &limits) {
+        let bytes = match store.read_bytes(path, limits.file_bytes) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let mesh = Err(import_error_message(&error));
+                let mesh = Err(read_error_message(path, &error));
                 return Self { digest: [0; 32], mesh, texture_file: None, stamp };
             }
         };
@@ -164,7 +165,8 @@ impl Entry {
         let texture_file = texture_file(&bytes);
         // Free memory before the hierarchy is built.
         drop(bytes);
-        let mesh = imported.map_err(|error| import_error_message(&error)).and_then(|found| {
+        let cannot_read = |error: ImportError| format!("cannot read `{}`: {}", display_name(path), error.kind);
+        let mesh = imported.map_err(cannot_read).and_then(|found| {
             let mut shape = Mesh::from(found.mesh);
             let invalid = |invalid| format!("`{}` contains an invalid mesh: {invalid}", path.display());
             shape.prepare().map_err(invalid)?;
@@ -176,11 +178,12 @@ impl Entry {
     }
 }
 
-pub(crate) fn import_error_message(error: &ImportError) -> String {
-    let shown = display_name(&error.path);
-    match &error.kind {
-        ImportErrorKind::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
-        kind => format!("cannot read `{shown}`: {kind}"),
+/// Message about a file or asset that cannot be read.
+pub(crate) fn read_error_message(path: &std::path::Path, error: &ReadError) -> String {
+    let shown = display_name(path);
+    match error {
+        ReadError::Io(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
+        ReadError::TooLarge { .. } => format!("cannot read `{shown}`: {error}"),
     }
 }
 

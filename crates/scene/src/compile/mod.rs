@@ -47,7 +47,7 @@ pub(crate) use lighting::files as light_files;
 pub use lighting::{Purpose, estimate as estimate_panorama};
 pub use locate::ShapePlace;
 pub use meshes::{AssetCache, Files};
-pub(crate) use meshes::{file_stamp, import_error_message};
+pub(crate) use meshes::{file_stamp, read_error_message};
 pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 

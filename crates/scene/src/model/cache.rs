@@ -3,9 +3,10 @@
 
 use super::{FileError, Files, ModelFile, ModelFormat};
 use crate::compile::file_stamp;
-use crate::import::{ImportErrorKind, Limits};
 use crate::report::plain_io;
-use crate::store::Store;
+use crate::store::{MAX_FILE_BYTES, Store};
+use juggler_imaging::regular::ReadError;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -78,9 +79,9 @@ impl ModelCache {
         let (folder, shown) = (path.parent().unwrap_or(Path::new("")), path.display().to_string());
         let mut stamps = vec![(path.to_owned(), file_stamp(path))];
         let failed = |message: String| OpenedModel { file: Err(vec![message]), stamps: stamps.clone() };
-        let bytes = match store.read_bytes(path, &Limits::default()) {
+        let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes.into_owned(),
-            Err(error) => return failed(crate::compile::import_error_message(&error)),
+            Err(error) => return failed(crate::compile::read_error_message(path, &error)),
         };
         let Some(format) = self.format(path, &bytes) else {
             return failed(format!("`{shown}` is in no known format of models"));
@@ -110,16 +111,12 @@ struct FolderFiles<'f> {
 
 impl Files for FolderFiles<'_> {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
-        let limits = Limits { file_bytes: limit, ..Limits::default() };
-        match self.store.read_bytes(&self.folder.join(name), &limits) {
-            Ok(bytes) => Ok(bytes.into_owned()),
-            Err(error) => Err(match error.kind {
-                ImportErrorKind::Read(error) if error.kind() == ErrorKind::NotFound => FileError::Missing,
-                ImportErrorKind::Read(error) => FileError::Read(plain_io(&error).to_string()),
-                ImportErrorKind::TooMany { found, limit, .. } => FileError::TooLarge { found, limit },
-                kind => FileError::Read(kind.to_string()),
-            }),
-        }
+        let read = self.store.read_bytes(&self.folder.join(name), limit);
+        read.map(Cow::into_owned).map_err(|error| match error {
+            ReadError::Io(error) if error.kind() == ErrorKind::NotFound => FileError::Missing,
+            ReadError::Io(error) => FileError::Read(plain_io(&error)),
+            ReadError::TooLarge { found, limit } => FileError::TooLarge { found, limit },
+        })
     }
 
     fn is_lenient(&self) -> bool {
