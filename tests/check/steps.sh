@@ -133,9 +133,11 @@ step_golden() {
 # Leaves out statistics of whole pictures, which take too long unoptimized.
 golden_left_out=(--skip noise:: --skip blur::)
 golden_optimized=(--release --locked -p juggler-golden --test golden)
-# Optimizes the crate `scene` less: reading scenes takes less time here than compiling it.
+# Optimizes the crates `scene` and `mesh` less: reading files takes less time here than compiling
+# them.
 golden_native=("${golden_optimized[@]}" --target "$host"
-  --config "profile.release.package.juggler-scene.opt-level=1")
+  --config "profile.release.package.juggler-scene.opt-level=1"
+  --config "profile.release.package.juggler-mesh.opt-level=1")
 
 # Builds the optimized test programs of `golden` in advance.
 build_golden() {

@@ -4,7 +4,7 @@ use juggler::Error;
 use juggler::film::{MergeError, PartialRenderError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::math::message;
-use juggler::scene::import::{ImportError, ImportErrorKind};
+use juggler::mesh::{MeshError, MeshErrorKind};
 use juggler::scene::named::UnknownName;
 use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
@@ -84,10 +84,10 @@ impl From<Failure> for ExitCode {
     }
 }
 
-impl From<ImportError> for Failure {
-    fn from(error: ImportError) -> Self {
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
         match &error.kind {
-            ImportErrorKind::Read(cause) => Self::file("read", error.path.display(), cause),
+            MeshErrorKind::Read(cause) => Self::file("read", error.path.display(), cause),
             fault => Self::Invalid(format!("cannot read `{}`: {fault}", error.path.display())),
         }
     }

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crate::format::bytes;
 use crate::model_args::ModelArgs;
 use juggler::memory::solids_bytes;
+use juggler::mesh::{FileContent, estimate};
 use juggler::scene::document::{bytes_to_read, read_text};
-use juggler::scene::import::{Content, estimate};
 use juggler::scene::{Loader, Scene, named};
 use std::io::Read;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn load_by(loader: Loader, name: &str, most: Option<u64>) -> Result<Scene, Failu
         return Ok(loader.from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
-    if Content::detect(path).is_mesh() {
+    if FileContent::detect(path).is_mesh() {
         check_memory(estimate(path).map_or(0, |mesh| mesh.peak_bytes), name, most)?;
     } else if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
@@ -56,7 +56,8 @@ pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Sc
 #[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {
     let path = Path::new(name);
-    let is_foreign = matches!(Content::detect(path), Content::Unsupported(_)) && !juggler::loader().is_model(path);
+    let is_foreign =
+        matches!(FileContent::detect(path), FileContent::Unsupported(_)) && !juggler::loader().is_model(path);
     if path.exists() && !path.is_dir() && !is_foreign {
         return Ok(());
     }

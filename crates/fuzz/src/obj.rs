@@ -1,6 +1,6 @@
 //! OBJ models and libraries of materials (MTL): seeds and the readers under test.
 
-use juggler::scene::import::{Limits, parse_obj};
+use juggler::mesh::{MeshLimits, parse_obj};
 use juggler::scene::model::{ModelChoice, ModelFormat, ModelParts};
 use juggler_import::obj::ObjFormat;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ fn parts(obj: &[u8], files: &BTreeMap<String, Vec<u8>>) -> Option<ModelParts> {
 
 /// Reads an OBJ as a model without its libraries; whether it is valid.
 pub fn read_model(bytes: &[u8]) -> bool {
-    if let Ok(model) = parse_obj(Path::new("a.obj"), bytes, &Limits::default()) {
+    if let Ok(model) = parse_obj(Path::new("a.obj"), bytes, &MeshLimits::default()) {
         let starts = model.sections.iter().map(|section| section.first);
         assert!(starts.clone().is_sorted(), "sections overlap");
         assert!(starts.max().is_none_or(|last| last <= model.mesh.triangles.len()), "a section is out of range");

@@ -7,8 +7,8 @@ use juggler::film::{Merge, MergeGoal, PartialRender};
 use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
 use juggler::light::IesProfile;
 use juggler::memory::Memory;
+use juggler::mesh::{MeshLimits, parse};
 use juggler::scene::Scene;
-use juggler::scene::import::{self, parse};
 use juggler::scene::model::{ModelChoice, ModelFormat};
 use juggler::{AovSet, Settings};
 use juggler_expression::{Names, PointEvaluator, Program, Quantity};
@@ -92,7 +92,7 @@ fn expression(bytes: &[u8]) -> bool {
 }
 
 fn mesh(name: &str, bytes: &[u8]) -> bool {
-    let Ok(found) = parse(Path::new(name), bytes, &import::Limits::default()) else { return false };
+    let Ok(found) = parse(Path::new(name), bytes, &MeshLimits::default()) else { return false };
     let count = found.mesh.positions.len();
     assert!(found.mesh.triangles.iter().flatten().all(|index| (*index as usize) < count), "an index is out of range");
     assert!(found.mesh.positions.iter().all(|position| position.is_finite()), "a position is not finite");
@@ -101,7 +101,7 @@ fn mesh(name: &str, bytes: &[u8]) -> bool {
 
 /// Reads an STL as a model, which must accept what the reader of meshes accepts.
 fn stl_model(bytes: &[u8]) -> bool {
-    let plain = parse(Path::new("a.stl"), bytes, &import::Limits::default());
+    let plain = parse(Path::new("a.stl"), bytes, &MeshLimits::default());
     let opened = StlFormat.open("a.stl", bytes.to_vec(), &BTreeMap::new());
     assert_eq!(plain.is_ok(), opened.is_ok(), "the readers disagree about the file");
     let (Ok(plain), Ok(model)) = (plain, opened) else { return false };

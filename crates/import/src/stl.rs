@@ -1,11 +1,11 @@
 //! STL as a format of model files: each solid of a text is an object. The facets are read by
-//! [`import::parse`].
+//! [`juggler_mesh::parse`].
 
 use crate::gltf::Warnings;
 use crate::obj::{DEFAULT_MATERIAL, gray};
 use indexmap::IndexMap;
+use juggler_mesh::MeshLimits;
 use juggler_scene::Object;
-use juggler_scene::import;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
@@ -45,7 +45,7 @@ impl ModelFormat for StlFormat {
 
     fn open(&self, name: &str, bytes: Vec<u8>, _files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
-        let parse = |bytes: &[u8]| import::parse(Path::new(name), bytes, &import::Limits::default());
+        let parse = |bytes: &[u8]| juggler_mesh::parse(Path::new(name), bytes, &MeshLimits::default());
         // Errors of the whole file state its lines.
         let whole = parse(&bytes).map_err(|error| ModelError::new(error.to_string()))?;
         let mut warnings = Warnings::default();

@@ -23,7 +23,7 @@
 //!
 //! Rendering uses the current rayon thread pool. The facade re-exports the crates [`math`],
 //! [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`], [`world`],
-//! [`integrator`], [`mod@render`], [`scene`], [`imaging`] and [`film`]. The folder `examples/` is a
+//! [`integrator`], [`mod@render`], [`mesh`], [`scene`], [`imaging`] and [`film`]. The folder `examples/` is a
 //! course in five steps.
 
 pub mod aovs;
@@ -57,6 +57,7 @@ pub use juggler_integrator as integrator;
 pub use juggler_light as light;
 pub use juggler_material as material;
 pub use juggler_math as math;
+pub use juggler_mesh as mesh;
 pub use juggler_render as render;
 pub use juggler_scene as scene;
 pub use juggler_shape as shape;

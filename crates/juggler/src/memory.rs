@@ -6,7 +6,6 @@ use juggler_camera::aov::FilmAovs;
 use juggler_camera::film::{AovSums, Film, Rect, TILE_EDGE};
 use juggler_render::BAND_PIXELS;
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
-use juggler_scene::import;
 use juggler_scene::{Names, Scene};
 use std::ops::Range;
 
@@ -97,7 +96,7 @@ impl Memory {
         let mut most = 0;
         for file in &needs.files {
             // The reader reports a file that cannot be read.
-            let estimate = import::estimate(file).unwrap_or_default();
+            let estimate = juggler_mesh::estimate(file).unwrap_or_default();
             most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the mesh `{name}`"), estimate.resident_bytes));

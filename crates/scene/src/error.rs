@@ -1,8 +1,8 @@
 //! Errors of reading, building and compiling a scene.
 
-use crate::import::UnsupportedFormat;
 use crate::named::UnknownName;
 use crate::report::{Problems, plain_io};
+use juggler_mesh::UnsupportedFormat;
 use std::io;
 use std::path::PathBuf;
 

@@ -22,7 +22,6 @@ mod edit;
 mod equality;
 mod error;
 mod fingerprint;
-pub mod import;
 mod integrator;
 mod item;
 pub mod kind;

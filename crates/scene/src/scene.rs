@@ -6,7 +6,6 @@ use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, 
 use crate::description::{Description, deserialize_scene};
 use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, mesh_files};
-use crate::import::Content;
 use crate::integrator::IntegratorChoice;
 use crate::model::ExpansionMemo;
 use crate::motion::{self, Tracks, read_list};
@@ -16,6 +15,7 @@ use crate::report::{Finding, Problems};
 use crate::store::Bundle;
 use crate::validate::DeclaredNames;
 use crate::{animate, mesh_scene};
+use juggler_mesh::FileContent;
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -90,13 +90,13 @@ impl Scene {
             return Self::around_model(path, asset_cache);
         }
         match asset_cache.store().content(path) {
-            Content::Scene => {}
-            Content::Mesh { z_up } => {
+            FileContent::Other => {}
+            FileContent::Mesh { z_up } => {
                 let overview = asset_cache.mesh_overview(path).map_err(SceneError::Mesh)?;
                 let description = mesh_scene::describe_mesh_scene(&path.to_string_lossy(), &overview, z_up);
                 return Ok(Self::around(description, asset_cache));
             }
-            Content::Unsupported(format) => return Err(SceneError::Foreign { path: path.into(), format }),
+            FileContent::Unsupported(format) => return Err(SceneError::Foreign { path: path.into(), format }),
         }
         let text = asset_cache.store().text(path).map_err(|unreadable| match unreadable {
             Unreadable::Io(source) => SceneError::Read { path: path.into(), source },

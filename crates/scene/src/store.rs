@@ -2,8 +2,8 @@
 
 use crate::asset::Assets;
 use crate::document::{self, Unreadable, text_of};
-use crate::import::Content;
 use juggler_imaging::regular::{self, ReadError};
+use juggler_mesh::FileContent;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -78,12 +78,12 @@ impl Store {
     }
 
     /// Detects the content of a file that was given as a scene.
-    pub(crate) fn content(&self, path: &Path) -> Content {
+    pub(crate) fn content(&self, path: &Path) -> FileContent {
         match &self.backend {
-            Backend::Disk => Content::detect(path),
+            Backend::Disk => FileContent::detect(path),
             Backend::Memory(bundle) => bundle
                 .find(path)
-                .map_or(Content::Scene, |(_, bytes)| Content::from_head(path, bytes, bytes.len() as u64)),
+                .map_or(FileContent::Other, |(_, bytes)| FileContent::from_head(path, bytes, bytes.len() as u64)),
         }
     }
 

@@ -3,10 +3,10 @@
 use crate::asset::Asset;
 use crate::compile::AssetCache;
 use crate::description::{Object, Objects};
-use crate::import::ply_bytes;
 use crate::item::Item;
 use crate::report::Finding;
 use crate::{Scene, SceneError};
+use juggler_mesh::ply_bytes;
 use juggler_shape::{Mesh, MeshData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

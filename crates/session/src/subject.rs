@@ -7,9 +7,9 @@ use juggler::camera::AnyCamera;
 use juggler::camera::film::Tile;
 use juggler::denoise::Denoiser;
 use juggler::math::{Rgb, Vec3};
+use juggler::mesh::FileContent;
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
-use juggler::scene::import::Content;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::{MAX_GAIN, Picture, Settings, View};
@@ -166,7 +166,7 @@ impl Subject {
     /// no file holds the scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
         let path = Path::new(&self.name);
-        if self.file.is_in_memory() || Content::detect(path).is_mesh() || self.file.is_around_model() {
+        if self.file.is_in_memory() || FileContent::detect(path).is_mesh() || self.file.is_around_model() {
             return None;
         }
         let text = read_text(path).ok()?;

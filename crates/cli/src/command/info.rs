@@ -17,7 +17,8 @@ use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, ExrWindows, ImageFormat, ImageInfo, PixelWindow, regular};
 use juggler::light::background::AnyBackground;
 use juggler::math::{Aabb, message};
-use juggler::scene::{Compiled, Illuminance, Scene, import};
+use juggler::mesh::FileContent;
+use juggler::scene::{Compiled, Illuminance, Scene};
 use juggler::world::GeometryStats;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -44,7 +45,7 @@ impl Info {
 
     fn answer(&self) -> Result<String, Failure> {
         let path = Path::new(&self.scene);
-        if import::Content::detect(path).is_mesh() && !juggler::loader().is_model(path) {
+        if FileContent::detect(path).is_mesh() && !juggler::loader().is_model(path) {
             return Ok(mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Crates whose arithmetic affects pixels.
-const CRATES: [&str; 17] = [
+const CRATES: [&str; 18] = [
     "math",
     "bvh",
     "bsdf",
@@ -18,6 +18,7 @@ const CRATES: [&str; 17] = [
     "world",
     "integrator",
     "render",
+    "mesh",
     "scene",
     "import",
     "expression",

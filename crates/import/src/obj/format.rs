@@ -9,8 +9,8 @@ use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
 use juggler_math::Aabb;
 use juggler_math::message::{MAX_QUOTE, excerpt};
+use juggler_mesh::{MeshLimits, parse_obj};
 use juggler_scene::Object;
-use juggler_scene::import::{self, parse_obj};
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
@@ -56,7 +56,7 @@ impl ModelFormat for ObjFormat {
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        let parsed = parse_obj(Path::new(name), &bytes, &import::Limits::default());
+        let parsed = parse_obj(Path::new(name), &bytes, &MeshLimits::default());
         let model = parsed.map_err(|error| ModelError::new(error.to_string()))?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);

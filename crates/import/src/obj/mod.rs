@@ -9,7 +9,7 @@
 //! | `materials` | materials as `principled` |
 //! | `pieces` | meshes by object and material, smoothing groups |
 //!
-//! The faces are read by [`parse_obj`](juggler_scene::import::parse_obj). All bytes may be hostile:
+//! The faces are read by [`parse_obj`](juggler_mesh::parse_obj). All bytes may be hostile:
 //! sizes are limited, and errors name file and line.
 
 mod files;

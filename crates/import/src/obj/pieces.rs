@@ -2,7 +2,7 @@
 
 use crate::textures::VERTEX_COLORS;
 use juggler_math::{DVec3, Vec3};
-use juggler_scene::import::ObjModel;
+use juggler_mesh::ObjModel;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 use juggler_shape::{Mesh, MeshData};
 use std::collections::BTreeMap;
@@ -254,11 +254,11 @@ impl Smoothing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_scene::import::{Limits, parse_obj};
+    use juggler_mesh::{MeshLimits, parse_obj};
     use std::path::Path;
 
     fn read(text: &str) -> Vec<Piece> {
-        pieces(parse_obj(Path::new("a.obj"), text.as_bytes(), &Limits::default()).unwrap()).0
+        pieces(parse_obj(Path::new("a.obj"), text.as_bytes(), &MeshLimits::default()).unwrap()).0
     }
 
     /// Two squares with a common edge, bent along it by a right angle.

@@ -7,13 +7,13 @@ use super::lighting::LightFiles;
 use crate::asset::{Asset, display_name};
 use crate::description::Description;
 use crate::document::Sources;
-use crate::import::{ImportError, Limits, parse, texture_file};
 use crate::mesh_scene::MeshOverview;
 use crate::model::{ModelCache, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;
+use juggler_mesh::{FileContent, MeshError, MeshLimits};
 use juggler_shape::{InvalidShape, Mesh, MeshData, MorphArrays, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -74,7 +74,7 @@ impl AssetCache {
     /// Whether a file in a format of models shows nothing but a mesh, so that the scene around it
     /// is that of a mesh file.
     pub(crate) fn is_plain_mesh(&self, path: &std::path::Path) -> bool {
-        if matches!(self.store.content(path), crate::import::Content::Unsupported(_)) {
+        if matches!(self.store.content(path), FileContent::Unsupported(_)) {
             return false;
         }
         self.models.format(path, &self.store.head(path)).is_some_and(|format| {
@@ -153,7 +153,7 @@ impl AssetCache {
 
 impl Entry {
     fn load(path: &std::path::Path, store: &Store) -> Self {
-        let (limits, stamp) = (Limits::default(), file_stamp(path));
+        let (limits, stamp) = (MeshLimits::default(), file_stamp(path));
         let bytes = match store.read_bytes(path, limits.file_bytes) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -161,11 +161,12 @@ impl Entry {
                 return Self { digest: [0; 32], mesh, texture_file: None, stamp };
             }
         };
-        let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
-        let texture_file = texture_file(&bytes);
+        let (digest, imported) =
+            rayon::join(|| blake3::hash(&bytes).into(), || juggler_mesh::parse(path, &bytes, &limits));
+        let texture_file = juggler_mesh::texture_file(&bytes);
         // Free memory before the hierarchy is built.
         drop(bytes);
-        let cannot_read = |error: ImportError| format!("cannot read `{}`: {}", display_name(path), error.kind);
+        let cannot_read = |error: MeshError| format!("cannot read `{}`: {}", display_name(path), error.kind);
         let mesh = imported.map_err(cannot_read).and_then(|found| {
             let mut shape = Mesh::from(found.mesh);
             let invalid = |invalid| format!("`{}` contains an invalid mesh: {invalid}", path.display());

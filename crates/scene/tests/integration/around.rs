@@ -1,10 +1,10 @@
 //! Mesh files loaded as scenes, and files of other programs.
 
-use crate::import_files::asset;
 use juggler_integrator::AnyIntegrator;
+use juggler_math::testing::skipped;
 use juggler_scene::{Bundle, Scene, SceneError};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A tetrahedron with its base in the plane y = 0.
 const TETRAHEDRON: &str = "v 0 0 0\nv 2 0 0\nv 0 0 2\nv 0 2 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
@@ -104,6 +104,17 @@ fn malformed_meshes_are_reported_with_their_line() {
         "cannot read `a.obj`: line 1: expected a number for z, found the end of the line"
     );
     assert!(matches!(Scene::load("none.obj"), Err(SceneError::Read { .. })));
+}
+
+/// Path of an asset, if the assets are available.
+fn asset(name: &str) -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
+    let folder = std::env::var_os("JUGGLER_ASSETS").map_or_else(beside, PathBuf::from);
+    if !folder.is_dir() {
+        skipped(&format!("test assets: none in {}, set JUGGLER_ASSETS to their folder", folder.display()));
+        return None;
+    }
+    Some(folder.join(name))
 }
 
 /// Tests real models, if they are available.

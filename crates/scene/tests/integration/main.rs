@@ -16,8 +16,6 @@ mod defaults;
 mod flat_objects;
 mod format;
 mod images;
-mod import_files;
-mod import_hostile;
 mod inline_textures;
 mod juggler;
 mod lighting;

@@ -8,7 +8,7 @@ use crate::source;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use juggler::math::Aabb;
-use juggler::scene::import::{self, ImportError, ImportErrorKind, Limits};
+use juggler::mesh::{self, MeshError, MeshErrorKind, MeshLimits};
 use juggler_bvh::{Quality, TriangleBvh};
 use juggler_raybench::clock::{CpuClock, Stopwatch};
 use juggler_raybench::kernel::{self, Kernel, NamedTest, Scratch};
@@ -180,21 +180,21 @@ impl<'n> MeshSource<'n> {
         match self {
             Self::BuiltIn(_, spec) => Ok(spec.make()),
             Self::File(name) => {
-                let imported = import::load(Path::new(name), &Limits::default()).map_err(|error| refused(&error))?;
-                for warning in imported.warnings {
+                let found = mesh::load(Path::new(name), &MeshLimits::default()).map_err(|error| refused(&error))?;
+                for warning in found.warnings {
                     console::print_message(&format!("warning: `{name}`: {warning}"));
                 }
-                let view = View::around(&Aabb::from_points(imported.mesh.positions.iter().copied()));
-                Ok(Mesh { positions: imported.mesh.positions, triangles: imported.mesh.triangles, view })
+                let view = View::around(&Aabb::from_points(found.mesh.positions.iter().copied()));
+                Ok(Mesh { positions: found.mesh.positions, triangles: found.mesh.triangles, view })
             }
         }
     }
 }
 
-fn refused(error: &ImportError) -> Failure {
+fn refused(error: &MeshError) -> Failure {
     let shown = error.path.display();
     match &error.kind {
-        ImportErrorKind::Read(error) => Failure::file("read", shown, error),
+        MeshErrorKind::Read(error) => Failure::file("read", shown, error),
         fault => Failure::Invalid(format!("cannot read `{shown}`: {fault}")),
     }
 }

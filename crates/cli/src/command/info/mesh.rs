@@ -4,7 +4,7 @@ use super::{bounds_text, corners, row};
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::math::Aabb;
-use juggler::scene::import::{Imported, Limits, load};
+use juggler::mesh::{MeshFile, MeshLimits, load};
 use juggler::shape::{Mesh, Shape};
 use serde_json::json;
 use std::path::Path;
@@ -33,7 +33,7 @@ impl<'n> Report<'n> {
     pub fn of(name: &'n str) -> Result<Self, Failure> {
         let path = Path::new(name);
         let start = Instant::now();
-        let Imported { mesh, mut warnings } = load(path, &Limits::default())?;
+        let MeshFile { mesh, mut warnings } = load(path, &MeshLimits::default())?;
         let load = start.elapsed().as_secs_f64();
         let (vertices, normals, uvs) = (mesh.positions.len(), !mesh.normals.is_empty(), !mesh.uvs.is_empty());
         let start = Instant::now();

@@ -148,11 +148,11 @@ pub const FAMILIES: &[Addition] = &[
     },
     Addition {
         family: "file format",
-        folder: "crates/scene/src/import",
+        folder: "crates/mesh/src",
         files: (None, "tri.rs"),
         words: &[],
-        module: ("mod.rs", "mod tri; <- mod text;"),
-        entry: ("format.rs", "&super::tri::Tri, <- &ply::Ply,"),
+        module: ("lib.rs", "mod tri; <- mod text;"),
+        entry: ("format.rs", "&crate::tri::Tri, <- &ply::Ply,"),
         in_json: Some(("mesh.obj", "mesh.tri")),
     },
 ];
@@ -175,15 +175,15 @@ pub const SCENE: &str = r#"{
 /// A mesh format with nine numbers per triangle.
 const TRI: &str = r#"//! Triangles as text: nine numbers each.
 
-use super::estimate::{Counts, FileSampler};
-use super::format::MeshFormat;
-use super::{ImportErrorKind, Imported, Limits};
+use crate::estimate::{Counts, FileSampler};
+use crate::format::MeshFormat;
+use crate::{MeshErrorKind, MeshFile, MeshLimits};
 use juggler_math::Vec3;
 use juggler_shape::MeshData;
 use std::io;
 
 /// Triangles as text.
-pub(super) struct Tri;
+pub(crate) struct Tri;
 
 impl MeshFormat for Tri {
     fn name(&self) -> &'static str {
@@ -198,7 +198,7 @@ impl MeshFormat for Tri {
         false
     }
 
-    fn read(&self, bytes: &[u8], _limits: &Limits, _piece: usize) -> Result<Imported, ImportErrorKind> {
+    fn read(&self, bytes: &[u8], _limits: &MeshLimits, _piece: usize) -> Result<MeshFile, MeshErrorKind> {
         let words = String::from_utf8_lossy(bytes);
         let numbers: Vec<f32> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let mut mesh = MeshData::default();
@@ -207,7 +207,7 @@ impl MeshFormat for Tri {
             mesh.positions.extend(corners.chunks_exact(3).map(Vec3::from_slice));
             mesh.triangles.push([first, first + 1, first + 2]);
         }
-        Ok(Imported { mesh, warnings: Vec::new() })
+        Ok(MeshFile { mesh, warnings: Vec::new() })
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {

@@ -1,0 +1,113 @@
+//! Stanford PLY (Greg Turk, "The PLY Polygon File Format", 1994): text, little-endian or
+//! big-endian.
+//!
+//! The reader uses the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
+//! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or
+//! `vertex_index`), in any order and of any number type, and triangle strips in `tristrips`. The
+//! list `texcoord` of faces has u and v of each corner. Colors `red green blue` of vertices or
+//! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
+//! are linear. The columns `u1 v1` are the second set of surface coordinates, and `tx ty tz tw` the
+//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile`
+//! names a picture for a scene around the file ([`texture_file`]). The reader ignores everything
+//! else with a warning that names it, including lines of the header that are neither declarations
+//! nor comments, such as `Created by Blender3D`. In a text, each line is one row of an element, as
+//! the header describes it.
+
+mod ascii;
+mod binary;
+mod body;
+mod colors;
+mod corners;
+mod declared;
+mod header;
+mod strips;
+#[cfg(test)]
+mod tests;
+mod vertices;
+mod write;
+
+use declared::{DeclaredCounts, declared};
+pub use write::ply_bytes;
+
+use crate::error::MeshErrorKind;
+use crate::estimate::{Counts, FACE, FileSampler, lines, scaled, words};
+use crate::format::MeshFormat;
+use crate::text::Scanner;
+use crate::{MeshFile, MeshLimits};
+use body::Body;
+pub use header::texture_file;
+use header::{Encoding, Header};
+use std::io;
+
+/// Stanford PLY.
+pub(crate) struct Ply;
+
+impl MeshFormat for Ply {
+    fn name(&self) -> &'static str {
+        "PLY"
+    }
+
+    fn extension(&self) -> &'static str {
+        "ply"
+    }
+
+    fn is_content(&self, bytes: &[u8]) -> bool {
+        let mut scanner = Scanner::with_obj_rules(bytes);
+        scanner.word_anywhere() == Some(b"ply") && scanner.word().is_none()
+    }
+
+    fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
+        read(bytes, limits, piece)
+    }
+
+    fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
+        polygons(file)
+    }
+}
+
+/// Reads a whole file in pieces of about `piece` bytes.
+pub(crate) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
+    let mut scanner = Scanner::new(bytes);
+    let header = Header::read(&mut scanner)?;
+    let body = Body::new(&header, limits, piece);
+    match header.encoding {
+        Encoding::Ascii => read_text(&body, &ascii::AsciiValues::new(scanner)),
+        Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
+    }
+}
+
+/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers;
+/// the error is that of the lines unless the sequence fits the header exactly.
+fn read_text(body: &Body<'_>, values: &ascii::AsciiValues<'_>) -> Result<MeshFile, MeshErrorKind> {
+    let strict = body.read(values.clone());
+    if !matches!(strict, Err(MeshErrorKind::Malformed { .. })) {
+        return strict;
+    }
+    let Ok(mut found) = body.read(values.clone().without_lines()) else { return strict };
+    found.warnings.push("lines do not hold one element each: read as a sequence of numbers".to_owned());
+    Ok(found)
+}
+
+/// Estimates the counts of a PLY. The header gives the number of vertices and faces. The number of
+/// triangles follows from the length of a binary file, or from the last rows of a text.
+fn polygons(file: &mut FileSampler) -> io::Result<Counts> {
+    let Some(DeclaredCounts { vertices, vertex_bytes, face_bytes, faces, corners }) = declared(&file.head, file.size)
+    else {
+        return Ok(Counts::default());
+    };
+    let triangles = match corners {
+        Some(corners) => corners.saturating_sub(faces.saturating_mul(2)),
+        None => {
+            let tail = file.tail()?;
+            let rows = lines(&tail).skip(1).filter_map(|line| words(line).next()?.parse::<u64>().ok());
+            let rows = rows.filter(|corners| *corners >= 3);
+            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.min(1 << 10) - 2));
+            scaled(sum, faces, rows)
+        }
+    }
+    .max(faces);
+    // Polygons are kept as runs of triangles. Arrays that turn out too small are copied into larger
+    // ones.
+    let temporary_bytes = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
+    Ok(Counts { vertices, triangles, vertex_bytes, face_bytes, temporary_bytes })
+}
