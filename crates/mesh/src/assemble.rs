@@ -1,8 +1,8 @@
 //! Assembly of a mesh from the data of a reader: triangulates polygons and removes invalid normals.
 
-use crate::MeshFile;
 use crate::error::MeshErrorKind;
 use crate::faces::Faces;
+use crate::mesh_file::MeshFile;
 use juggler_math::{Vec2, Vec3};
 use juggler_shape::MeshData;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
@@ -116,7 +116,7 @@ fn clean_tangents(mut tangents: Vec<[f32; 4]>, warnings: &mut Vec<String>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::MeshLimits;
+    use crate::limits::MeshLimits;
 
     fn triangle(normals: [Vec3; 3]) -> MeshFile {
         let mut faces = Faces::default();

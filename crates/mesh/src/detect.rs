@@ -1,6 +1,7 @@
 //! Detection of a file's format: by unambiguous content, else by the extension of its name.
 
-use crate::format;
+use crate::formats;
+use crate::text::without_byte_order_mark;
 use crate::unsupported::UnsupportedFormat;
 use juggler_imaging::regular;
 use std::path::Path;
@@ -28,7 +29,7 @@ impl FileContent {
     /// name. Unambiguous content takes precedence: JSON is no mesh whatever its name. Only
     /// `.gltf`, which is JSON too, is named as a format.
     pub fn from_head(path: &Path, head: &[u8], size: u64) -> Self {
-        let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+        let head = without_byte_order_mark(head);
         let named = UnsupportedFormat::of_name(path);
         if let Some(foreign) = UnsupportedFormat::of_content(head) {
             return Self::Unsupported(foreign);
@@ -37,11 +38,11 @@ impl FileContent {
         if is_json || head.trim_ascii_start().starts_with(b"{") {
             return named.filter(|foreign| foreign.name() == "glTF").map_or(Self::Other, Self::Unsupported);
         }
-        if let (None, Some(foreign)) = (format::of_head(head, size), named) {
+        if let (None, Some(foreign)) = (formats::of_head(head, size), named) {
             return Self::Unsupported(foreign);
         }
-        match format::of_head(head, size).or_else(|| format::of_name(path)) {
-            Some(format) => Self::Mesh { z_up: format.is_z_up() },
+        match formats::of_head(head, size).or_else(|| formats::of_name(path)) {
+            Some(format) => Self::Mesh { z_up: format.info().is_z_up },
             None => Self::Other,
         }
     }

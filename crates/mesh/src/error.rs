@@ -1,6 +1,5 @@
 //! Errors of loading a mesh file: the file, the position in it, and the expected content.
 
-use crate::unsupported::UnsupportedFormat;
 use juggler_imaging::regular::ReadError;
 use std::fmt;
 use std::io;
@@ -23,11 +22,14 @@ pub enum MeshErrorKind {
     #[error("cannot be read: {0}")]
     Read(#[from] io::Error),
     /// Neither the content nor the extension determines a format.
-    #[error("not a known mesh format: expected a file named .obj, .ply or .stl")]
-    UnknownFormat,
-    /// The file is of a known format that is not supported yet.
+    #[error("not a known mesh format: expected a file named {extensions}")]
+    UnknownFormat {
+        /// Extensions of the supported formats, in words.
+        extensions: String,
+    },
+    /// The file is of a known format that is not supported yet, which the message names.
     #[error("{0}")]
-    Unsupported(UnsupportedFormat),
+    Unsupported(String),
     /// The content violates the rules of its format.
     #[error("{place}: {message}")]
     Malformed {

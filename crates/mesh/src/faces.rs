@@ -4,8 +4,8 @@
 //! n corners always gives n - 2 triangles, so a polygon that is read before its positions are known
 //! is stored as a fan and triangulated later in place.
 
-use crate::MeshLimits;
 use crate::error::MeshErrorKind;
+use crate::limits::MeshLimits;
 use juggler_math::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;

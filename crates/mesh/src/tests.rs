@@ -1,7 +1,12 @@
 //! Tests of mesh loading: file names, contents that contradict their names, limits.
 
+use crate::format::MeshFormat;
+use crate::obj::Obj;
+use crate::ply::Ply;
+use crate::stl::Stl;
 use crate::*;
 use std::fmt::Write;
+use std::path::Path;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 const FACET: &str =
@@ -65,12 +70,10 @@ fn an_error_names_file_and_line() {
     assert!(matches!(error.kind, MeshErrorKind::Malformed { place: FilePosition::Line(2), .. }));
 }
 
-type Read = fn(&[u8], &MeshLimits, usize) -> Result<MeshFile, MeshErrorKind>;
-
 /// Asserts that a file read in pieces of every size, on one thread and on three, gives the same
 /// mesh, warnings or error as the file read in one piece.
-fn assert_pieces_do_not_show(read: Read, bytes: &[u8]) {
-    let outcome = |piece| read(bytes, &MeshLimits::default(), piece).map_err(|error| error.to_string());
+fn assert_pieces_do_not_show(format: &dyn MeshFormat, bytes: &[u8]) {
+    let outcome = |piece| format.read(bytes, &MeshLimits::default(), piece).map_err(|error| error.to_string());
     let whole = outcome(usize::MAX);
     let [alone, three] = [1, 3].map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap());
     for piece in (1..bytes.len().min(300)).chain([bytes.len()]) {
@@ -107,7 +110,7 @@ fn chunk_size_does_not_change_an_obj() {
         ("f 1 2 3", &format!("f {}", "1 2 3 ".repeat(100))),
         ("usemtl d\n", "usemtl d \\\n\\\n\n"),
     ];
-    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(obj::read, text.as_bytes()));
+    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(&Obj, text.as_bytes()));
 }
 
 #[test]
@@ -126,7 +129,7 @@ fn chunk_size_does_not_change_a_text_ply() {
         ("2 5 6\n0", "2 5 6\n1"),
         ("3 0 1 2\n", ""),
     ];
-    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(ply::read, text.as_bytes()));
+    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(&Ply, text.as_bytes()));
 }
 
 #[test]
@@ -146,16 +149,16 @@ fn chunk_size_does_not_change_a_binary_ply() {
         bytes.extend((0..corners).flat_map(|corner| [0, (i + corner) % 20]));
     }
     for length in (start..=bytes.len()).rev().step_by(7) {
-        assert_pieces_do_not_show(ply::read, &bytes[..length]);
+        assert_pieces_do_not_show(&Ply, &bytes[..length]);
     }
     let mut wrong = bytes.clone();
     wrong[start + 7 * 11] = 0x7f;
     wrong[start + 7 * 11 + 1] = 0x80;
-    assert_pieces_do_not_show(ply::read, &wrong);
+    assert_pieces_do_not_show(&Ply, &wrong);
     let end = bytes.len();
     bytes[end - 30] = 99;
     bytes[end - 90] = 99;
-    assert_pieces_do_not_show(ply::read, &bytes);
+    assert_pieces_do_not_show(&Ply, &bytes);
 }
 
 #[test]
@@ -180,12 +183,12 @@ fn chunk_size_does_not_change_an_stl() {
         ("solid b c\n", "solid b c\nfacet normal\nouter loop"),
         ("vertex 7 0 0\n", "facet 1 2 3"),
     ];
-    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(stl::read, text.as_bytes()));
+    variants(&text, &changes).iter().for_each(|text| assert_pieces_do_not_show(&Stl, text.as_bytes()));
     let mut bytes = vec![b' '; 80];
     bytes.extend(60_u32.to_le_bytes());
     for i in 0..60_u8 {
         let corners = (0..9).map(|k| f32::from((i + k) % (3 + k)) * if i == 40 { f32::INFINITY } else { -1.0 });
         bytes.extend([0; 12].into_iter().chain(corners.flat_map(f32::to_le_bytes)).chain([i / 50, 0]));
     }
-    assert_pieces_do_not_show(stl::read, &bytes);
+    assert_pieces_do_not_show(&Stl, &bytes);
 }

@@ -169,6 +169,11 @@ impl<'a> Scanner<'a> {
     }
 }
 
+/// The bytes of a file without a UTF-8 byte order mark at their start.
+pub(crate) fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// Parses a word as a number, rounded once to the nearest `f32`. Accepts `inf` and `nan`.
 pub(crate) fn real(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()

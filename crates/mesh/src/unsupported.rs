@@ -1,6 +1,7 @@
 //! File formats of other programs that are recognized but not supported, so that messages can name
 //! them.
 
+use crate::formats;
 use std::fmt;
 use std::path::Path;
 
@@ -72,7 +73,7 @@ impl UnsupportedFormat {
 
 impl fmt::Display for UnsupportedFormat {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} is not supported; supported mesh formats: OBJ, PLY and STL", self.name)?;
+        write!(formatter, "{} is not supported; supported mesh formats: {}", self.name, formats::names())?;
         if self.is_language {
             formatter.write_str(" (docs/names.md lists the corresponding names in scene files)")?;
         }

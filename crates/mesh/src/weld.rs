@@ -8,7 +8,7 @@
 
 use crate::error::MeshErrorKind;
 use crate::faces::Faces;
-use crate::{MeshLimits, too_many};
+use crate::limits::{MeshLimits, too_many};
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;

@@ -1,12 +1,7 @@
 //! An OBJ as a model: its mesh with what the statements `o`, `g`, `usemtl` and `s` say about the
 //! faces.
 
-use super::super::MeshLimits;
-use crate::error::MeshErrorKind;
-use crate::pieces::PIECE;
 use crate::text::integer;
-use juggler_math::Vec3;
-use juggler_math::color::srgb_decode;
 use juggler_shape::MeshData;
 use std::sync::Arc;
 
@@ -93,34 +88,8 @@ fn smoothing(rest: &[u8]) -> u32 {
     integer(word).and_then(|group| u32::try_from(group).ok()).unwrap_or_default()
 }
 
-/// Encoded color from the words after x, y and z of a position; `None` unless there are at least
-/// three finite numbers.
-pub(super) fn color<'w>(words: impl Iterator<Item = &'w [u8]>) -> Option<Vec3> {
-    let mut numbers = words.take(3).map(|word| std::str::from_utf8(word).ok()?.parse::<f32>().ok());
-    let mut channel = || numbers.next().flatten().filter(|number| number.is_finite());
-    Some(Vec3::new(channel()?, channel()?, channel()?))
-}
-
-/// Color of a position without color: white in any range of numbers.
-pub(super) const NO_COLOR: Vec3 = Vec3::INFINITY;
-
-/// Largest channel of colors from 0 to 1. Larger ones in a file mean levels from 0 to 255.
-const LARGEST_FRACTION: f32 = 2.0;
-
-/// Decodes the colors of a file, which are sRGB from 0 to 1, or from 0 to 255 with a warning.
-pub(super) fn decode_colors(colors: &mut [Vec3], warnings: &mut Vec<String>) {
-    let are_levels = colors.iter().any(|color| color.is_finite() && color.max_element() > LARGEST_FRACTION);
-    if are_levels {
-        warnings.push("colors of vertices exceed 1: taken as levels from 0 to 255".to_owned());
-    }
-    let scale = if are_levels { 255.0 } else { 1.0 };
-    for color in colors {
-        *color = color.to_array().map(|channel| srgb_decode((channel / scale).clamp(0.0, 1.0))).into();
-    }
-}
-
 /// Sections and libraries of marks in the order of the file.
-fn sections(marks: Vec<Mark>) -> (Vec<ObjSection>, Vec<String>) {
+pub(super) fn sections(marks: Vec<Mark>) -> (Vec<ObjSection>, Vec<String>) {
     let (mut sections, mut libraries) = (Vec::<ObjSection>::new(), Vec::new());
     let mut current = ObjSection::default();
     for Mark { triangles, setting } in marks {
@@ -143,65 +112,6 @@ fn sections(marks: Vec<Mark>) -> (Vec<ObjSection>, Vec<String>) {
     (sections, libraries)
 }
 
-/// Reads a whole file as a model.
-pub(crate) fn read_model(bytes: &[u8], limits: &MeshLimits) -> Result<ObjModel, MeshErrorKind> {
-    let found = super::read_contents(bytes, limits, PIECE, true)?;
-    let (sections, libraries) = sections(found.marks);
-    let super::MeshFile { mesh, warnings } = found.imported;
-    Ok(ObjModel { mesh, positions: found.positions, sections, libraries, warnings })
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(text: &str) -> ObjModel {
-        read_model(text.as_bytes(), &MeshLimits::default()).unwrap()
-    }
-
-    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
-    #[test]
-    fn sections_follow_the_statements() {
-        let model = read(&format!(
-            "mtllib my lib.mtl\n{SQUARE}o a\nusemtl red\ns 1\nf 1 2 3 4\ng b c\nusemtl x\nusemtl  sky blue \ns off\nf 1 2 3\no d\nf 1 3 4\n"
-        ));
-        let section = |first, object: &str, group: Option<&str>, material: &str, smoothing| ObjSection {
-            first,
-            object: Some(object.into()),
-            group: group.map(Into::into),
-            material: Some(material.into()),
-            smoothing,
-        };
-        assert_eq!(model.libraries, ["my lib.mtl"]);
-        assert_eq!(
-            model.sections,
-            [
-                section(0, "a", None, "red", 1),
-                section(2, "a", Some("b c"), "sky blue", 0),
-                section(3, "d", None, "sky blue", 0)
-            ]
-        );
-        assert_eq!(model.mesh.triangles.len(), 4);
-        assert_eq!(model.positions, [0, 1, 2, 3]);
-        assert!(model.warnings.is_empty());
-    }
-
-    #[test]
-    fn colors_of_positions_are_decoded() {
-        let model = read("v 0 0 0 1 0 0.5\nv 1 0 0\nv 0 1 0 0 2 -1\nf 1 2 3\n");
-        let color = model.mesh.attributes.get("color").unwrap();
-        let half = srgb_decode(0.5);
-        let expected = vec![1.0, 0.0, half, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0];
-        assert_eq!((color.channels, &color.data), (3, &juggler_shape::attribute::AttributeData::F32(expected)));
-        // Levels from 0 to 255; the position without color stays white.
-        let levels = read("v 0 0 0 255 0 51\nv 1 0 0\nv 0 1 0 0 1 255\nf 1 2 3\n");
-        let expected = [1.0, 0.0, 0.2, 1.0, 1.0, 1.0, 0.0, 1.0 / 255.0, 1.0].map(srgb_decode).to_vec();
-        let color = levels.mesh.attributes.get("color").unwrap();
-        assert_eq!(color.data, juggler_shape::attribute::AttributeData::F32(expected));
-        assert_eq!(levels.warnings, ["colors of vertices exceed 1: taken as levels from 0 to 255"]);
-        let plain = read("v 0 0 0 1\nv 1 0 0 nan 1 1\nv 0 1 0\nf 1 2 3\n");
-        assert!(plain.mesh.attributes.is_empty());
-        assert_eq!(plain.warnings, ["2 vertices have numbers after x y z that are no colors: ignored"]);
-    }
-}
+#[path = "model_tests.rs"]
+mod tests;

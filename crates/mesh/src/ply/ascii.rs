@@ -1,7 +1,7 @@
 //! The values of a text PLY: one row a line, or rows anywhere. Empty lines are skipped.
 
-use super::body::{Values, skip};
 use super::header::{Element, Scalar};
+use super::values::{Values, skip};
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::text::{self, Scanner};
 

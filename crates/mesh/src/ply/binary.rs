@@ -1,7 +1,7 @@
 //! The values of a binary PLY, tightly packed, in either byte order.
 
-use super::body::{Values, skip};
 use super::header::{ByteOrder, Element, Scalar};
+use super::values::{Values, skip};
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::text::whole;
 

@@ -3,73 +3,28 @@
 use super::colors::ColorColumns;
 use super::corners::{self, CornerVertices};
 use super::header::{Element, Header, Property, Scalar};
+use super::rows::{RowReader, Rows, note_ignored};
 use super::strips::read_strips;
+use super::values::{Values, list_length, out_of_range, skip};
 use super::vertices::read_vertices;
 use crate::assemble::{Colors, MeshParts};
-use crate::error::{FilePosition, MeshErrorKind, quote};
+use crate::error::{MeshErrorKind, quote};
 use crate::faces::Faces;
-use crate::pieces::read_pieces;
+use crate::limits::MeshLimits;
+use crate::mesh_file::MeshFile;
 use crate::text::finite;
 use crate::weld::WeldedPiece;
-use crate::{MeshFile, MeshLimits};
-
-/// Reads a sequence of numbers. A clone continues from the same position.
-pub(super) trait Values: Clone + Sync {
-    /// Position of the next value; in a text, the line of the last value.
-    fn place(&self) -> FilePosition;
-    /// Advances to the start of the next row.
-    fn begin_row(&mut self) -> Result<(), MeshErrorKind>;
-    /// Checks that the row has no more values.
-    fn end_row(&mut self) -> Result<(), MeshErrorKind>;
-    /// Reads the next value, rounded once to `f32`. `what` names it in errors.
-    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, MeshErrorKind>;
-    /// Reads the next `count` values, which must be integers, and passes each with its position to
-    /// `take`.
-    fn integers(
-        &mut self,
-        kind: Scalar,
-        count: u64,
-        what: &str,
-        take: impl FnMut(FilePosition, i64) -> Result<(), MeshErrorKind>,
-    ) -> Result<(), MeshErrorKind>;
-    /// Skips `count` values.
-    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), MeshErrorKind>;
-    /// Skips `count` rows of an element and parses only as much as is needed to find their end.
-    fn skip_rows(&mut self, element: &Element, count: u64) -> Result<(), MeshErrorKind>;
-    /// Checks the end after the last row.
-    fn end(&mut self) -> Result<(), MeshErrorKind> {
-        Ok(())
-    }
-    /// Minimum size of a value, in bytes.
-    fn min_size(&self, kind: Scalar) -> u64;
-    /// Number of bytes left.
-    fn remaining(&self) -> u64;
-}
-
-/// A run of rows of an element.
-pub(super) struct Rows<V> {
-    /// Reader at the first value of the first row.
-    pub values: V,
-    /// Number of rows.
-    pub count: u64,
-}
 
 /// Reader of the elements that the header declares.
 pub(super) struct Body<'h> {
     header: &'h Header,
-    /// MeshLimits of the file's contents.
-    pub limits: &'h MeshLimits,
-    /// Number of rows of a piece.
-    rows: u64,
+    reader: RowReader<'h>,
 }
 
 impl<'h> Body<'h> {
     /// Creates a reader that works in pieces of about `piece` bytes.
     pub fn new(header: &'h Header, limits: &'h MeshLimits, piece: usize) -> Self {
-        // A row usually takes about 16 bytes. Dividing by 256 gives smaller pieces, whose results
-        // stay in the cache.
-        const ROW: u64 = 256;
-        Self { header, limits, rows: (piece as u64 / ROW).max(1) }
+        Self { header, reader: RowReader::new(limits, piece) }
     }
 
     /// Reads all elements and assembles the mesh.
@@ -81,44 +36,20 @@ impl<'h> Body<'h> {
         let mut corners = self.header.elements.iter().any(has_coordinates).then(CornerVertices::default);
         for element in &self.header.elements {
             match element.name.as_str() {
-                "vertex" => read_vertices(self, element, &mut values, &mut parts)?,
+                "vertex" => read_vertices(&self.reader, element, &mut values, &mut parts)?,
                 "face" => self.read_faces(element, &mut values, &mut parts, &mut corners)?,
                 "tristrips" => self.read_strips(element, &mut values, &mut parts, &mut corners)?,
                 _ => skip_element(element, &mut values, &mut parts.warnings)?,
             }
         }
         values.end()?;
-        corners.map_or(Ok(()), |corners| corners.replace(&mut parts, self.limits))?;
+        corners.map_or(Ok(()), |corners| corners.replace(&mut parts, self.reader.limits))?;
         let colors = &parts.face_colors;
         if colors.values.len() != colors.channels.saturating_mul(parts.faces.len()) {
             parts.warnings.push("colors of faces are ignored: triangle strips have none".to_owned());
             parts.face_colors = Colors::default();
         }
         parts.assemble()
-    }
-
-    /// Reads the rows of an element in pieces: `read` runs in parallel, `take` receives the results
-    /// in order.
-    pub fn read_rows<V: Values, R: Send>(
-        &self,
-        element: &Element,
-        values: &mut V,
-        read: impl Fn(Rows<V>) -> Result<R, MeshErrorKind> + Sync,
-        take: impl FnMut(R) -> Result<(), MeshErrorKind>,
-    ) -> Result<(), MeshErrorKind> {
-        let mut pieces = Vec::new();
-        let mut left = element.count;
-        let mut passed = Ok(());
-        // If the end of a row is not found, stop after this piece: its reader gives the better
-        // error.
-        while left > 0 && passed.is_ok() {
-            let count = left.min(self.rows);
-            pieces.push((values.clone(), count));
-            passed = values.skip_rows(element, count);
-            left -= count;
-        }
-        read_pieces(&pieces, |(values, count)| read(Rows { values: values.clone(), count: *count }), take)?;
-        passed
     }
 
     fn read_faces(
@@ -132,22 +63,22 @@ impl<'h> Body<'h> {
         note_ignored(element, |index| columns.has(index), &mut parts.warnings);
         let vertices = self.vertices()?;
         // All rows are known to fit into the file, and most faces are one triangle.
-        let most = element.count.min(u64::from(self.limits.triangles));
+        let most = element.count.min(u64::from(self.reader.limits.triangles));
         if corners.is_none() && parts.faces.len() == 0 {
             parts.faces = Faces::with_capacity(usize::try_from(most).unwrap_or(0));
         }
-        self.read_rows(
+        self.reader.read(
             element,
             values,
-            |rows| read_piece(element, &columns, rows, vertices, self.limits),
+            |rows| read_piece(element, &columns, rows, vertices, self.reader.limits),
             |FacePiece { welded, colors, missing }| {
                 parts.face_colors.extend(colors);
                 match corners {
                     Some(corners) => {
                         corners.missing += missing;
-                        corners.welded.append(welded, self.limits)
+                        corners.welded.append(welded, self.reader.limits)
                     }
-                    None => parts.faces.append(&welded.faces, 0, self.limits),
+                    None => parts.faces.append(&welded.faces, 0, self.reader.limits),
                 }
             },
         )
@@ -165,23 +96,23 @@ impl<'h> Body<'h> {
         note_ignored(element, |index| index == column, &mut parts.warnings);
         let vertices = self.vertices()?;
         let Some(corners) = corners else {
-            let add = |triangle| parts.faces.push_triangle(triangle, self.limits);
+            let add = |triangle| parts.faces.push_triangle(triangle, self.reader.limits);
             return read_strips(element, column, values, vertices, add);
         };
         let mut piece = WeldedPiece::default();
         let mut add = |mut triangle: [u32; 3]| {
             corners.missing += 1;
-            corners::push(&mut piece, &mut triangle, &[], self.limits).map(|_| ())
+            corners::push(&mut piece, &mut triangle, &[], self.reader.limits).map(|_| ())
         };
         read_strips(element, column, values, vertices, &mut add)?;
-        corners.welded.append(piece, self.limits)
+        corners.welded.append(piece, self.reader.limits)
     }
 
     /// Number of vertices that the header declares, within the limits.
     fn vertices(&self) -> Result<u64, MeshErrorKind> {
         let element = self.header.elements.iter().find(|element| element.name == "vertex");
         let count = element.map_or(0, |element| element.count);
-        self.limits.check_vertices(count).map(|()| count)
+        self.reader.limits.check_vertices(count).map(|()| count)
     }
 }
 
@@ -330,28 +261,6 @@ fn read_corners(
     })
 }
 
-/// Error about a vertex index.
-pub(super) fn out_of_range(place: FilePosition, index: i64, vertices: u64) -> MeshErrorKind {
-    place.error(format!("vertex index {index} is out of range: there are {vertices} vertices, starting at 0"))
-}
-
-/// Reads the length of a list.
-pub(super) fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, MeshErrorKind> {
-    let mut length = 0;
-    values.integers(kind, 1, "the length of a list", |place, found| {
-        length =
-            u64::try_from(found).map_err(|_| place.error(format!("expected the length of a list, found {found}")))?;
-        Ok(())
-    })?;
-    Ok(length)
-}
-
-/// Skips one value or list.
-pub(super) fn skip(property: &Property, values: &mut impl Values) -> Result<(), MeshErrorKind> {
-    let count = property.length.map_or(Ok(1), |kind| list_length(values, kind))?;
-    values.skip(property.item, count)
-}
-
 fn skip_element(element: &Element, values: &mut impl Values, warnings: &mut Vec<String>) -> Result<(), MeshErrorKind> {
     warnings.push(format!("ignored: {} elements {}", element.count, quote(element.name.as_bytes())));
     if element.properties.is_empty() {
@@ -363,18 +272,4 @@ fn skip_element(element: &Element, values: &mut impl Values, warnings: &mut Vec<
         values.end_row()?;
     }
     Ok(())
-}
-
-/// Adds one warning that names all columns that are not read.
-pub(super) fn note_ignored(element: &Element, is_read: impl Fn(usize) -> bool, warnings: &mut Vec<String>) {
-    const NAMED: usize = 16;
-    let columns = element.properties.iter().enumerate().filter(|(index, _)| !is_read(*index));
-    let mut names: Vec<String> = columns.map(|(_, property)| quote(property.name.as_bytes())).collect();
-    if names.is_empty() {
-        return;
-    }
-    let more = names.len().saturating_sub(NAMED);
-    names.truncate(NAMED);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    warnings.push(format!("ignored properties of {}: {}{more}", quote(element.name.as_bytes()), names.join(", ")));
 }

@@ -2,11 +2,11 @@
 //! `face` holds u and v of each corner. Corners of one vertex with equal coordinates stay one vertex;
 //! others become vertices of their own.
 
-use super::super::MeshLimits;
-use super::body::{Values, list_length};
 use super::header::{Element, Scalar};
+use super::values::{Values, list_length};
 use crate::assemble::MeshParts;
 use crate::error::MeshErrorKind;
+use crate::limits::MeshLimits;
 use crate::text::finite;
 use crate::weld::{Key, Welded, WeldedPiece};
 use juggler_math::{Vec2, vec2};

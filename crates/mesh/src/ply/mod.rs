@@ -20,9 +20,11 @@ mod colors;
 mod corners;
 mod declared;
 mod header;
+mod rows;
 mod strips;
 #[cfg(test)]
 mod tests;
+mod values;
 mod vertices;
 mod write;
 
@@ -30,25 +32,25 @@ use declared::{DeclaredCounts, declared};
 pub use write::ply_bytes;
 
 use crate::error::MeshErrorKind;
-use crate::estimate::{Counts, FACE, FileSampler, lines, scaled, words};
-use crate::format::MeshFormat;
+use crate::format::{MeshFormat, MeshFormatInfo};
+use crate::limits::MeshLimits;
+use crate::mesh_file::MeshFile;
+use crate::sampling::{Counts, FACE, FileSampler, lines, scaled, words};
 use crate::text::Scanner;
-use crate::{MeshFile, MeshLimits};
 use body::Body;
 pub use header::texture_file;
 use header::{Encoding, Header};
 use std::io;
 
+/// The format Stanford PLY.
+pub const PLY: MeshFormatInfo = MeshFormatInfo { name: "PLY", extension: "ply", is_z_up: false };
+
 /// Stanford PLY.
 pub(crate) struct Ply;
 
 impl MeshFormat for Ply {
-    fn name(&self) -> &'static str {
-        "PLY"
-    }
-
-    fn extension(&self) -> &'static str {
-        "ply"
+    fn info(&self) -> MeshFormatInfo {
+        PLY
     }
 
     fn is_content(&self, bytes: &[u8]) -> bool {
@@ -57,22 +59,17 @@ impl MeshFormat for Ply {
     }
 
     fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
-        read(bytes, limits, piece)
+        let mut scanner = Scanner::new(bytes);
+        let header = Header::read(&mut scanner)?;
+        let body = Body::new(&header, limits, piece);
+        match header.encoding {
+            Encoding::Ascii => read_text(&body, &ascii::AsciiValues::new(scanner)),
+            Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
+        }
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
         polygons(file)
-    }
-}
-
-/// Reads a whole file in pieces of about `piece` bytes.
-pub(crate) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
-    let mut scanner = Scanner::new(bytes);
-    let header = Header::read(&mut scanner)?;
-    let body = Body::new(&header, limits, piece);
-    match header.encoding {
-        Encoding::Ascii => read_text(&body, &ascii::AsciiValues::new(scanner)),
-        Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
     }
 }
 

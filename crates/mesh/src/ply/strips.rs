@@ -3,8 +3,8 @@
 //! before it, of alternating winding; -1 starts a new strip, and triangles of repeated indices join
 //! strips without being drawn.
 
-use super::body::{Values, list_length, out_of_range, skip};
 use super::header::Element;
+use super::values::{Values, list_length, out_of_range, skip};
 use crate::error::MeshErrorKind;
 
 /// State within a strip.

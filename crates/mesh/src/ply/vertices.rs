@@ -1,8 +1,9 @@
 //! Reading the element `vertex` of a PLY: roles of its columns, and its rows.
 
-use super::body::{Body, Rows, Values, note_ignored, skip};
 use super::colors::ColorColumns;
 use super::header::Element;
+use super::rows::{RowReader, Rows, note_ignored};
+use super::values::{Values, skip};
 use crate::assemble::MeshParts;
 use crate::error::MeshErrorKind;
 use crate::text::finite;
@@ -77,16 +78,16 @@ pub(super) fn bytes_of_vertex(element: &Element) -> u64 {
 
 /// Reads all rows. The caller has checked that the file is long enough for them.
 pub(super) fn read_vertices(
-    body: &Body<'_>,
+    reader: &RowReader<'_>,
     element: &Element,
     values: &mut impl Values,
     parts: &mut MeshParts,
 ) -> Result<(), MeshErrorKind> {
     let columns = Columns::of(element)?;
     note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
-    body.limits.check_vertices(element.count)?;
+    reader.limits.check_vertices(element.count)?;
     reserve(parts, &columns, element.count);
-    body.read_rows(
+    reader.read(
         element,
         values,
         |rows| read_piece(element, &columns, rows),

@@ -1,11 +1,12 @@
 //! Text STL: `solid`s of `facet`s, with keywords in any case and on any line; coordinates are on
 //! the line of their `vertex`.
 
-use super::{AllFacets, WeldedFacets};
+use super::facets::{AllFacets, WeldedFacets};
 use crate::error::MeshErrorKind;
+use crate::limits::MeshLimits;
+use crate::mesh_file::MeshFile;
 use crate::pieces::{line_breaks, next_line_start, read_pieces};
 use crate::text::Scanner;
-use crate::{MeshFile, MeshLimits};
 use juggler_math::{Vec3, vec3};
 
 /// Whether the file has no zero byte near its start. A binary file has one in its facet count at

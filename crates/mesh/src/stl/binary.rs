@@ -1,16 +1,17 @@
 //! Binary STL, little-endian: 80 arbitrary bytes, the number of facets, and 50 bytes a facet
 //! (normal, three corners, two attribute bytes).
 
-use super::{AllFacets, WeldedFacets};
+use super::facets::{AllFacets, WeldedFacets};
 use crate::error::{FilePosition, MeshErrorKind};
+use crate::limits::MeshLimits;
+use crate::mesh_file::MeshFile;
 use crate::pieces::read_pieces;
-use crate::weld::Welded;
-use crate::{MeshFile, MeshLimits};
 use juggler_math::Vec3;
 
 const HEADER: usize = 80;
 const FACETS: usize = HEADER + 4;
-const FACET: usize = super::FACET as usize;
+/// Size of a facet, in bytes.
+pub(super) const FACET: usize = 50;
 
 /// Whether the file's length matches its facet count exactly. No text does: letters and digits in
 /// place of the count would declare more than 500 million facets.
@@ -46,7 +47,7 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
     limits.check_triangles(count)?;
     let facets = body.get(..count * FACET).unwrap_or_default();
     let pieces: Vec<&[u8]> = facets.chunks((piece / FACET).max(1) * FACET).collect();
-    let mut all_facets = AllFacets { welded: Welded::with_capacity(count), ..AllFacets::default() };
+    let mut all_facets = AllFacets::with_capacity(count);
     let mut colored = 0;
     read_pieces(
         &pieces,

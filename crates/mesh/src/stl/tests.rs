@@ -1,16 +1,18 @@
 //! Tests of the STL reader, one rule each.
 
+use super::Stl;
 use crate::error::{FilePosition, MeshErrorKind};
+use crate::format::MeshFormat;
 use crate::pieces::PIECE;
 use crate::{MeshFile, MeshLimits};
 use juggler_math::{Vec3, vec3};
 
 fn read(bytes: &[u8]) -> MeshFile {
-    super::read(bytes, &MeshLimits::default(), PIECE).unwrap()
+    Stl.read(bytes, &MeshLimits::default(), PIECE).unwrap()
 }
 
 fn message(bytes: &[u8]) -> String {
-    super::read(bytes, &MeshLimits::default(), PIECE).unwrap_err().to_string()
+    Stl.read(bytes, &MeshLimits::default(), PIECE).unwrap_err().to_string()
 }
 
 fn facet(corners: [Vec3; 3]) -> String {
@@ -110,7 +112,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
     ];
     for (old, new, line, message) in cases {
         let text = good.replacen(old, new, 1);
-        match super::read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err() {
+        match Stl.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err() {
             MeshErrorKind::Malformed { place, message: found } => {
                 assert_eq!((place, found.as_str()), (FilePosition::Line(line), message), "{old} -> {new}");
             }
@@ -124,7 +126,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
 fn limits_are_kept_and_named() {
     let bytes = binary("", &[LOWER, UPPER]);
     let check = |limits: MeshLimits, expected: &str| {
-        assert_eq!(super::read(&bytes, &limits, PIECE).unwrap_err().to_string(), expected);
+        assert_eq!(Stl.read(&bytes, &limits, PIECE).unwrap_err().to_string(), expected);
     };
     check(MeshLimits { triangles: 1, ..MeshLimits::default() }, "at least 2 triangles, the limit is 1");
     check(MeshLimits { vertices: 3, ..MeshLimits::default() }, "at least 4 vertices, the limit is 3");

@@ -147,12 +147,12 @@ pub const FAMILIES: &[Addition] = &[
         in_json: None,
     },
     Addition {
-        family: "file format",
+        family: "mesh format",
         folder: "crates/mesh/src",
         files: (None, "tri.rs"),
         words: &[],
         module: ("lib.rs", "mod tri; <- mod text;"),
-        entry: ("format.rs", "&crate::tri::Tri, <- &ply::Ply,"),
+        entry: ("formats.rs", "&crate::tri::Tri, <- &Ply,"),
         in_json: Some(("mesh.obj", "mesh.tri")),
     },
 ];
@@ -175,8 +175,8 @@ pub const SCENE: &str = r#"{
 /// A mesh format with nine numbers per triangle.
 const TRI: &str = r#"//! Triangles as text: nine numbers each.
 
-use crate::estimate::{Counts, FileSampler};
-use crate::format::MeshFormat;
+use crate::format::{MeshFormat, MeshFormatInfo};
+use crate::sampling::{Counts, FileSampler};
 use crate::{MeshErrorKind, MeshFile, MeshLimits};
 use juggler_math::Vec3;
 use juggler_shape::MeshData;
@@ -186,12 +186,8 @@ use std::io;
 pub(crate) struct Tri;
 
 impl MeshFormat for Tri {
-    fn name(&self) -> &'static str {
-        "TRI"
-    }
-
-    fn extension(&self) -> &'static str {
-        "tri"
+    fn info(&self) -> MeshFormatInfo {
+        MeshFormatInfo { name: "TRI", extension: "tri", is_z_up: false }
     }
 
     fn is_content(&self, _bytes: &[u8]) -> bool {
