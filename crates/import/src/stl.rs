@@ -1,25 +1,16 @@
-//! STL as a format of model files: each solid of a text is an object. The facets are read by
-//! [`juggler_mesh::parse`].
+//! STL as a format of model files: each solid that [`juggler_mesh::parse`] finds is an object.
 
 use crate::gltf::Warnings;
-use crate::obj::{DEFAULT_MATERIAL, gray};
+use crate::obj::{DEFAULT_MATERIAL, gray, parts};
 use indexmap::IndexMap;
-use juggler_mesh::MeshLimits;
+use juggler_mesh::{MAX_SOLIDS, MeshFile, MeshLimits, STL, has_several_solids, parse};
 use juggler_scene::Object;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
 use juggler_shape::Mesh;
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Maximum number of solids that become objects. The solids of a file with more are one object.
-const MAX_SOLIDS: usize = 65_536;
-/// Maximum number of bytes of the name of a solid.
-const MAX_NAME: usize = 1024;
-/// Number of first bytes of which a text has none that is zero.
-const HEAD: usize = 1024;
 
 /// The format STL, text or binary: `.stl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,11 +18,11 @@ pub struct StlFormat;
 
 impl ModelFormat for StlFormat {
     fn name(&self) -> &'static str {
-        "STL"
+        STL.name
     }
 
     fn extensions(&self) -> &'static [&'static str] {
-        &["stl"]
+        &[STL.extension]
     }
 
     fn is_content(&self, _head: &[u8]) -> bool {
@@ -40,61 +31,39 @@ impl ModelFormat for StlFormat {
 
     /// Whether the file has at most one solid.
     fn is_plain_mesh(&self, bytes: &[u8]) -> bool {
-        solids(bytes).len() < 2
+        !has_several_solids(bytes)
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, _files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
-        let parse = |bytes: &[u8]| juggler_mesh::parse(Path::new(name), bytes, &MeshLimits::default());
-        // Errors of the whole file state its lines.
-        let whole = parse(&bytes).map_err(|error| ModelError::new(error.to_string()))?;
+        let file = parse(Path::new(name), &bytes, &MeshLimits::default());
+        let file = file.map_err(|error| ModelError::new(error.to_string()))?;
         let mut warnings = Warnings::default();
-        whole.warnings.iter().for_each(|warning| warnings.add(&shown, warning, 1));
-        let ranges = solids(&bytes);
+        file.warnings.iter().for_each(|warning| warnings.add(&shown, warning, 1));
         let text = format!("has more than {MAX_SOLIDS} solids; they are one object");
-        warnings.add(&shown, text, u64::from(ranges.len() > MAX_SOLIDS));
-        let ranges = if ranges.len() > MAX_SOLIDS { Vec::new() } else { ranges };
-        let solid = |(number, range): (usize, Range<usize>)| {
-            let solid = bytes.get(range).unwrap_or_default();
-            // A solid without facets has no mesh.
-            Some((solid_name(solid, number), Mesh::from(parse(solid).ok()?.mesh)))
-        };
-        let mut objects: Vec<(String, Mesh)> = ranges.into_iter().enumerate().filter_map(solid).collect();
-        if triangles(&objects) != whole.mesh.triangles.len() as u64 {
-            objects = vec![(solid_name(&bytes, 0), Mesh::from(whole.mesh))];
-        }
+        warnings.add(&shown, text, u64::from(file.solids.len() > MAX_SOLIDS));
+        let objects = objects(file);
         Ok(Arc::new(StlModel { name: shown, objects, warnings, digest: blake3::hash(&bytes).into() }))
     }
 }
 
-/// Ranges of the solids of a text, each from the line of its keyword `solid` to the next one; none
-/// in a binary file.
-fn solids(bytes: &[u8]) -> Vec<Range<usize>> {
-    if bytes.get(..HEAD).unwrap_or(bytes).contains(&0) {
-        return Vec::new();
+/// Meshes of the solids with their names. A file that has one solid, no solids or too many is one
+/// object.
+fn objects(file: MeshFile) -> Vec<(String, Mesh)> {
+    let MeshFile { mesh, solids, .. } = file;
+    let name = |number: usize| {
+        let name = solids.get(number).and_then(|solid| solid.name.clone());
+        name.unwrap_or_else(|| format!("solid {number}"))
+    };
+    if solids.len() < 2 || solids.len() > MAX_SOLIDS {
+        return vec![(name(0), Mesh::from(mesh))];
     }
-    let mut starts = Vec::new();
-    let mut at = 0;
-    for line in bytes.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
-        let word = line.trim_ascii_start().split_at_checked(5);
-        let is_solid = word.is_some_and(|(word, rest)| {
-            word.eq_ignore_ascii_case(b"solid") && rest.first().is_none_or(u8::is_ascii_whitespace)
-        });
-        starts.extend(is_solid.then_some(at));
-        at += line.len();
-    }
-    let ends = starts.iter().copied().skip(1).chain([bytes.len()]);
-    starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
-}
-
-/// Name of the solid that begins a text; its number if the solid has no name, or if the bytes are no
-/// text.
-fn solid_name(text: &[u8], number: usize) -> String {
-    let line = text.trim_ascii_start().split(|byte| matches!(byte, b'\n' | b'\r')).next();
-    let word = line.and_then(|line| line.split_at_checked(5)).filter(|(word, _)| word.eq_ignore_ascii_case(b"solid"));
-    let name = word.map(|(_, name)| name.trim_ascii()).unwrap_or_default();
-    let is_name = !name.is_empty() && name.len() <= MAX_NAME && !name.contains(&0);
-    if is_name { String::from_utf8_lossy(name).into_owned() } else { format!("solid {number}") }
+    let mut part = parts(&mesh);
+    let ends = solids.iter().skip(1).map(|solid| solid.first).chain([mesh.triangles.len()]);
+    let triangles = solids.iter().zip(ends).map(|(solid, end)| mesh.triangles.get(solid.first..end));
+    // A solid without facets has no mesh.
+    let triangles = triangles.map(Option::unwrap_or_default).enumerate().filter(|(_, list)| !list.is_empty());
+    triangles.map(|(number, list)| (name(number), Mesh::from(part(list)))).collect()
 }
 
 /// Number of triangles of all objects.
@@ -122,7 +91,7 @@ impl ModelFile for StlModel {
     }
 
     fn is_z_up(&self) -> bool {
-        true
+        STL.is_z_up
     }
 
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
@@ -146,7 +115,7 @@ impl ModelFile for StlModel {
         let parts = self.parts(choice, "")?;
         let triangles = triangles(&self.objects);
         Ok(ModelSummary {
-            format: "STL".to_owned(),
+            format: STL.name.to_owned(),
             materials: parts.materials.keys().cloned().collect(),
             nodes: parts.objects.len(),
             distinct_triangles: triangles,
@@ -183,6 +152,50 @@ mod tests {
         let single = format!("solid solid part\n{FACET}endsolid\n");
         assert_eq!(objects(&single), [("a/solid part".to_owned(), 1)]);
         assert!(StlFormat.is_plain_mesh(single.as_bytes()));
+    }
+
+    #[test]
+    fn a_file_of_too_many_solids_is_one_object() {
+        let name = |count: usize| {
+            let text: String = (0..count).map(|i| format!("solid s{i}\n{FACET}endsolid\n")).collect();
+            let model = StlFormat.open("a.stl", text.into_bytes(), &BTreeMap::new()).unwrap();
+            let parts = model.parts(&ModelChoice::default(), "").unwrap();
+            (parts.objects.len(), parts.objects.last().and_then(|object| object.name.clone()), parts.warnings)
+        };
+        assert_eq!(name(MAX_SOLIDS), (MAX_SOLIDS, Some("s65535".to_owned()), Vec::new()));
+        let warning = "a.stl: has more than 65536 solids; they are one object".to_owned();
+        assert_eq!(name(MAX_SOLIDS + 1), (1, Some("s0".to_owned()), vec![warning]));
+    }
+
+    #[test]
+    fn solids_have_the_meshes_of_files_of_their_own() {
+        let other = FACET.replace("vertex 0 0 0", "vertex 1 1 0");
+        let (first, second) =
+            (format!("solid a\n{other}{FACET}endsolid\n"), format!("solid b\n{FACET}{other}endsolid\n"));
+        let mesh = |text: &str, number: usize| {
+            let model = StlFormat.open("a.stl", text.as_bytes().to_vec(), &BTreeMap::new()).unwrap();
+            let parts = model.parts(&ModelChoice::default(), "").unwrap();
+            parts.objects[number].mesh().unwrap().arrays().clone()
+        };
+        let both = format!("{first}solid\nendsolid\n{second}");
+        assert_eq!([mesh(&both, 0), mesh(&both, 1)], [mesh(&first, 0), mesh(&second, 0)]);
+    }
+
+    #[test]
+    fn binary_files_and_files_of_other_formats_are_one_object() {
+        let mut binary = b"solid part\r\nsolid b\n".to_vec();
+        binary.resize(80, b' ');
+        binary.extend([1, 0, 0, 0]);
+        binary.extend([0; 12].into_iter().chain((0..9_u8).flat_map(|i| f32::from(i % 4).to_le_bytes())).chain([0; 2]));
+        assert!(StlFormat.is_plain_mesh(&binary));
+        let named = |bytes: Vec<u8>| {
+            let model = StlFormat.open("a.stl", bytes, &BTreeMap::new()).unwrap();
+            let parts = model.parts(&ModelChoice::default(), "").unwrap();
+            let names: Vec<String> = parts.objects.iter().filter_map(|object| object.name.clone()).collect();
+            (names, parts.warnings.len())
+        };
+        assert_eq!(named(binary), (vec!["part".to_owned()], 0));
+        assert_eq!(named(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()), (vec!["solid 0".to_owned()], 1));
     }
 
     #[test]

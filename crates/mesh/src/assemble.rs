@@ -79,7 +79,7 @@ impl MeshParts {
             tangents,
             attributes,
         };
-        Ok(MeshFile { mesh, warnings })
+        Ok(MeshFile { mesh, solids: Vec::new(), warnings })
     }
 }
 

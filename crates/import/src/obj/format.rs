@@ -9,7 +9,7 @@ use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
 use juggler_math::Aabb;
 use juggler_math::message::{MAX_QUOTE, excerpt};
-use juggler_mesh::{MeshLimits, parse_obj};
+use juggler_mesh::{MeshLimits, OBJ, parse_obj};
 use juggler_scene::Object;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
@@ -27,11 +27,11 @@ pub struct ObjFormat;
 
 impl ModelFormat for ObjFormat {
     fn name(&self) -> &'static str {
-        "OBJ"
+        OBJ.name
     }
 
     fn extensions(&self) -> &'static [&'static str] {
-        &["obj"]
+        &[OBJ.extension]
     }
 
     fn is_content(&self, _head: &[u8]) -> bool {
@@ -160,7 +160,7 @@ impl ModelFile for ObjFile {
         let size = |picture: &super::library::Picture| image_size(picture.asset.bytes()?);
         let pictures = self.library.pictures.iter().map(|picture| (picture.file.clone(), size(picture)));
         Ok(ModelSummary {
-            format: "OBJ".to_owned(),
+            format: OBJ.name.to_owned(),
             materials: parts.materials.keys().cloned().collect(),
             nodes: parts.objects.len(),
             distinct_triangles: triangles,

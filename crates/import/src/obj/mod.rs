@@ -23,6 +23,7 @@ pub(crate) use format::DEFAULT_MATERIAL;
 pub use format::ObjFormat;
 pub(crate) use materials::gray;
 pub use mtl::{MtlMap, MtlMaterial, parse_mtl};
+pub(crate) use pieces::parts;
 
 #[cfg(test)]
 mod tests {

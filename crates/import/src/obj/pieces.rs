@@ -50,11 +50,11 @@ pub fn pieces(mut model: ObjModel) -> (Vec<Piece>, bool) {
     let found = by_key(true);
     let is_merged = found.len() > MAX_OBJECTS;
     let found = if is_merged { by_key(false) } else { found };
-    let mut numbers = vec![NONE; model.mesh.positions.len()];
+    let mut part = parts(&model.mesh);
     let pieces = found.into_iter().map(|([object, group, material], triangles)| Piece {
         name: name(object.as_deref(), group.as_deref()),
         material,
-        mesh: part(&model.mesh, &triangles, &mut numbers).into(),
+        mesh: part(&triangles).into(),
     });
     (pieces.collect(), is_merged)
 }
@@ -81,8 +81,14 @@ fn name(object: Option<&str>, group: Option<&str>) -> Option<String> {
     }
 }
 
-/// Mesh of some triangles with the vertices that they use. All of `numbers` is [`NONE`] before and
-/// after.
+/// Function from some triangles of a mesh to a mesh of them and the vertices that they use, in the
+/// order of their first use.
+pub fn parts(whole: &MeshData) -> impl FnMut(&[[u32; 3]]) -> MeshData {
+    let mut numbers = vec![NONE; whole.positions.len()];
+    move |triangles| part(whole, triangles, &mut numbers)
+}
+
+/// Mesh of some triangles. All of `numbers` is [`NONE`] before and after.
 fn part(whole: &MeshData, triangles: &[[u32; 3]], numbers: &mut [u32]) -> MeshData {
     let mut used: Vec<u32> = Vec::new();
     let mut number = |vertex: u32| match numbers.get_mut(vertex as usize) {

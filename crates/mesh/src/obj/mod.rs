@@ -63,7 +63,7 @@ pub fn parse_obj(path: &Path, bytes: &[u8], limits: &MeshLimits) -> Result<ObjMo
     let in_file = |kind| MeshError { path: path.to_owned(), kind };
     limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
     let found = reader::read(without_byte_order_mark(bytes), limits, PIECE, true).map_err(in_file)?;
-    let Contents { file: MeshFile { mesh, warnings }, positions, marks } = found;
+    let Contents { file: MeshFile { mesh, warnings, .. }, positions, marks } = found;
     let (sections, libraries) = model::sections(marks);
     Ok(ObjModel { mesh, positions, sections, libraries, warnings })
 }

@@ -23,7 +23,7 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn plain_indices_keep_the_order_of_the_file() {
-    let MeshFile { mesh, warnings } = read(&format!("{SQUARE}f 1 2 3\nf 1 3 4\n"));
+    let MeshFile { mesh, warnings, .. } = read(&format!("{SQUARE}f 1 2 3\nf 1 3 4\n"));
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), Vec3::Y]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(mesh.normals.is_empty() && mesh.uvs.is_empty() && warnings.is_empty());
@@ -91,7 +91,7 @@ fn comments_continuations_and_line_ends_are_read() {
 #[test]
 fn ignored_statements_are_counted() {
     let text = "mtllib a.mtl\no name\ng a b\nusemtl red\ns 1\nv 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0\nusemtl blue\nf 1 2 3\nl 1 2\np 1\nf 1 2\n";
-    let MeshFile { mesh, warnings } = read(text);
+    let MeshFile { mesh, warnings, .. } = read(text);
     assert_eq!((mesh.triangles.len(), mesh.attributes.contains_key("color")), (1, true));
     assert_eq!(
         warnings,
@@ -113,7 +113,7 @@ fn a_warning_about_many_kinds_stays_short() {
 #[test]
 fn missing_normals_and_uvs_become_zero() {
     let text = format!("{SQUARE}vn 0 .6 .8\nvt .3 .4\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n");
-    let MeshFile { mesh, warnings } = read(&text);
+    let MeshFile { mesh, warnings, .. } = read(&text);
     assert_eq!(mesh.triangles[0], [0, 1, 2]);
     let flat = mesh.triangles[1].map(|corner| mesh.normals[corner as usize]);
     assert_eq!(flat, [Vec3::ZERO; 3]);
@@ -131,7 +131,7 @@ fn invalid_normals_are_treated_as_missing() {
 
 #[test]
 fn undefined_normals_and_uvs_are_ignored() {
-    let MeshFile { mesh, warnings } = read(&format!("{SQUARE}vt 1 1\nf 1/1/1 2/2/1 3/1/1\n"));
+    let MeshFile { mesh, warnings, .. } = read(&format!("{SQUARE}vt 1 1\nf 1/1/1 2/2/1 3/1/1\n"));
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (3, 1));
     assert_eq!((mesh.normals.as_slice(), mesh.uvs.as_slice()), (&[][..], &[Vec2::ONE, Vec2::ZERO, Vec2::ONE][..]));
     assert_eq!(
@@ -192,7 +192,7 @@ fn limits_are_kept_and_named() {
 
 #[test]
 fn comments_may_touch_the_last_face_vertex() {
-    let MeshFile { mesh, warnings } = read(&format!("{SQUARE}f 1 2 3 # comment\nf 1 3 4#c 7 8\n"));
+    let MeshFile { mesh, warnings, .. } = read(&format!("{SQUARE}f 1 2 3 # comment\nf 1 3 4#c 7 8\n"));
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(warnings, ["comments that follow a face vertex without a blank: 1"]);
     assert_eq!(error(&format!("{SQUARE}f 1 2 #3\nf 1 3 x#c\n")).0, 6);
@@ -203,7 +203,7 @@ fn normals_that_are_no_numbers_in_c_are_missing() {
     let with = |word: &str| read(&format!("{SQUARE}vn 0 0 1\nvn {word} 0 0\nf 1//1 2//1 3//2\n"));
     let expected = with("nan");
     for word in ["-nan(ind)", "nan(snan)", "-1.#IND", "1.#QNAN0"] {
-        let MeshFile { mesh, warnings } = with(word);
+        let MeshFile { mesh, warnings, .. } = with(word);
         assert_eq!(mesh.triangles, expected.mesh.triangles, "{word}");
         assert!(
             warnings.contains(&"numbers of normals that are no numbers and count as missing: 1".to_owned()),

@@ -51,7 +51,7 @@ fn big(kind: &str, value: u8) -> Vec<u8> {
 
 #[test]
 fn text_ply_with_a_polygon_is_triangulated() {
-    let MeshFile { mesh, warnings } = read(SQUARE);
+    let MeshFile { mesh, warnings, .. } = read(SQUARE);
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), Vec3::Y]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(mesh.normals.is_empty() && mesh.uvs.is_empty() && warnings.is_empty());
@@ -102,7 +102,7 @@ fn normals_and_uvs_are_read_under_all_property_names() {
              9 .6 0.1 0 0 0 .8 0 0 0.2\n9 .6 0.3 1 0 2 7 7 .8 0 0 0.4\n9 .6 0.5 0 0 1 7 .8 1 0 0.6\n8 3 0 1 2\n",
             names[1], names[0]
         );
-        let MeshFile { mesh, warnings } = read(text);
+        let MeshFile { mesh, warnings, .. } = read(text);
         assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
         assert_eq!(mesh.normals, [vec3(0.0, 0.6, 0.8); 3]);
         assert_eq!(mesh.uvs, [vec2(0.2, 0.1), vec2(0.4, 0.3), vec2(0.6, 0.5)]);
@@ -117,7 +117,7 @@ fn normals_and_uvs_are_read_under_all_property_names() {
 fn half_a_set_of_columns_is_ignored() {
     let text = SQUARE.replace("property float z\n", "property float z\nproperty float nx\nproperty float u\n");
     let text = text.replace("0\n1", "0 5 6\n1").replace("0\n0", "0 5 6\n0").replace("0\n4", "0 5 6\n4");
-    let MeshFile { mesh, warnings } = read(text);
+    let MeshFile { mesh, warnings, .. } = read(text);
     assert!(mesh.normals.is_empty() && mesh.uvs == Vec::<Vec2>::new());
     assert_eq!(warnings, ["ignored properties of 'vertex': 'nx', 'u'"]);
 }
@@ -130,7 +130,7 @@ fn unknown_elements_are_passed_over() {
             "element empty 4000000000\nelement edge 2\nproperty list int short a\nproperty int b\nelement vertex",
         )
         .replace("end_header\n", "end_header\n2 1 1 5\n0 6\n");
-    let MeshFile { mesh, warnings } = read(text);
+    let MeshFile { mesh, warnings, .. } = read(text);
     assert_eq!(mesh.triangles.len(), 2);
     assert_eq!(warnings, ["ignored: 4000000000 elements 'empty'", "ignored: 2 elements 'edge'"]);
 }
@@ -138,7 +138,7 @@ fn unknown_elements_are_passed_over() {
 #[test]
 fn lines_of_the_header_that_are_no_comments_are_passed_over() {
     let stray = SQUARE.replacen("element vertex", "Created by Blender3D\nelement vertex", 1);
-    let MeshFile { mesh, warnings } = read(&stray);
+    let MeshFile { mesh, warnings, .. } = read(&stray);
     assert_eq!(mesh, read(SQUARE).mesh);
     assert_eq!(warnings, ["ignored an unknown line of the header: line 3: 'Created by Blender3D'"]);
     let several = stray.replacen("element face", "made for tests\nelement face", 1);
@@ -294,7 +294,7 @@ fn colors_become_attributes() {
                 element face 1\nproperty list uchar int vertex_indices\nproperty float red\nproperty float green\n\
                 property float blue\nend_header\n\
                 0 0 0 255 0 188 51\n1 0 0 0 0 0 0\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3 0.25 0.5 2\n";
-    let MeshFile { mesh, warnings } = read(text);
+    let MeshFile { mesh, warnings, .. } = read(text);
     assert!(warnings.is_empty(), "{warnings:?}");
     let (vertex, face) = (&mesh.attributes["color"], &mesh.attributes["face_color"]);
     assert_eq!((vertex.domain, vertex.channels), (AttributeDomain::Vertex, 4));
@@ -312,7 +312,7 @@ fn several_elements_may_stand_on_a_line() {
     let whole = read(SQUARE);
     let (header, rows) = SQUARE.split_at(SQUARE.find("0 0 0\n").unwrap());
     for rows in [rows.replace('\n', " "), rows.replace(' ', "\n"), rows.replacen('\n', " ", 2)] {
-        let MeshFile { mesh, warnings } = read(format!("{header}{rows}"));
+        let MeshFile { mesh, warnings, .. } = read(format!("{header}{rows}"));
         assert_eq!(mesh, whole.mesh, "{rows:?}");
         assert_eq!(warnings, ["lines do not hold one element each: read as a sequence of numbers"]);
     }
@@ -335,13 +335,13 @@ fn triangle_strips_alternate_their_winding_and_restart() {
     assert_eq!(triangles("0 1 2 3 -1 2 3 4 5"), [[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]]);
     assert_eq!(triangles("0 1 2 2 4 3 5"), [[0, 1, 2], [4, 2, 3], [4, 3, 5]]);
     // All triangles of a plane face the same side.
-    let MeshFile { mesh, warnings } = read(file("0 1 2 3 4 5", "", ""));
+    let MeshFile { mesh, warnings, .. } = read(file("0 1 2 3 4 5", "", ""));
     let point = |corner: u32| mesh.positions[corner as usize];
     assert!(mesh.triangles.iter().all(|[a, b, c]| (point(*b) - point(*a)).cross(point(*c) - point(*a)).z == 1.0));
     assert!(mesh.triangles.len() == 4 && warnings.is_empty(), "{warnings:?}");
     // Faces and strips are joined; strips have no colors.
     let face = "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
-    let MeshFile { mesh, warnings } = read(file("0 1 2", face, "3 3 4 5 255 0 0\n"));
+    let MeshFile { mesh, warnings, .. } = read(file("0 1 2", face, "3 3 4 5 255 0 0\n"));
     assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
     assert_eq!(warnings, ["colors of faces are ignored: triangle strips have none"]);
     let (_, message) = error(file("0 1 6", "", ""));
@@ -358,14 +358,14 @@ fn coordinates_of_corners_split_vertices() {
         .replace("property float z\n", "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n")
         .replace("0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "0 0 0 0 0 1\n1 0 0 0 1 0\n1 1 0 1 0 0\n0 1 0 0 0 1\n")
         .replace("4 0 1 2 3\n", "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 .5 .5 0 1 0\n");
-    let MeshFile { mesh, warnings } = read(&text);
+    let MeshFile { mesh, warnings, .. } = read(&text);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 4]]);
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0), Vec3::Y]);
     assert_eq!(mesh.uvs, [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.5, 0.5), vec2(0.0, 1.0)]);
     assert_eq!(mesh.normals, [Vec3::Z, Vec3::Y, Vec3::X, Vec3::X, Vec3::Z]);
     assert_eq!(warnings, ["ignored properties of 'face': 'texnumber'"]);
     // A face without coordinates.
-    let MeshFile { mesh, warnings } = read(text.replace("6 0 0 .5 .5 0 1 0", "0 0"));
+    let MeshFile { mesh, warnings, .. } = read(text.replace("6 0 0 .5 .5 0 1 0", "0 0"));
     assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (2, 5));
     assert!(warnings.contains(&"faces without texture coordinates, which get 0 0: 1".to_owned()), "{warnings:?}");
     // Small pieces give the same mesh.

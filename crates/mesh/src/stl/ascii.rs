@@ -60,17 +60,32 @@ struct Piece {
     end: usize,
 }
 
+/// Whether several lines of a text begin with the keyword `solid`. Reads it up to the second one.
+pub(super) fn has_several_solids(bytes: &[u8]) -> bool {
+    let is_solid = |line: &[u8]| begins_with(line, b"solid");
+    let next = |from: usize| next_line_start(bytes, from, |_, line| is_solid(line));
+    let first = if is_solid(bytes) { Some(0) } else { next(1) };
+    first.is_some_and(|first| next(first + 1).is_some())
+}
+
+/// Whether the first word of a line is this keyword.
+fn begins_with(line: &[u8], keyword: &[u8]) -> bool {
+    let line = line.get(blanks(line)..).unwrap_or_default();
+    line.split_at_checked(keyword.len())
+        .is_some_and(|(word, rest)| word.eq_ignore_ascii_case(keyword) && rest.first().is_none_or(|byte| *byte <= b' '))
+}
+
+/// Number of blanks at the start of a line.
+fn blanks(line: &[u8]) -> usize {
+    line.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count()
+}
+
 fn cut(bytes: &[u8], piece: usize) -> Vec<Piece> {
-    let blanks = |line: &[u8]| line.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
-    let is_facet = |line: &[u8]| {
-        let line = line.get(blanks(line)..).unwrap_or_default();
-        line.split_at_checked(5).is_some_and(|(word, rest)| {
-            word.eq_ignore_ascii_case(b"facet") && rest.first().is_some_and(|byte| *byte <= b' ')
-        })
-    };
     let mut start = State { position: 0, inside: false };
     let mut pieces = Vec::new();
-    while let Some(line) = next_line_start(bytes, start.position.saturating_add(piece), |_, line| is_facet(line)) {
+    while let Some(line) =
+        next_line_start(bytes, start.position.saturating_add(piece), |_, line| begins_with(line, b"facet"))
+    {
         let end = line + bytes.get(line..).map_or(0, blanks);
         pieces.push(Piece { start, end });
         start = State { position: end, inside: true };
@@ -111,8 +126,10 @@ fn statement(
     if !is(if inside { b"endsolid" } else { b"solid" }) {
         return Err(scanner.expected(if inside { "'facet' or 'endsolid'" } else { "'solid'" }, word));
     }
-    // Skip the solid's name.
-    scanner.rest_of_line();
+    let rest = scanner.rest_of_line();
+    if !inside {
+        welded.begin_solid(rest);
+    }
     Ok(!inside)
 }
 

@@ -6,6 +6,7 @@ use crate::error::{FilePosition, MeshErrorKind};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
 use crate::pieces::read_pieces;
+use crate::text::Scanner;
 use juggler_math::Vec3;
 
 const HEADER: usize = 80;
@@ -48,6 +49,7 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
     let facets = body.get(..count * FACET).unwrap_or_default();
     let pieces: Vec<&[u8]> = facets.chunks((piece / FACET).max(1) * FACET).collect();
     let mut all_facets = AllFacets::with_capacity(count);
+    all_facets.begin_solid(name(bytes.get(..HEADER).unwrap_or_default()));
     let mut colored = 0;
     read_pieces(
         &pieces,
@@ -65,6 +67,14 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
         warnings.push(format!("{trailing} bytes after the last facet ignored"));
     }
     all_facets.finish(warnings, limits)
+}
+
+/// Name of the only solid, if the header is a line of a text as some programs write it: `solid NAME`.
+fn name(header: &[u8]) -> &[u8] {
+    let mut scanner = Scanner::new(header);
+    let is_solid = scanner.word_anywhere().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let rest = scanner.rest_of_line();
+    if is_solid && !scanner.rest().is_empty() { rest } else { &[] }
 }
 
 /// Reads the facets of a piece and counts those that have attributes.

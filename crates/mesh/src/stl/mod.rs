@@ -2,7 +2,8 @@
 //!
 //! Equal positions are welded to one vertex (-0 equals 0), which makes the mesh indexed. The
 //! normals of the file are ignored: the order of the corners defines the front side. Facets with
-//! infinite or NaN coordinates are left out and counted.
+//! infinite or NaN coordinates are left out and counted. The solids of a text are sections of one mesh;
+//! a binary file is one solid.
 
 mod ascii;
 mod binary;
@@ -15,7 +16,7 @@ use crate::format::{MeshFormat, MeshFormatInfo};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
 use crate::sampling::{Counts, FileSampler, lines, scaled, words};
-use crate::text::Scanner;
+use crate::text::{Scanner, without_byte_order_mark};
 use std::io;
 
 /// The format STL. Its files have the z axis up, as usual for 3D printing.
@@ -39,11 +40,7 @@ impl MeshFormat for Stl {
     }
 
     fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
-        if binary::is_binary(bytes) || !ascii::is_text(bytes) {
-            binary::read(bytes, limits, piece)
-        } else {
-            ascii::read(bytes, limits, piece)
-        }
+        if is_text(bytes) { ascii::read(bytes, limits, piece) } else { binary::read(bytes, limits, piece) }
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
@@ -55,4 +52,16 @@ impl MeshFormat for Stl {
         let sampled_bytes = file.sample(|text| facets += lines(text).filter(is_facet).count() as u64)?;
         Ok(Counts::of_facets(scaled(facets, file.size, sampled_bytes)))
     }
+}
+
+/// Whether the file is read as a text.
+fn is_text(bytes: &[u8]) -> bool {
+    !binary::is_binary(bytes) && ascii::is_text(bytes)
+}
+
+/// Whether an STL may have several solids, by the lines that begin with the keyword `solid`. Reads the
+/// file up to the second one, which takes less time than [`parse`](crate::parse()).
+pub fn has_several_solids(bytes: &[u8]) -> bool {
+    let bytes = without_byte_order_mark(bytes);
+    is_text(bytes) && ascii::has_several_solids(bytes)
 }

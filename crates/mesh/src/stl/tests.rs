@@ -1,10 +1,10 @@
 //! Tests of the STL reader, one rule each.
 
-use super::Stl;
+use super::{Stl, has_several_solids};
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::format::MeshFormat;
 use crate::pieces::PIECE;
-use crate::{MeshFile, MeshLimits};
+use crate::{MAX_SOLIDS, MeshFile, MeshLimits};
 use juggler_math::{Vec3, vec3};
 
 fn read(bytes: &[u8]) -> MeshFile {
@@ -41,8 +41,10 @@ fn text_and_binary_weld_to_the_same_mesh() {
     assert_eq!(from_text.mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, vec3(1.0, 1.0, 0.0)]);
     assert_eq!(from_text.mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
     assert!(from_text.mesh.normals.is_empty() && from_text.warnings.is_empty());
-    assert_eq!(read(&binary("exported", &[LOWER, UPPER])), from_text);
-    assert_eq!(read(&binary("solid but binary", &[LOWER, UPPER])), from_text);
+    for header in ["exported", "solid but binary"] {
+        let from_binary = read(&binary(header, &[LOWER, UPPER]));
+        assert_eq!((from_binary.mesh, from_binary.warnings), (from_text.mesh.clone(), Vec::new()));
+    }
 }
 
 #[test]
@@ -52,6 +54,81 @@ fn keywords_ignore_case_and_line_breaks_and_solids_are_joined() {
         facet(UPPER)
     );
     assert_eq!(read(text.as_bytes()).mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+}
+
+/// First triangles and names of the solids.
+fn solids(file: &MeshFile) -> Vec<(usize, Option<&str>)> {
+    file.solids.iter().map(|solid| (solid.first, solid.name.as_deref())).collect()
+}
+
+#[test]
+fn solids_are_sections_with_the_names_of_their_lines() {
+    let (lower, upper) = (facet(LOWER), facet(UPPER));
+    let broken = facet([Vec3::ZERO, Vec3::NAN, Vec3::Y]);
+    let text = format!(
+        "\n solid  lid of pot \t\n{lower}{broken}{upper}endsolid solid\n\tSOLID\n{upper}endsolid\rsolid none\nendsolid none\n\
+         solid a\0b\n{lower}endsolid\nsolid {}\nendsolid\nsolid {}\n{lower}endsolid",
+        "x".repeat(1025),
+        "y".repeat(1024)
+    );
+    // A zero byte near the start marks a binary file, so that the name with one stands behind.
+    let text = format!("solid first {}\n{upper}endsolid{text}", " ".repeat(1024));
+    let long = "y".repeat(1024);
+    let expected = [
+        (0, Some("first")),
+        (1, Some("lid of pot")),
+        (3, None),
+        (4, Some("none")),
+        (4, None),
+        (5, None),
+        (5, Some(long.as_str())),
+    ];
+    let file = read(text.as_bytes());
+    assert_eq!(solids(&file), expected);
+    assert_eq!(file.mesh.triangles.len(), 6);
+    assert!(has_several_solids(text.as_bytes()));
+}
+
+#[test]
+fn a_binary_file_is_one_solid_that_its_header_may_name() {
+    let named = |header: &str| {
+        let file = read(&binary(header, &[LOWER, UPPER]));
+        assert!(!has_several_solids(&binary(header, &[LOWER])));
+        let [solid] = file.solids.as_slice() else { panic!("{:?}", file.solids) };
+        assert_eq!(solid.first, 0);
+        solid.name.clone()
+    };
+    assert_eq!(named(" solid a part\r\nsolid of\nsolid three\n").as_deref(), Some("a part"));
+    // A name that no line end closes may have been cut.
+    for header in ["exported", "solid but binary", "solid", "solid\n", "solidworks a\n"] {
+        assert_eq!(named(header), None, "{header}");
+    }
+}
+
+#[test]
+fn solids_beyond_the_limit_are_not_kept() {
+    let count = |solids: usize, piece: usize| {
+        let text = format!("{}solid\n{}endsolid", "solid a\nendsolid\n".repeat(solids - 1), facet(LOWER));
+        Stl.read(text.as_bytes(), &MeshLimits::default(), piece).unwrap().solids.len()
+    };
+    assert_eq!(count(MAX_SOLIDS, PIECE), MAX_SOLIDS);
+    assert_eq!([PIECE, 1000].map(|piece| count(MAX_SOLIDS + 9, piece)), [MAX_SOLIDS + 1; 2]);
+}
+
+#[test]
+fn several_solids_are_found_without_reading_facets() {
+    let cases = [
+        ("", false),
+        ("solid", false),
+        ("solid\nsolid", true),
+        ("\u{feff}solid a\nendsolid\n\tSolid b", true),
+        ("solid a\rfacet\r solid\r", true),
+        ("solid solid\nendsolid solid\nsolids\n", false),
+        ("# x\nsolid\n", false),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(has_several_solids(text.as_bytes()), expected, "{text:?}");
+    }
 }
 
 #[test]
@@ -65,7 +142,7 @@ fn zero_and_negative_zero_are_welded() {
 #[test]
 fn facets_that_are_not_numbers_are_left_out_and_counted() {
     let broken = [Vec3::ZERO, Vec3::NAN, Vec3::Y];
-    let MeshFile { mesh, warnings } = read(&binary("", &[broken, LOWER, [Vec3::INFINITY; 3]]));
+    let MeshFile { mesh, warnings, .. } = read(&binary("", &[broken, LOWER, [Vec3::INFINITY; 3]]));
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
     assert_eq!(warnings, ["2 facets with infinite or NaN coordinates ignored"]);
     let text = format!("solid\n{}{}endsolid\n", facet(broken), facet(LOWER));
@@ -135,7 +212,7 @@ fn limits_are_kept_and_named() {
 #[test]
 fn facets_without_a_normal_are_read() {
     let text = format!("solid\n{}{}endsolid\n", facet(LOWER).replace(" normal 0 0 0", ""), facet(UPPER));
-    let MeshFile { mesh, warnings } = read(text.as_bytes());
+    let MeshFile { mesh, warnings, .. } = read(text.as_bytes());
     assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
     assert_eq!(warnings, ["facets without 'normal', which STL requires: 1"]);
 }

@@ -56,7 +56,7 @@ fn every_mesh_of_the_assets_loads() {
         ("stl/two_objects_mixed_case_names.stl", 24),
     ];
     for (name, triangles) in counts {
-        let MeshFile { mesh, warnings } = loaded!(name);
+        let MeshFile { mesh, warnings, .. } = loaded!(name);
         eprintln!("{name}: {} vertices, {} triangles {warnings:?}", mesh.positions.len(), mesh.triangles.len());
         assert_eq!(mesh.triangles.len(), triangles, "{name}");
     }

@@ -33,7 +33,7 @@ impl<'n> Report<'n> {
     pub fn of(name: &'n str) -> Result<Self, Failure> {
         let path = Path::new(name);
         let start = Instant::now();
-        let MeshFile { mesh, mut warnings } = load(path, &MeshLimits::default())?;
+        let MeshFile { mesh, mut warnings, .. } = load(path, &MeshLimits::default())?;
         let load = start.elapsed().as_secs_f64();
         let (vertices, normals, uvs) = (mesh.positions.len(), !mesh.normals.is_empty(), !mesh.uvs.is_empty());
         let start = Instant::now();

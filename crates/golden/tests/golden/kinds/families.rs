@@ -203,7 +203,7 @@ impl MeshFormat for Tri {
             mesh.positions.extend(corners.chunks_exact(3).map(Vec3::from_slice));
             mesh.triangles.push([first, first + 1, first + 2]);
         }
-        Ok(MeshFile { mesh, warnings: Vec::new() })
+        Ok(MeshFile { mesh, ..MeshFile::default() })
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
