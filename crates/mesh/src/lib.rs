@@ -6,7 +6,7 @@
 //! The readers are written here because the available crates do not say where a file is wrong (tobj
 //! 4.0.5 has an enum without a position, stl_io 0.11.0 an `io::Error` without an offset, ply-rs-bw
 //! 4.0.1 no offset in binary files) and take 1.5 to 4 times as long on a million triangles (binary
-//! PLY at 177 MB/s, here 697 MB/s). The readers share the scanner of words and numbers (`text`),
+//! PLY at 177 MB/s, here 697 MB/s). The readers share the scanner of words and numbers ([`text`]),
 //! triangulation (`faces`) and vertex welding (`weld`).
 //!
 //! Memory use is bounded by the actual size of a file: counts declared by a header are checked
@@ -29,7 +29,7 @@ mod sampling;
 mod stl;
 #[cfg(test)]
 mod tests;
-mod text;
+pub mod text;
 mod unsupported;
 mod weld;
 
@@ -40,7 +40,7 @@ pub use format::MeshFormatInfo;
 pub use limits::MeshLimits;
 pub use load::{load, parse};
 pub use mesh_file::{MAX_SOLIDS, MeshFile, StlSolid};
-pub use obj::{OBJ, ObjModel, ObjSection, parse_obj};
+pub use obj::{OBJ, ObjModel, ObjSection, is_plain_obj, parse_obj};
 pub use ply::{PLY, ply_bytes, texture_file};
 pub use stl::{STL, has_several_solids};
 pub use unsupported::UnsupportedFormat;

@@ -1,4 +1,5 @@
-//! Scanner of words, lines and numbers, shared by the readers of OBJ, text PLY and text STL.
+//! Scanner of words, lines and numbers, shared by the readers of OBJ and its libraries of materials
+//! (MTL), text PLY and text STL.
 //!
 //! Every byte up to and including the space (0x20) separates words. A line ends with `\n`, `\r\n`
 //! or a lone `\r`.
@@ -9,7 +10,7 @@ use memchr::memchr2;
 
 /// Reads a text word by word and tracks the line number.
 #[derive(Clone)]
-pub(crate) struct Scanner<'a> {
+pub struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
     line: u64,
@@ -170,12 +171,12 @@ impl<'a> Scanner<'a> {
 }
 
 /// The bytes of a file without a UTF-8 byte order mark at their start.
-pub(crate) fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
+pub fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// Parses a word as a number, rounded once to the nearest `f32`. Accepts `inf` and `nan`.
-pub(crate) fn real(word: &[u8]) -> Option<f32> {
+pub fn real(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 

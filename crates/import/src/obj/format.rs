@@ -9,7 +9,7 @@ use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
 use juggler_math::Aabb;
 use juggler_math::message::{MAX_QUOTE, excerpt};
-use juggler_mesh::{MeshLimits, OBJ, parse_obj};
+use juggler_mesh::{MeshLimits, OBJ, is_plain_obj, parse_obj};
 use juggler_scene::Object;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
@@ -38,20 +38,8 @@ impl ModelFormat for ObjFormat {
         false
     }
 
-    /// Whether no statement `mtllib` names a library of materials, and no smoothing group decides
-    /// normals.
     fn is_plain_mesh(&self, bytes: &[u8]) -> bool {
-        let (mut is_smooth, mut has_normals) = (false, false);
-        for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii_start) {
-            let rest =
-                |word: &[u8]| line.strip_prefix(word).filter(|rest| rest.first().is_some_and(u8::is_ascii_whitespace));
-            if rest(b"mtllib").is_some() {
-                return false;
-            }
-            is_smooth |= rest(b"s").is_some_and(|group| !matches!(group.trim_ascii(), b"off" | b"0" | b""));
-            has_normals |= rest(b"vn").is_some();
-        }
-        has_normals || !is_smooth
+        is_plain_obj(bytes)
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {

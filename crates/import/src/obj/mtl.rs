@@ -3,6 +3,7 @@
 
 use crate::gltf::Warnings;
 use juggler_math::message::{MAX_QUOTE, excerpt};
+use juggler_mesh::text::{Scanner, real, without_byte_order_mark};
 use std::collections::BTreeMap;
 
 /// Maximum number of materials of a library.
@@ -91,11 +92,11 @@ const SILENT: [&str; 2] = ["map_ka", "sharpness"];
 ///
 /// The library has too many materials, or a name is too long.
 pub fn parse_mtl(name: &str, bytes: &[u8], warnings: &mut Warnings) -> Result<Vec<MtlMaterial>, String> {
-    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
     let mut materials = Vec::<MtlMaterial>::new();
-    for (line, statement) in statements(&text) {
-        let (word, rest) = split_word(&statement);
-        let word = word.to_ascii_lowercase();
+    for (line, statement) in statements(without_byte_order_mark(bytes)) {
+        let mut words = Scanner::new(statement.as_bytes());
+        let word = String::from_utf8_lossy(words.word().unwrap_or_default()).to_ascii_lowercase();
+        let rest = text_after(&words, &statement);
         let place = format!("{name}:{line}");
         if rest.len() > MAX_NAME * 2 {
             return Err(format!("{place}: the statement has {} bytes, the limit is {}", rest.len(), MAX_NAME * 2));
@@ -121,35 +122,39 @@ pub fn parse_mtl(name: &str, bytes: &[u8], warnings: &mut Warnings) -> Result<Ve
 
 /// Statements with their lines, counted from 1. A line that ends with `\` continues. Empty lines
 /// and comments are left out.
-fn statements(text: &str) -> impl Iterator<Item = (u64, String)> {
-    let mut lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r')).zip(1_u64..);
+fn statements(bytes: &[u8]) -> impl Iterator<Item = (u64, String)> {
+    let mut next = Some(Scanner::new(bytes));
     std::iter::from_fn(move || {
-        let (first, number) = lines.next()?;
-        let mut statement = first.trim_end().to_owned();
+        let mut lines = next.take()?;
+        let number = lines.line();
+        let mut statement = lines.rest_of_line().trim_ascii().to_vec();
+        let mut has_next = lines.next_line();
         // A comment does not continue. The limit bounds the memory that a hostile text needs.
-        let continues = !first.trim_start().starts_with('#');
-        while continues && statement.ends_with('\\') && statement.len() < 1 << 16 {
+        let continues = !statement.starts_with(b"#");
+        while continues && statement.ends_with(b"\\") && statement.len() < 1 << 16 {
             statement.pop();
-            let Some((next, _)) = lines.next() else { break };
-            statement.push(' ');
-            statement.push_str(next.trim());
+            if !has_next {
+                break;
+            }
+            statement.push(b' ');
+            statement.extend(lines.rest_of_line().trim_ascii());
+            has_next = lines.next_line();
         }
-        Some((number, statement.trim().to_owned()))
+        next = has_next.then_some(lines);
+        Some((number, String::from_utf8_lossy(statement.trim_ascii()).into_owned()))
     })
     .filter(|(_, statement)| !statement.is_empty() && !statement.starts_with('#'))
 }
 
-/// First word of a text, and the rest without blanks around it.
-fn split_word(text: &str) -> (&str, &str) {
-    let text = text.trim();
-    text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim()))
+/// Text that follows the words read so far, without blanks around it.
+fn text_after<'t>(words: &Scanner<'_>, text: &'t str) -> &'t str {
+    text.get(words.position()..).unwrap_or_default().trim_ascii()
 }
 
-/// Finite number of bounded magnitude at the beginning of a text, and the rest.
-fn number(text: &str) -> Option<(f32, &str)> {
-    let (word, rest) = split_word(text);
-    let number = word.parse::<f32>().ok().filter(|number| number.is_finite())?;
-    Some((number.clamp(-MAX_NUMBER, MAX_NUMBER), rest))
+/// Next word as a finite number of bounded magnitude.
+fn number(words: &mut Scanner<'_>) -> Option<f32> {
+    let number = words.word().and_then(real).filter(|number| number.is_finite())?;
+    Some(number.clamp(-MAX_NUMBER, MAX_NUMBER))
 }
 
 impl MtlMaterial {
@@ -165,7 +170,8 @@ impl MtlMaterial {
             self.colors.insert(word, color);
         } else if let Some(word) = NUMBERS.iter().find(named) {
             let value = rest.strip_prefix("-halo").unwrap_or(rest);
-            let (value, _) = number(value).ok_or_else(|| format!("`{word}` has no number; ignored"))?;
+            let value = number(&mut Scanner::new(value.as_bytes()))
+                .ok_or_else(|| format!("`{word}` has no number; ignored"))?;
             self.numbers.insert(word, value);
             if rest.starts_with("-halo") {
                 return Err("the option `-halo` is ignored".to_owned());
@@ -188,79 +194,73 @@ impl MtlMaterial {
 
 /// Color of one or three numbers; one counts for all channels. `None` for spectra and CIE XYZ.
 fn color(text: &str) -> Option<[f32; 3]> {
-    let (r, rest) = number(text)?;
-    let Some((g, rest)) = number(rest) else { return rest.is_empty().then_some([r; 3]) };
-    let (b, _) = number(rest)?;
-    Some([r, g, b].map(|channel| channel.max(0.0)))
+    let mut words = Scanner::new(text.as_bytes());
+    let r = number(&mut words)?;
+    if words.at_line_end() {
+        return Some([r; 3]);
+    }
+    Some([r, number(&mut words)?, number(&mut words)?].map(|channel| channel.max(0.0)))
 }
+
+/// Options of textures that have no effect.
+const IGNORED_OPTIONS: [&str; 7] = ["-blendu", "-blendv", "-cc", "-texres", "-boost", "-t", "-type"];
 
 impl MtlMap {
     /// Reads options and the name of the file, which may contain blanks. Returns the last option
     /// that has no effect, too.
-    fn parse(text: &str) -> (Self, Option<&str>) {
-        let (mut map, mut ignored, mut text) = (Self::default(), None, text.trim());
-        while text.starts_with('-') {
-            let (option, rest) = split_word(text);
-            let Some(after) = map.option(option, rest) else { break };
-            if matches!(option, "-blendu" | "-blendv" | "-cc" | "-texres" | "-boost" | "-t" | "-type") {
-                ignored = Some(option);
-            }
-            text = after;
+    fn parse(text: &str) -> (Self, Option<&'static str>) {
+        let (mut map, mut ignored, mut words) = (Self::default(), None, Scanner::new(text.as_bytes()));
+        loop {
+            let mut after = words.clone();
+            let Some(option) = after.word().filter(|word| map.option(word, &mut after).is_some()) else { break };
+            ignored = IGNORED_OPTIONS.into_iter().find(|known| known.as_bytes() == option).or(ignored);
+            words = after;
         }
+        let mut name = text_after(&words, text);
         // Some programs write the strength behind the name.
-        if let Some((before, strength)) = text.rsplit_once(" -bm ")
-            && let Some((strength, "")) = number(strength)
-        {
-            (map.strength, text) = (strength, before.trim_end());
+        if let Some((before, strength)) = name.rsplit_once(" -bm ") {
+            let mut words = Scanner::new(strength.as_bytes());
+            if let Some(strength) = number(&mut words).filter(|_| words.at_line_end()) {
+                (map.strength, name) = (strength, before.trim_ascii_end());
+            }
         }
-        let quoted = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
-        map.file = quoted.unwrap_or(text).to_owned();
+        let quoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+        map.file = quoted.unwrap_or(name).to_owned();
         (map, ignored)
     }
 
-    /// Reads the arguments of an option. Returns the text after them; `None` for an unknown option.
-    fn option<'t>(&mut self, option: &str, rest: &'t str) -> Option<&'t str> {
-        let skip = |text: &'t str| split_word(text).1;
-        Some(match option {
-            "-o" => numbers(rest, &mut self.offset),
-            "-s" => numbers(rest, &mut self.scale),
-            "-t" => numbers(rest, &mut [0.0; 2]),
-            "-mm" => {
-                let (base, rest) = number(rest)?;
-                let (gain, rest) = number(rest)?;
-                self.range = [base, gain];
-                rest
+    /// Reads the arguments of an option; `None` for a word that is no option, or if a number is
+    /// missing.
+    fn option(&mut self, option: &[u8], words: &mut Scanner<'_>) -> Option<()> {
+        match option {
+            b"-o" => numbers(words, &mut self.offset),
+            b"-s" => numbers(words, &mut self.scale),
+            b"-t" => numbers(words, &mut [0.0; 2]),
+            b"-mm" => self.range = [number(words)?, number(words)?],
+            b"-clamp" => self.is_clamped = words.word().is_some_and(|word| word.eq_ignore_ascii_case(b"on")),
+            b"-imfchan" => {
+                let word = String::from_utf8_lossy(words.word().unwrap_or_default());
+                self.channel = word.chars().next().map(|channel| channel.to_ascii_lowercase());
             }
-            "-clamp" => {
-                self.is_clamped = split_word(rest).0.eq_ignore_ascii_case("on");
-                skip(rest)
-            }
-            "-imfchan" => {
-                self.channel = split_word(rest).0.chars().next().map(|channel| channel.to_ascii_lowercase());
-                skip(rest)
-            }
-            "-bm" => {
-                let (strength, rest) = number(rest)?;
-                self.strength = strength;
-                rest
-            }
-            "-blendu" | "-blendv" | "-cc" | "-texres" | "-boost" | "-type" => skip(rest),
+            b"-bm" => self.strength = number(words)?,
+            b"-blendu" | b"-blendv" | b"-cc" | b"-texres" | b"-boost" | b"-type" => drop(words.word()),
             _ => return None,
-        })
+        }
+        Some(())
     }
 }
 
 /// Reads up to three numbers, of which the first two are kept. The name of the file, which follows,
 /// may be a number too, so that the last word is never read.
-fn numbers<'t>(mut text: &'t str, kept: &mut [f32; 2]) -> &'t str {
+fn numbers(words: &mut Scanner<'_>, kept: &mut [f32; 2]) {
     for index in 0..3 {
-        let Some((value, rest)) = number(text).filter(|(_, rest)| !rest.is_empty()) else { break };
+        let mut after = words.clone();
+        let Some(value) = number(&mut after).filter(|_| !after.at_line_end()) else { break };
         if let Some(kept) = kept.get_mut(index) {
             *kept = value;
         }
-        text = rest;
+        *words = after;
     }
-    text
 }
 
 #[cfg(test)]

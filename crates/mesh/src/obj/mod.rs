@@ -27,7 +27,7 @@ use crate::mesh_file::MeshFile;
 use crate::pieces::PIECE;
 use crate::sampling::{Counts, FileSampler};
 use crate::text::{Scanner, without_byte_order_mark};
-pub use model::{ObjModel, ObjSection};
+pub use model::{ObjModel, ObjSection, is_plain_obj};
 use reader::Contents;
 use std::io;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! An OBJ as a model: its mesh with what the statements `o`, `g`, `usemtl` and `s` say about the
 //! faces.
 
-use crate::text::integer;
+use crate::text::{Scanner, integer, without_byte_order_mark};
 use juggler_shape::MeshData;
 use std::sync::Arc;
 
@@ -86,6 +86,24 @@ impl Mark {
 fn smoothing(rest: &[u8]) -> u32 {
     let word = rest.trim_ascii().split(u8::is_ascii_whitespace).next().unwrap_or_default();
     integer(word).and_then(|group| u32::try_from(group).ok()).unwrap_or_default()
+}
+
+/// Whether an OBJ shows nothing but a mesh: no statement `mtllib` names a library of materials, and no
+/// smoothing group decides normals. Takes less time than [`parse_obj`](crate::parse_obj()).
+pub fn is_plain_obj(bytes: &[u8]) -> bool {
+    let mut scanner = Scanner::with_obj_rules(without_byte_order_mark(bytes));
+    let (mut is_smooth, mut has_normals) = (false, false);
+    loop {
+        match scanner.word() {
+            Some(b"mtllib") if !scanner.rest_of_line().is_empty() => return false,
+            Some(b"vn") => has_normals |= !scanner.rest_of_line().is_empty(),
+            Some(b"s") => is_smooth |= !matches!(scanner.rest_of_line().trim_ascii(), b"off" | b"0" | b""),
+            _ => {}
+        }
+        if !scanner.next_line() {
+            return has_normals || !is_smooth;
+        }
+    }
 }
 
 /// Sections and libraries of marks in the order of the file.

@@ -39,6 +39,24 @@ fn sections_follow_the_statements() {
 }
 
 #[test]
+fn libraries_and_smoothing_without_normals_need_a_model() {
+    let cases = [
+        ("", true),
+        ("o a\nusemtl b\nf 1 2 3", true),
+        ("v 0 0 0\r \tmtllib a.mtl", false),
+        ("\u{feff}mtllib a.mtl", false),
+        ("mtllib\n#mtllib a\n# \\\nusemtl mtllib", true),
+        ("s 1\nf 1 2 3", false),
+        ("s 1\nvn 0 0 1\n", true),
+        ("s off\ns 0\ns\ns \n", true),
+        ("f 1 2 \\\ns 3\n", true),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(is_plain_obj(text.as_bytes()), expected, "{text:?}");
+    }
+}
+
+#[test]
 fn colors_of_positions_are_decoded() {
     let model = read("v 0 0 0 1 0 0.5\nv 1 0 0\nv 0 1 0 0 2 -1\nf 1 2 3\n");
     let color = model.mesh.attributes.get("color").unwrap();
