@@ -36,9 +36,9 @@ impl MeshEstimate {
     }
 }
 
-/// Estimates the memory to [`load`](crate::load()) a file and to build the hierarchy of its mesh, as
-/// an upper bound of measured values. Zero for a file that no reader supports or that exceeds the
-/// default limit of bytes.
+/// Estimates the memory to load a file and to build the hierarchy of its mesh, as an upper bound of
+/// measured values. Zero for a file that no reader supports or that exceeds the default limit of
+/// bytes.
 pub fn estimate(path: &Path) -> Result<MeshEstimate, MeshError> {
     let failed = |error: io::Error| MeshError { path: path.to_owned(), kind: error.into() };
     let limit = MeshLimits::default().file_bytes;

@@ -1,7 +1,7 @@
 //! Mesh files: readers of Wavefront OBJ, Stanford PLY and STL, and a writer of PLY.
 //!
-//! [`load`] reads a file of any of these formats as one mesh, and [`parse_obj`] an OBJ with what its
-//! statements say about the faces.
+//! [`load`] reads a file of any of these formats as one mesh, with the solids of an STL, and
+//! [`parse_obj`] an OBJ with what its statements say about the faces. [`ply_bytes`] writes a PLY.
 //!
 //! The readers are written here because the available crates do not say where a file is wrong (tobj
 //! 4.0.5 has an enum without a position, stl_io 0.11.0 an `io::Error` without an offset, ply-rs-bw

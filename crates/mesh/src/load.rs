@@ -10,8 +10,8 @@ use crate::unsupported::UnsupportedFormat;
 use juggler_imaging::regular;
 use std::path::Path;
 
-/// Loads a mesh from a file. The extension of its name selects the format, in any case. If the content
-/// is clearly of another supported format, it is read as that format, with a warning.
+/// Loads a mesh from a file. The extension of its name selects the format, in any case. If the
+/// content is clearly of another supported format, it is read as that format, with a warning.
 pub fn load(path: &Path, limits: &MeshLimits) -> Result<MeshFile, MeshError> {
     let bytes = regular::read(path, limits.file_bytes);
     parse(path, &bytes.map_err(|error| MeshError { path: path.to_owned(), kind: error.into() })?, limits)

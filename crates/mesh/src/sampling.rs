@@ -67,8 +67,8 @@ impl FileSampler {
         read_at(&mut self.file, self.size.saturating_sub(TAIL), TAIL)
     }
 
-    /// Passes the text of the file to `count`, of a longer one samples of complete lines. Returns the
-    /// number of bytes passed, for [`scaled`].
+    /// Passes the text of the file to `count`, of a longer one samples of complete lines. Returns
+    /// the number of bytes passed, for [`scaled`].
     pub fn sample(&mut self, mut count: impl FnMut(&[u8])) -> io::Result<u64> {
         let size = self.size;
         if size <= HEAD {

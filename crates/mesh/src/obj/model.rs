@@ -88,8 +88,8 @@ fn smoothing(rest: &[u8]) -> u32 {
     integer(word).and_then(|group| u32::try_from(group).ok()).unwrap_or_default()
 }
 
-/// Whether an OBJ shows nothing but a mesh: no statement `mtllib` names a library of materials, and no
-/// smoothing group decides normals. Takes less time than [`parse_obj`](crate::parse_obj()).
+/// Whether an OBJ shows nothing but a mesh: no statement `mtllib` names a library of materials, and
+/// no smoothing group decides normals. Only the first words of the lines are read.
 pub fn is_plain_obj(bytes: &[u8]) -> bool {
     let mut scanner = Scanner::with_obj_rules(without_byte_order_mark(bytes));
     let (mut is_smooth, mut has_normals) = (false, false);

@@ -69,7 +69,7 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
     all_facets.finish(warnings, limits)
 }
 
-/// Name of the only solid, if the header is a line of a text as some programs write it: `solid NAME`.
+/// Name of the only solid, if the header begins with the line of a text: `solid NAME`.
 fn name(header: &[u8]) -> &[u8] {
     let mut scanner = Scanner::new(header);
     let is_solid = scanner.word_anywhere().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));

@@ -10,7 +10,8 @@ use juggler_math::Vec3;
 /// Maximum number of bytes of the name of a solid.
 const MAX_NAME: usize = 1024;
 
-/// Welded facets of a piece, the solids that begin in it, and the numbers of dropped facets and of those without a normal.
+/// Welded facets of a piece, the solids that begin in it, and the numbers of dropped facets and of
+/// facets without a normal.
 #[derive(Default)]
 pub(super) struct WeldedFacets {
     piece: WeldedPiece,
@@ -55,7 +56,8 @@ fn solid_name(rest: &[u8]) -> Option<String> {
     is_name.then(|| String::from_utf8_lossy(name).into_owned())
 }
 
-/// Welded facets of all pieces, their solids, and the numbers of dropped facets and of those without a normal.
+/// Welded facets of all pieces, their solids, and the numbers of dropped facets and of facets
+/// without a normal.
 #[derive(Default)]
 pub(super) struct AllFacets {
     welded: Welded,

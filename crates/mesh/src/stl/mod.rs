@@ -2,8 +2,8 @@
 //!
 //! Equal positions are welded to one vertex (-0 equals 0), which makes the mesh indexed. The
 //! normals of the file are ignored: the order of the corners defines the front side. Facets with
-//! infinite or NaN coordinates are left out and counted. The solids of a text are sections of one mesh;
-//! a binary file is one solid.
+//! infinite or NaN coordinates are left out and counted. The solids of a text are sections of one
+//! mesh; a binary file is one solid.
 
 mod ascii;
 mod binary;
@@ -59,8 +59,8 @@ fn is_text(bytes: &[u8]) -> bool {
     !binary::is_binary(bytes) && ascii::is_text(bytes)
 }
 
-/// Whether an STL may have several solids, by the lines that begin with the keyword `solid`. Reads the
-/// file up to the second one, which takes less time than [`parse`](crate::parse()).
+/// Whether an STL may have several solids, by the lines that begin with the keyword `solid`. The
+/// file is read up to the second one, and facets are not parsed.
 pub fn has_several_solids(bytes: &[u8]) -> bool {
     let bytes = without_byte_order_mark(bytes);
     is_text(bytes) && ascii::has_several_solids(bytes)
