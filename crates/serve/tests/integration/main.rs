@@ -15,3 +15,4 @@ mod drops;
 mod fuzz;
 mod limits;
 mod page;
+mod protocol;

@@ -14,6 +14,7 @@ mod files;
 mod lights;
 mod pictures;
 mod preview;
+mod protocol;
 mod thumbnails;
 
 use juggler_session::{Session, Status};
