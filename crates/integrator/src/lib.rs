@@ -58,7 +58,7 @@ pub trait Integrator: Send + Sync {
 juggler_math::closed_set! {
     /// Light transport algorithm, or visualization of one surface property. In JSON: `{"classic":
     /// {"max_depth": 10}}`, or short `"classic"`.
-    pub enum AnyIntegrator: Integrator {
+    pub enum AnyIntegrator: Integrator, kind IntegratorKind {
         classic::Classic, path::Path, direct::Direct, ambient_occlusion::AmbientOcclusion, albedo::Albedo, normals::Normals, depth::Depth,
     }
 }

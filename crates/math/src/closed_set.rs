@@ -1,5 +1,19 @@
 //! The macro that declares closed families of kinds, such as shapes: a kind is one file and two
-//! lines.
+//! lines. [`NamedKind`] is what users choose by name.
+
+/// Kind of a closed family, or another member of a closed set, that users choose by name.
+pub trait NamedKind: Copy + Eq + 'static {
+    /// All kinds, in the order in which messages and user interfaces list them.
+    const ALL: &'static [Self];
+
+    /// Name of the kind, as JSON and command lines have it.
+    fn name(self) -> &'static str;
+
+    /// Kind of this name; `None` for an unknown name.
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+    }
+}
 
 /// Declares a family of kinds: an enum with one variant per kind, its conversions, and method
 /// dispatch.
@@ -14,8 +28,62 @@
 ///
 /// `{ sobol::Sobol => SobolPoints, ... }` declares both at once: descriptions, and the values that
 /// they compile to.
+///
+/// `pub enum AnySampler: SamplerDescription, kind SamplerKind { ... }` declares descriptions and the
+/// enum of their kinds, a [`NamedKind`], whose default parameters are those of the type's `Default`.
+/// `pub enum ToneCurveKind of AnyCurve { Srgb, ... }` declares the kinds of another enum.
 #[macro_export]
 macro_rules! closed_set {
+    ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident, kind $Kinds:ident {
+            $($file:ident::$Kind:ident),+ $(,)?
+        }
+    ) => {
+        $crate::closed_set! { $(#[$attribute])* $vis enum $Set: $Trait { $($file::$Kind),+ } }
+        $crate::closed_set! { $vis enum $Kinds of $Set { $($Kind),+ } }
+    };
+
+    ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident, kind $Kinds:ident {
+            $($file:ident::$Kind:ident => $Compiled:ident),+ $(,)?
+        }
+        $($compiled:tt)+
+    ) => {
+        $crate::closed_set! {
+            $(#[$attribute])* $vis enum $Set: $Trait { $($file::$Kind => $Compiled),+ } $($compiled)+
+        }
+        $crate::closed_set! { $vis enum $Kinds of $Set { $($Kind),+ } }
+    };
+
+    ($vis:vis enum $Kinds:ident of $Set:ident { $($Kind:ident),+ $(,)? }) => {
+        #[doc = concat!("Kind of [`", stringify!($Set), "`], without its parameters.")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        $vis enum $Kinds {
+            $(
+                #[allow(missing_docs, reason = "the kind's own documentation says it")]
+                $Kind
+            ),+
+        }
+
+        impl $crate::NamedKind for $Kinds {
+            const ALL: &'static [Self] = &[$(Self::$Kind),+];
+
+            fn name(self) -> &'static str {
+                match self { $(Self::$Kind => $crate::kind_name!($Kind)),+ }
+            }
+        }
+
+        impl From<&$Set> for $Kinds {
+            fn from(member: &$Set) -> Self {
+                match member { $($Set::$Kind(_) => Self::$Kind),+ }
+            }
+        }
+
+        impl From<$Kinds> for $Set {
+            fn from(kind: $Kinds) -> Self {
+                match kind { $($Kinds::$Kind => Self::$Kind($Kind::default())),+ }
+            }
+        }
+    };
+
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: static $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }
         $($method:tt)+
     ) => {

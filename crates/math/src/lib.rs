@@ -30,6 +30,7 @@ pub mod warp;
 pub mod testing;
 
 pub use aabb::Aabb;
+pub use closed_set::NamedKind;
 pub use color::Rgb;
 pub use frame::Frame;
 pub use glam::{DMat3, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3, vec2, vec3};

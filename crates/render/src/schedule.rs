@@ -3,7 +3,7 @@
 use super::wavefront::Engine;
 use super::{Control, Job, Work};
 use juggler_camera::film::{ClampedRadiance, Rect};
-use juggler_math::Rgb;
+use juggler_math::{NamedKind, Rgb};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,7 @@ const MAX_TILE: u32 = 32;
 const MIN_TILE: u32 = 4;
 
 /// Strategy by which threads obtain pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Scheduler {
     /// Idle threads steal tiles from busy ones (as in ScalaBlitz).
     #[default]
@@ -27,6 +27,18 @@ pub enum Scheduler {
     RowQueue,
     /// Each thread renders one block of rows, without load balancing.
     StaticRows,
+}
+
+impl NamedKind for Scheduler {
+    const ALL: &'static [Self] = &[Self::WorkStealing, Self::RowQueue, Self::StaticRows];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::WorkStealing => "work-stealing",
+            Self::RowQueue => "row-queue",
+            Self::StaticRows => "static-rows",
+        }
+    }
 }
 
 /// Scheduling options, which have no influence on the picture.

@@ -18,7 +18,7 @@ pub trait SamplerDescription: Send + Sync {
 
 juggler_math::closed_set! {
     /// Sampler of any kind. In JSON: `{"sobol": {}}`, or short `"sobol"`.
-    pub enum AnySampler: SamplerDescription {
+    pub enum AnySampler: SamplerDescription, kind SamplerKind {
         sobol::Sobol => SobolPoints,
         stratified::Stratified => StratifiedPoints,
         independent::Independent => IndependentPoints,

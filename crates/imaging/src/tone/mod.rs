@@ -82,6 +82,8 @@ pub enum AnyCurve {
     PbrNeutral(PbrNeutral),
 }
 
+juggler_math::closed_set! { pub enum ToneCurveKind of AnyCurve { Srgb, Gamma, Linear, Reinhard, Aces, Agx, PbrNeutral } }
+
 impl AnyCurve {
     /// The curve or tone mapper of this kind.
     pub fn kind(&self) -> CurveKind<'_> {

@@ -2,6 +2,7 @@
 //! left, and its engine can be reused.
 
 use super::*;
+use juggler_math::NamedKind;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
@@ -51,7 +52,7 @@ fn a_cancelled_render_enters_no_further_tile() {
     let integrator = Cancelling { classic, control: &control, vertices: AtomicU32::new(0), cancelled_at: 1 };
     let job = Job { integrator: &integrator, ..job(&world, &camera, &integrator.classic, samples) };
     let region = Rect { x: 0, y: 0, width: size.x, height: size.y };
-    for scheduler in [Scheduler::WorkStealing, Scheduler::RowQueue, Scheduler::StaticRows] {
+    for scheduler in Scheduler::ALL.iter().copied() {
         let (schedule, start) = (Schedule { scheduler, ..Schedule::default() }, Instant::now());
         assert_eq!(render::<Cancelled>(&job, region, schedule, &control, |_| Ok(())), Err(Cancelled));
         assert!(start.elapsed() < Duration::from_secs(1), "{scheduler:?}: {:?}", start.elapsed());

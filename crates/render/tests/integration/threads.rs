@@ -5,7 +5,7 @@ use juggler_camera::aov;
 use juggler_camera::film::{AnyFilter, Rect};
 use juggler_camera::sampler::AnySampler;
 use juggler_camera::{AnyCamera, ShutterCamera};
-use juggler_math::{Rgb, Transform, UVec2, Vec3};
+use juggler_math::{NamedKind, Rgb, Transform, UVec2, Vec3};
 use juggler_render::{Cancelled, Control, Job, Schedule, Scheduler, Work, render};
 use juggler_world::World;
 
@@ -73,7 +73,7 @@ fn pixels_do_not_depend_on_threads_and_tiles() {
     let whole = bits(&job.render(&Work::first(region, SAMPLES), &Control::default()).unwrap().means());
     for threads in [1, 2, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        for scheduler in [Scheduler::WorkStealing, Scheduler::RowQueue, Scheduler::StaticRows] {
+        for scheduler in Scheduler::ALL.iter().copied() {
             let mut rows = Vec::new();
             let schedule = Schedule { scheduler, band_pixels: 300 };
             pool.install(|| {
