@@ -22,7 +22,7 @@ use crate::source;
 use crate::value::FrameRange;
 use juggler::film::shard::{self, FrameShard};
 use juggler::imaging::Options;
-use juggler::{Limit, Settings};
+use juggler::{Limit, Settings, by_name};
 use std::ops::Range;
 use std::time::Duration;
 
@@ -125,7 +125,7 @@ impl Plan {
         let shard = Shard::new(args.shard, parts::variable)?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
-            settings: Settings { aovs, ..settings(&args, output_kind) },
+            settings: Settings { aovs, ..settings(&args, output_kind)? },
             scene: args.scene,
             model: args.model,
             times,
@@ -248,23 +248,23 @@ impl Plan {
 
 /// Overrides of the scene's settings. The crop of a picture is its region; the crop of a partial
 /// render is in [`Cut`].
-fn settings(args: &RenderArgs, output_kind: OutputKind) -> Settings {
-    Settings {
+fn settings(args: &RenderArgs, output_kind: OutputKind) -> Result<Settings, Failure> {
+    Ok(Settings {
         limit: match (args.noise, args.time, &args.samples_from) {
             (Some(level), ..) => Limit::Noise(level),
             (_, None, None) => Limit::Samples,
             (None, time, _) => Limit::Time { seconds: time.map_or(0.0, |time| time.as_secs_f64()) },
         },
         crop: if output_kind == OutputKind::PartialRender { None } else { args.crop },
-        curve: args.tone.clone(),
+        curve: args.tone.as_deref().map(|name| by_name("tone curve", name)).transpose()?,
         exposure_stops: args.exposure,
         aovs: Vec::new(),
         denoiser: args.denoise,
         white_balance: args.white_balance,
         primaries: args.primaries,
         dither: args.dither,
-        ..args.view.settings()
-    }
+        ..args.view.settings()?
+    })
 }
 
 impl TimeSelection {

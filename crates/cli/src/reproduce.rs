@@ -4,6 +4,7 @@
 use crate::plan::{FrameOutput, Plan, TimeSelection};
 use juggler::camera::film::Rect;
 use juggler::imaging::{DisplayLook, Options, Primaries, SampleDepth, WhiteBalance};
+use juggler::math::NamedKind;
 use juggler::{Aov, Denoiser, Limit, Settings};
 use std::fmt::Display;
 
@@ -43,7 +44,7 @@ pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {
         Limit::Samples | Limit::Noise(_) => words.flag("--samples", *samples),
     }
     words.flag("--noise", if let Limit::Noise(level) = limit { Some(level) } else { None });
-    words.flag("--integrator", integrator.as_deref().map(quoted));
+    words.flag("--integrator", integrator.map(NamedKind::name));
     words.flag("--max-depth", *max_depth);
     words.flag("--camera", camera.as_deref().map(quoted));
     words.time(&plan.times, frame_output.frame);
@@ -82,7 +83,7 @@ impl CommandLine {
     /// Flags of tone mapping.
     fn tone(&mut self, settings: &Settings) {
         let Settings { curve, exposure_stops, white_balance, primaries, dither, .. } = settings;
-        self.flag("--tone", curve.as_deref().map(quoted));
+        self.flag("--tone", curve.map(NamedKind::name));
         self.flag("--exposure", *exposure_stops);
         let light = white_balance.map(|WhiteBalance { kelvin, tint }| match tint {
             0.0 => kelvin.to_string(),

@@ -1,22 +1,17 @@
-//! Selection of integrators, samplers, tone curves and the like by name, with default parameters.
+//! Selection of integrators, samplers, tone curves and the like by name.
 
 use crate::Error;
+use juggler_math::NamedKind;
 use juggler_scene::suggest::did_you_mean_or_list;
-use schemars::JsonSchema;
-use serde::de::DeserializeOwned;
 
-/// Returns the names of a family's types, as the schema of the scene format lists them.
-pub fn names<Family: JsonSchema>() -> Vec<String> {
-    let schema = schemars::schema_for!(Family);
-    let kinds = schema.get("oneOf").and_then(|kinds| kinds.as_array()).into_iter().flatten();
-    kinds.filter_map(|kind| kind.pointer("/required/0")?.as_str().map(str::to_owned)).collect()
+/// Returns the names of all kinds of a closed set, in its order.
+pub fn names<Kind: NamedKind>() -> impl Iterator<Item = &'static str> + Clone {
+    Kind::ALL.iter().map(|kind| kind.name())
 }
 
-/// Creates a type of a family by name; `what` names the family in messages.
-pub fn by_name<Family: JsonSchema + DeserializeOwned>(what: &str, name: &str) -> Result<Family, Error> {
-    check_name(what, name, names::<Family>().iter().map(String::as_str))?;
-    let kind = serde_json::json!({ name: {} });
-    Family::deserialize(&kind).map_err(|error| Error::Settings(format!("{what} `{name}`: {error}")))
+/// Returns the kind of a name; `what` names the set in messages. The error suggests similar names.
+pub fn by_name<Kind: NamedKind>(what: &str, name: &str) -> Result<Kind, Error> {
+    Kind::from_name(name).ok_or_else(|| unknown_name(what, name, names::<Kind>()))
 }
 
 /// Checks that a name is known. The error suggests similar names.
@@ -24,31 +19,58 @@ pub fn check_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n st
     if known.clone().any(|one| one == name) {
         return Ok(());
     }
+    Err(unknown_name(what, name, known))
+}
+
+fn unknown_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n str> + Clone) -> Error {
     let help = did_you_mean_or_list(name, known).map(|help| format!("; {help}")).unwrap_or_default();
-    Err(Error::Settings(format!("there is no {what} `{name}`{help}")))
+    Error::Settings(format!("there is no {what} `{name}`{help}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_imaging::AnyCurve;
-    use juggler_integrator::AnyIntegrator;
+    use juggler_camera::sampler::{AnySampler, SamplerKind};
+    use juggler_imaging::{AnyCurve, ToneCurveKind};
+    use juggler_integrator::{AnyIntegrator, IntegratorKind};
+    use juggler_render::Scheduler;
+    use serde::de::DeserializeOwned;
+
+    /// Checks that the scene format has these kinds and no others, by their names and with their
+    /// default parameters.
+    fn check_kinds<Family, Kind>()
+    where
+        Family: From<Kind> + DeserializeOwned + schemars::JsonSchema + PartialEq + std::fmt::Debug,
+        Kind: NamedKind + for<'f> From<&'f Family> + std::fmt::Debug,
+    {
+        for kind in Kind::ALL.iter().copied() {
+            let family = Family::from(kind);
+            assert_eq!(Family::deserialize(serde_json::json!({ kind.name(): {} })).unwrap(), family);
+            assert_eq!((Kind::from(&family), by_name::<Kind>("kind", kind.name()).unwrap()), (kind, kind));
+        }
+        let schema = schemars::schema_for!(Family);
+        let listed = schema.get("oneOf").and_then(|kinds| kinds.as_array()).into_iter().flatten();
+        assert!(listed.filter_map(|kind| kind.pointer("/required/0")?.as_str()).eq(names::<Kind>()));
+    }
 
     #[test]
-    fn every_listed_name_gives_its_kind() {
-        let integrators = names::<AnyIntegrator>();
-        assert!(integrators.contains(&"classic".to_owned()) && integrators.contains(&"ambient_occlusion".to_owned()));
-        for name in integrators {
-            assert_eq!(by_name::<AnyIntegrator>("integrator", &name).unwrap().name(), name);
-        }
-        for name in names::<AnyCurve>() {
-            by_name::<AnyCurve>("tone curve", &name).unwrap();
+    fn kinds_are_those_of_the_scene_format() {
+        check_kinds::<AnyIntegrator, IntegratorKind>();
+        check_kinds::<AnySampler, SamplerKind>();
+        check_kinds::<AnyCurve, ToneCurveKind>();
+        assert!(names::<IntegratorKind>().any(|name| name == "ambient_occlusion"));
+    }
+
+    #[test]
+    fn schedulers_have_different_names() {
+        for scheduler in Scheduler::ALL {
+            assert_eq!(Scheduler::from_name(scheduler.name()), Some(*scheduler));
         }
     }
 
     #[test]
     fn misspelled_kinds_get_suggestions() {
-        let message = |name| by_name::<AnyIntegrator>("integrator", name).unwrap_err().to_string();
+        let message = |name| by_name::<IntegratorKind>("integrator", name).unwrap_err().to_string();
         assert_eq!(message("clasic"), "there is no integrator `clasic`; did you mean `classic`?");
         assert!(message("unheard of").contains("known: "), "{}", message("unheard of"));
     }

@@ -1,13 +1,13 @@
 //! Settings that override values of a scene.
 
-use crate::kinds::{by_name, check_name};
+use crate::kinds::check_name;
 use crate::{Aov, Denoiser, Error, Picture};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
-use juggler_imaging::{Primaries, Tone, WhiteBalance};
-use juggler_integrator::AnyIntegrator;
+use juggler_camera::sampler::SamplerKind;
+use juggler_imaging::{Primaries, Tone, ToneCurveKind, WhiteBalance};
+use juggler_integrator::{AnyIntegrator, IntegratorKind};
 use juggler_render::StopCriterion;
 use juggler_scene::description::{CameraName, Render};
-use juggler_scene::kind::name_of;
 use juggler_scene::model::find_camera;
 use juggler_scene::{IntegratorChoice, Scene};
 use std::ops::RangeInclusive;
@@ -69,11 +69,11 @@ pub struct Settings {
     pub samples: Option<u32>,
     /// Stop condition.
     pub limit: Limit,
-    /// Name of an integrator, with default parameters; the scene's parameters are kept if it is the
-    /// scene's own integrator.
-    pub integrator: Option<String>,
-    /// Name of a sampler; the scene's parameters are kept likewise.
-    pub sampler: Option<String>,
+    /// Integrator, with default parameters; the scene's parameters are kept if it is the scene's own
+    /// integrator.
+    pub integrator: Option<IntegratorKind>,
+    /// Sampler; the scene's parameters are kept likewise.
+    pub sampler: Option<SamplerKind>,
     /// Maximum number of specular bounces under the integrator `classic`, 0 to 1000, and of path
     /// segments under `path`, 1 to 10,000.
     pub max_depth: Option<u32>,
@@ -85,8 +85,8 @@ pub struct Settings {
     pub seed: Option<u64>,
     /// Region to render, in pixels; `None` renders the whole image.
     pub crop: Option<Rect>,
-    /// Name of a tone curve, for files that do not store linear radiance.
-    pub curve: Option<String>,
+    /// Tone curve, with default parameters, for files that do not store linear radiance.
+    pub curve: Option<ToneCurveKind>,
     /// Exposure in photographic stops, for such files; each stop doubles the brightness.
     pub exposure_stops: Option<f32>,
     /// Arbitrary output variables to render.
@@ -102,7 +102,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Returns the scene with these settings applied. Fails for unknown names and values out of
+    /// Returns the scene with these settings applied. Fails for an unknown camera and values out of
     /// range.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
         let camera = self.camera_of(scene)?;
@@ -140,18 +140,18 @@ impl Settings {
         render.samples = self.samples.unwrap_or(self.limit.max_samples(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);
         render.seed = self.seed.unwrap_or(render.seed);
-        let named = render.integrator.as_ref().map(AnyIntegrator::name);
-        if let Some(name) = self.integrator.as_deref().filter(|name| Some(*name) != named) {
-            render.integrator = Some(by_name("integrator", name)?);
+        let own = render.integrator.as_ref().map(IntegratorKind::from);
+        if let Some(kind) = self.integrator.filter(|kind| Some(*kind) != own) {
+            render.integrator = Some(kind.into());
         }
-        if let Some(name) = self.sampler.as_deref().filter(|name| *name != name_of(&render.sampler)) {
-            render.sampler = by_name("sampler", name)?;
+        if let Some(kind) = self.sampler.filter(|kind| *kind != SamplerKind::from(&render.sampler)) {
+            render.sampler = kind.into();
         }
         if let (Some(depth), Some(integrator)) = (self.max_depth, &mut render.integrator) {
             limit_depth(integrator, depth)?;
         }
-        if let Some(name) = &self.curve {
-            tone.curve = by_name("tone curve", name)?;
+        if let Some(kind) = self.curve {
+            tone.curve = kind.into();
         }
         tone.exposure_stops = self.exposure_stops.unwrap_or(tone.exposure_stops);
         tone.white_balance = self.white_balance.or(tone.white_balance);
@@ -218,7 +218,7 @@ fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_integrator::{Classic, Normals, Path};
+    use juggler_integrator::{Classic, Normals};
 
     fn scene() -> Scene {
         let mut scene = Scene::new().size(20, 10);
@@ -229,14 +229,14 @@ mod tests {
     #[test]
     fn settings_that_are_not_given_stay() {
         assert_eq!(Settings::default().apply(&scene()).unwrap().description, scene().description);
-        let own = Settings { integrator: Some("classic".into()), max_depth: Some(3), ..Settings::default() };
+        let own = Settings { integrator: Some(IntegratorKind::Classic), max_depth: Some(3), ..Settings::default() };
         let expected = Classic { min_weight: 0.5, max_depth: 3, ..Classic::default() };
         assert_eq!(own.apply(&scene()).unwrap().description.render.integrator, Some(expected.into()));
     }
 
     #[test]
     fn another_integrator_comes_with_its_defaults() {
-        let other = Settings { integrator: Some("normals".into()), ..Settings::default() };
+        let other = Settings { integrator: Some(IntegratorKind::Normals), ..Settings::default() };
         let scene = other.apply(&scene()).unwrap();
         assert_eq!(scene.description.render.integrator, Some(Normals::default().into()));
         let deep = Settings { max_depth: Some(3), ..other };
@@ -245,15 +245,16 @@ mod tests {
 
     #[test]
     fn max_depth_is_set_in_the_integrator() {
-        let apply = |integrator: &str, depth| {
-            let settings =
-                Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
+        use IntegratorKind::{Classic, Path};
+        let apply = |integrator, depth| {
+            let settings = Settings { integrator: Some(integrator), max_depth: Some(depth), ..Settings::default() };
             settings.apply(&scene()).map(|scene| scene.description.render.integrator.clone())
         };
-        assert_eq!(apply("path", 4).unwrap(), Some(Path { max_depth: 4, ..Path::default() }.into()));
-        assert!(apply("classic", 0).is_ok() && apply("path", 10_000).is_ok());
-        for (integrator, depth) in [("path", 0), ("path", 10_001), ("classic", 1001)] {
-            assert!(apply(integrator, depth).unwrap_err().to_string().contains(" to 10"), "{integrator} {depth}");
+        let four = juggler_integrator::Path { max_depth: 4, ..juggler_integrator::Path::default() };
+        assert_eq!(apply(Path, 4).unwrap(), Some(four.into()));
+        assert!(apply(Classic, 0).is_ok() && apply(Path, 10_000).is_ok());
+        for (integrator, depth) in [(Path, 0), (Path, 10_001), (Classic, 1001)] {
+            assert!(apply(integrator, depth).unwrap_err().to_string().contains(" to 10"), "{integrator:?} {depth}");
         }
     }
 

@@ -1,9 +1,11 @@
 //! Scenes and names to choose from.
 
 use crate::edits::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
-use juggler::camera::sampler::AnySampler;
-use juggler::imaging::AnyCurve;
-use juggler::integrator::AnyIntegrator;
+use juggler::camera::sampler::SamplerKind;
+use juggler::imaging::ToneCurveKind;
+use juggler::integrator::IntegratorKind;
+use juggler::math::NamedKind;
+use juggler::render::Scheduler;
 use juggler::scene::{BuiltIn, Scene, built_in_scenes};
 use juggler_session::Channel;
 use serde_json::{Value, json};
@@ -36,18 +38,34 @@ fn listing(scene: Option<&str>) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "scenes": built_in_scenes().iter().map(of).collect::<Vec<_>>(),
         "file": file.map(|name| json!({"name": name, "title": Path::new(name).file_name().map(|n| n.to_string_lossy())})),
-        "integrators": juggler::names::<AnyIntegrator>(),
-        "samplers": juggler::names::<AnySampler>(),
-        "tones": juggler::names::<AnyCurve>(),
-        "schedulers": ["work-stealing", "row-queue", "static-rows"],
+        "integrators": names::<IntegratorKind>(),
+        "samplers": names::<SamplerKind>(),
+        "tones": names::<ToneCurveKind>(),
+        "schedulers": names::<Scheduler>(),
         "channels": Channel::ALL,
         "most": {"edge": MAX_EDGE, "pixels": MAX_PIXELS, "samples": MAX_SAMPLES},
     })
 }
 
+fn names<Kind: NamedKind>() -> Vec<&'static str> {
+    juggler::names::<Kind>().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn kinds_and_channels_are_listed_by_name() {
+        let listing: Value = serde_json::from_str(Catalog::new(None).text()).unwrap();
+        let integrators = ["classic", "path", "direct", "ambient_occlusion", "albedo", "normals", "depth"];
+        assert_eq!(listing["integrators"], json!(integrators));
+        assert_eq!(listing["samplers"], json!(["sobol", "stratified", "independent", "blue_noise"]));
+        assert_eq!(listing["tones"], json!(["srgb", "gamma", "linear", "reinhard", "aces", "agx", "pbr_neutral"]));
+        assert_eq!(listing["schedulers"], json!(["work-stealing", "row-queue", "static-rows"]));
+        let channels = ["color", "albedo", "normals", "depth", "objects", "materials", "samples", "noise"];
+        assert_eq!(listing["channels"], json!(channels));
+    }
 
     #[test]
     fn every_built_in_scene_is_listed() {

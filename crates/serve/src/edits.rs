@@ -3,6 +3,7 @@
 
 use juggler::MAX_GAIN;
 use juggler::scene::built_in_scenes;
+use juggler_session::wire::EditMessage;
 use juggler_session::{Edit, Fly, Orbit, Setting};
 use serde_json::Value;
 
@@ -20,9 +21,19 @@ const MAX_NAME: usize = 100;
 /// size.
 const EDITABLE_PATHS: [&str; 6] = ["/materials/", "/lights/", "/background", "/camera/", "/cameras/", "/tone/"];
 
-/// Checks an edit; an error is the reason of the refusal. `scene` is the file with which the server
-/// was started; `local` is true for pages on this machine.
-pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String> {
+/// Reads and checks an edit; an error is the reason of the refusal. The result of an accepted message
+/// is the edit, or the error that the session reports for a name or a camera that is not valid.
+/// `scene` is the file with which the server was started; `local` is true for pages on this machine.
+pub fn read(message: EditMessage, scene: Option<&str>, local: bool) -> Result<Result<Edit, String>, String> {
+    message.kind_name().map_or(Ok(()), short)?;
+    message.camera().map_or(Ok(()), check_value)?;
+    match message.read() {
+        Ok(edit) => check(&edit, scene, local).map(|()| Ok(edit)),
+        Err(error) => Ok(Err(error)),
+    }
+}
+
+fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String> {
     match edit {
         Edit::Scene(name) => check_scene(name, scene),
         Edit::Files(_) => Err("pages open dropped files by their number".into()),
@@ -41,11 +52,16 @@ pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String
         }
         Edit::Bookmark(name) if name.trim().is_empty() => Err("a bookmark needs a name".into()),
         Edit::Bookmark(name) => short(name),
-        Edit::Look(camera) => check_value(camera),
         Edit::Set { path, value } if is_model_choice(path) => check_choice(value),
         Edit::Set { path, value } => check_path(path).and_then(|()| check_value(value)),
         Edit::Setting(setting) => check_setting(setting),
-        Edit::Reload | Edit::Frame(None) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) | Edit::Reset => Ok(()),
+        Edit::Reload
+        | Edit::Frame(None)
+        | Edit::Look(_)
+        | Edit::Play(_)
+        | Edit::Show(_)
+        | Edit::Region(_)
+        | Edit::Reset => Ok(()),
     }
 }
 
@@ -82,15 +98,16 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
             short(name)
                 .and_then(|()| if fits { Ok(()) } else { Err(format!("factors of light groups are 0 to {MAX_GAIN}")) })
         }
-        Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
-            short(name)
-        }
         Setting::Samples(_)
         | Setting::Threads(_)
         | Setting::Exposure(_)
         | Setting::MaxDepth(_)
         | Setting::Denoise(_)
-        | Setting::Seed(_) => Ok(()),
+        | Setting::Seed(_)
+        | Setting::Integrator(_)
+        | Setting::Sampler(_)
+        | Setting::Tone(_)
+        | Setting::Scheduler(_) => Ok(()),
     }
 }
 
@@ -144,8 +161,8 @@ mod tests {
     use serde_json::json;
 
     fn allowed(edit: Value) -> bool {
-        let edit: Edit = serde_json::from_value(edit).unwrap();
-        check(&edit, Some("mine/scene.json"), false).is_ok()
+        let message = serde_json::from_value(edit).unwrap();
+        read(message, Some("mine/scene.json"), false).is_ok()
     }
 
     #[test]

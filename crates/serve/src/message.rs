@@ -1,6 +1,7 @@
 //! JSON messages between pages and server. [`crate::encoded_frame`] has the binary frames.
 
-use juggler_session::{Edit, PixelInfo, Status};
+use juggler_session::wire::EditMessage;
+use juggler_session::{PixelInfo, Status};
 use serde::{Deserialize, Serialize};
 
 /// Message from a page: an object with one member.
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum PageMessage {
     /// Requests an edit; only the page that steers may send it.
-    Edit(Box<Edit>),
+    Edit(Box<EditMessage>),
     /// Acknowledges that the frame with this serial number was displayed, and all before it.
     Ack(u32),
     /// Probes a pixel.
@@ -67,7 +68,7 @@ impl ServerMessage<'_> {
 /// Returns whether a text is a valid message from a page on this machine that steers.
 pub fn is_allowed(text: &str) -> bool {
     match serde_json::from_str(text) {
-        Ok(PageMessage::Edit(edit)) => crate::edits::check(&edit, None, true).is_ok(),
+        Ok(PageMessage::Edit(message)) => crate::edits::read(*message, None, true).is_ok_and(|edit| edit.is_ok()),
         other => other.is_ok(),
     }
 }
@@ -75,14 +76,19 @@ pub fn is_allowed(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler_session::Edit;
 
     #[test]
     fn each_message_is_an_object_with_one_member() {
         let read = |text: &str| serde_json::from_str::<PageMessage>(text);
         assert!(matches!(read(r#"{"ack": 7}"#), Ok(PageMessage::Ack(7))));
         assert!(matches!(read(r#"{"steer": true}"#), Ok(PageMessage::Steer(_))));
-        assert!(matches!(read(r#"{"edit": {"zoom": 1.5}}"#), Ok(PageMessage::Edit(edit)) if *edit == Edit::Zoom(1.5)));
-        assert!(matches!(read(r#"{"edit": "reload"}"#), Ok(PageMessage::Edit(edit)) if *edit == Edit::Reload));
+        let edit = |text: &str| match read(text) {
+            Ok(PageMessage::Edit(message)) => message.read(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(edit(r#"{"edit": {"zoom": 1.5}}"#), Ok(Edit::Zoom(1.5)));
+        assert_eq!(edit(r#"{"edit": "reload"}"#), Ok(Edit::Reload));
         for wrong in [r#"{"steer": false}"#, r#"{"ack": 1, "here": true}"#, r#"{"ack": -1}"#, "[]", "{}", "7", ""] {
             assert!(read(wrong).is_err(), "{wrong}");
         }

@@ -11,6 +11,7 @@ use axum::extract::ws::{Message, WebSocket};
 use futures_util::StreamExt;
 use futures_util::stream::SplitStream;
 use juggler_session::Edit;
+use juggler_session::wire::EditMessage;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
@@ -76,7 +77,7 @@ impl Listener {
 
     async fn receive(&mut self, text: &str) {
         match serde_json::from_str(text) {
-            Ok(PageMessage::Edit(edit)) => self.edit(*edit).await,
+            Ok(PageMessage::Edit(message)) => self.edit(*message).await,
             Ok(PageMessage::Ack(serial)) => {
                 self.displayed.send_replace(serial);
             }
@@ -98,14 +99,15 @@ impl Listener {
         }
     }
 
-    async fn edit(&mut self, edit: Edit) {
+    async fn edit(&mut self, message: EditMessage) {
         if !self.try_steer() {
             return self.answer(&ServerMessage::Refused(WATCHES)).await;
         }
-        if let Err(why) = edits::check(&edit, self.state.scene.as_deref(), self.peer.is_local()) {
-            return self.refuse(&why).await;
-        }
-        let revision = self.state.session.edit(edit);
+        let revision = match edits::read(message, self.state.scene.as_deref(), self.peer.is_local()) {
+            Ok(Ok(edit)) => self.state.session.edit(edit),
+            Ok(Err(error)) => self.state.session.report_unread(error),
+            Err(why) => return self.refuse(&why).await,
+        };
         let _ = timeout(MAX_WAIT, self.wait_for_session(revision)).await;
     }
 

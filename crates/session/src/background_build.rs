@@ -1,9 +1,9 @@
 //! Background builds: the worker's threads build a world while the previous image stays on display.
 
-use crate::Stage;
 use crate::build::{BuildError, BuildRequest};
+use crate::status::Stage;
 use crate::subject::Subject;
-use crate::worker::Worker;
+use crate::worker_state::{BuildReason, RunningBuild, Worker};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,26 +11,6 @@ use std::time::{Duration, Instant};
 
 /// Builds that take longer are reported as loading.
 pub const LOADING_DELAY: Duration = Duration::from_millis(100);
-
-/// Build that is running.
-#[derive(Clone, Copy)]
-pub struct RunningBuild {
-    /// Start of the build.
-    pub began: Instant,
-    /// Reason of the build.
-    pub reason: BuildReason,
-}
-
-/// Reason of a build.
-#[derive(Clone, Copy, PartialEq)]
-pub enum BuildReason {
-    /// Another scene is being opened.
-    OtherScene,
-    /// The scene's files may have changed.
-    Files,
-    /// A value of the scene, a setting that affects the film, or the frame has changed.
-    Edit,
-}
 
 impl Worker {
     /// Starts a build; the result of a running one will be discarded.
@@ -47,7 +27,7 @@ impl Worker {
             self.status.stage = Stage::Loading;
             self.publish(None);
         }
-        self.pool.spawn(move || {
+        self.threads.pool.spawn(move || {
             // An uncaught panic in the pool would abort the program.
             let result = catch_unwind(AssertUnwindSafe(|| build.run())).unwrap_or_else(|_| {
                 Err(BuildError {
@@ -85,30 +65,30 @@ impl Worker {
     fn adopt_subject(&mut self, subject: Subject, building: RunningBuild) {
         self.status.error = None;
         if building.reason != BuildReason::Edit {
-            self.scene_error = None;
+            self.source.error = None;
             self.watch(&subject.files());
         }
         if building.reason == BuildReason::OtherScene {
-            (self.region, self.playing) = (None, None);
-            self.rate.forget();
+            (self.samples.region, self.playback) = (None, None);
+            self.pending.rate.forget();
         }
         let before = self.subject.replace(Arc::new(subject));
         if let Some(before) = before {
             self.adopt_view(before.picture());
         } else {
-            self.needs_preview = true;
+            self.pending.needs_preview = true;
         }
         self.update_status();
     }
 
     fn report_build_error(&mut self, error: BuildError, building: RunningBuild) {
         if building.reason != BuildReason::Edit {
-            self.scene_error = Some(error.text.clone());
+            self.source.error = Some(error.text.clone());
             let mut files = self.subject.as_ref().map_or_else(Vec::new, |subject| subject.files());
             files.extend(error.files);
             self.watch(&files);
         }
-        (self.status.error, self.playing) = (Some(error.text), None);
+        (self.status.error, self.playback) = (Some(error.text), None);
         self.update_status();
         // The film continues, or is finished already.
         match self.status.stage {
@@ -120,7 +100,7 @@ impl Worker {
     }
 
     fn watch(&mut self, files: &[PathBuf]) {
-        if let Some(watch) = &mut self.watch {
+        if let Some(watch) = &mut self.source.watch {
             watch.set(files);
         }
     }

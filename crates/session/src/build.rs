@@ -1,9 +1,11 @@
 //! Builds of worlds: reading, compiling and building hierarchies, with the errors of a scene.
 
-use crate::ModelStatus;
+use crate::choices::Choices;
+use crate::edited_scene::EditedScene;
+use crate::model_status::ModelStatus;
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
-use juggler::math::{Rgb, Vec3};
+use juggler::math::Vec3;
 use juggler::scene::{Bundle, Loader, Names, Scene, SceneError};
 use juggler::{Aov, Error, Picture, Settings, View};
 use serde_json::Value;
@@ -16,45 +18,52 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 /// Maximum number of pixels of the denoised preview: the denoiser needs up to 320 bytes per pixel.
 pub const MAX_DENOISED_PIXELS: u64 = 1 << 21;
 
-/// JSON pointer of the clip of the model in a scene around a model file.
-const SHOWN_CLIP: &str = "/objects/0/model/animation";
-
 /// Request to build a world, run by [`BuildRequest::run`].
 pub struct BuildRequest {
-    pub(crate) task: Task,
+    pub(crate) source: SceneSource,
     pub(crate) name: String,
-    pub(crate) values: Vec<(String, Value)>,
-    /// Values that a reset keeps.
-    pub(crate) given_values: Vec<(String, Value)>,
-    /// Models of the scene; `None` if they may have changed.
-    pub(crate) models: Option<Arc<[ModelStatus]>>,
     /// Whether missing and broken pictures of models are shown gray.
     pub(crate) lenient: bool,
-    pub(crate) frame: f64,
-    pub(crate) settings: Settings,
-    pub(crate) size: Option<[u32; 2]>,
-    /// Camera that an edit has moved; `None` for the scene's own.
-    pub(crate) camera: Option<AnyCamera>,
-    /// Bookmarked cameras held in memory, by name.
-    pub(crate) bookmarks: Vec<(String, AnyCamera)>,
-    /// RGB gain of each light group, by name.
-    pub(crate) gains: Vec<(String, Rgb)>,
-    /// Point of interest that was chosen explicitly; kept only together with `camera`.
+    /// Values of a newly opened scene that differ from its file.
+    pub(crate) given: Arc<[(String, Value)]>,
+    pub(crate) choices: Choices,
+    /// Models of the scene; `None` if they may have changed.
+    pub(crate) models: Option<Arc<[ModelStatus]>>,
+    /// Point of interest that was chosen explicitly; kept only together with a moved camera.
     pub(crate) interest: Option<Vec3>,
     /// Scene and picture of the previous subject, whose world is reused where it still holds.
     pub(crate) previous: Option<(Arc<Scene>, Arc<Picture>)>,
 }
 
-#[derive(Clone)]
-pub(crate) enum Task {
-    /// Open another scene by its name.
-    Open,
-    /// Open another scene of files in memory.
-    OpenFiles(Bundle),
-    /// Read the same file again; the given scene holds meshes that need not be read again.
-    Reload(Arc<Scene>),
-    /// Use a scene in memory.
-    InMemory(Arc<Scene>),
+/// Origin of the scene.
+pub(crate) enum SceneSource {
+    /// A file or a built-in scene, by its name.
+    Name,
+    /// Files in memory.
+    Files(Bundle),
+    /// A program.
+    Program(Arc<Scene>),
+    /// The scene before, with a change.
+    Edited(EditedScene, SceneChange),
+}
+
+/// Change of a scene.
+pub(crate) enum SceneChange {
+    /// No change.
+    None,
+    /// Another value at a JSON pointer; `null` removes the old one.
+    Value {
+        /// JSON pointer.
+        path: String,
+        /// New value.
+        value: Value,
+    },
+    /// Another frame.
+    Frame(f64),
+    /// Return to the scene as it was opened.
+    Reset,
+    /// Another version of the file.
+    Reload,
 }
 
 /// Error that prevented a build.
@@ -71,18 +80,12 @@ impl BuildRequest {
     pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
         let settings = Settings { size, ..Settings::default() };
         Self {
-            task: Task::Open,
+            source: SceneSource::Name,
             name: name.to_owned(),
-            values: Vec::new(),
-            given_values: Vec::new(),
-            models: None,
             lenient: false,
-            frame: 0.0,
-            settings,
-            size,
-            camera: None,
-            bookmarks: Vec::new(),
-            gains: Vec::new(),
+            given: Arc::default(),
+            choices: Choices { settings, size, ..Choices::default() },
+            models: None,
             interest: None,
             previous: None,
         }
@@ -91,7 +94,7 @@ impl BuildRequest {
     /// The same request for a scene of files in memory.
     #[must_use]
     pub fn with_files(self, files: Bundle) -> Self {
-        Self { task: Task::OpenFiles(files), ..self }
+        Self { source: SceneSource::Files(files), ..self }
     }
 
     /// The same request, in which missing and broken pictures of models are shown gray or are errors.
@@ -103,26 +106,18 @@ impl BuildRequest {
     /// The same request with values of the scene that differ from its file; a reset keeps them.
     #[must_use]
     pub fn with_values(self, values: Vec<(String, Value)>) -> Self {
-        Self { values: values.clone(), given_values: values, ..self }
+        Self { given: values.into(), ..self }
     }
 
     /// Request for a scene that a program has built.
     pub fn from_scene(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
-        Self { task: Task::InMemory(Arc::new(scene)), ..Self::open(name, size) }
-    }
-
-    /// The same request with another value of the scene. Another clip starts at its beginning.
-    pub(crate) fn with_value(mut self, path: &str, value: &Value) -> Self {
-        self.values.retain(|(other, _)| other != path);
-        self.values.push((path.to_owned(), value.clone()));
-        let frame = if path == SHOWN_CLIP { 0.0 } else { self.frame };
-        Self { models: None, frame, ..self }
+        Self { source: SceneSource::Program(Arc::new(scene)), ..Self::open(name, size) }
     }
 
     /// Reads the scene and builds its world on the threads of the current rayon pool. This call may
     /// take long.
     pub fn run(self) -> Result<Subject, BuildError> {
-        let is_in_memory = matches!(self.task, Task::OpenFiles(_));
+        let is_in_memory = matches!(self.source, SceneSource::Files(_));
         let mut files = if is_in_memory { Vec::new() } else { vec![PathBuf::from(&self.name)] };
         self.build().map_err(|error| {
             if let Error::Scene(SceneError::Problems(problems)) = &error
@@ -135,81 +130,64 @@ impl BuildRequest {
     }
 
     fn build(mut self) -> Result<Subject, Error> {
-        let file = match self.task.clone() {
-            Task::Open => Arc::new(self.loader().named(&self.name)?),
-            Task::OpenFiles(files) => Arc::new(self.loader().from_bundle(files, &self.name)?),
-            Task::Reload(scene) => self.reload(&scene)?,
-            Task::InMemory(scene) => scene,
-        };
-        let scene = self.scene(&file)?;
-        self.fit_settings(&scene);
-        let mut picture = self.picture(&scene)?;
+        let scene = self.scene()?;
+        let displayed = Arc::clone(scene.displayed());
+        self.fit_settings(&displayed);
+        let mut picture = self.picture(&displayed)?;
         let upward = picture.view().camera.up();
-        if let Some(camera) = &self.camera {
+        if let Some(camera) = &self.choices.camera {
             picture = picture.with_view(View { camera: camera.clone(), ..picture.view() })?;
         }
-        let models = self.models.unwrap_or_else(|| ModelStatus::of_scene(&scene).into());
-        let Self { name, values, given_values, lenient, frame, settings, size, camera, bookmarks, gains, .. } = self;
-        let chosen = self.interest.filter(|_| camera.is_some());
+        let models = self.models.unwrap_or_else(|| ModelStatus::of_scene(&displayed).into());
+        let Self { name, lenient, choices, .. } = self;
+        let chosen = self.interest.filter(|_| choices.camera.is_some());
         let (picture, interest, interest_is_chosen) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
-        let mut subject = Subject {
-            name,
-            file,
-            scene,
-            values,
-            given_values,
-            lenient,
-            models,
-            frame,
-            settings,
-            size,
-            camera,
-            bookmarks,
-            gains,
-            upward,
-            interest,
-            interest_is_chosen,
-            picture,
-        };
+        let mut subject =
+            Subject { name, lenient, scene, models, choices, upward, interest, interest_is_chosen, picture };
         if !interest_is_chosen {
             subject.init_interest();
         }
         Ok(subject)
     }
 
+    /// Reads the scene, or changes the one before.
+    fn scene(&mut self) -> Result<EditedScene, Error> {
+        let file = match &self.source {
+            SceneSource::Name => Arc::new(self.loader().named(&self.name)?),
+            SceneSource::Files(files) => Arc::new(self.loader().from_bundle(files.clone(), &self.name)?),
+            SceneSource::Program(scene) => Arc::clone(scene),
+            SceneSource::Edited(scene, SceneChange::None) => return Ok(scene.clone()),
+            SceneSource::Edited(scene, SceneChange::Value { path, value }) => {
+                return Ok(scene.with_value(path, value)?);
+            }
+            SceneSource::Edited(scene, SceneChange::Frame(frame)) => return Ok(scene.at_frame(*frame)?),
+            SceneSource::Edited(scene, SceneChange::Reset) => return Ok(scene.reset()?),
+            SceneSource::Edited(scene, SceneChange::Reload) => {
+                let scene = scene.clone();
+                return self.reload(&scene);
+            }
+        };
+        Ok(EditedScene::new(file, Arc::clone(&self.given))?)
+    }
+
     /// Limits size and denoising to the memory budget, and stores light groups separately where
     /// there are several, so that they can be relit.
     fn fit_settings(&mut self, scene: &Scene) {
-        let size = self.settings.size_of(scene);
+        let size = self.choices.settings.size_of(scene);
         if limited_size(size) != size {
-            self.settings.size = Some(limited_size(size));
+            self.choices.settings.size = Some(limited_size(size));
         }
         if pixel_count(size) > MAX_DENOISED_PIXELS {
-            self.settings.denoiser = None;
+            self.choices.settings.denoiser = None;
         }
         let groups = Names::from_scene(&scene.description).light_groups.len();
-        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
-    }
-
-    /// Returns the file's scene with the edited values, at the current frame.
-    fn scene(&self, file: &Arc<Scene>) -> Result<Arc<Scene>, SceneError> {
-        let mut scene = Arc::clone(file);
-        for (path, value) in &self.values {
-            scene = Arc::new(scene.with_value(path, value.clone())?);
-        }
-        if scene.is_around_model() && self.values.iter().any(|(path, _)| path == SHOWN_CLIP) {
-            Arc::make_mut(&mut scene).fit_animation();
-        }
-        if self.frame != 0.0 {
-            scene = Arc::new(scene.at_frame(self.frame)?);
-        }
-        Ok(scene)
+        self.choices.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
     }
 
     fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
         match &self.previous {
-            Some((before, picture)) => picture.rebuild(before, scene, &self.settings),
-            _ => Picture::new(scene, &self.settings),
+            Some((before, picture)) => picture.rebuild(before, scene, &self.choices.settings),
+            _ => Picture::new(scene, &self.choices.settings),
         }
     }
 
@@ -219,21 +197,18 @@ impl BuildRequest {
 
     /// Reads the file again. Edited values and the camera are kept unless the file has changed
     /// there too.
-    fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
+    fn reload(&mut self, scene: &EditedScene) -> Result<EditedScene, Error> {
+        let old = scene.file();
         if old.is_in_memory() {
-            return Ok(Arc::clone(old));
+            return Ok(scene.clone());
         }
         let is_file = Path::new(&self.name).is_file();
-        let new = Arc::new(if is_file { old.reload(&self.name)? } else { self.loader().named(&self.name)? });
-        if !self.values.is_empty() {
-            let [before, after] = [old, &new].map(|scene| scene.to_value());
-            self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));
+        let new = if is_file { old.reload(&self.name)? } else { self.loader().named(&self.name)? };
+        let Choices { settings, camera, .. } = &mut self.choices;
+        if chosen_camera(settings, old) != chosen_camera(settings, &new) {
+            (*camera, settings.camera) = (None, None);
         }
-        let chosen = |settings: &Settings, scene: &Scene| chosen_camera(settings, scene).cloned();
-        if chosen(&self.settings, old) != chosen(&self.settings, &new) {
-            (self.camera, self.settings.camera) = (None, None);
-        }
-        Ok(new)
+        Ok(scene.with_file(Arc::new(new))?)
     }
 }
 

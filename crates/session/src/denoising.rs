@@ -1,12 +1,10 @@
 //! Denoised preview, which the worker displays instead of the film while the camera is at rest.
 
 use crate::subject::Subject;
-use crate::worker::Worker;
+use crate::worker_state::{DenoisedFilm, Worker};
 use juggler::camera::film::Film;
 use juggler::denoise::DenoiserInput;
-use juggler::math::Rgb;
 use juggler::render::Control;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Time for which samples accumulate before the first denoising.
@@ -17,36 +15,18 @@ const SPACING: u32 = 4;
 /// Minimum number of samples per pixel: the denoiser compares two halves.
 const MIN_SAMPLES: u32 = 2;
 
-/// Last denoised image of the film.
-#[derive(Default)]
-pub struct Denoising {
-    /// Linear radiance, row by row from the top; `None` before the first run, or after a failed
-    /// one.
-    pixels: Option<Arc<[Rgb]>>,
-    /// Number of samples of the film that `pixels` was computed from.
-    samples: u64,
-    /// Time at which the last run ended, and its duration.
-    last: Option<(Instant, Duration)>,
-}
-
 impl Worker {
-    /// Returns the denoised image if there is one and denoising is on. Relighting disables it: the
-    /// halves that the denoiser compares hold all light groups together.
-    pub fn denoised_pixels(&self, subject: &Subject) -> Option<Arc<[Rgb]>> {
-        self.denoising.pixels.clone().filter(|_| subject.is_denoised())
-    }
-
     /// Returns whether the film should be denoised now: it has enough samples, more than last time,
     /// and either it is finished or the pause is over.
     pub fn should_denoise(&self, subject: &Subject, film: &Film, finished: bool) -> bool {
         let due = finished
-            || match self.denoising.last {
+            || match self.samples.denoised.last {
                 Some((ready, took)) => ready.elapsed() >= (took * SPACING).max(FIRST_DELAY),
-                None => self.drawn.elapsed() >= FIRST_DELAY,
+                None => self.pending.drawn.elapsed() >= FIRST_DELAY,
             };
         due && self.status.channel.is_light()
             && subject.is_denoised()
-            && film.samples() != self.denoising.samples
+            && film.samples() != self.samples.denoised.samples
             && film.counts().iter().all(|count| *count >= MIN_SAMPLES)
     }
 
@@ -63,7 +43,7 @@ impl Worker {
         if denoised.is_none() && self.shared.mailbox().has_work() {
             return;
         }
-        self.denoising = Denoising {
+        self.samples.denoised = DenoisedFilm {
             pixels: denoised.map(|denoised| denoised.pixels.into()),
             samples,
             last: Some((Instant::now(), began.elapsed())),

@@ -1,21 +1,22 @@
-//! Edits of an interactive session. In JSON, an edit is an object with one member: `{"fly":
-//! {"forward": 0.5, "yaw_degrees": 3}}`.
+//! Edits of an interactive session. `wire.rs` has their JSON.
 
+use juggler::camera::AnyCamera;
 use juggler::camera::film::Rect;
+use juggler::camera::sampler::SamplerKind;
+use juggler::imaging::ToneCurveKind;
+use juggler::integrator::IntegratorKind;
+use juggler::render::Scheduler;
 use juggler::scene::Bundle;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// Change requested by a client. Edits that arrive faster than frames are rendered are all applied;
 /// the next frame shows their combined effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     /// Opens another scene, a file or a built-in scene by name, and uses its initial camera.
     Scene(String),
     /// Opens a scene of files in memory, such as files that were dropped on a page. No JSON stands
     /// for this edit.
-    #[serde(skip)]
     Files(SceneFiles),
     /// Reads the scene's files again. If they have errors, the last valid image stays and
     /// [`Status::error`](crate::Status) reports them.
@@ -37,12 +38,12 @@ pub enum Edit {
     Frame(Option<[f32; 2]>),
     /// Switches to one of the scene's cameras or bookmarks, by name.
     Camera(String),
-    /// Switches to a camera in the scene format: `{"perspective": {"eye": ...}}`.
-    Look(Value),
+    /// Switches to this camera.
+    Look(AnyCamera),
     /// Bookmarks the camera under a name: in the scene's file, whose other text is preserved, or in
     /// memory for a built-in scene; see [`Session::bookmarks`](crate::Session::bookmarks).
     Bookmark(String),
-    /// Sets a value of the scene by its JSON pointer, such as `/materials/red/phong/diffuse`.
+    /// Sets a value of the scene format by its JSON pointer, such as `/materials/red/phong/diffuse`.
     /// `null` removes it.
     Set {
         /// JSON pointer into the scene.
@@ -75,7 +76,10 @@ impl Edit {
     pub fn replaces(&self, before: &Self) -> bool {
         match (self, before) {
             (Self::At(_), Self::At(_)) | (Self::Reload, Self::Reload) | (Self::Scene(_) | Self::Files(_), _) => true,
-            (Self::Set { path: a, .. }, Self::Set { path: b, .. }) => a == b,
+            // Each removal removes another element of an array.
+            (Self::Set { path: a, value: new }, Self::Set { path: b, value: old }) => {
+                a == b && !new.is_null() && !old.is_null()
+            }
             _ => false,
         }
     }
@@ -91,8 +95,7 @@ pub struct SceneFiles {
 }
 
 /// Translation and rotation along the camera's own axes; all 0 by default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fly {
     /// Translation to the right, in scene units.
     pub right: f32,
@@ -109,8 +112,7 @@ pub struct Fly {
 }
 
 /// Rotation about the point of interest.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     /// Rotation of the camera to the left about the scene's up axis, in degrees: the scene turns to
     /// the right.
@@ -128,23 +130,23 @@ impl Default for Orbit {
     }
 }
 
-/// Render setting, with the names of the scene format.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+/// Render setting.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
     /// Width and height of the image, in pixels, at most 2^25 pixels in total.
     Size([u32; 2]),
     /// Number of samples per pixel after which the image is finished.
     Samples(u32),
-    /// Integrator by name, with its default parameters.
-    Integrator(String),
-    /// Sampler by name, with its default parameters.
-    Sampler(String),
+    /// Integrator, with the scene's parameters if it is the scene's own, otherwise with its default
+    /// parameters.
+    Integrator(IntegratorKind),
+    /// Sampler, with parameters as for the integrator.
+    Sampler(SamplerKind),
     /// Maximum path depth: specular bounces under `classic`, 0 to 1000; path segments under `path`,
     /// 1 to 10,000.
     MaxDepth(u32),
-    /// Tone curve by name.
-    Tone(String),
+    /// Tone curve, with its default parameters.
+    Tone(ToneCurveKind),
     /// Exposure in photographic stops; each stop doubles the brightness.
     Exposure(f32),
     /// RGB gain of a light group, by name; each factor is 0 to 1,000,000.
@@ -157,13 +159,12 @@ pub enum Setting {
     Seed(u64),
     /// Number of render threads, at most 1024; 0 uses all cores.
     Threads(usize),
-    /// Distribution of a frame's pixels to threads: `work-stealing`, `row-queue` or `static-rows`.
-    Scheduler(String),
+    /// Distribution of a frame's pixels to threads.
+    Scheduler(Scheduler),
 }
 
 /// Displayed channel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Channel {
     /// Rendered radiance.
     #[default]

@@ -7,21 +7,27 @@
 //! - An edit cancels rendering. The session then renders a coarse frame, as fine as the frame
 //!   budget allows, and refines it sample by sample until it is bit-identical to the image that
 //!   `juggler render` writes.
+//! - [`wire`] has the JSON of edits, statuses and probes.
 //!
 //! The default feature `native` provides threads, clocks and file watching. Clients without it,
 //! such as the page that renders inside the browser, bring their own and use [`Subject`],
 //! [`preview`], [`screen`] and [`RenderRate`].
 
+mod apply;
 #[cfg(feature = "native")]
 mod background_build;
 mod build;
+mod choices;
 mod coarse;
 #[cfg(feature = "native")]
 mod denoising;
 mod edit;
+mod edited_scene;
 mod frame;
 mod interest;
 mod model_status;
+#[cfg(feature = "native")]
+mod options;
 mod pixel_info;
 pub mod pose;
 pub mod preview;
@@ -38,19 +44,25 @@ mod subject;
 mod thumbnails;
 #[cfg(feature = "native")]
 mod watch;
+pub mod wire;
 #[cfg(feature = "native")]
 mod worker;
+#[cfg(feature = "native")]
+mod worker_state;
 
+pub use apply::EditEffect;
 pub use build::{BuildError, BuildRequest, MAX_PIXELS, error_text};
 pub use coarse::{RenderRate, coarse_size, next_pass};
 pub use edit::{Channel, Edit, Fly, Orbit, SceneFiles, Setting};
 pub use frame::Frame;
 pub use model_status::ModelStatus;
+#[cfg(feature = "native")]
+pub use options::SessionOptions;
 pub use pixel_info::PixelInfo;
 #[cfg(feature = "native")]
-pub use session::{SaveError, Session, SessionOptions};
+pub use session::{SaveError, Session};
 pub use status::{Stage, Status};
-pub use subject::{EditEffect, Subject};
+pub use subject::Subject;
 #[cfg(feature = "native")]
 pub use thumbnails::thumbnail;
 

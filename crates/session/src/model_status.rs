@@ -2,13 +2,12 @@
 
 use juggler::scene::Scene;
 use juggler::scene::model::NameOrIndex;
-use serde::Serialize;
 
 /// Maximum number of models that a panel lists.
 const MAX_MODELS: usize = 8;
 
 /// A model of the scene that has material variants or animation clips.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelStatus {
     /// JSON pointer of the model in the scene; `variant` and `animation` below it are the choices.
     pub pointer: String,

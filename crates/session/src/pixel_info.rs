@@ -4,10 +4,9 @@ use crate::screen::relative_error;
 use crate::subject::Subject;
 use juggler::camera::film::{Film, TILE_EDGE};
 use juggler::scene::compile::ShapePlace;
-use serde::Serialize;
 
 /// Data of one pixel of the displayed image.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PixelInfo {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],

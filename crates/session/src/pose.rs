@@ -1,7 +1,7 @@
 //! Camera motion: pure functions from a camera to a camera. Axes and signs are those of the crate
 //! `camera` (`pose.rs`). The result has `eye`, `direction` and `up`, as a scene file would have.
 
-use crate::{Fly, Orbit};
+use crate::edit::{Fly, Orbit};
 use juggler::camera::{AnyCamera, CameraAxes};
 use juggler::math::{Aabb, Ray, UVec2, Vec2, Vec3, portable};
 

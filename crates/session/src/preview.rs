@@ -1,6 +1,6 @@
 //! Preview frames: one camera ray through the center of each pixel, at any resolution.
 
-use crate::Channel;
+use crate::edit::Channel;
 use crate::screen::{Preview, index_color};
 use juggler::camera::aov::{self, LightGroup};
 use juggler::camera::film::{Film, Rect, Tiling};

@@ -2,11 +2,13 @@
 //! at rest, then the film.
 
 use crate::coarse::{coarse_size, next_pass};
+use crate::edit::Channel;
+use crate::frame::Frame;
 use crate::preview::render_preview;
 use crate::screen::{self, Canvas, DisplayTransform};
+use crate::status::Stage;
 use crate::subject::Subject;
-use crate::worker::Worker;
-use crate::{Channel, Frame, Stage};
+use crate::worker_state::Worker;
 use juggler::Picture;
 use juggler::camera::film::{Film, Rect, Tiling};
 use juggler::render::{self, Control, StopCriterion};
@@ -29,18 +31,18 @@ impl Worker {
     /// Renders a frame at the resolution that the frame budget allows.
     pub fn draw(&mut self) {
         let Some(subject) = self.subject.clone() else {
-            self.needs_preview = false;
+            self.pending.needs_preview = false;
             return;
         };
         let size = subject.picture().size();
-        let coarseness = self.rate.coarseness(size, self.options.budget.as_secs_f64());
+        let coarseness = self.pending.rate.coarseness(size, self.options.budget.as_secs_f64());
         if !self.draw_by(&subject, coarseness, Stage::Moving) {
             // Cancelled by a new edit: the updated pace makes the next frame coarser.
             return;
         }
         // Render once more if the measured speed allows a finer frame.
-        let finer = self.rate.coarseness(size, self.options.budget.as_secs_f64());
-        self.needs_preview = finer < coarseness && !self.shared.mailbox().has_work();
+        let finer = self.pending.rate.coarseness(size, self.options.budget.as_secs_f64());
+        self.pending.needs_preview = finer < coarseness && !self.shared.mailbox().has_work();
     }
 
     /// Renders a frame in pixel blocks of edge `coarseness`. Returns `false` when it was cancelled.
@@ -49,19 +51,20 @@ impl Worker {
         let size = coarse_size(picture.size(), coarseness);
         let (control, began) = (Control::default(), Instant::now());
         // Give the frame time to finish before an edit may cancel it.
-        let patience = if self.needs_preview { self.options.budget * 2 } else { Duration::ZERO };
+        let patience = if self.pending.needs_preview { self.options.budget * 2 } else { Duration::ZERO };
         let (transform, gains) = (self.display_transform(picture), subject.gains());
-        let (channel, scheduler) = (self.status.channel, self.scheduler);
+        let (channel, scheduler) = (self.status.channel, self.threads.scheduler);
         let drawn = self.run_cancellable(patience, &control, || {
             let preview = render_preview(picture, size, channel, &gains, scheduler, &control).ok()?;
             let rgba = transform.rgba_image(&preview.pixels);
             Some((preview, rgba))
         });
         let seconds = began.elapsed().as_secs_f64();
-        self.rate.measure(control.samples() as f64, seconds);
+        self.pending.rate.measure(control.samples() as f64, seconds);
         let Some((preview, rgba)) = drawn else { return false };
         self.measure(&control, seconds, stage);
-        (self.preview, self.transform, self.canvas, self.needs_repaint) = (Arc::new(preview), transform, None, false);
+        (self.display.preview, self.display.transform, self.display.canvas, self.pending.needs_repaint) =
+            (Arc::new(preview), transform, None, false);
         (self.status.stage, self.status.coarseness) = (stage, coarseness);
         (self.status.samples, self.status.noise, self.status.hash) = (0.0, None, None);
         (self.status.clamped, self.status.denoised) = (None, false);
@@ -80,7 +83,7 @@ impl Worker {
     ) -> Option<T> {
         let (shared, mut result) = (&self.shared, None);
         shared.mailbox().job_ended = false;
-        self.pool.in_place_scope(|scope| {
+        self.threads.pool.in_place_scope(|scope| {
             scope.spawn(|_| {
                 result = work();
                 shared.update(|mailbox| mailbox.job_ended = true);
@@ -101,8 +104,8 @@ impl Worker {
 
     fn measure(&mut self, control: &Control, seconds: f64, stage: Stage) {
         self.status.rays_per_second = (control.rays().total() as f64 / seconds.max(1e-9)) as f32;
-        let since = self.drawn.elapsed();
-        self.drawn = Instant::now();
+        let since = self.pending.drawn.elapsed();
+        self.pending.drawn = Instant::now();
         if since < MOTION && stage == Stage::Moving {
             let (now, before) = ((1.0 / since.as_secs_f64().max(1e-6)) as f32, self.status.frames_per_second);
             self.status.frames_per_second = if before > 0.0 { before + (now - before) * RATE_WEIGHT } else { now };
@@ -111,7 +114,7 @@ impl Worker {
 
     fn display_transform(&self, picture: &Picture) -> DisplayTransform {
         let of_light = self.status.channel.is_light() || self.status.channel == Channel::Albedo;
-        self.transform.for_tone(if of_light { picture.tone() } else { &screen::LINEAR_TONE })
+        self.display.transform.for_tone(if of_light { picture.tone() } else { &screen::LINEAR_TONE })
     }
 
     /// Creates a film for the current picture from the samples of the old one; only tiles in the
@@ -119,8 +122,8 @@ impl Worker {
     pub fn rebuild_film(&mut self) {
         let Some(subject) = &self.subject else { return };
         let picture = subject.picture();
-        let (tiling, target, region) = (Tiling::new(picture.region()), picture.samples(), self.region);
-        let old = self.film.take();
+        let (tiling, target, region) = (Tiling::new(picture.region()), picture.samples(), self.samples.region);
+        let old = self.samples.film.take();
         let counts = old.as_ref().map_or_else(Vec::new, |old| old.counts());
         // Samples cannot be subtracted from a sum, so a film with too many starts over.
         let old = old.filter(|_| counts.iter().all(|count| *count <= target));
@@ -135,7 +138,7 @@ impl Worker {
             let added = film.add(number, tile);
             debug_assert_eq!(added, Ok(true), "of the same layout, and new");
         }
-        self.film = Some(Arc::new(film));
+        self.samples.film = Some(Arc::new(film));
     }
 
     /// Restricts refinement to a region; `None` refines the whole image.
@@ -143,25 +146,25 @@ impl Worker {
         let [width, height] = self.status.size;
         let whole = Rect { x: 0, y: 0, width, height };
         let inside = region.map(|region| region.intersection(&whole));
-        self.region = inside.filter(|region| region.area() > 0 && *region != whole);
+        self.samples.region = inside.filter(|region| region.area() > 0 && *region != whole);
         self.update_status();
         self.rebuild_film();
     }
 
     /// Displays the same samples with the current tone, channel and gains.
     pub fn repaint(&mut self) {
-        self.needs_repaint = false;
+        self.pending.needs_repaint = false;
         let Some(subject) = self.subject.clone() else { return };
-        (self.transform, self.canvas) = (self.display_transform(subject.picture()), None);
+        (self.display.transform, self.display.canvas) = (self.display_transform(subject.picture()), None);
         self.status.stage = if self.status.stage == Stage::Finished { Stage::Refining } else { self.status.stage };
         self.show(self.status.samples);
     }
 
     /// Displays the film over the preview.
     fn show(&mut self, samples: f32) {
-        let Some(film) = self.film.clone() else { return };
+        let Some(film) = self.samples.film.clone() else { return };
         let Some(subject) = self.subject.clone() else { return };
-        let (size, target, transform) = (self.status.size, self.status.samples_wanted, &self.transform);
+        let (size, target, transform) = (self.status.size, self.status.samples_wanted, &self.display.transform);
         let gains = subject.gains();
         if let Some(pixels) = self.denoised_pixels(&subject).filter(|_| self.status.channel == Channel::Color) {
             let rgba = transform.rgba_image(&pixels);
@@ -170,9 +173,9 @@ impl Worker {
             return self.publish(Some(frame));
         }
         self.status.denoised = false;
-        let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.preview, size, transform));
+        let canvas = self.display.canvas.get_or_insert_with(|| Canvas::new(&self.display.preview, size, transform));
         // A full-resolution preview looks better than fewer than four samples per pixel.
-        let least = if self.preview.size == size { target.min(4) } else { 1 };
+        let least = if self.display.preview.size == size { target.min(4) } else { 1 };
         match self.status.channel {
             Channel::Color => {
                 canvas.paint(&film, least, |tile| screen::radiance_to_rgba(transform, subject.light(tile, &gains)));
@@ -191,22 +194,22 @@ impl Worker {
     pub fn refine(&mut self) -> bool {
         let Some(subject) = self.subject.clone() else { return false };
         // Wait for further edits of a motion
-        let wait = EDIT_WAIT.saturating_sub(self.drawn.elapsed());
+        let wait = EDIT_WAIT.saturating_sub(self.pending.drawn.elapsed());
         if !wait.is_zero() && self.status.stage == Stage::Moving {
             self.shared.wait_for_work(Some(wait), |mailbox| mailbox.has_work());
         }
         // Render passes of increasing resolution until the film has samples to display.
-        let has_samples = self.film.as_ref().is_some_and(|film| film.samples() > 0);
+        let has_samples = self.samples.film.as_ref().is_some_and(|film| film.samples() > 0);
         if (!self.status.channel.is_light() || !has_samples)
-            && let Some(step) = next_pass(self.preview.size, subject.picture().size())
+            && let Some(step) = next_pass(self.display.preview.size, subject.picture().size())
         {
             return self.draw_by(&subject, step, Stage::Refining) || self.shared.mailbox().has_work();
         }
         // Continue the film
-        if self.film.is_none() {
+        if self.samples.film.is_none() {
             self.rebuild_film();
         }
-        let Some(film) = self.film.clone() else { return false };
+        let Some(film) = self.samples.film.clone() else { return false };
         let finished = render::is_finished(&film, StopCriterion::Evenly);
         if self.should_denoise(&subject, &film, finished) {
             self.denoise(&subject, &film);
@@ -233,7 +236,7 @@ impl Worker {
     /// denoising, or there is new work.
     fn render_film(&mut self, subject: &Subject, film: &Film, control: &Control) {
         let picture = subject.picture();
-        let (shared, pool) = (Arc::clone(&self.shared), Arc::clone(&self.pool));
+        let (shared, pool) = (Arc::clone(&self.shared), Arc::clone(&self.threads.pool));
         let (began, mut interval) = (Instant::now(), FIRST_SHOW);
         pool.in_place_scope(|scope| {
             scope.spawn(|_| {

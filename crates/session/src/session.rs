@@ -1,9 +1,14 @@
 //! Session handle for windows, web pages and scripts.
 
 use crate::build::BuildRequest;
+use crate::edit::Edit;
+use crate::frame::Frame;
+use crate::options::SessionOptions;
+use crate::pixel_info::PixelInfo;
 use crate::shared::Shared;
-use crate::worker::{self, Worker};
-use crate::{Edit, Frame, PixelInfo, Status};
+use crate::status::Status;
+use crate::worker_state::{Worker, WorkerThreads};
+use juggler::camera::AnyCamera;
 use juggler::imaging::{self, Destination, ImageFormat, Options as EncoderOptions, RowWriter};
 use juggler::scene::Scene;
 use std::io::{Cursor, Seek, SeekFrom, Write};
@@ -11,32 +16,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
-
-/// Options with which a session is opened.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SessionOptions {
-    /// Width and height in pixels; `None` uses the scene's.
-    pub size: Option<[u32; 2]>,
-    /// Values of the scene by JSON pointer that differ from its file, as by [`Edit::Set`]; a reset
-    /// keeps them.
-    pub values: Vec<(String, serde_json::Value)>,
-    /// Whether missing and broken pictures of models are shown gray, with a warning.
-    pub lenient: bool,
-    /// Number of render threads, at most 1024; 0 uses all cores.
-    pub threads: usize,
-    /// Target duration of a frame while the camera moves, 30 ms by default. The session lowers the
-    /// resolution to meet it.
-    pub budget: Duration,
-    /// Whether the scene's files are watched and reloaded when they change.
-    pub watch: bool,
-}
-
-impl Default for SessionOptions {
-    fn default() -> Self {
-        let (size, values, budget) = (None, Vec::new(), Duration::from_millis(30));
-        Self { size, values, lenient: false, threads: 0, budget, watch: false }
-    }
-}
 
 /// Error of saving an image.
 #[derive(Debug, thiserror::Error)]
@@ -82,13 +61,13 @@ impl Session {
     fn start(build: BuildRequest, name: &str, options: SessionOptions) -> Self {
         let shared = Arc::new(Shared::default());
         let handle = Arc::new(Handle(Arc::clone(&shared)));
-        let status = Status { scene: name.to_owned(), scheduler: "work-stealing".into(), ..Status::default() };
+        let status = Status { scene: name.to_owned(), ..Status::default() };
         shared.publish(None, status.clone(), None);
         let work = move || {
-            let Some(pool) = worker::pool(options.threads) else {
+            let Some(threads) = WorkerThreads::new(options.threads) else {
                 return shared.end("error: cannot start threads");
             };
-            let worker = Worker::new(Arc::clone(&shared), options, pool, status);
+            let worker = Worker::new(Arc::clone(&shared), options, threads, status);
             if catch_unwind(AssertUnwindSafe(|| worker.run(build))).is_err() {
                 shared.end("error: the session has ended: this is a bug of Juggler");
             }
@@ -107,7 +86,13 @@ impl Session {
     /// Queues an edit and returns at once, with the number of edits so far. Frames and status
     /// include the edit once their `revision` is at least that number.
     pub fn edit(&self, edit: Edit) -> u64 {
-        self.shared().edit(edit)
+        self.shared().request(Ok(edit))
+    }
+
+    /// Queues the error of an edit that a client could not read. It counts as an edit, and the
+    /// status reports it as the error of one.
+    pub fn report_unread(&self, error: String) -> u64 {
+        self.shared().request(Err(error))
     }
 
     /// Returns the newest frame; `None` before the first.
@@ -138,10 +123,11 @@ impl Session {
         Some(PixelInfo::at_pixel(&snapshot.subject, snapshot.film.as_deref(), pixel))
     }
 
-    /// Returns the bookmarked cameras as the member `cameras` of a scene file.
-    pub fn bookmarks(&self) -> serde_json::Value {
+    /// Returns the cameras bookmarked in memory, by name; [`wire::bookmarks`](crate::wire::bookmarks)
+    /// writes them as the member `cameras` of a scene file.
+    pub fn bookmarks(&self) -> Vec<(String, AnyCamera)> {
         let snapshot = self.shared().mailbox().snapshot.clone();
-        snapshot.map_or_else(|| serde_json::json!({}), |snapshot| snapshot.subject.bookmarks())
+        snapshot.map_or_else(Vec::new, |snapshot| snapshot.subject.bookmarks().to_vec())
     }
 
     /// Writes the image with the samples it has so far; the file extension selects the format.

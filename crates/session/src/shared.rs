@@ -1,15 +1,20 @@
 //! State that a session's handles and its worker share.
 
 use crate::build::BuildError;
+use crate::edit::Edit;
+use crate::frame::Frame;
 use crate::screen::Preview;
+use crate::status::{Stage, Status};
 use crate::subject::Subject;
-use crate::{Edit, Frame, Stage, Status};
 use juggler::Picture;
 use juggler::camera::film::Film;
 use juggler::math::Rgb;
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
+
+/// Edit of a client, or the error of an edit that a client could not read.
+pub type Request = Result<Edit, String>;
 
 /// Callback for new frames and statuses.
 pub type Callback = Arc<dyn Fn() + Send + Sync>;
@@ -28,7 +33,7 @@ pub struct Shared {
 #[derive(Default)]
 pub struct Mailbox {
     /// Edits that the worker has not taken yet.
-    pub edits: VecDeque<Edit>,
+    pub edits: VecDeque<Request>,
     /// Total number of edits.
     pub edit_count: u64,
     /// Number of the latest build; results of earlier builds are discarded.
@@ -115,7 +120,7 @@ impl Shared {
     }
 
     /// Queues an edit and returns the number of edits so far.
-    pub fn edit(&self, edit: Edit) -> u64 {
+    pub fn request(&self, edit: Request) -> u64 {
         let mut edit_count = 0;
         self.update(|mailbox| {
             mailbox.edits.push_back(edit);

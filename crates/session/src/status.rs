@@ -1,13 +1,16 @@
-//! Status of a session.
+//! Status of a session. `wire.rs` has its JSON.
 
-use crate::{Channel, ModelStatus};
+use crate::edit::Channel;
+use crate::model_status::ModelStatus;
+use juggler::camera::AnyCamera;
 use juggler::camera::film::Rect;
-use serde::Serialize;
-use serde_json::Value;
+use juggler::camera::sampler::SamplerKind;
+use juggler::imaging::ToneCurveKind;
+use juggler::integrator::IntegratorKind;
+use juggler::render::Scheduler;
 
 /// Stage of a session.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
     /// A scene is being read or its world is being built; the previous image stays on display.
     #[default]
@@ -20,8 +23,9 @@ pub enum Stage {
     Finished,
 }
 
-/// Status of a session: all data that panels display. It is sent to web pages as JSON.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+/// Status of a session: all data that panels display. Before the first scene is built, it has no
+/// integrator, sampler, tone curve and camera.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
     /// Sequence number, which increases with every change.
     pub number: u64,
@@ -59,9 +63,9 @@ pub struct Status {
     /// Number of render threads.
     pub threads: usize,
     /// Distribution of a frame's pixels to threads.
-    pub scheduler: String,
-    /// Name of the integrator.
-    pub integrator: String,
+    pub scheduler: Scheduler,
+    /// Integrator.
+    pub integrator: Option<IntegratorKind>,
     /// Maximum path depth: specular bounces under `classic`, path segments under `path`; `None`
     /// for integrators without one.
     pub max_depth: Option<u32>,
@@ -71,10 +75,10 @@ pub struct Status {
     pub denoise: bool,
     /// Whether the displayed frame is denoised.
     pub denoised: bool,
-    /// Name of the sampler.
-    pub sampler: String,
-    /// Name of the tone curve.
-    pub tone: String,
+    /// Sampler.
+    pub sampler: Option<SamplerKind>,
+    /// Tone curve.
+    pub tone: Option<ToneCurveKind>,
     /// Exposure in photographic stops.
     pub exposure: f32,
     /// Light groups of the scene by name, with their RGB gains; empty if the scene has none.
@@ -83,8 +87,8 @@ pub struct Status {
     pub models: Vec<ModelStatus>,
     /// Names of the scene's cameras, including bookmarks.
     pub cameras: Vec<String>,
-    /// Current camera in the scene format.
-    pub camera: Value,
+    /// Current camera.
+    pub camera: Option<AnyCamera>,
     /// Point of interest, in world space.
     pub interest: [f32; 3],
     /// Length of the diagonal of the box around all bounded objects, in scene units.
@@ -109,6 +113,7 @@ pub struct Status {
 mod tests {
     use super::Status;
     use crate::{BuildRequest, Edit, Setting, Subject};
+    use juggler::integrator::IntegratorKind;
     use juggler::scene::Scene;
 
     fn depth(subject: &Subject) -> (Option<u32>, [u32; 2]) {
@@ -131,11 +136,12 @@ mod tests {
         assert_eq!(set(Setting::MaxDepth(3)), (true, (Some(3), [1, 10_000])));
         assert_eq!(set(Setting::MaxDepth(0)), (false, (Some(3), [1, 10_000])));
         // Another integrator has a depth of its own.
-        for (name, expected) in [("classic", Some(10)), ("normals", None), ("path", Some(7))] {
-            let (done, (depth, range)) = set(Setting::Integrator(name.into()));
+        use IntegratorKind::{Classic, Normals, Path};
+        for (kind, expected) in [(Classic, Some(10)), (Normals, None), (Path, Some(7))] {
+            let (done, (depth, range)) = set(Setting::Integrator(kind));
             assert!(
                 done && depth == expected && (range == [0, 0]) == expected.is_none(),
-                "{name}: {depth:?} {range:?}"
+                "{kind:?}: {depth:?} {range:?}"
             );
         }
     }

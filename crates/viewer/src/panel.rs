@@ -12,10 +12,8 @@ use eframe::egui::scroll_area::ScrollAreaOutput;
 use eframe::egui::{
     self, Button, CollapsingHeader, ComboBox, Grid, ProgressBar, RichText, ScrollArea, Slider, TextEdit, Ui, vec2,
 };
-use juggler::camera::sampler::AnySampler;
-use juggler::imaging::AnyCurve;
-use juggler::integrator::AnyIntegrator;
-use juggler::names;
+use juggler::math::NamedKind;
+use juggler::render::Scheduler;
 use juggler_session::{Channel, Edit, Setting, Stage, Status};
 use std::collections::BTreeMap;
 
@@ -25,30 +23,18 @@ const WIDTH: f32 = 316.0;
 const CHANNEL_COLUMNS: usize = 4;
 /// Offered image sizes.
 const SIZES: [[u32; 2]; 6] = [[320, 240], [640, 480], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160]];
-/// Schedulers with their descriptions.
-const SCHEDULERS: [(&str, &str); 3] = [
-    ("work-stealing", "idle threads steal tiles from busy ones"),
-    ("row-queue", "a shared counter hands out rows"),
-    ("static-rows", "each thread has its own block of rows"),
-];
 
 /// State of the panel.
 pub struct Panel {
-    integrators: Vec<String>,
-    samplers: Vec<String>,
-    curves: Vec<String>,
     cores: usize,
     bookmark: String,
     /// Last frame rate under each scheduler.
-    rates: BTreeMap<String, f32>,
+    rates: BTreeMap<Scheduler, f32>,
 }
 
 impl Default for Panel {
     fn default() -> Self {
         Self {
-            integrators: names::<AnyIntegrator>(),
-            samplers: names::<AnySampler>(),
-            curves: names::<AnyCurve>(),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             bookmark: String::new(),
             rates: BTreeMap::new(),
@@ -76,7 +62,7 @@ impl Panel {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         if context.status.stage == Stage::Moving && context.status.frames_per_second > 0.0 {
-            self.rates.insert(context.status.scheduler.clone(), context.status.frames_per_second);
+            self.rates.insert(context.status.scheduler, context.status.frames_per_second);
         }
         let frame = egui::Frame::new().fill(style::SURFACE).inner_margin(egui::Margin::symmetric(14, 12));
         egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
@@ -137,9 +123,9 @@ impl Panel {
         if let Some(size) = row(ui, "size", |ui| sizes(ui, status.size, context.window)) {
             set(Setting::Size(size));
         }
-        let integrator = row(ui, "integrator", |ui| choice(ui, "integrator", &status.integrator, &self.integrators));
+        let integrator = row(ui, "integrator", |ui| kind_choice(ui, "integrator", status.integrator));
         integrator.map(Setting::Integrator).map(&mut set);
-        let sampler = row(ui, "sampler", |ui| choice(ui, "sampler", &status.sampler, &self.samplers));
+        let sampler = row(ui, "sampler", |ui| kind_choice(ui, "sampler", status.sampler));
         sampler.map(Setting::Sampler).map(&mut set);
         let samples = row(ui, "samples", |ui| number(ui, status.samples_wanted, 1..=16384, true));
         samples.map(Setting::Samples).map(&mut set);
@@ -166,7 +152,7 @@ impl Panel {
         if row(ui, "exposure", |ui| ui.add(slider).changed()) {
             context.edits.push(Edit::Setting(Setting::Exposure(stops)));
         }
-        let curve = row(ui, "tone curve", |ui| choice(ui, "curve", &context.status.tone, &self.curves));
+        let curve = row(ui, "tone curve", |ui| kind_choice(ui, "curve", context.status.tone));
         context.edits.extend(curve.map(|curve| Edit::Setting(Setting::Tone(curve))));
     }
 
@@ -176,13 +162,14 @@ impl Panel {
         if let Some(threads) = row(ui, "threads", |ui| number(ui, status.threads as u32, 1..=most, false)) {
             context.edits.push(Edit::Setting(Setting::Threads(threads as usize)));
         }
-        for (name, does) in SCHEDULERS {
+        for scheduler in Scheduler::ALL.iter().copied() {
             ui.horizontal(|ui| {
-                let chosen = status.scheduler == name;
-                if ui.add(Button::selectable(chosen, name).min_size(vec2(118.0, 22.0))).on_hover_text(does).clicked() {
-                    context.edits.push(Edit::Setting(Setting::Scheduler(name.into())));
+                let words = Button::selectable(status.scheduler == scheduler, scheduler.name());
+                let does = scheduler_description(scheduler);
+                if ui.add(words.min_size(vec2(118.0, 22.0))).on_hover_text(does).clicked() {
+                    context.edits.push(Edit::Setting(Setting::Scheduler(scheduler)));
                 }
-                if let Some(rate) = self.rates.get(name) {
+                if let Some(rate) = self.rates.get(&scheduler) {
                     ui.label(RichText::new(format!("{rate:.1} frames/s")).color(style::QUIET));
                 }
             });
@@ -230,6 +217,28 @@ pub fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R
 fn button(ui: &mut Ui, context: &mut PanelContext<'_>, words: &str, command: Command) {
     if ui.button(words).clicked() {
         context.commands.push(command);
+    }
+}
+
+/// Shows a choice of all kinds of a closed set, and returns the kind if another is selected.
+fn kind_choice<Kind: NamedKind>(ui: &mut Ui, id: &str, current: Option<Kind>) -> Option<Kind> {
+    let mut chosen = None;
+    let selected = current.map_or("", NamedKind::name);
+    ComboBox::from_id_salt(id).width(190.0).selected_text(selected).show_ui(ui, |ui| {
+        for kind in Kind::ALL.iter().copied() {
+            if ui.selectable_label(Some(kind) == current, kind.name()).clicked() && Some(kind) != current {
+                chosen = Some(kind);
+            }
+        }
+    });
+    chosen
+}
+
+fn scheduler_description(scheduler: Scheduler) -> &'static str {
+    match scheduler {
+        Scheduler::WorkStealing => "idle threads steal tiles from busy ones",
+        Scheduler::RowQueue => "a shared counter hands out rows",
+        Scheduler::StaticRows => "each thread has its own block of rows",
     }
 }
 

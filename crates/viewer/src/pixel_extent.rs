@@ -1,6 +1,5 @@
 //! Size of an image pixel in angle and in scene units, to which navigation is scaled.
 
-use juggler::camera::AnyCamera;
 use juggler::math::{UVec2, Vec2, Vec3};
 use juggler_session::Status;
 
@@ -20,9 +19,8 @@ impl PixelExtent {
     }
 
     fn from_camera(status: &Status) -> Option<Self> {
-        let camera: AnyCamera = serde_json::from_value(status.camera.clone()).ok()?;
         let size = UVec2::from(status.size);
-        let projection = camera.projection(size).ok()?;
+        let projection = status.camera.as_ref()?.projection(size).ok()?;
         let middle = size.as_vec2() / 2.0;
         let [here, below] = [middle, middle + Vec2::Y].map(|film| projection.ray(film, Vec2::splat(0.5), 0.0));
         let interest = Vec3::from(status.interest);
@@ -44,16 +42,19 @@ impl PixelExtent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use juggler::camera::{AnyCamera, Orthographic, Perspective};
+    use juggler::math::vec3;
 
-    fn status(camera: serde_json::Value) -> Status {
+    const EYE: Vec3 = vec3(0.0, 0.0, 5.0);
+
+    fn status(camera: Option<AnyCamera>) -> Status {
         Status { size: [200, 100], camera, interest: [0.0; 3], extent: 10.0, ..Status::default() }
     }
 
     #[test]
     fn pixel_extent_of_a_perspective_camera() {
-        let pixel =
-            PixelExtent::from_status(&status(json!({"perspective": {"eye": [0, 0, 5], "vertical_fov_degrees": 90}})));
+        let camera = Perspective { eye: EYE, vertical_fov_degrees: Some(90.0), ..Perspective::default() };
+        let pixel = PixelExtent::from_status(&status(Some(camera.into())));
         // At distance 1 half the film height is 1, so a pixel measures 1/50; at the origin 5 times
         // that.
         assert!((pixel.units_per_pixel - 0.1).abs() < 1e-3, "{pixel:?}");
@@ -62,14 +63,15 @@ mod tests {
 
     #[test]
     fn pixel_extent_of_an_orthographic_camera() {
-        let pixel = PixelExtent::from_status(&status(json!({"orthographic": {"eye": [0, 0, 5], "height": 20}})));
+        let camera = Orthographic { eye: EYE, height: Some(20.0), ..Orthographic::default() };
+        let pixel = PixelExtent::from_status(&status(Some(camera.into())));
         assert_eq!(pixel.degrees_per_pixel, 0.0);
         assert!((pixel.units_per_pixel - 0.2).abs() < 1e-4, "{pixel:?}");
     }
 
     #[test]
     fn pixel_extent_of_an_unknown_camera_is_positive() {
-        let pixel = PixelExtent::from_status(&status(json!({"periscope": {}})));
+        let pixel = PixelExtent::from_status(&status(None));
         assert!(pixel.degrees_per_pixel > 0.0 && pixel.units_per_pixel > 0.0);
     }
 }

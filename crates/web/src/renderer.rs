@@ -7,6 +7,7 @@ use crate::worker_film::{WorkerFilm, coarse};
 use juggler::Picture;
 use juggler::imaging::Options;
 use juggler::scene::Bundle;
+use juggler_session::wire::EditMessage;
 use juggler_session::{BuildRequest, Edit, EditEffect, Subject};
 use serde::Serialize;
 use std::sync::Arc;
@@ -60,15 +61,15 @@ impl WorkerRenderer {
         Ok(())
     }
 
-    /// Applies edits, an array of [`Edit`]s in JSON. Returns whether the samples so far are kept,
+    /// Applies edits, an array of [`EditMessage`]s in JSON. Returns whether the samples so far are kept,
     /// and the error of an edit that was skipped.
     pub fn edit(&mut self, edits: &str) -> Result<(bool, Option<String>), String> {
-        let edits: Vec<Edit> = serde_json::from_str(edits).map_err(|error| format!("error: {error}"))?;
+        let edits: Vec<EditMessage> = serde_json::from_str(edits).map_err(|error| format!("error: {error}"))?;
         let OpenScene { mut subject, film } = self.scene.take().ok_or("error: no scene is open")?;
         let before = Arc::clone(subject.picture());
         let mut error = None;
         for edit in edits {
-            if let Err(text) = change(&mut subject, &edit) {
+            if let Err(text) = edit.read().and_then(|edit| change(&mut subject, &edit)) {
                 error = Some(text);
             }
         }
@@ -217,6 +218,9 @@ mod tests {
         renderer.open("scalablitz-pool", Vec::new()).unwrap();
         assert!(renderer.open("scalablitz-pol", Vec::new()).is_err());
         assert!(renderer.edit(r#"[{"swim": {}}]"#).is_err());
+        let (kept, error) = renderer.edit(r#"[{"setting": {"tone": "agx2"}}, {"setting": {"exposure": 1}}]"#).unwrap();
+        assert!(kept && status(&renderer)["exposure"] == 1.0, "the other edit is applied");
+        assert_eq!(error.as_deref(), Some("error: there is no tone curve `agx2`; did you mean `agx`?"));
         assert_eq!(renderer.coarse([8, 8]).radiance.len(), 8 * 8 * 3, "what was open stays open");
     }
 }

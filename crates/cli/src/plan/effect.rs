@@ -169,6 +169,7 @@ pub fn ignored_tone_warning(target: Target, tone: &Tone) -> Option<String> {
 mod tests {
     use super::*;
     use crate::plan::Plan;
+    use juggler::integrator::IntegratorKind;
 
     fn refused(line: &str) -> Option<String> {
         match Plan::new(RenderArgs::from_words(line.split(' ')).unwrap()) {
@@ -215,7 +216,7 @@ mod tests {
         let deep = Settings { max_depth: Some(3), ..Settings::default() };
         assert!(acts("classic", 1, &deep) && acts("path", 1, &deep) && acts("normals", 1, &Settings::default()));
         assert!(!acts("normals", 1, &deep) && !acts("direct", 1, &deep));
-        assert!(acts("normals", 1, &Settings { integrator: Some("path".into()), ..deep }));
+        assert!(acts("normals", 1, &Settings { integrator: Some(IntegratorKind::Path), ..deep }));
         let denoised = Settings { denoiser: Some(juggler::Denoiser::Own), ..Settings::default() };
         assert!(!acts("path", 1, &denoised) && acts("path", 2, &denoised));
     }

@@ -1,21 +1,25 @@
 //! View and sampling of a picture, for all commands that render.
 
 use crate::args::ViewArgs;
-use juggler::Settings;
+use juggler::{Error, Settings, by_name};
 
 impl ViewArgs {
     /// Overrides of the scene's settings.
-    pub fn settings(&self) -> Settings {
-        Settings {
+    ///
+    /// # Errors
+    ///
+    /// Fails for an unknown integrator.
+    pub fn settings(&self) -> Result<Settings, Error> {
+        Ok(Settings {
             size: self.size,
             samples: self.samples,
-            integrator: self.integrator.clone(),
+            integrator: self.integrator.as_deref().map(|name| by_name("integrator", name)).transpose()?,
             max_depth: self.max_depth,
             camera: self.camera.clone(),
             shutter: self.shutter,
             seed: self.seed,
             ..Settings::default()
-        }
+        })
     }
 
     /// Frame number of the view; fractional for times between frames.

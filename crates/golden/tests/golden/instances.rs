@@ -1,6 +1,7 @@
 //! Instanced groups: the same pictures as without instancing, in a fraction of the memory.
 
 use juggler::camera::Perspective;
+use juggler::integrator::IntegratorKind;
 use juggler::material::Phong;
 use juggler::math::{Vec2, Vec3};
 use juggler::render::Control;
@@ -8,8 +9,8 @@ use juggler::scene::{Object, Scene};
 use juggler::shape::{Mesh, MeshData, Sphere};
 use juggler::{Error, Picture, Settings};
 
-fn picture(scene: &Scene, integrator: &str) -> Picture {
-    let settings = Settings { integrator: Some(integrator.into()), ..Settings::default() };
+fn picture(scene: &Scene, integrator: IntegratorKind) -> Picture {
+    let settings = Settings { integrator: Some(integrator), ..Settings::default() };
     Picture::new(scene, &settings).unwrap()
 }
 
@@ -54,7 +55,8 @@ fn sphere_floor(groups: &[&str], transparency: f32) -> Scene {
 /// anywhere, so theirs are rounded.
 #[test]
 fn shared_and_expanded_groups_make_the_same_picture() {
-    for (integrator, transparency) in [("albedo", 0.0), ("depth", 0.0), ("classic", 0.0), ("classic", 0.5)] {
+    use IntegratorKind::{Albedo, Classic, Depth};
+    for (integrator, transparency) in [(Albedo, 0.0), (Depth, 0.0), (Classic, 0.0), (Classic, 0.5)] {
         let scenes = [sphere_floor(&["a"], transparency), sphere_floor(&["a", "b"], transparency)];
         let pictures = scenes.map(|scene| picture(&scene, integrator));
         let geometry = pictures.each_ref().map(|picture| picture.world().geometry_stats());
@@ -62,9 +64,9 @@ fn shared_and_expanded_groups_make_the_same_picture() {
         assert_eq!(geometry.map(|geometry| geometry.instances), [3072, 0]);
         assert!(geometry[0].geometry_bytes * 10 < geometry[1].geometry_bytes, "{geometry:?}");
         let [(shared, mean), (expanded, other)] = pictures.each_ref().map(hash);
-        assert!(shared == expanded || integrator == "classic", "{integrator}: {mean:?} {other:?}");
+        assert!(shared == expanded || integrator == Classic, "{integrator:?}: {mean:?} {other:?}");
         let near = |(a, b): (&f64, &f64)| *a > 0.01 && (a - b).abs() < 1e-5 * a;
-        assert!(mean.iter().zip(&other).all(near), "{integrator}: {mean:?} {other:?}");
+        assert!(mean.iter().zip(&other).all(near), "{integrator:?}: {mean:?} {other:?}");
     }
 }
 
@@ -93,7 +95,7 @@ fn more_than_a_billion_triangles_need_little_memory() {
     let scene = scene.group("hills", hundred(1.0, || Object::new(hill()).rotated(Vec3::Y, 90.0)));
     let scene = scene.group("country", hundred(10.0, || Object::group("hills").scaled(-1.0).scaled(-1.0)));
     let scene = hundred(100.0, || Object::group("country")).into_iter().fold(scene, Scene::add);
-    let picture = picture(&scene, "classic");
+    let picture = picture(&scene, IntegratorKind::Classic);
     let geometry = picture.world().geometry_stats();
     assert_eq!((geometry.shapes, geometry.instances), (1_000_000, 100 + 10_000));
     assert_eq!((geometry.triangles, geometry.unique_triangles), (1_152_000_000, 115_200));
@@ -114,7 +116,7 @@ fn nesting_depth_of_instances_is_limited() {
     }
     scene = scene.group("many", hundred(40.0, || Object::group("g17")));
     let scene = hundred(400.0, || Object::group("many")).into_iter().fold(scene, Scene::add);
-    let picture = picture(&scene, "classic");
+    let picture = picture(&scene, IntegratorKind::Classic);
     let geometry = picture.world().geometry_stats();
     assert_eq!(geometry.shapes, 10_000 * (30 + 17 * 15));
     assert!(geometry.instances > 10_000 && geometry.instances < 10_000 * 16, "{geometry:?}");

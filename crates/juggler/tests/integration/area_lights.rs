@@ -1,5 +1,6 @@
 //! Area lights: emissive shapes for paths, and equally bright under the integrator `classic`.
 
+use juggler::integrator::IntegratorKind;
 use juggler::{Picture, Settings};
 use juggler_scene::Scene;
 
@@ -14,8 +15,8 @@ fn floor(material: &str, lights: &str, objects: &str) -> Scene {
     Scene::from_json(text, "floor.json").unwrap()
 }
 
-fn picture(scene: &Scene, integrator: Option<&str>) -> (f32, Vec<juggler::math::Rgb>) {
-    let settings = Settings { integrator: integrator.map(str::to_owned), ..Settings::default() };
+fn picture(scene: &Scene, integrator: Option<IntegratorKind>) -> (f32, Vec<juggler::math::Rgb>) {
+    let settings = Settings { integrator, ..Settings::default() };
     let image = juggler::render(scene, &settings).unwrap();
     let sum: f32 = image.pixels().iter().map(|pixel| pixel.g).sum();
     (sum / image.pixels().len() as f32, image.pixels().to_vec())
@@ -48,7 +49,8 @@ fn area_lights_are_equally_bright_in_the_classic_integrator() {
         let light = format!(r#"{{"area": {{{form}, "position": [-1, 2, 0.5], "look_at": [0, 0, 0], "power": 40}}}}"#);
         for material in [DIFFUSE, PHONG] {
             let scene = floor(material, &light, "");
-            let [classic, direct] = ["classic", "direct"].map(|name| picture(&scene, Some(name)).0);
+            let [classic, direct] =
+                [IntegratorKind::Classic, IntegratorKind::Direct].map(|kind| picture(&scene, Some(kind)).0);
             assert!(classic > 0.1 && (classic / direct - 1.0).abs() < 0.02, "{form} {material}: {classic} {direct}");
         }
     }
@@ -63,7 +65,7 @@ fn a_picture_says_which_integrator_made_it() {
     let scene = floor(DIFFUSE, "", "");
     let (name, why) = reason(&scene, &Settings::default());
     assert!(name == "path" && why.contains("`diffuse` at `objects[0].material`"), "{why}");
-    let classic = Settings { integrator: Some("classic".into()), ..Settings::default() };
+    let classic = Settings { integrator: Some(IntegratorKind::Classic), ..Settings::default() };
     assert_eq!(reason(&scene, &classic), ("classic", "set outside the scene".into()));
     // A maximum depth applies to the default integrator.
     let deep = Settings { max_depth: Some(3), ..Settings::default() };

@@ -1,5 +1,6 @@
 //! Probed pixels equal those of the image, and their light sums up.
 
+use juggler::integrator::IntegratorKind;
 use juggler::probe::{Branch, Detail, Probe, Prober, Share};
 use juggler::render::Control;
 use juggler::{Picture, Settings};
@@ -45,8 +46,9 @@ fn leaves(branch: &Branch) -> [f64; 3] {
 fn probe_mean_equals_the_pixel_and_its_contributions_sum_to_it() {
     for filter in [r#""box""#, r#"{"gaussian": {"radius": 1.5}}"#, r#""mitchell""#] {
         let scene = scene(filter);
-        for integrator in [None, Some("direct"), Some("classic"), Some("normals"), Some("ambient_occlusion")] {
-            let settings = Settings { integrator: integrator.map(str::to_owned), ..Settings::default() };
+        use IntegratorKind::{AmbientOcclusion, Classic, Direct, Normals};
+        for integrator in [None, Some(Direct), Some(Classic), Some(Normals), Some(AmbientOcclusion)] {
+            let settings = Settings { integrator, ..Settings::default() };
             let image = Picture::new(&scene, &settings).unwrap().render_image(&Control::default()).unwrap();
             for pixel in [[0, 0], [6, 9], [17, 11], [12, 16], [12, 3]] {
                 let probe = probed(&scene, &settings, pixel);
@@ -121,7 +123,7 @@ fn probe_rejects_outside_pixels_and_accepts_one_pixel_pictures() {
     assert!(error.contains("0,1") && error.contains("0 to 0"), "{error}");
     assert_eq!(prober.find_fireflies(3, &Control::default()).unwrap().pixels, []);
     let empty = Scene::from_json(r#"{"version": 1, "objects": []}"#, "empty.json").unwrap();
-    let settings = Settings { size: Some([4, 4]), integrator: Some("path".into()), ..Settings::default() };
+    let settings = Settings { size: Some([4, 4]), integrator: Some(IntegratorKind::Path), ..Settings::default() };
     assert!(probed(&empty, &settings, [1, 2]).first_hit.is_none());
 }
 

@@ -1,8 +1,14 @@
 //! Effect and error messages of every kind of edit.
 use crate::{PATIENCE, until};
 use juggler::camera::film::Rect;
+use juggler::camera::sampler::SamplerKind;
+use juggler::camera::{AnyCamera, Orthographic, Perspective};
+use juggler::imaging::ToneCurveKind;
+use juggler::integrator::IntegratorKind;
+use juggler::math::vec3;
+use juggler::render::Scheduler;
 use juggler::scene::{Scene, built_in_scenes};
-use juggler_session::{Channel, Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status};
+use juggler_session::{Channel, Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status, wire};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -55,39 +61,33 @@ fn settings_change_the_picture_or_say_what_is_wrong() {
     let session = opened("first-render");
     let settings = [
         (Setting::Samples(3), "samples_wanted"),
-        (Setting::Integrator("normals".into()), "integrator"),
-        (Setting::Integrator("classic".into()), "integrator"),
+        (Setting::Integrator(IntegratorKind::Normals), "integrator"),
+        (Setting::Integrator(IntegratorKind::Classic), "integrator"),
         (Setting::MaxDepth(3), "max_depth"),
-        (Setting::Sampler("independent".into()), "sampler"),
-        (Setting::Tone("linear".into()), "tone"),
+        (Setting::Sampler(SamplerKind::Independent), "sampler"),
+        (Setting::Tone(ToneCurveKind::Linear), "tone"),
         (Setting::Exposure(1.5), "exposure"),
         (Setting::Size([30, 20]), "size"),
         (Setting::Threads(1), "threads"),
-        (Setting::Scheduler("row-queue".into()), "scheduler"),
+        (Setting::Scheduler(Scheduler::RowQueue), "scheduler"),
     ];
     for (setting, member) in settings {
-        let json = serde_json::to_value(&setting).unwrap();
-        let value = json.as_object().unwrap().values().next().unwrap().clone();
-        let status = serde_json::to_value(&*after(&session, Edit::Setting(setting))).unwrap();
+        let edit = Edit::Setting(setting);
+        let json = serde_json::to_value(&edit).unwrap();
+        let value = json["setting"].as_object().unwrap().values().next().unwrap().clone();
+        let status = serde_json::to_value(&*after(&session, edit)).unwrap();
         assert_eq!((&status[member], &status["error"]), (&value, &json!(null)));
     }
     let hash = session.status().hash.clone();
     assert!(hash.is_some());
-    let wrong = [
-        Setting::Samples(0),
-        Setting::Size([0, 5]),
-        Setting::Size([60_000, 60_000]),
-        Setting::Integrator("clasic".into()),
-        Setting::Sampler(String::new()),
-        Setting::Tone("odd".into()),
-        Setting::Exposure(1e30),
-        Setting::Scheduler("none".into()),
-    ];
+    let wrong = [Setting::Samples(0), Setting::Size([0, 5]), Setting::Size([60_000, 60_000]), Setting::Exposure(1e30)];
     for setting in wrong {
         let status = after(&session, Edit::Setting(setting.clone()));
         assert!(status.error.is_some(), "{setting:?}");
         assert_eq!(status.hash, hash, "{setting:?} leaves the picture as it is");
     }
+    let status = settled(&session, session.report_unread("error: no".into()));
+    assert_eq!((status.error.as_deref(), &status.hash), (Some("error: no"), &hash));
     let status = after(&session, Edit::Setting(Setting::Seed(5)));
     assert!(status.error.is_none() && status.hash != hash);
 }
@@ -225,10 +225,11 @@ fn cameras_move_focus_and_are_chosen() {
     assert!(framed.camera != moved.camera);
     let back = after(&session, Edit::Camera(cameras[0].clone()));
     assert_eq!(back.camera, first);
-    let look = json!({"orthographic": {"eye": [0, 0, 900], "height": 300}});
-    assert_eq!(after(&session, Edit::Look(look.clone())).camera, look);
-    assert!(after(&session, Edit::Look(json!({"perspective": {"vertical_fov_degrees": 400}}))).error.is_some());
-    assert!(after(&session, Edit::Look(json!(3))).error.is_some());
+    let look =
+        AnyCamera::from(Orthographic { eye: vec3(0.0, 0.0, 900.0), height: Some(300.0), ..Orthographic::default() });
+    assert_eq!(after(&session, Edit::Look(look.clone())).camera, Some(look));
+    let wide = Perspective { vertical_fov_degrees: Some(400.0), ..Perspective::default() };
+    assert!(after(&session, Edit::Look(wide.into())).error.is_some());
 }
 
 #[test]
@@ -245,7 +246,9 @@ fn bookmarks_go_into_the_file_or_into_memory() {
     let built_in = opened("juggler");
     after(&built_in, Edit::Zoom(2.0));
     after(&built_in, Edit::Bookmark("near".into()));
-    assert!(built_in.bookmarks()["near"]["perspective"].is_object());
+    let bookmarks = built_in.bookmarks();
+    assert!(matches!(&bookmarks[..], [(name, AnyCamera::Perspective(_))] if name == "near"), "{bookmarks:?}");
+    assert!(wire::bookmarks(&bookmarks)["near"]["perspective"].is_object());
     assert_eq!(after(&built_in, Edit::Camera("camera".into())).error, None);
 }
 

@@ -3,7 +3,7 @@
 use crate::until;
 use juggler::camera::film::{Film, Tiling};
 use juggler::denoise::{Denoiser, DenoiserInput};
-use juggler::math::Rgb;
+use juggler::math::{Rgb, vec3};
 use juggler::render::{self, Control, StopCriterion};
 use juggler::scene::Scene;
 use juggler::{Picture, Settings};
@@ -79,9 +79,9 @@ fn orbits_pivot_about_the_look_at_point() {
     after(&session, Edit::Pivot([2.0, 2.0]));
     let turned = after(&session, Edit::Orbit(Orbit { yaw_degrees: 40.0, ..Orbit::default() }));
     assert!(near(turned.interest, [1.0, 0.0, 1.0]), "{:?}", turned.interest);
-    let eye = turned.camera["perspective"]["eye"].as_array().unwrap().iter().map(|at| at.as_f64().unwrap());
-    let distance = eye.zip([1.0, 0.0, 1.0]).map(|(eye, at)| (eye - at).powi(2)).sum::<f64>().sqrt();
-    assert!((distance - (4.0_f64 + 81.0).sqrt()).abs() < 1e-3, "{distance}");
+    let eye = turned.camera.as_ref().unwrap().axes().unwrap().eye;
+    let distance = eye.distance(vec3(1.0, 0.0, 1.0));
+    assert!((distance - (4.0_f32 + 81.0).sqrt()).abs() < 1e-3, "{distance}");
     // A clicked point takes precedence, and another frame or an edited value keeps it.
     let clicked = after(&session, Edit::Focus([32.0, 24.0])).interest;
     assert!(!near(clicked, [1.0, 0.0, 1.0]));

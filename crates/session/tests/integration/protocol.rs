@@ -1,9 +1,11 @@
 //! The JSON of edits, statuses and probes, which pages and their users' programs rely on.
 use crate::until;
 use juggler::camera::film::Rect;
+use juggler::render::Scheduler;
 use juggler::scene::Scene;
+use juggler_session::wire::EditMessage;
 use juggler_session::{
-    BuildRequest, Channel, Edit, EditEffect, PixelInfo, Session, SessionOptions, Stage, Status, Subject,
+    BuildRequest, Channel, Edit, EditEffect, ModelStatus, PixelInfo, Session, SessionOptions, Stage, Status, Subject,
 };
 
 /// Edits, each followed by the JSON that is written for it, or by the error that it causes. Version
@@ -23,7 +25,8 @@ fn subject() -> Subject {
 }
 
 fn read(json: &str) -> Result<Edit, String> {
-    serde_json::from_str(json).map_err(|error| format!("malformed: {error}"))
+    let message: EditMessage = serde_json::from_str(json).map_err(|error| format!("malformed: {error}"))?;
+    message.read()
 }
 
 /// Applies an edit to a small scene.
@@ -82,7 +85,7 @@ fn a_full_status_keeps_its_json() {
         rays_per_second: 1e7,
         coarseness: 4,
         threads: 2,
-        scheduler: "row-queue".into(),
+        scheduler: Scheduler::RowQueue,
         denoised: true,
         playing: true,
         hash: Some("00ff".into()),
@@ -103,6 +106,27 @@ fn a_full_status_keeps_its_json() {
         r#""hash":"00ff"}"#,
     );
     assert_eq!(serde_json::to_string(&status).unwrap(), expected);
+}
+
+/// The forms in `wire/status.rs` list the fields once more, so a new field could be forgotten.
+#[test]
+fn every_field_of_a_status_and_a_probe_is_in_its_json() {
+    let status = Status { models: vec![ModelStatus::default()], ..Status::default() };
+    check_fields(&status);
+    check_fields(&status.models[0]);
+    check_fields(&PixelInfo::default());
+}
+
+/// Compares the names of a value's fields, which its debug format lists, with the members of its
+/// JSON.
+fn check_fields(value: &(impl std::fmt::Debug + serde::Serialize)) {
+    let text = format!("{value:#?}");
+    let fields = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("    ").filter(|line| !line.starts_with([' ', '}', ']', ')'])));
+    let fields: Vec<&str> = fields.filter_map(|line| line.split(':').next()).collect();
+    let json = serde_json::to_value(value).unwrap();
+    assert_eq!(json.as_object().unwrap().keys().collect::<Vec<_>>(), fields);
 }
 
 #[test]

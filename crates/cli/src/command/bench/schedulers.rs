@@ -9,7 +9,7 @@ use clap::Args;
 use juggler::camera::Perspective;
 use juggler::light::Point;
 use juggler::material::Phong;
-use juggler::math::{Rgb, vec3};
+use juggler::math::{NamedKind, Rgb, vec3};
 use juggler::render::{Control, Scheduler};
 use juggler::scene::{Object, Scene};
 use juggler::shape::Sphere;
@@ -17,11 +17,10 @@ use juggler::{Error, Picture, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Instant;
 
-/// Schedulers and their names in the table.
-const SCHEDULERS: [(Scheduler, &str); 3] =
-    [(Scheduler::StaticRows, "row blocks"), (Scheduler::RowQueue, "row queue"), (Scheduler::WorkStealing, "stealing")];
+/// Schedulers in the order of the table, from the simplest.
+const SCHEDULERS: [Scheduler; 3] = [Scheduler::StaticRows, Scheduler::RowQueue, Scheduler::WorkStealing];
 /// Width of a column of the table, in characters.
-const COLUMN: usize = 12;
+const COLUMN: usize = 15;
 
 /// Flags of `juggler bench schedulers`.
 #[derive(Debug, Args)]
@@ -95,9 +94,9 @@ impl Schedulers {
 impl Row {
     fn measure(&mut self, pool: &ThreadPool, picture: &Picture) -> Result<(), Failure> {
         let mut hashes = Vec::new();
-        for ((scheduler, _), seconds) in SCHEDULERS.iter().zip(&mut self.seconds) {
+        for (scheduler, seconds) in SCHEDULERS.into_iter().zip(&mut self.seconds) {
             let start = Instant::now();
-            let film = pool.install(|| picture.render(*scheduler, &Control::default(), |_| Ok::<(), Error>(())))?;
+            let film = pool.install(|| picture.render(scheduler, &Control::default(), |_| Ok::<(), Error>(())))?;
             seconds.push(start.elapsed().as_secs_f64());
             hashes.push(film.hash);
         }
@@ -124,7 +123,8 @@ impl Row {
 }
 
 fn head() -> String {
-    let names: String = SCHEDULERS.iter().map(|(_, name)| format!("{name:>COLUMN$}{:>8}", "speed")).collect();
+    let column = |scheduler: Scheduler| format!("{:>COLUMN$}{:>8}", scheduler.name(), "speed");
+    let names: String = SCHEDULERS.into_iter().map(column).collect();
     format!("{:COLUMN$}{:>COLUMN$}{names}", "scene", "threads")
 }
 

@@ -80,7 +80,7 @@ impl Probe {
         let beyond = self.view.frame.and_then(|frame| end_warning(frame, scene.description.animation.frames));
         beyond.iter().for_each(|warning| console::print_message(warning));
         let scene = if frame == 0.0 { scene } else { scene.at_frame(frame)? };
-        let settings: Settings = self.view.settings();
+        let settings: Settings = self.view.settings()?;
         effect::check_scene(&settings, &scene)?;
         // Apply the shutter first, since it decides what moves.
         let scene = settings.apply(&scene)?;
