@@ -142,8 +142,8 @@ mod tests {
         EditedScene::new(scene(TWO), given.into()).unwrap()
     }
 
-    fn set(scene: &EditedScene, path: &str, value: Value) -> EditedScene {
-        scene.with_value(path, &value).unwrap()
+    fn set(scene: &EditedScene, path: &str, value: &Value) -> EditedScene {
+        scene.with_value(path, value).unwrap()
     }
 
     fn at(scene: &EditedScene, pointer: &str) -> Value {
@@ -152,9 +152,9 @@ mod tests {
 
     #[test]
     fn each_removal_removes_an_element() {
-        let first = set(&opened(&[]), "/lights/0", Value::Null);
+        let first = set(&opened(&[]), "/lights/0", &Value::Null);
         assert!(at(&first, "/lights/0/directional").is_object());
-        let second = set(&first, "/lights/0", Value::Null);
+        let second = set(&first, "/lights/0", &Value::Null);
         assert!(at(&second, "/lights/0").is_null() && at(&first, "/lights/0").is_object());
         let reloaded = second.with_file(scene(&TWO.replace("[1, 0, 0]", "[0, 1, 0]"))).unwrap();
         assert!(at(&reloaded, "/lights/0").is_null());
@@ -163,9 +163,9 @@ mod tests {
 
     #[test]
     fn values_may_use_names_of_earlier_edits_and_replace_them() {
-        let blue = set(&opened(&[]), "/materials/blue", json!({"diffuse": {}}));
-        let used = set(&blue, "/objects/0/material", json!("blue"));
-        let other = set(&used, "/materials/blue", json!({"phong": {}}));
+        let blue = set(&opened(&[]), "/materials/blue", &json!({"diffuse": {}}));
+        let used = set(&blue, "/objects/0/material", &json!("blue"));
+        let other = set(&used, "/materials/blue", &json!({"phong": {}}));
         let reloaded = other.with_file(scene(TWO)).unwrap();
         for scene in [&other, &reloaded] {
             assert_eq!(
@@ -177,8 +177,8 @@ mod tests {
 
     #[test]
     fn a_reload_keeps_edits_unless_the_file_changed_there() {
-        let edited = set(&opened(&[]), "/materials/red/phong/diffuse", json!([0, 0, 1]));
-        let edited = set(&edited, "/objects/0/shape/sphere/radius", json!("=2 + frame")).at_frame(3.0).unwrap();
+        let edited = set(&opened(&[]), "/materials/red/phong/diffuse", &json!([0, 0, 1]));
+        let edited = set(&edited, "/objects/0/shape/sphere/radius", &json!("=2 + frame")).at_frame(3.0).unwrap();
         let same = edited.with_file(scene(&TWO.replace("\"ambient\": {}", "\"ambient\": {\"intensity\": 2}"))).unwrap();
         assert_eq!(same.frame(), 3.0);
         assert_eq!(at(&same, "/materials/red/phong/diffuse"), json!([0, 0, 1]));
@@ -191,8 +191,8 @@ mod tests {
     #[test]
     fn a_reset_keeps_given_values() {
         let given = [("/materials/red/phong/diffuse".to_owned(), json!([0, 0, 1]))];
-        let edited = set(&opened(&given), "/materials/red/phong/diffuse", json!([1, 1, 1]));
-        let reset = set(&edited, "/lights", Value::Null).at_frame(2.0).unwrap().reset().unwrap();
+        let edited = set(&opened(&given), "/materials/red/phong/diffuse", &json!([1, 1, 1]));
+        let reset = set(&edited, "/lights", &Value::Null).at_frame(2.0).unwrap().reset().unwrap();
         assert_eq!((reset.frame(), at(&reset, "/materials/red/phong/diffuse")), (0.0, json!([0, 0, 1])));
         assert!(at(&reset, "/lights/1").is_object());
     }

@@ -1,6 +1,5 @@
 //! Answers to edits that cannot be made: which are refused, which appear in the status, and how.
 use crate::common::serve;
-use serde_json::Value;
 
 /// Edits with the reason of their refusal, or with the error that the status shows.
 const ANSWERS: &[(&str, Result<&str, &str>)] = &[
@@ -58,7 +57,7 @@ fn edits_that_cannot_be_made_are_answered_as_before() {
             Err(_) => page.next_text("refused", |_| true),
         };
         let (Ok(text) | Err(text)) = expected;
-        if answer != Value::from(text) {
+        if answer != text {
             wrong.push(format!("{edit}\n{answer}"));
         }
     }
