@@ -13,7 +13,6 @@ use juggler::math::{Rgb, Vec3};
 use juggler::mesh::FileContent;
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
-
 use juggler::scene::{Scene, with_camera};
 use juggler::{Picture, View};
 use std::path::{Path, PathBuf};

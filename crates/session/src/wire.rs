@@ -6,15 +6,19 @@
 //! steps: [`EditMessage`] checks the form, whose errors are those of a program, and
 //! [`EditMessage::read`] the names of kinds and the camera, whose errors are for users.
 
-use crate::edit::{Channel, Edit, Fly, Orbit, Setting};
+use crate::edit::{Channel, Edit, Fly, Orbit, SceneFiles, Setting};
 use juggler::by_name;
 use juggler::camera::AnyCamera;
 use juggler::camera::film::Rect;
+use juggler::camera::sampler::SamplerKind;
+use juggler::imaging::ToneCurveKind;
+use juggler::integrator::IntegratorKind;
 use juggler::math::NamedKind;
+use juggler::render::Scheduler;
 use juggler::scene::camera_json;
-use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
+use std::marker::PhantomData;
 
 mod status;
 
@@ -23,78 +27,107 @@ mod status;
 #[serde(transparent)]
 pub struct EditMessage(EditForm);
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields, expecting = "an edit")]
-enum EditForm {
-    Scene(String),
-    Reload,
-    Fly(Fly),
-    Orbit(Orbit),
-    Zoom(f32),
-    Focus([f32; 2]),
-    Pivot([f32; 2]),
-    Frame(Option<[f32; 2]>),
-    Camera(String),
-    Look(Value),
-    Bookmark(String),
-    Set { path: String, value: Value },
-    Setting(SettingForm),
-    At(f64),
-    Play(bool),
-    Show(Channel),
-    Region(Option<Rect>),
-    Reset,
+/// Declares the JSON form of an enum. A variant lists its parts with their types in JSON, from which
+/// they are read by `TryFrom` and to which they are written by `From`.
+macro_rules! json_form {
+    ($Form:ident of $Typed:ident {
+        $($(#[$attribute:meta])* $Variant:ident
+            $(($($part:ident: $Part:ty),+))? $({ $($field:ident: $Field:ty),+ })?),+ $(,)?
+    }) => {
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case", deny_unknown_fields)]
+        enum $Form {
+            $($(#[$attribute])* $Variant $(($($Part),+))? $({ $($field: $Field),+ })?),+
+        }
+
+        impl TryFrom<$Form> for $Typed {
+            type Error = String;
+
+            fn try_from(form: $Form) -> Result<Self, String> {
+                Ok(match form {
+                    $($Form::$Variant $(($($part),+))? $({ $($field),+ })? => {
+                        Self::$Variant $(($(read($part)?),+))? $({ $($field: read($field)?),+ })?
+                    })+
+                })
+            }
+        }
+
+        impl From<$Typed> for $Form {
+            fn from(typed: $Typed) -> Self {
+                match typed {
+                    $($Typed::$Variant $(($($part),+))? $({ $($field),+ })? => {
+                        Self::$Variant $(($($part.into()),+))? $({ $($field: $field.into()),+ })?
+                    })+
+                }
+            }
+        }
+    };
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-enum SettingForm {
-    Size([u32; 2]),
-    Samples(u32),
-    Integrator(String),
-    Sampler(String),
-    MaxDepth(u32),
-    Tone(String),
-    Exposure(f32),
-    Gain(String, [f32; 3]),
-    Denoise(bool),
-    Seed(u64),
-    Threads(usize),
-    Scheduler(String),
+json_form! {
+    EditForm of Edit {
+        Scene(name: String),
+        #[serde(skip)]
+        Files(scene: SceneFiles),
+        Reload,
+        Fly(fly: Fly),
+        Orbit(orbit: Orbit),
+        Zoom(factor: f32),
+        Focus(pixel: [f32; 2]),
+        Pivot(pixel: [f32; 2]),
+        Frame(pixel: Option<[f32; 2]>),
+        Camera(name: String),
+        Look(camera: CameraForm),
+        Bookmark(name: String),
+        Set { path: String, value: Value },
+        Setting(setting: SettingForm),
+        At(frame: f64),
+        Play(play: bool),
+        Show(channel: Channel),
+        Region(region: Option<Rect>),
+        Reset,
+    }
+}
+
+json_form! {
+    SettingForm of Setting {
+        Size(size: [u32; 2]),
+        Samples(samples: u32),
+        Integrator(kind: KindName<IntegratorKind>),
+        Sampler(kind: KindName<SamplerKind>),
+        MaxDepth(depth: u32),
+        Tone(kind: KindName<ToneCurveKind>),
+        Exposure(stops: f32),
+        Gain(group: String, factors: [f32; 3]),
+        Denoise(on: bool),
+        Seed(seed: u64),
+        Threads(threads: usize),
+        Scheduler(kind: KindName<Scheduler>),
+    }
+}
+
+fn read<Form, Typed>(form: Form) -> Result<Typed, String>
+where
+    Typed: TryFrom<Form>,
+    Typed::Error: ToString,
+{
+    Typed::try_from(form).map_err(|error| error.to_string())
 }
 
 impl EditMessage {
     /// Reads names and camera. The error is worded as in [`Status::error`](crate::Status).
     pub fn read(self) -> Result<Edit, String> {
-        Ok(match self.0 {
-            EditForm::Scene(name) => Edit::Scene(name),
-            EditForm::Reload => Edit::Reload,
-            EditForm::Fly(fly) => Edit::Fly(fly),
-            EditForm::Orbit(orbit) => Edit::Orbit(orbit),
-            EditForm::Zoom(factor) => Edit::Zoom(factor),
-            EditForm::Focus(pixel) => Edit::Focus(pixel),
-            EditForm::Pivot(pixel) => Edit::Pivot(pixel),
-            EditForm::Frame(pixel) => Edit::Frame(pixel),
-            EditForm::Camera(name) => Edit::Camera(name),
-            EditForm::Look(camera) => {
-                Edit::Look(AnyCamera::deserialize(camera).map_err(|error| format!("error: camera: {error}"))?)
-            }
-            EditForm::Bookmark(name) => Edit::Bookmark(name),
-            EditForm::Set { path, value } => Edit::Set { path, value },
-            EditForm::Setting(setting) => Edit::Setting(setting.read()?),
-            EditForm::At(frame) => Edit::At(frame),
-            EditForm::Play(play) => Edit::Play(play),
-            EditForm::Show(channel) => Edit::Show(channel),
-            EditForm::Region(region) => Edit::Region(region),
-            EditForm::Reset => Edit::Reset,
-        })
+        read(self.0)
     }
 
     /// Name of a kind that [`Self::read`] looks up; `None` for other edits.
     pub fn kind_name(&self) -> Option<&str> {
-        use SettingForm::{Integrator, Sampler, Scheduler, Tone};
-        match &self.0 {
-            EditForm::Setting(Integrator(name) | Sampler(name) | Tone(name) | Scheduler(name)) => Some(name),
+        let EditForm::Setting(setting) = &self.0 else { return None };
+        match setting {
+            SettingForm::Integrator(kind) => Some(&kind.name),
+            SettingForm::Sampler(kind) => Some(&kind.name),
+            SettingForm::Tone(kind) => Some(&kind.name),
+            SettingForm::Scheduler(kind) => Some(&kind.name),
             _ => None,
         }
     }
@@ -102,86 +135,89 @@ impl EditMessage {
     /// Camera that [`Self::read`] reads; `None` for other edits.
     pub fn camera(&self) -> Option<&Value> {
         match &self.0 {
-            EditForm::Look(camera) => Some(camera),
+            EditForm::Look(CameraForm(camera)) => Some(camera),
             _ => None,
         }
-    }
-}
-
-impl SettingForm {
-    fn read(self) -> Result<Setting, String> {
-        Ok(match self {
-            Self::Size(size) => Setting::Size(size),
-            Self::Samples(samples) => Setting::Samples(samples),
-            Self::Integrator(name) => Setting::Integrator(kind("integrator", &name)?),
-            Self::Sampler(name) => Setting::Sampler(kind("sampler", &name)?),
-            Self::MaxDepth(depth) => Setting::MaxDepth(depth),
-            Self::Tone(name) => Setting::Tone(kind("tone curve", &name)?),
-            Self::Exposure(stops) => Setting::Exposure(stops),
-            Self::Gain(group, factors) => Setting::Gain(group, factors),
-            Self::Denoise(on) => Setting::Denoise(on),
-            Self::Seed(seed) => Setting::Seed(seed),
-            Self::Threads(threads) => Setting::Threads(threads),
-            Self::Scheduler(name) => Setting::Scheduler(kind("scheduler", &name)?),
-        })
-    }
-}
-
-fn kind<Kind: NamedKind>(what: &str, name: &str) -> Result<Kind, String> {
-    by_name(what, name).map_err(|error| format!("error: {error}"))
-}
-
-impl From<&Setting> for SettingForm {
-    fn from(setting: &Setting) -> Self {
-        match setting {
-            Setting::Size(size) => Self::Size(*size),
-            Setting::Samples(samples) => Self::Samples(*samples),
-            Setting::Integrator(kind) => Self::Integrator(kind.name().to_owned()),
-            Setting::Sampler(kind) => Self::Sampler(kind.name().to_owned()),
-            Setting::MaxDepth(depth) => Self::MaxDepth(*depth),
-            Setting::Tone(kind) => Self::Tone(kind.name().to_owned()),
-            Setting::Exposure(stops) => Self::Exposure(*stops),
-            Setting::Gain(group, factors) => Self::Gain(group.clone(), *factors),
-            Setting::Denoise(on) => Self::Denoise(*on),
-            Setting::Seed(seed) => Self::Seed(*seed),
-            Setting::Threads(threads) => Self::Threads(*threads),
-            Setting::Scheduler(scheduler) => Self::Scheduler(scheduler.name().to_owned()),
-        }
-    }
-}
-
-impl EditForm {
-    /// Form of an edit; `None` for files in memory, which JSON cannot hold.
-    fn from_edit(edit: &Edit) -> Option<Self> {
-        Some(match edit {
-            Edit::Scene(name) => Self::Scene(name.clone()),
-            Edit::Files(_) => return None,
-            Edit::Reload => Self::Reload,
-            Edit::Fly(fly) => Self::Fly(*fly),
-            Edit::Orbit(orbit) => Self::Orbit(*orbit),
-            Edit::Zoom(factor) => Self::Zoom(*factor),
-            Edit::Focus(pixel) => Self::Focus(*pixel),
-            Edit::Pivot(pixel) => Self::Pivot(*pixel),
-            Edit::Frame(pixel) => Self::Frame(*pixel),
-            Edit::Camera(name) => Self::Camera(name.clone()),
-            Edit::Look(camera) => Self::Look(camera_json(camera)),
-            Edit::Bookmark(name) => Self::Bookmark(name.clone()),
-            Edit::Set { path, value } => Self::Set { path: path.clone(), value: value.clone() },
-            Edit::Setting(setting) => Self::Setting(setting.into()),
-            Edit::At(frame) => Self::At(*frame),
-            Edit::Play(play) => Self::Play(*play),
-            Edit::Show(channel) => Self::Show(*channel),
-            Edit::Region(region) => Self::Region(*region),
-            Edit::Reset => Self::Reset,
-        })
     }
 }
 
 /// Fails for [`Edit::Files`].
 impl Serialize for Edit {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let form = EditForm::from_edit(self).ok_or_else(|| S::Error::custom("no JSON stands for files in memory"))?;
-        form.serialize(serializer)
+        EditForm::from(self.clone()).serialize(serializer)
+    }
+}
+
+/// Name of a kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent, bound = "")]
+struct KindName<Kind> {
+    name: String,
+    #[serde(skip)]
+    kind: PhantomData<Kind>,
+}
+
+impl<Kind: NamedKind> KindName<Kind> {
+    /// Looks the name up; `what` names the set of kinds in messages.
+    fn read(&self, what: &str) -> Result<Kind, String> {
+        by_name(what, &self.name).map_err(|error| format!("error: {error}"))
+    }
+}
+
+impl<Kind: NamedKind> From<Kind> for KindName<Kind> {
+    fn from(kind: Kind) -> Self {
+        Self { name: kind.name().to_owned(), kind: PhantomData }
+    }
+}
+
+impl TryFrom<KindName<Self>> for IntegratorKind {
+    type Error = String;
+
+    fn try_from(name: KindName<Self>) -> Result<Self, String> {
+        name.read("integrator")
+    }
+}
+
+impl TryFrom<KindName<Self>> for SamplerKind {
+    type Error = String;
+
+    fn try_from(name: KindName<Self>) -> Result<Self, String> {
+        name.read("sampler")
+    }
+}
+
+impl TryFrom<KindName<Self>> for ToneCurveKind {
+    type Error = String;
+
+    fn try_from(name: KindName<Self>) -> Result<Self, String> {
+        name.read("tone curve")
+    }
+}
+
+impl TryFrom<KindName<Self>> for Scheduler {
+    type Error = String;
+
+    fn try_from(name: KindName<Self>) -> Result<Self, String> {
+        name.read("scheduler")
+    }
+}
+
+/// Camera in the scene format.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+struct CameraForm(Value);
+
+impl TryFrom<CameraForm> for AnyCamera {
+    type Error = String;
+
+    fn try_from(CameraForm(camera): CameraForm) -> Result<Self, String> {
+        Self::deserialize(camera).map_err(|error| format!("error: camera: {error}"))
+    }
+}
+
+impl From<AnyCamera> for CameraForm {
+    fn from(camera: AnyCamera) -> Self {
+        Self(camera_json(&camera))
     }
 }
 

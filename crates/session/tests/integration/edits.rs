@@ -166,6 +166,24 @@ fn scene_values_are_set_and_removed_and_invalid_values_rejected() {
 }
 
 #[test]
+fn each_edit_changes_the_scene_of_the_edits_before() {
+    let (_folder, name) = in_folder();
+    let session = opened(&name);
+    let set = |path: &str, value: serde_json::Value| after(&session, Edit::Set { path: path.into(), value });
+    set("/materials/blue", json!({"phong": {"diffuse": [0, 0, 1]}}));
+    let blue = set("/objects/0/material", json!("blue"));
+    let green = set("/materials/blue", json!({"phong": {"diffuse": [0, 1, 0]}}));
+    assert!(green.error.is_none() && green.hash != blue.hash, "the object keeps its material: {:?}", green.error);
+    // The file has one light; the edits add another and remove both.
+    set("/lights/1", json!({"ambient": {}}));
+    let dark = set("/lights", json!([]));
+    set("/lights", json!([{"directional": {"direction": [0, 0, -1]}}, {"ambient": {}}]));
+    set("/lights/0", json!(null));
+    let removed = set("/lights/0", json!(null));
+    assert_eq!((removed.error.as_ref(), &removed.hash), (None, &dark.hash));
+}
+
+#[test]
 fn edits_of_time_select_animation_frames() {
     let (_folder, name) = in_folder();
     let session = opened(&name);
