@@ -10,7 +10,6 @@ use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// An error that ends the program.
 #[derive(Debug)]
@@ -75,12 +74,6 @@ impl Failure {
             Some(folder) => Self::System(format!("cannot {what} `{name}`: there is no folder `{folder}`")),
             None => Self::System(format!("cannot {what} `{name}`: {}", plain(error))),
         }
-    }
-}
-
-impl From<Failure> for ExitCode {
-    fn from(failure: Failure) -> Self {
-        Self::from(failure.status())
     }
 }
 

@@ -9,40 +9,32 @@ use juggler::scene::{Loader, Scene};
 #[derive(Clone, Debug, Default, Args)]
 pub struct ModelArgs {
     /// Variant of a model's materials, by name or index
-    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub variant: Option<String>,
 
     /// Animation clip of a model, by name or index; `none` for the rest pose
-    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub animation: Option<String>,
 
     /// Scene of a model file, by name or index
-    #[arg(long, value_name = "NAME", help_heading = "Models", hide_short_help = true)]
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub model_scene: Option<String>,
 
     /// Show missing and broken pictures of models gray, with a warning, instead of refusing the model
-    #[arg(long, help_heading = "Models", hide_short_help = true)]
+    #[arg(long, hide_short_help = true)]
     pub lenient: bool,
 }
 
 impl ModelArgs {
-    /// Edits of the scene that select what the model shows: values by JSON pointer.
-    ///
-    /// # Errors
-    ///
-    /// A flag is given and the scene is not one model file, or cannot be loaded.
+    /// Values of the scene by JSON pointer that select what the model shows, if any is given.
     #[cfg(any(feature = "view", feature = "serve"))]
-    pub fn edits(&self, name: &str) -> Result<Vec<(String, serde_json::Value)>, Failure> {
+    pub fn values(&self) -> Vec<(String, serde_json::Value)> {
         let flags = [("variant", &self.variant), ("animation", &self.animation), ("scene", &self.model_scene)];
-        let edit = |(key, value): (&str, &Option<String>)| {
+        let value = |(key, value): (&str, &Option<String>)| {
             let value = serde_json::to_value(name_or_index(value.as_deref()?)).ok()?;
             Some((format!("/objects/0/model/{key}"), value))
         };
-        let edits: Vec<_> = flags.into_iter().filter_map(edit).collect();
-        if self.lenient || !edits.is_empty() {
-            crate::source::load_model(name, self, None)?;
-        }
-        Ok(edits)
+        flags.into_iter().filter_map(value).collect()
     }
 
     /// Loader of scenes.

@@ -3,22 +3,21 @@
 pub mod aovs;
 pub mod effect;
 mod movie;
-mod output_kind;
 mod parts;
 mod view;
 
-pub use effect::Target;
 pub use movie::Movie;
-pub use output_kind::{Encoding, OutputKind, PARTIAL_RENDER_EXTENSION};
 pub use parts::{Checkpoint, Cut, Shard};
 pub use view::end_warning;
 
 use crate::args::RenderArgs;
+use crate::encoding::{Encoding, EncodingChoice, OutputKind};
 use crate::failure::Failure;
 use crate::model_args::ModelArgs;
 use crate::output::{STANDARD_OUTPUT, at_most_one_stream, has_number, numbered};
 use crate::progress::Progress;
 use crate::source;
+use crate::target::Target;
 use crate::value::FrameRange;
 use juggler::film::shard::{self, FrameShard};
 use juggler::imaging::Options;
@@ -113,12 +112,14 @@ impl Plan {
         let movie = Movie::new(&args, &output)?;
         let output = movie.as_ref().map_or(output, Movie::frames);
         let output_kind = match movie {
-            Some(_) => OutputKind::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)),
-            None => OutputKind::new(&args, &output)?,
+            Some(_) => {
+                let choice = EncodingChoice { look: args.look, ..EncodingChoice::default() };
+                OutputKind::Picture(Encoding::new(choice, &output)?)
+            }
+            None => OutputKind::new(encoding_choice(&args), &output)?,
         };
         let times = TimeSelection::new(&args, &output, movie.is_some())?;
-        let target = Target::new(output_kind, movie.as_ref());
-        effect::check(target, &effect::flags(&args, matches!(times, TimeSelection::Frames(_))))?;
+        args.given.check(target(output_kind, movie.as_ref(), &times))?;
         let aovs = aovs::requested(&args, &output)?;
         let cut = Cut::new(&args, output_kind);
         let checkpoint = Checkpoint::new(&args, movie.as_ref())?;
@@ -153,7 +154,7 @@ impl Plan {
 
     /// Kind of file that the command writes in the end.
     pub fn target(&self) -> Target {
-        Target::new(self.output_kind, self.movie.as_ref())
+        target(self.output_kind, self.movie.as_ref(), &self.times)
     }
 
     /// Encoding options of the picture.
@@ -243,6 +244,20 @@ impl Plan {
         }
         let shards = shard::frames(frames, index, count).into_iter();
         shards.map(|FrameShard { frame, index, count }| frame_output(frame, Shard { index, count })).collect()
+    }
+}
+
+fn encoding_choice(args: &RenderArgs) -> EncodingChoice<'_> {
+    EncodingChoice { format: args.format.as_deref(), bits: args.bits, quality: args.quality, look: args.look }
+}
+
+fn target(output_kind: OutputKind, movie: Option<&Movie>, times: &TimeSelection) -> Target {
+    match (output_kind, movie) {
+        (_, Some(movie)) => Target::Movie(movie.format),
+        (OutputKind::Picture(encoding), None) if matches!(times, TimeSelection::Frames(_)) => {
+            Target::NumberedPictures(encoding)
+        }
+        (output_kind, None) => Target::of_file(output_kind),
     }
 }
 

@@ -52,6 +52,20 @@ pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Sc
     Ok(scene)
 }
 
+/// Values of the scene `name` by JSON pointer that select what its model shows.
+///
+/// # Errors
+///
+/// As [`load_model`].
+#[cfg(any(feature = "view", feature = "serve"))]
+pub fn model_values(name: &str, model: &ModelArgs) -> Result<Vec<(String, serde_json::Value)>, Failure> {
+    let values = model.values();
+    if model.lenient || !values.is_empty() {
+        load_model(name, model, None)?;
+    }
+    Ok(values)
+}
+
 /// Checks that a scene file or built-in scene of this name exists, without checking its contents.
 #[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {

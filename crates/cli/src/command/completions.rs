@@ -1,6 +1,5 @@
 //! `juggler completions SHELL`: completion scripts for shells.
 
-use crate::args::Args;
 use crate::console;
 use crate::failure::Failure;
 use clap_complete::{Shell, generate};
@@ -21,10 +20,10 @@ pub struct Completions {
 }
 
 impl Completions {
-    /// Prints the script.
-    pub fn run(self) -> Result<(), Failure> {
+    /// Prints the script for the program.
+    pub fn run(self, mut program: clap::Command) -> Result<(), Failure> {
         let mut script = Vec::new();
-        generate(self.shell, &mut Args::command_line(), "juggler", &mut script);
+        generate(self.shell, &mut program, "juggler", &mut script);
         console::print_result(&String::from_utf8_lossy(&script))
     }
 }

@@ -4,6 +4,7 @@ mod mesh;
 mod model;
 mod motion;
 mod partial_render;
+mod rows;
 
 use crate::console;
 use crate::failure::Failure;
@@ -16,10 +17,11 @@ use juggler::film;
 use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, ExrWindows, ImageFormat, ImageInfo, PixelWindow, regular};
 use juggler::light::background::AnyBackground;
-use juggler::math::{Aabb, message};
+use juggler::math::message;
 use juggler::mesh::FileContent;
 use juggler::scene::{Compiled, Illuminance, Scene};
 use juggler::world::GeometryStats;
+use rows::{bounds_text, corners, row};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -98,11 +100,6 @@ fn windows_json(ExrWindows { data, display }: &ExrWindows) -> Value {
     json!({"data": window(data), "display": window(display)})
 }
 
-/// Row of the output: key and value.
-fn row(key: &str, value: &str) -> String {
-    format!("{key:12} {value}")
-}
-
 /// `albedo: R, G, B`; only the channels if the layer has no name.
 fn layer_text(LayerName { name, channels }: &LayerName) -> String {
     let channels = channels.join(", ");
@@ -172,17 +169,6 @@ fn infinite_lights_text(lights: &[(&str, f32)]) -> String {
 /// `3, 12 MiB of pictures`.
 fn textures_text(count: usize, pictures: usize) -> String {
     if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures as u64)) } else { count.to_string() }
-}
-
-fn bounds_text(bounds: &Aabb) -> String {
-    match corners(bounds) {
-        Some([min, max]) => format!("[{}, {}, {}] to [{}, {}, {}]", min[0], min[1], min[2], max[0], max[1], max[2]),
-        None => "no bounded shape".into(),
-    }
-}
-
-fn corners(bounds: &Aabb) -> Option<[[f32; 3]; 2]> {
-    bounds.is_finite().then(|| [bounds.min.to_array(), bounds.max.to_array()])
 }
 
 fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {

@@ -1,6 +1,5 @@
 //! `juggler man`: manual pages, from the same definitions as the help.
 
-use crate::args::Args;
 use crate::console;
 use crate::failure::Failure;
 use clap::Command;
@@ -19,9 +18,8 @@ pub struct Manual {
 }
 
 impl Manual {
-    /// Prints a page, or writes all pages.
-    pub fn run(self) -> Result<(), Failure> {
-        let mut program = Args::command_line();
+    /// Prints a page of the program, or writes all pages.
+    pub fn run(self, mut program: Command) -> Result<(), Failure> {
         program.build();
         if let Some(folder) = &self.folder {
             let pages = std::iter::once(&program).chain(program.get_subcommands());

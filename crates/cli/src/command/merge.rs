@@ -3,16 +3,18 @@
 mod memory;
 
 use crate::console;
+use crate::encoding::{Encoding, EncodingChoice};
 use crate::failure::Failure;
+use crate::flags::GivenFlags;
 use crate::format::{bytes, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::aovs::{self, AovOutput};
-use crate::plan::effect::{self, FlagUse};
-use crate::plan::{Encoding, PARTIAL_RENDER_EXTENSION, Target};
+use crate::plan::effect;
 use crate::progress::{Goal, Reporter, Watch, with_progress};
 use crate::reproduce::SAMPLES;
 use crate::stats::{self, ClampStats};
+use crate::target::Target;
 use crate::value;
 use clap::Args;
 use juggler::camera::film::{FilmDigest, FilmSummary};
@@ -31,6 +33,8 @@ use std::time::Instant;
 /// Flags of `juggler merge`.
 #[derive(Debug, Args)]
 pub struct Merge {
+    #[command(flatten)]
+    given: GivenFlags,
     /// Partial renders of one picture (.jfilm), in any order
     #[arg(required = true, value_name = "FILE")]
     partial_renders: Vec<String>,
@@ -120,11 +124,10 @@ impl Merge {
         let start = Instant::now();
         output::at_most_one_stream(&self.output, self.stats.as_deref())?;
         output::check_stream(&self.output)?;
-        let is_partial_render = Path::new(&self.output)
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case(PARTIAL_RENDER_EXTENSION));
-        let (merge, merged) = if is_partial_render {
-            effect::check(Target::PartialRender, &self.flags())?;
+        let (format, bits, quality) = (self.format.as_deref(), self.bits, self.quality);
+        let choice = EncodingChoice { format, bits, quality, look: None };
+        let (merge, merged) = if choice.is_partial_render(&self.output) {
+            self.given.check(Target::PartialRender)?;
             let merge = film::Merge::open(&self.partial_renders, MergeGoal::PartialRender)?;
             if self.max_memory.is_some() {
                 memory::check(&merge, &AovSet::from_description(&merge.description().aovs)?, None, self.max_memory)?;
@@ -133,8 +136,8 @@ impl Merge {
             let merged = MergeOutput::PartialRender(merge.write(Path::new(&self.output), || interrupts.check())?);
             (merge, merged)
         } else {
-            let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
-            effect::check(Target::Picture(encoding), &self.flags())?;
+            let encoding = Encoding::new(choice, &self.output)?;
+            self.given.check(Target::Picture(encoding))?;
             let merge = film::Merge::open(&self.partial_renders, MergeGoal::Whole)?;
             let sample_counts = sample_counts(&merge)?;
             let interrupts = Interrupts::watch()?;
@@ -143,16 +146,6 @@ impl Merge {
             (merge, merged)
         };
         self.report(merge.description(), &merged, start)
-    }
-
-    /// Flags that not every target supports.
-    fn flags(&self) -> [FlagUse; 4] {
-        [
-            ("--format", self.format.is_some()),
-            ("--bits", self.bits.is_some()),
-            ("--quality", self.quality.is_some()),
-            ("--aov-output", self.aov_output.is_some()),
-        ]
     }
 
     fn picture(

@@ -66,8 +66,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// Runs the command.
-    pub fn run(self) -> Result<(), Failure> {
+    /// Runs the command; `program` makes the definition of all commands and flags.
+    pub fn run(self, program: fn() -> clap::Command) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(*args),
             #[cfg(feature = "view")]
@@ -84,8 +84,8 @@ impl Command {
             #[cfg(feature = "serve")]
             Self::Serve(serve) => serve.run(),
             Self::Bench(bench) => bench.run(),
-            Self::Completions(completions) => completions.run(),
-            Self::Man(manual) => manual.run(),
+            Self::Completions(completions) => completions.run(program()),
+            Self::Man(manual) => manual.run(program()),
         }
     }
 }

@@ -2,11 +2,13 @@
 //! tracing rays.
 
 use crate::console;
+use crate::encoding::{Encoding, EncodingChoice};
 use crate::failure::Failure;
+use crate::flags::GivenFlags;
 use crate::format::duration;
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Encoding, Target, effect};
+use crate::target::Target;
 use clap::Args;
 use juggler::camera::film::{Rect, Tile};
 use juggler::film::{self, MergeGoal, RenderDescription};
@@ -19,6 +21,8 @@ use std::time::Instant;
 /// Flags of `juggler relight`.
 #[derive(Debug, Args)]
 pub struct Relight {
+    #[command(flatten)]
+    given: GivenFlags,
     /// All partial renders (.jfilm) of a picture rendered with `--aov light_groups`, in any order
     #[arg(required = true, value_name = "FILM")]
     films: Vec<String>,
@@ -53,9 +57,9 @@ impl Relight {
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
         output::check_stream(&self.output)?;
-        let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
-        let given = [("--quality", self.quality.is_some()), ("--exposure", self.exposure.is_some())];
-        effect::check(Target::Picture(encoding), &given)?;
+        let (format, bits, quality) = (self.format.as_deref(), self.bits, self.quality);
+        let encoding = Encoding::new(EncodingChoice { format, bits, quality, look: None }, &self.output)?;
+        self.given.check(Target::Picture(encoding))?;
         let Encoding { format, options } = encoding;
         let merge = film::Merge::open(&self.films, MergeGoal::Whole)?;
         let RenderDescription { region, tone, metadata, aovs, viewpoint, .. } = merge.description();

@@ -54,7 +54,7 @@ impl Serve {
         }
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values, lenient) = (self.size, self.model.edits(name)?, self.model.lenient);
+        let (size, values, lenient) = (self.size, source::model_values(name, &self.model)?, self.model.lenient);
         let options =
             juggler_session::SessionOptions { size, values, lenient, threads, watch: true, ..Default::default() };
         let session = Session::open(name, options);

@@ -33,7 +33,7 @@ impl View {
         let name = self.scene.unwrap_or_else(|| FIRST.into());
         source::find(&name)?;
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values, lenient) = (self.size, self.model.edits(&name)?, self.model.lenient);
+        let (size, values, lenient) = (self.size, source::model_values(&name, &self.model)?, self.model.lenient);
         let options = SessionOptions { size, values, lenient, threads, watch: true, ..SessionOptions::default() };
         let session = Session::open(&name, options);
         Ok(juggler_viewer::run(session, juggler_viewer::ViewerOptions { choose })?)

@@ -1,8 +1,9 @@
 //! Partial renders: checkpoints, shards and cuts.
 
 use crate::args::RenderArgs;
+use crate::encoding::OutputKind;
 use crate::failure::Failure;
-use crate::plan::{Movie, OutputKind};
+use crate::plan::Movie;
 use crate::value;
 use juggler::camera::film::Rect;
 use std::env;

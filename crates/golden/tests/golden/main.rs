@@ -13,6 +13,7 @@
 mod arithmetic;
 mod blur;
 mod chess;
+mod circles;
 mod extra;
 mod hashes;
 mod hits;

@@ -1,6 +1,6 @@
 //! Contents of a mesh file, repairs and omissions on import, and load times.
 
-use super::{bounds_text, corners, row};
+use super::rows::{bounds_text, corners, row};
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::math::Aabb;

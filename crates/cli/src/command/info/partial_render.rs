@@ -1,6 +1,6 @@
 //! `juggler info part.jfilm`: contents of a partial render, after a check of all its bytes.
 
-use super::row;
+use super::rows::row;
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::camera::film::Rect;

@@ -1,12 +1,14 @@
 //! Renders to a film that is kept in memory: for checkpoints, noise levels and time limits, partial
 //! renders, AOVs and denoising.
 
-use super::{FrameRender, RenderCommand};
+use super::folder::forget;
+use super::frame::{FrameRender, RenderCommand};
 use crate::console;
+use crate::encoding::OutputKind;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::plan::aovs::{self, AovOutput};
-use crate::plan::{Checkpoint as CheckpointPlan, Cut, FrameOutput, OutputKind, Shard};
+use crate::plan::{Checkpoint as CheckpointPlan, Cut, FrameOutput, Shard};
 use crate::progress::{Goal, Watch, with_progress};
 use crate::reproduce::{self, SAMPLES, SAMPLES_PER_TILE};
 use juggler::camera::film::{Film, FilmDigest, FilmSummary, Rect, TILE_EDGE};
@@ -132,14 +134,6 @@ fn summary_of(pixels: &[Rgb], picture: &Picture, film: &Film) -> FilmSummary {
     digest.update(pixels);
     digest.add_clamped(film.clamped());
     digest.finish()
-}
-
-/// Removes a checkpoint and its previous version.
-pub fn forget(file: &str) {
-    for file in [file.to_owned(), format!("{file}.previous")] {
-        // Ignore errors: the file may not exist.
-        let _ = std::fs::remove_file(file);
-    }
 }
 
 impl FilmRender<'_> {

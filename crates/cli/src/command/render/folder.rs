@@ -1,7 +1,6 @@
 //! Folder for the frames of a movie until it is complete, with a lock against concurrent processes
 //! that make the same movie.
 
-use super::film_render::forget;
 use crate::failure::Failure;
 use juggler::imaging::atomic::is_still_at;
 use std::fs::{self, File, TryLockError};
@@ -106,6 +105,14 @@ fn locked_error(path: &str) -> Failure {
     Failure::System(format!(
         "other processes are writing to `{path}`{number}: run the same command again when they are done"
     ))
+}
+
+/// Removes a checkpoint and its previous version.
+pub fn forget(file: &str) {
+    for file in [file.to_owned(), format!("{file}.previous")] {
+        // Ignore errors: the file may not exist.
+        let _ = fs::remove_file(file);
+    }
 }
 
 #[cfg(test)]

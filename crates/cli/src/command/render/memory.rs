@@ -1,10 +1,11 @@
 //! `--max-memory`: estimates the memory of a render before large files are read, makes it fit, and
 //! suggests what to change if it cannot.
 
+use crate::encoding::{Encoding, OutputKind};
 use crate::failure::Failure;
 use crate::format::bytes;
 use crate::output::STANDARD_OUTPUT;
-use crate::plan::{Encoding, FrameOutput, OutputKind, Plan, Shard};
+use crate::plan::{FrameOutput, Plan, Shard};
 use juggler::Limit;
 use juggler::denoise::DenoiserInput;
 use juggler::imaging::Header;

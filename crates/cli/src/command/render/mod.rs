@@ -2,32 +2,34 @@
 
 mod film_render;
 mod folder;
+mod frame;
 mod frame_cache;
 mod memory;
 mod movie;
 
 use crate::args::RenderArgs;
 use crate::console;
+use crate::encoding::OutputKind;
 use crate::failure::Failure;
 use crate::format::{amount, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
-use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{FrameOutput, Movie, OutputKind, Plan, Shard, effect, end_warning};
-use crate::progress::{FrameProgress, Goal, Reporter, Watch, with_progress};
+use crate::output;
+use crate::plan::{FrameOutput, Movie, Plan, Shard, effect, end_warning};
+use crate::progress::{FrameProgress, Goal, Watch, with_progress};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
 use folder::{Access, FrameFolder};
+use frame::{FrameRender, RenderCommand, RenderStart};
 use frame_cache::FrameCache;
 use juggler::camera::film::Rect;
-use juggler::imaging::{self, AnimationHeader, Header, ImageFormat, RowWriter, Tone};
+use juggler::imaging::{AnimationHeader, Header, ImageFormat, Tone};
 use juggler::memory::Effort;
 use juggler::render::Control;
 use juggler::scene::Scene;
 use juggler::{Picture, RenderStats};
 use movie::MovieEncoder;
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Text after the short help.
 pub const MORE: &str = "\
@@ -56,31 +58,6 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let plan = Plan::new(args)?;
     output::check_stream(&plan.output)?;
     RenderCommand { reporter: plan.progress.reporter(), plan }.run(start)
-}
-
-/// All pictures of one command.
-struct RenderCommand {
-    plan: Plan,
-    reporter: Reporter,
-}
-
-/// Start time of a picture, and its position among the frames.
-#[derive(Clone, Copy)]
-struct RenderStart {
-    time: Instant,
-    frame_progress: Option<FrameProgress>,
-}
-
-/// A picture that is being rendered.
-struct FrameRender<'t> {
-    frame_output: &'t FrameOutput,
-    picture: &'t Picture,
-    effort: Effort,
-    /// Memory estimate, in bytes.
-    expected: u64,
-    load: Duration,
-    build: Duration,
-    start: RenderStart,
 }
 
 impl RenderCommand {
@@ -275,13 +252,6 @@ impl RenderCommand {
         with_progress(&watch, || picture.write(writer, &control)).map_err(|error| {
             self.reporter.clear();
             interrupts.caught().unwrap_or_else(|| error.into())
-        })
-    }
-
-    fn writer(&self, format: ImageFormat, output: &str, header: &Header) -> Result<Box<dyn RowWriter>, Failure> {
-        Ok(match output {
-            STANDARD_OUTPUT => imaging::to_standard_output(format, header)?,
-            file => imaging::create(Path::new(file), format, header)?,
         })
     }
 

@@ -1,6 +1,5 @@
 //! Kind of output and its encoding.
 
-use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
 use juggler::imaging::{AnimationFormat, DisplayLook, ImageError, ImageFormat, Options, SampleDepth};
@@ -27,27 +26,47 @@ pub struct Encoding {
     pub options: Options,
 }
 
-impl OutputKind {
-    /// Output kind from the output's extension and the flags.
-    pub fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
-        let is_partial_render = match &args.format {
+/// What flags choose about an encoding.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EncodingChoice<'a> {
+    /// File format, instead of the one that the output's extension selects.
+    pub format: Option<&'a str>,
+    /// Bits per channel.
+    pub bits: Option<u8>,
+    /// Quality of a JPEG, 1 to 100.
+    pub quality: Option<u8>,
+    /// Display look.
+    pub look: Option<DisplayLook>,
+}
+
+impl EncodingChoice<'_> {
+    /// Whether an output of this name is a partial render.
+    pub fn is_partial_render(&self, output: &str) -> bool {
+        match self.format {
             Some(name) => name == PARTIAL_RENDER_EXTENSION,
             None => Path::new(output)
                 .extension()
                 .is_some_and(|ending| ending.eq_ignore_ascii_case(PARTIAL_RENDER_EXTENSION)),
-        };
+        }
+    }
+}
+
+impl OutputKind {
+    /// Output kind from the output's extension and the flags.
+    ///
+    /// # Errors
+    ///
+    /// Fails for unknown formats and extensions, and for a partial render on standard output.
+    pub fn new(choice: EncodingChoice<'_>, output: &str) -> Result<Self, Failure> {
         match output {
-            _ if !is_partial_render && args.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
-                Err(Failure::Invalid(unknown_extension(output)))
-            }
-            _ if !is_partial_render => {
-                let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
-                Ok(Self::Picture(encoding.with_look(args.look)))
-            }
-            STANDARD_OUTPUT => {
+            STANDARD_OUTPUT if choice.is_partial_render(output) => {
                 Err(Failure::Invalid("a partial render needs a file: it cannot be written to standard output".into()))
             }
-            _ => Ok(Self::PartialRender),
+            _ if choice.is_partial_render(output) => Ok(Self::PartialRender),
+            _ if choice.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
+                Err(Failure::Invalid(unknown_extension(output)))
+            }
+            _ => Ok(Self::Picture(Encoding::new(choice, output)?)),
         }
     }
 }
@@ -75,26 +94,25 @@ fn unknown_extension(output: &str) -> String {
 
 impl Encoding {
     /// Encoding from `--format`, or else from the output's extension.
-    pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
+    ///
+    /// # Errors
+    ///
+    /// Fails for unknown formats and extensions, and for numbers of bits that a format lacks.
+    pub fn new(choice: EncodingChoice<'_>, output: &str) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Invalid(message);
-        let format = match format {
+        let format = match choice.format {
             Some(name) => ImageFormat::from_path(Path::new(&format!("picture.{name}")))
                 .map_err(|_| wrong(unknown_format(name)))?,
             None if output == STANDARD_OUTPUT => ImageFormat::Png,
             None => ImageFormat::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
         };
         let mut options = Options::default();
-        if let Some(bits) = bits {
+        if let Some(bits) = choice.bits {
             set_bits(&mut options, format, bits)?;
         }
-        options.jpeg_quality = quality.unwrap_or(options.jpeg_quality);
+        options.jpeg_quality = choice.quality.unwrap_or(options.jpeg_quality);
+        options.look = choice.look.unwrap_or_default();
         Ok(Self { format, options })
-    }
-
-    /// Adds a display look.
-    pub fn with_look(mut self, look: Option<DisplayLook>) -> Self {
-        self.options.look = look.unwrap_or_default();
-        self
     }
 }
 

@@ -1,42 +1,22 @@
 //! Suggestions for unknown flags. The parser's own suggestions are misleading for flags of other
 //! renderers, so these come first.
 
-use clap::Error;
+use super::table::{FLAGS, Flag};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, Error};
 use juggler::scene::suggest;
+use std::ffi::OsString;
 
-/// Flags of other programs, and the corresponding tips.
-const FOREIGN_FLAGS: &[(&[&str], &str)] = &[
-    (
-        &["--width", "--height", "-W", "-H", "--resolution", "--res", "--dimensions", "--geometry"],
-        "--size WxH sets width and height, such as --size 640x360",
-    ),
-    (&["-s", "--spp", "--sample", "--sample-count", "--num-samples"], "--samples N sets the samples per pixel"),
-    (&["-t", "-j", "--jobs", "--nthreads", "--num-threads"], "--threads N sets the number of threads"),
-    (&["--bounces", "--max-bounces", "--depth", "--path-depth"], "--max-depth N limits the number of path segments"),
-    (&["--out", "--outfile", "--output-file", "-O"], "-o FILE, or --output FILE, sets the output file"),
-    (&["--timeout", "--time-limit", "--seconds"], "--time SECONDS stops the render after this time"),
-    (&["--threshold", "--noise-threshold", "--error"], "--noise LEVEL stops the render at this relative error"),
-    (&["--passes", "--layers", "--channels"], "--aov LIST selects the AOVs to write"),
-    (&["--start", "--end", "-f", "-a", "--frame-range", "--animation"], "--frames A..B renders several frames"),
-    (&["--gamma", "--tonemap", "--tonemapper", "--tone-mapping"], "--tone CURVE sets the tone curve"),
-    (&["--ev", "--gain"], "--exposure STOPS makes the picture brighter or darker"),
-    (&["--cam", "--view"], "--camera NAME chooses one of the scene's cameras"),
-    (&["--region", "--window", "--cropwindow"], "--crop X,Y,W,H renders a rectangle of the picture"),
-    (&["--resume", "--continue"], "--checkpoint FILE saves progress; the same command resumes from it"),
-    (&["-v", "--verbose"], "--progress bar shows the progress, --stats FILE writes statistics"),
-    (&["-V"], "`juggler --version` prints the version"),
-];
-
-/// Replaces the parser's suggestion by a better one, or removes it.
-pub fn with_tip(mut error: Error) -> Error {
+/// Replaces the parser's suggestion by a better one, or removes it. A tip leads only to flags of the
+/// command that the words name.
+pub fn with_tip(mut error: Error, program: &Command, words: &[OsString]) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg).cloned() else { return error };
     let name = flag.split([' ', '=']).next().unwrap_or_default();
-    let ours = FOREIGN_FLAGS.iter().find(|(names, _)| names.contains(&name)).map(|(_, tip)| *tip);
+    let ours = tip_of(name, command_of(program, words));
     let keeps_suggestion = match error.get(ContextKind::SuggestedArg) {
         Some(ContextValue::String(suggested)) => {
             ours.is_none() && suggest::closest(name, [flag_name(suggested)]).is_some()
@@ -54,6 +34,18 @@ pub fn with_tip(mut error: Error) -> Error {
     error
 }
 
+/// The command that the words name; the program itself if they name none.
+fn command_of<'c>(program: &'c Command, words: &[OsString]) -> &'c Command {
+    words.iter().skip(1).find_map(|word| program.find_subcommand(word)).unwrap_or(program)
+}
+
+/// Tip for a name that a flag of the command has in other programs.
+fn tip_of(name: &str, command: &Command) -> Option<&'static str> {
+    let has = |flag: &Flag| command.get_arguments().any(|argument| argument.get_long() == Some(flag.name));
+    let tip = |flag: &'static Flag| flag.tip.filter(|(_, names)| names.contains(&name)).map(|(tip, _)| tip);
+    FLAGS.iter().filter(|flag| has(flag)).find_map(tip)
+}
+
 /// `--samples <N>` without its value name.
 fn flag_name(flag: &str) -> &str {
     flag.split([' ', '=', '[']).next().unwrap_or_default()
@@ -61,13 +53,13 @@ fn flag_name(flag: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use crate::args::Args;
+    use crate::command_line::CommandLine;
     use clap::ColorChoice;
     use std::ffi::OsString;
 
     fn refused(line: &str) -> String {
         let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
-        Args::parse_arguments(&words, ColorChoice::Never).unwrap_err().to_string()
+        CommandLine::parse_words(&words, ColorChoice::Never).unwrap_err().to_string()
     }
 
     #[test]
@@ -83,6 +75,12 @@ mod tests {
             assert!(message.contains(&format!("tip: {reported}")), "{message}");
             assert!(!message.contains("as a value") && !message.contains("--white-balance"), "{message}");
         }
+    }
+
+    #[test]
+    fn tips_lead_only_to_flags_of_the_command() {
+        assert!(!refused("juggler merge a.jfilm -o a.png --spp 4").contains("--samples"));
+        assert!(refused("juggler merge a.jfilm --outfile a.png").contains("--output FILE"));
     }
 
     #[test]
