@@ -14,7 +14,7 @@ pub(super) struct MaterialProperties {
     pub has_absence: bool,
     /// Whether light may pass straight through the front.
     pub passes_front: bool,
-    /// Whether light may pass through, straight or not.
+    /// Whether the BSDF transmits light.
     pub transmits: bool,
     /// Whether shading varies over the surface.
     pub textured: bool,

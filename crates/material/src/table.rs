@@ -52,7 +52,7 @@ impl MaterialTable {
             has_opacity,
             has_absence: absent || any(|properties| properties.has_absence),
             passes_front,
-            transmits: transmissive || classic || any(|properties| properties.transmits),
+            transmits: transmissive || any(|properties| properties.transmits),
             // Tangents are computed from the point in object space, which untextured surfaces lack.
             textured: tangents || compiled.is_textured() || any(|properties| properties.textured),
             tangents,
@@ -335,7 +335,7 @@ impl MaterialTable {
     }
 
     /// Whether light may pass through a surface of material `id` that bounds no solid, such as a pane
-    /// or a translucent sheet.
+    /// or a translucent sheet. Transparent classic materials bound solids of their own.
     #[inline]
     pub fn is_sheet(&self, id: MaterialId) -> bool {
         let MaterialProperties { transmits, interior, .. } = self.properties(id);

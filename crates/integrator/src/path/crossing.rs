@@ -103,8 +103,8 @@ fn crossed(inside: Interiors, interior: Option<InteriorId>, inwards: bool) -> In
     interior.map_or(inside, |id| inside.crossed(id, inwards))
 }
 
-/// Radiance before surfaces that a path passes straight through over the radiance behind them: a hole
-/// in glass and fog within glass do not refract, but radiance over n² stays the same.
+/// Radiance before surfaces that a path passes straight through over the radiance behind them: an
+/// opening in glass and fog within glass do not refract, but radiance over n² stays the same.
 fn radiance_ratio(world: &World, before: &PathState, behind: &PathState) -> f32 {
     let [a, b] = [before, behind].map(|path| world.ior_in(path.history.interiors, path.history.wavelength));
     (a / b) * (a / b)

@@ -1,4 +1,4 @@
-//! Sheets, holes and fog at the surface of solids: white furnaces, closed forms, and equal pictures in
+//! Sheets, openings and fog at the surface of solids: white furnaces, closed forms, and equal pictures in
 //! every order of the objects.
 
 use crate::probe::{camera, measure, path, read};
@@ -57,10 +57,10 @@ fn sheets_on_fog_keep_its_medium() {
     }
 }
 
-/// A hole in glass, and fog within glass, let light pass without refraction: its radiance over n²
+/// An opening in glass, and fog within glass, let light pass without refraction: its radiance over n²
 /// stays the same.
 #[test]
-fn holes_and_fog_in_glass_are_invisible_in_a_white_furnace() {
+fn openings_and_fog_in_glass_are_invisible_in_a_white_furnace() {
     let half = r#"{"mask": {"opacity": 0.5, "material": {"dielectric": {"ior": 1.5}}}}"#;
     let none = r#"{"mask": {"opacity": 0, "material": {"dielectric": {"ior": 1.5}}}}"#;
     let block = |material: &str| Item::cuboid([-2.0, 0.0, -2.0], [2.0, 1.0, 2.0], material);
