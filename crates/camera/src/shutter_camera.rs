@@ -110,18 +110,14 @@ mod tests {
     /// A rolling camera keeps its field of view between two keys.
     #[test]
     fn rotation_is_interpolated_as_rotation() {
-        let keys = [0.0, 120.0].map(|roll| {
-            ["orthographic", "perspective"].map(|kind| {
-                projection(&format!(
-                    r#"{{"{kind}": {{"eye": [1, 2, 5], "look_at": [1, 2, 0], "roll_degrees": {roll}}}}}"#
-                ))
-            })
-        });
-        for kind in 0..2 {
-            let camera = ShutterCamera::from_keys(keys[0][kind], vec![keys[1][kind]]);
+        for kind in ["orthographic", "perspective"] {
+            let [first, last] = [0.0, 120.0].map(|roll| {
+                let view = r#""eye": [1, 2, 5], "look_at": [1, 2, 0]"#;
+                projection(&format!(r#"{{"{kind}": {{{view}, "roll_degrees": {roll}}}}}"#))
+            });
+            let camera = ShutterCamera::from_keys(first, vec![last]);
             for (time, degrees) in [(0.0, 0.0f32), (0.25, 30.0), (0.5, 60.0), (1.0, 120.0)] {
                 let Projection { right, down, corner, .. } = camera.projection_at(time);
-                let first = keys[0][kind];
                 assert!((right.length() / first.right.length() - 1.0).abs() < 1e-5, "{time}: {right}");
                 assert!((corner.length() / first.corner.length() - 1.0).abs() < 1e-5, "{time}: {corner}");
                 assert!(right.dot(down).abs() < 1e-6 * right.length());

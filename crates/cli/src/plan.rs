@@ -111,13 +111,7 @@ impl Plan {
         at_most_one_stream(&output, args.stats.as_deref())?;
         let movie = Movie::new(&args, &output)?;
         let output = movie.as_ref().map_or(output, Movie::frames);
-        let output_kind = match movie {
-            Some(_) => {
-                let choice = EncodingChoice { look: args.look, ..EncodingChoice::default() };
-                OutputKind::Picture(Encoding::new(choice, &output)?)
-            }
-            None => OutputKind::new(encoding_choice(&args), &output)?,
-        };
+        let output_kind = output_kind(&args, movie.as_ref(), &output)?;
         let times = TimeSelection::new(&args, &output, movie.is_some())?;
         args.given.check(target(output_kind, movie.as_ref(), &times))?;
         let aovs = aovs::requested(&args, &output)?;
@@ -247,8 +241,14 @@ impl Plan {
     }
 }
 
-fn encoding_choice(args: &RenderArgs) -> EncodingChoice<'_> {
-    EncodingChoice { format: args.format.as_deref(), bits: args.bits, quality: args.quality, look: args.look }
+/// Kind of the output; frames of a movie are pictures.
+fn output_kind(args: &RenderArgs, movie: Option<&Movie>, output: &str) -> Result<OutputKind, Failure> {
+    let RenderArgs { format, bits, quality, look, .. } = args;
+    if movie.is_some() {
+        let choice = EncodingChoice { look: *look, ..EncodingChoice::default() };
+        return Ok(OutputKind::Picture(Encoding::new(choice, output)?));
+    }
+    OutputKind::new(EncodingChoice { format: format.as_deref(), bits: *bits, quality: *quality, look: *look }, output)
 }
 
 fn target(output_kind: OutputKind, movie: Option<&Movie>, times: &TimeSelection) -> Target {

@@ -7,7 +7,11 @@ use juggler_scene::Loader;
 use juggler_scene::model::ModelFormat;
 
 /// All formats of model files.
-pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[&GltfFormat { limits: None }, &ObjFormat, &StlFormat];
+pub const MODEL_FORMATS: &[&dyn ModelFormat] = &[
+    &GltfFormat { limits: None }, //
+    &ObjFormat,
+    &StlFormat,
+];
 
 /// Loader of scenes that knows all formats of model files.
 ///

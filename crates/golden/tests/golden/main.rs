@@ -24,6 +24,7 @@ mod model;
 mod moving_emitters;
 mod moving_parts;
 mod noise;
+mod pages;
 mod scales;
 mod tree;
 mod words;

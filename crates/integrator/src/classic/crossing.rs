@@ -2,7 +2,7 @@
 //! an opaque surface ends the passage, and the surfaces of two transparent solids that touch act as
 //! one.
 
-use super::Classic;
+use super::{Classic, Material};
 use crate::{PathHistory, PathState, VertexOutput};
 use juggler_math::{Ray, Vec2};
 use juggler_world::{Cluster, Member, Vertex, World};
@@ -24,8 +24,8 @@ impl Classic {
             let here = &mut output.at(&path);
             let is_straight = match surface(world, ray, &path, member, &mut cluster) {
                 Some((Member { vertex, t }, ior)) => {
-                    let phong = world.phong(&vertex);
-                    !self.interact(world, &ray.with_t_max(t), &path, &vertex, phong, ior, here)
+                    let material = Material::new(world, &vertex, ior);
+                    !self.interact(world, &ray.with_t_max(t), &path, &vertex, material, here)
                 }
                 None => true,
             };

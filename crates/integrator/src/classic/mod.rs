@@ -64,17 +64,40 @@ struct ShadingPoint<'a> {
     time: f32,
 }
 
+/// Material of a vertex.
+enum Material<'w> {
+    /// The classic one, with its index of refraction relative to the medium outside.
+    Phong(Cow<'w, PhongParameters>),
+    /// Any other.
+    Physical {
+        /// Index of refraction of the medium outside.
+        outside_ior: f32,
+    },
+}
+
+impl<'w> Material<'w> {
+    /// Material of a vertex; `outside_ior` is the index of refraction of a solid that touches its
+    /// surface.
+    fn new(world: &'w World, vertex: &Vertex, outside_ior: f32) -> Self {
+        let Some(mut phong) = world.phong(vertex) else { return Self::Physical { outside_ior } };
+        if outside_ior != 1.0 {
+            phong.to_mut().ior /= outside_ior;
+        }
+        Self::Phong(phong)
+    }
+}
+
 impl Integrator for Classic {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        let phong = world.phong(vertex);
-        let may_pass = match phong.as_deref() {
-            Some(phong) => !phong.transparency.is_black(),
-            None => world.has_transparency() || world.interior(vertex).is_some(),
+        let material = Material::new(world, vertex, 1.0);
+        let may_pass = match &material {
+            Material::Phong(phong) => !phong.transparency.is_black(),
+            Material::Physical { .. } => world.has_transparency() || world.interior(vertex).is_some(),
         };
         if may_pass {
             return self.cross_surfaces(world, ray, path, vertex, output);
         }
-        self.interact(world, ray, path, vertex, phong, 1.0, output);
+        self.interact(world, ray, path, vertex, material, output);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {
@@ -96,7 +119,7 @@ impl<'a> ShadingPoint<'a> {
 
 impl Classic {
     /// Shades a vertex, by its classic material if it has one, and traces shadow rays and secondary
-    /// rays. `outside_ior` is the index of refraction of a solid that touches the surface. Returns `false` if opacity lets the ray pass.
+    /// rays. Returns `false` if opacity lets the ray pass.
     #[inline(always)]
     fn interact(
         &self,
@@ -104,14 +127,15 @@ impl Classic {
         ray: &Ray,
         path: &PathState,
         vertex: &Vertex,
-        phong: Option<Cow<PhongParameters>>,
-        outside_ior: f32,
+        material: Material,
         output: &mut VertexOutput,
     ) -> bool {
-        let Some(mut phong) = phong else { return self.physical(world, ray, path, vertex, outside_ior, output) };
-        if outside_ior != 1.0 {
-            phong.to_mut().ior /= outside_ior;
-        }
+        let phong = match material {
+            Material::Phong(phong) => phong,
+            Material::Physical { outside_ior } => {
+                return self.physical(world, ray, path, vertex, outside_ior, output);
+            }
+        };
         let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, vertex) };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
         let point = ShadingPoint::new(ray, surfaces, &phong);

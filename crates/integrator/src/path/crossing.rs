@@ -195,13 +195,7 @@ impl Path {
         is_left: impl Fn(&Vertex) -> bool,
     ) -> Passage {
         if world.interior(&member.vertex).is_none() {
-            // Rays that leave an opaque surface inside a medium start before the interfaces at its
-            // place.
-            let is_sheet = world.is_sheet(&member.vertex);
-            let touching = (is_sheet || !path.history.interiors.is_empty()).then(|| cluster.clone());
-            let mut others = touching.into_iter().flatten().peekable();
-            let has_others_behind = is_sheet && others.peek().is_some();
-            return Passage::Surface(grown(member, others), Interface { has_others_behind, ..Interface::OPAQUE });
+            return without_solid(world, path, member, cluster);
         }
         let mut sampler = path.sampler;
         let mut is_open = |vertex: &Vertex| {
@@ -239,6 +233,16 @@ impl Path {
             _ => net_interface(world, ray, path, &interfaces, behind),
         }
     }
+}
+
+/// Passage to a surface that bounds no solid.
+fn without_solid(world: &World, path: &PathState, member: Member, cluster: &Cluster) -> Passage {
+    // Rays that leave an opaque surface inside a medium start before the interfaces at its place.
+    let is_sheet = world.is_sheet(&member.vertex);
+    let touching = (is_sheet || !path.history.interiors.is_empty()).then(|| cluster.clone());
+    let mut others = touching.into_iter().flatten().peekable();
+    let has_others_behind = is_sheet && others.peek().is_some();
+    Passage::Surface(grown(member, others), Interface { has_others_behind, ..Interface::OPAQUE })
 }
 
 /// Interface without others at its place; `None` if a solid of higher priority hides it.

@@ -7,8 +7,8 @@ const ANSWERS: &[(&str, Result<&str, &str>)] = &[
     (r#"{"setting": {"sampler": "sobl"}}"#, Ok("error: there is no sampler `sobl`; did you mean `sobol`?")),
     (r#"{"setting": {"tone": "agx2"}}"#, Ok("error: there is no tone curve `agx2`; did you mean `agx`?")),
     (
-        r#"{"setting": {"scheduler": "row-queu"}}"#,
-        Ok("error: there is no scheduler `row-queu`; did you mean `row-queue`?"),
+        r#"{"setting": {"scheduler": "row-queues"}}"#,
+        Ok("error: there is no scheduler `row-queues`; did you mean `row-queue`?"),
     ),
     (
         r#"{"setting": {"scheduler": "none"}}"#,

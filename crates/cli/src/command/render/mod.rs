@@ -228,7 +228,9 @@ impl RenderCommand {
     fn warn_of_settings(&self, scene: &Scene) {
         let frames = scene.description.animation.frames;
         let last = self.plan.frames(frames).end.saturating_sub(1);
+        // The tone of the scene around a model is not the user's.
         let tone = effect::ignored_tone_warning(self.plan.target(), &scene.description.tone);
+        let tone = tone.filter(|_| !scene.is_around_model());
         for warning in tone.into_iter().chain(end_warning(last, frames)).filter(|_| !self.plan.quiet) {
             console::print_message(&warning);
         }

@@ -14,7 +14,8 @@ pub struct Addition {
     pub words: &'static [(&'static str, &'static str)],
     /// Line that declares the module, with its file.
     module: (&'static str, &'static str),
-    /// Line that lists the kind, with its file.
+    /// Line that lists the kind, with its file, which is in `folder` unless its path begins with
+    /// `crates`.
     entry: (&'static str, &'static str),
     /// JSON of the old and of the new kind in [`SCENE`].
     pub in_json: Option<(&'static str, &'static str)>,
@@ -27,7 +28,11 @@ impl Addition {
 
     /// Lines to add to existing files, with the files.
     pub fn pages(&self) -> Vec<(PathBuf, String)> {
-        [self.module, self.entry].map(|(file, line)| (Path::new(self.folder).join(file), line.to_owned())).to_vec()
+        let place = |file: &str| match file.starts_with("crates/") {
+            true => PathBuf::from(file),
+            false => Path::new(self.folder).join(file),
+        };
+        [self.module, self.entry].map(|(file, line)| (place(file), line.to_owned())).to_vec()
     }
 
     /// Source of the new kind.
@@ -155,6 +160,34 @@ pub const FAMILIES: &[Addition] = &[
         entry: ("formats.rs", "&crate::tri::Tri, <- &Ply,"),
         in_json: Some(("mesh.obj", "mesh.tri")),
     },
+    Addition {
+        family: "model format",
+        folder: "crates/import/src",
+        files: (Some("stl.rs"), "solids.rs"),
+        words: &[("StlFormat", "SolidsFormat"), ("STL.extension", "\"solids\"")],
+        module: ("lib.rs", "pub mod solids; <- pub mod obj;"),
+        entry: ("crates/juggler/src/formats.rs", "&juggler_import::solids::SolidsFormat, <- &ObjFormat,"),
+        in_json: Some(("two.stl", "two.solids")),
+    },
+];
+
+/// Lines, with their files, that add the flag `--calm` to `juggler render`, which acts as `--quiet`.
+pub const FLAG: &[(&str, &str)] = &[
+    ("crates/cli/src/flags/table.rs", "flag(\"calm\", OUTPUT), <- flag(\"quiet\", OUTPUT),"),
+    ("crates/cli/src/args.rs", "#[arg(long)] <- pub quiet: bool,"),
+    ("crates/cli/src/args.rs", "pub calm: bool, <- #[arg(long)]\n"),
+    (
+        "crates/cli/src/plan.rs",
+        "let args = RenderArgs { quiet: args.quiet || args.calm, ..args }; <- pub fn new(args: RenderArgs)",
+    ),
+];
+
+/// Lines, with their files, that add an edit that acts as `Edit::Reset`.
+pub const EDIT: &[(&str, &str)] = &[
+    ("crates/session/src/edit.rs", "Restart, <-     Reset,"),
+    ("crates/session/src/wire.rs", "Restart, <-         Reset,"),
+    ("crates/session/src/apply.rs", "Edit::Restart => Ok(EditEffect::build(self.reset())), <- Edit::Reset =>"),
+    ("crates/serve/src/edits.rs", "Edit::Restart => Ok(()), <- Edit::Bookmark(name) => short(name),"),
 ];
 
 /// A scene with one kind of each family.
@@ -168,7 +201,8 @@ pub const SCENE: &str = r#"{
     "materials": {"floor": {"diffuse": {"reflectance": "red"}}, "white": {"diffuse": {}}},
     "objects": [
         {"shape": {"disk": {"radius": 2}}, "material": "floor"},
-        {"shape": {"mesh": {"file": "mesh.obj"}}, "transform": [{"translate": [0, 0.7, 0]}], "material": "white"}
+        {"shape": {"mesh": {"file": "mesh.obj"}}, "transform": [{"translate": [0, 0.7, 0]}], "material": "white"},
+        {"model": {"file": "two.stl"}, "transform": [{"translate": [-1, 0.2, 0]}]}
     ]
 }"#;
 

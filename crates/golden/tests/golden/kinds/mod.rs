@@ -3,7 +3,7 @@
 
 mod families;
 
-use families::{Addition, FAMILIES};
+use families::{Addition, EDIT, FAMILIES, FLAG};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,8 @@ use std::process::Command;
 
 /// Number of lines that a new kind adds to existing files.
 const LINES: usize = 2;
+/// Maximum number of lines of a new flag, and of a new edit, beside their documentation.
+const SMALL_LINES: usize = 4;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -53,7 +55,9 @@ fn copy_with(additions: &[&Addition]) {
         files(&root(), Path::new(folder), &mut paths);
     }
     remove_others(&paths.iter().cloned().chain(additions.iter().map(|addition| addition.new_file())).collect());
-    let pages: Vec<(PathBuf, String)> = additions.iter().flat_map(|addition| addition.pages()).collect();
+    let mut pages: Vec<(PathBuf, String)> = additions.iter().flat_map(|addition| addition.pages()).collect();
+    let small = if additions.len() == FAMILIES.len() { [FLAG, EDIT] } else { [&[][..], &[]] };
+    pages.extend(small.into_iter().flatten().map(|(file, line)| (PathBuf::from(file), (*line).to_owned())));
     for path in paths {
         let text = fs::read(root().join(&path)).unwrap();
         let added: Vec<&String> = pages.iter().filter(|(page, _)| *page == path).map(|(_, line)| line).collect();
@@ -107,10 +111,13 @@ fn a_new_kind_is_one_file_and_two_lines() {
     for addition in FAMILIES {
         assert_eq!(addition.pages().len(), LINES, "{}", addition.family);
     }
+    assert!(FLAG.len() <= SMALL_LINES && EDIT.len() <= SMALL_LINES);
     if std::env::var("JUGGLER_KINDS").as_deref() == Ok("all") {
         copy_with(&FAMILIES.iter().collect::<Vec<_>>());
         cargo(&["build", "-p", "juggler-cli", "--no-default-features"]);
         new_kinds_render_as_the_old_ones();
+        new_flags_act();
+        cargo(&["check", "-p", "juggler-serve"]);
     } else {
         let two = ["lobe", "shape"].map(|family| FAMILIES.iter().find(|a| a.family == family).unwrap());
         copy_with(&two);
@@ -118,13 +125,40 @@ fn a_new_kind_is_one_file_and_two_lines() {
     }
 }
 
+/// The new flag silences a render, and a merge refuses it.
+fn new_flags_act() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| {
+        let mut command = Command::new(scratch().join("target/debug/juggler"));
+        command.current_dir(folder.path()).args(words).output().unwrap()
+    };
+    let render = ["render", "juggler", "--size", "8x6", "--samples", "1", "-o", "a.png"];
+    let output = run(&[&render[..], &["--calm"]].concat());
+    assert!(output.status.success() && output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!run(&render).stdout.is_empty());
+    assert_eq!(run(&["merge", "a.jfilm", "-o", "b.png", "--calm"]).status.code(), Some(2));
+}
+
+/// Writes the mesh and the model of the scenes in an old and in a new format.
+fn write_meshes(folder: &Path) {
+    let mesh = "0 0 0  0 0 1  1 0 0\n0 0 1  1 0 1  1 0 0\n";
+    let wavefront = "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\nv 1 0 1\nf 2 4 3\n";
+    write(&folder.join("mesh.tri"), mesh.as_bytes());
+    write(&folder.join("mesh.obj"), wavefront.as_bytes());
+    let facet = |x: u32| {
+        let corners = format!("vertex {x} 0 0\nvertex {} 0 0\nvertex {x} 0 1\n", x + 1);
+        format!("solid {x}\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
+    };
+    let solids = format!("{}{}", facet(0), facet(2));
+    for name in ["two.stl", "two.solids"] {
+        write(&folder.join(name), solids.as_bytes());
+    }
+}
+
 /// Renders a scene of old kinds and one of new kinds; the pictures must be bit for bit the same.
 fn new_kinds_render_as_the_old_ones() {
     let folder = tempfile::tempdir().unwrap();
-    let mesh = "0 0 0  0 0 1  1 0 0\n0 0 1  1 0 1  1 0 0\n";
-    let wavefront = "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\nv 1 0 1\nf 2 4 3\n";
-    write(&folder.path().join("mesh.tri"), mesh.as_bytes());
-    write(&folder.path().join("mesh.obj"), wavefront.as_bytes());
+    write_meshes(folder.path());
     let old = families::SCENE;
     let mut new = old.to_owned();
     for addition in FAMILIES {
