@@ -65,7 +65,7 @@ deep_rays() {
 # touching surfaces in all orders.
 deep_furnaces() {
   JUGGLER_FURNACES=all cargo test --release --locked -p juggler-bsdf --lib contract::white
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-render --test integration -- touching:: white_worlds:: white_kinds:: rooms:: caustics::
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-render --test integration -- touching white_worlds:: white_kinds:: rooms:: caustics::
 }
 
 # Tests `--max-memory` with the optimized program; the step `unit` tests the unoptimized one.
