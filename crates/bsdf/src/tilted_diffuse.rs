@@ -1,8 +1,9 @@
 //! Diffuse reflection around another normal than the shading normal: under a normal map whose
-//! normal the frame of the lobes cannot have, since its mirror direction would be below the surface.
+//! normal the frame of the lobes cannot have, since its mirror direction would be below the
+//! surface.
 //!
-//! Diffuse reflection follows n·l with the normal n of the map, from whatever side it is seen, as in
-//! Cycles, three.js and Filament. Light below the plane of n is absorbed.
+//! Diffuse reflection follows n·l with the normal n of the map, from whatever side it is seen, as
+//! in Cycles, three.js and Filament. Light below the plane of n is absorbed.
 
 use super::{BsdfSample, Lambert, OrenNayar, ScatteringLobe};
 use juggler_math::{Frame, Rgb, Vec2, Vec3};
@@ -30,7 +31,8 @@ impl TiltedDiffuse {
         Self { diffuse, normal }
     }
 
-    /// The direction of view in the lobe's frame, on the lit side of a lobe that is seen from behind.
+    /// The direction of view in the lobe's frame, on the lit side of a lobe that is seen from
+    /// behind.
     fn viewed(frame: &Frame, wo: Vec3) -> Vec3 {
         let local = frame.to_local(wo);
         Vec3 { z: local.z.abs().max(f32::MIN_POSITIVE), ..local }

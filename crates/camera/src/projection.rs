@@ -70,8 +70,8 @@ impl Projection {
         Self { right: self.right * scale.x, down: self.down * scale.y, ..*self }
     }
 
-    /// Interpolates to another projection: the rotation spherically, all else linearly. If the lenses
-    /// are of different kinds, the nearer one is used.
+    /// Interpolates to another projection: the rotation spherically, all else linearly. If the
+    /// lenses are of different kinds, the nearer one is used.
     pub(super) fn interpolated(&self, other: &Self, fraction: f32) -> Self {
         let turns = self.turns_to(other, fraction);
         let between = |from: Vec3, to: Vec3| {
@@ -109,8 +109,8 @@ impl Projection {
         }
     }
 
-    /// Rotations of this projection and of another one to the orientation between them; `None` if both
-    /// have the same orientation.
+    /// Rotations of this projection and of another one to the orientation between them; `None` if
+    /// both have the same orientation.
     fn turns_to(&self, other: &Self, fraction: f32) -> Option<[DQuat; 2]> {
         let axes = |projection: &Self| {
             let [right, down] = [projection.right, projection.down].map(|axis| axis.as_dvec3().normalize_or_zero());

@@ -1,5 +1,5 @@
-//! Flags of `juggler render`, and those that all commands that render share. [`crate::plan`] derives
-//! what to render from them.
+//! Flags of `juggler render`, and flags that all rendering commands share. [`crate::plan`] derives
+//! the plan of a render from them.
 
 use crate::flags::GivenFlags;
 use crate::model_args::ModelArgs;

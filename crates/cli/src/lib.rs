@@ -1,5 +1,5 @@
-//! The program `juggler` as a library: [`run`] does what a command line says. The words become flags
-//! (`args`, `flags`) of a command (`command`); a render derives a plan (`plan`) from them.
+//! The program `juggler` as a library: [`run`] does what a command line says. The words become
+//! flags (`args`, `flags`) of a command (`command`); a render derives a plan (`plan`) from them.
 
 mod args;
 mod command;

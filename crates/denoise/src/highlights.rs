@@ -63,8 +63,9 @@ pub(crate) fn limit(noisy: &Noisy, differences: &[f32], pixels: &mut [Rgb]) {
         let is_certain = differences[i] <= MAX_NOISE * around.brightness;
         changes(noisy, pixels[i], i, around, is_certain)
     };
-    // Pixels that are single by brightness are more than 3 pixels apart. Two pixels that are single in
-    // different channels may change one pixel between them: the later pixel in row-major order wins.
+    // Pixels that are single by brightness are more than 3 pixels apart. Two pixels that are single
+    // in different channels may change one pixel between them: the later pixel in row-major order
+    // wins.
     let changes: Vec<_> = (0..pixels.len()).into_par_iter().filter_map(single).flat_map_iter(limited).collect();
     for (i, color) in changes {
         pixels[i] = color;

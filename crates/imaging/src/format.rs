@@ -4,7 +4,8 @@ use crate::{Header, ImageError, SampleDepth};
 use std::fmt;
 use std::path::Path;
 
-/// Still image file format. Juggler reads all formats and writes the formats of [`ImageFormat::ALL`].
+/// Still image file format. Juggler reads all formats and writes the formats of
+/// [`ImageFormat::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageFormat {
     /// Portable Network Graphics, 8 or 16 bits, lossless.

@@ -23,8 +23,8 @@
 //!
 //! Rendering uses the current rayon thread pool. The facade re-exports the crates [`math`],
 //! [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`], [`world`],
-//! [`integrator`], [`mod@render`], [`mesh`], [`scene`], [`imaging`] and [`film`]. The folder `examples/` is a
-//! course in five steps.
+//! [`integrator`], [`mod@render`], [`mesh`], [`scene`], [`imaging`] and [`film`]. The folder
+//! `examples/` is a course in five steps.
 
 pub mod aovs;
 pub mod denoise;

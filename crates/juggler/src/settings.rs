@@ -69,8 +69,8 @@ pub struct Settings {
     pub samples: Option<u32>,
     /// Stop condition.
     pub limit: Limit,
-    /// Integrator, with default parameters; the scene's parameters are kept if it is the scene's own
-    /// integrator.
+    /// Integrator, with default parameters; the scene's parameters are kept if it is the scene's
+    /// own integrator.
     pub integrator: Option<IntegratorKind>,
     /// Sampler; the scene's parameters are kept likewise.
     pub sampler: Option<SamplerKind>,

@@ -100,8 +100,8 @@ impl Shading {
         self.bsdf.set_geometric_normal(self.frame.to_local(normal));
     }
 
-    /// Turns diffuse reflection about the normal of a map, where the frame's normal was bent towards
-    /// the viewer: see [`facing_normal`].
+    /// Turns diffuse reflection about the normal of a map, where the frame's normal was bent
+    /// towards the viewer: see [`facing_normal`].
     pub(super) fn tilt_diffuse(&mut self, view: &ShadingView) {
         let mapped = if view.is_outside() { view.normal } else { -view.normal };
         if mapped != self.frame.normal {

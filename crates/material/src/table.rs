@@ -334,8 +334,8 @@ impl MaterialTable {
         self.properties(id).passes_front
     }
 
-    /// Whether light may pass through a surface of material `id` that bounds no solid, such as a pane
-    /// or a translucent sheet. Transparent classic materials bound solids of their own.
+    /// Whether light may pass through a surface of material `id` that bounds no solid, such as a
+    /// pane or a translucent sheet. Transparent classic materials bound solids of their own.
     #[inline]
     pub fn is_sheet(&self, id: MaterialId) -> bool {
         let MaterialProperties { transmits, interior, .. } = self.properties(id);

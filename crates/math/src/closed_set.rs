@@ -29,9 +29,9 @@ pub trait NamedKind: Copy + Eq + 'static {
 /// `{ sobol::Sobol => SobolPoints, ... }` declares both at once: descriptions, and the values that
 /// they compile to.
 ///
-/// `pub enum AnySampler: SamplerDescription, kind SamplerKind { ... }` declares descriptions and the
-/// enum of their kinds, a [`NamedKind`], whose default parameters are those of the type's `Default`.
-/// `pub enum ToneCurveKind of AnyCurve { Srgb, ... }` declares the kinds of another enum.
+/// `pub enum AnySampler: SamplerDescription, kind SamplerKind { ... }` declares descriptions and
+/// the enum of their kinds, a [`NamedKind`]. A kind stands for the `Default` of its description. `pub enum ToneCurveKind of AnyCurve { Srgb, ... }` declares the kinds of another
+/// enum.
 #[macro_export]
 macro_rules! closed_set {
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident, kind $Kinds:ident {

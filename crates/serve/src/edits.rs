@@ -21,9 +21,10 @@ const MAX_NAME: usize = 100;
 /// size.
 const EDITABLE_PATHS: [&str; 6] = ["/materials/", "/lights/", "/background", "/camera/", "/cameras/", "/tone/"];
 
-/// Reads and checks an edit; an error is the reason of the refusal. The result of an accepted message
-/// is the edit, or the error that the session reports for a name or a camera that is not valid.
-/// `scene` is the file with which the server was started; `local` is true for pages on this machine.
+/// Reads and checks an edit; an error is the reason of the refusal. The result of an accepted
+/// message is the edit, or the error that the session reports for a name or a camera that is not
+/// valid. `scene` is the file with which the server was started; `local` is true for pages on this
+/// machine.
 pub fn read(message: EditMessage, scene: Option<&str>, local: bool) -> Result<Result<Edit, String>, String> {
     message.kind_name().map_or(Ok(()), short)?;
     message.camera().map_or(Ok(()), check_value)?;

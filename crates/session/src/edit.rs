@@ -43,8 +43,8 @@ pub enum Edit {
     /// Bookmarks the camera under a name: in the scene's file, whose other text is preserved, or in
     /// memory for a built-in scene; see [`Session::bookmarks`](crate::Session::bookmarks).
     Bookmark(String),
-    /// Sets a value of the scene format by its JSON pointer, such as `/materials/red/phong/diffuse`.
-    /// `null` removes it.
+    /// Sets a value of the scene format by its JSON pointer, such as
+    /// `/materials/red/phong/diffuse`. `null` removes it.
     Set {
         /// JSON pointer into the scene.
         path: String,

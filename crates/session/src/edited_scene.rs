@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// JSON pointer of the clip of the model in a scene around a model file.
 const SHOWN_CLIP: &str = "/objects/0/model/animation";
 
-/// Number of edits from which those that a later edit of the same value replaced are forgotten.
+/// Number of edits above which the list drops edits whose value a later edit replaced.
 const MAX_EDITS: usize = 1000;
 
 /// Opened scene, the same scene with edited values, and its displayed frame. A copy shares all
@@ -74,8 +74,8 @@ impl EditedScene {
         Self::new(Arc::clone(&self.file), Arc::clone(&self.given))
     }
 
-    /// The scene of another version of its file, at the same frame. Edited values are kept unless the
-    /// file changed there too.
+    /// The scene of another version of its file, at the same frame. Edited values are kept unless
+    /// the file changed there too.
     pub fn with_file(&self, file: Arc<Scene>) -> Result<Self, SceneError> {
         let mut edits = self.edits.clone();
         if !edits.is_empty() {
@@ -86,8 +86,8 @@ impl EditedScene {
     }
 }
 
-/// Appends an edit to those that a reload repeats. It replaces the edit before it if both set the
-/// same value; removals stay, since each removes another element of an array.
+/// Appends an edit to the edits that a reload repeats. It replaces the edit before it if both set
+/// the same value; removals stay, since each removes another element of an array.
 fn record(edits: &mut Vec<(String, Value)>, path: &str, value: &Value) {
     match edits.last_mut() {
         Some((last, old)) if last == path && !old.is_null() && !value.is_null() => *old = value.clone(),
@@ -116,8 +116,8 @@ fn with_values(scene: &Arc<Scene>, values: &[(String, Value)]) -> Result<Arc<Sce
     Ok(fitted(scene, values))
 }
 
-/// The scene with an animation as long as the clip of its model, if an edit chose the clip of a scene
-/// around a model file.
+/// The scene with an animation as long as the clip of its model, if an edit chose the clip of a
+/// scene around a model file.
 fn fitted(mut scene: Arc<Scene>, edits: &[(String, Value)]) -> Arc<Scene> {
     if scene.is_around_model() && edits.iter().any(|(path, _)| path == SHOWN_CLIP) {
         Arc::make_mut(&mut scene).fit_animation();

@@ -123,8 +123,9 @@ impl Session {
         Some(PixelInfo::at_pixel(&snapshot.subject, snapshot.film.as_deref(), pixel))
     }
 
-    /// Returns the cameras bookmarked in memory, by name; [`wire::bookmarks`](crate::wire::bookmarks)
-    /// writes them as the member `cameras` of a scene file.
+    /// Returns the cameras bookmarked in memory, by name;
+    /// [`wire::bookmarks`](crate::wire::bookmarks) writes them as the member `cameras` of a scene
+    /// file.
     pub fn bookmarks(&self) -> Vec<(String, AnyCamera)> {
         let snapshot = self.shared().mailbox().snapshot.clone();
         snapshot.map_or_else(Vec::new, |snapshot| snapshot.subject.bookmarks().to_vec())

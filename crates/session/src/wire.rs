@@ -1,10 +1,11 @@
 //! JSON of edits, and in `wire/status.rs` of statuses and probes, which web pages exchange with a
-//! server or with the workers of a browser. The types of a session and their other clients do not know it.
+//! server or with the workers of a browser. The types of a session and their other clients do not
+//! know it.
 //!
-//! An edit is an object with one member, `{"fly": {"forward": 0.5, "yaw_degrees": 3}}`, or a string,
-//! `"reset"`. Kinds are written as their names, cameras as in the scene format. Reading takes two
-//! steps: [`EditMessage`] checks the form, whose errors are those of a program, and
-//! [`EditMessage::read`] the names of kinds and the camera, whose errors are for users.
+//! An edit is an object with one member, `{"fly": {"forward": 0.5, "yaw_degrees": 3}}`, or a
+//! string, `"reset"`. Kinds are written as their names, cameras as in the scene format. Reading
+//! takes two steps: [`EditMessage`] checks the form and reports errors to the program that sent the
+//! message; [`EditMessage::read`] reads names of kinds and the camera and reports errors to users.
 
 use crate::edit::{Channel, Edit, Fly, Orbit, SceneFiles, Setting};
 use juggler::by_name;
@@ -27,8 +28,8 @@ mod status;
 #[serde(transparent)]
 pub struct EditMessage(EditForm);
 
-/// Declares the JSON form of an enum. A variant lists its parts with their types in JSON, from which
-/// they are read by `TryFrom` and to which they are written by `From`.
+/// Declares the JSON form of an enum. A variant lists its parts with their types in JSON, from
+/// which they are read by `TryFrom` and to which they are written by `From`.
 macro_rules! json_form {
     ($Form:ident of $Typed:ident {
         $($(#[$attribute:meta])* $Variant:ident

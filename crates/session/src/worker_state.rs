@@ -1,5 +1,5 @@
-//! State of the worker thread, cut by job. `worker.rs` decides what to do next; `background_build.rs`,
-//! `rendering.rs` and `denoising.rs` do it.
+//! State of the worker thread, cut by job. `worker.rs` decides what to do next;
+//! `background_build.rs`, `rendering.rs` and `denoising.rs` do it.
 
 use crate::coarse::RenderRate;
 use crate::edit::Edit;

@@ -61,8 +61,8 @@ impl WorkerRenderer {
         Ok(())
     }
 
-    /// Applies edits, an array of [`EditMessage`]s in JSON. Returns whether the samples so far are kept,
-    /// and the error of an edit that was skipped.
+    /// Applies edits, an array of [`EditMessage`]s in JSON. Returns whether the samples so far are
+    /// kept, and the error of an edit that was skipped.
     pub fn edit(&mut self, edits: &str) -> Result<(bool, Option<String>), String> {
         let edits: Vec<EditMessage> = serde_json::from_str(edits).map_err(|error| format!("error: {error}"))?;
         let OpenScene { mut subject, film } = self.scene.take().ok_or("error: no scene is open")?;

@@ -1,5 +1,5 @@
-//! Places where the order of objects decides what is seen, since nothing else does: surfaces of unlike
-//! materials at one place, and overlapping solids of equal priority.
+//! Places where the order of objects decides what is seen, since nothing else does: surfaces of
+//! unlike materials at one place, and overlapping solids of equal priority.
 
 use super::{Cluster, Member, Vertex, World};
 use juggler_material::medium::InteriorId;
@@ -73,8 +73,8 @@ impl World {
     }
 
     /// Compares the surfaces at one place that bound no transparent solid and are not absent. Where
-    /// opaque solids stand on each other, their surfaces face each other and nobody sees them, so only
-    /// surfaces that face the same side count.
+    /// opaque solids stand on each other, their surfaces face each other and nobody sees them, so
+    /// only surfaces that face the same side count.
     fn compare_surfaces(&self, members: &[Member], ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
         let wo = -ray.direction;
         let is_seen = |member: &&Member| {

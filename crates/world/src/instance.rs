@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub struct Instance {
     pub motion: Motion,
     pub content: Content,
-    /// Sphere in the geometry's space, if the object is one. Successive spheres of equal radius share
-    /// it, such as the points of a cloud.
+    /// Sphere in the geometry's space, if the object is one. Successive spheres of equal radius
+    /// share it, such as the points of a cloud.
     sphere: Option<Arc<SphereKeys>>,
     material: MaterialId,
     inherits_material: bool,

@@ -52,9 +52,9 @@ impl World {
         self.has_sheets && self.materials.is_sheet(vertex.material)
     }
 
-    /// Whether a ray that leaves a surface at the place of this one passes this one: surfaces that may
-    /// be absent, and sheets, exist for light that arrives at their place only. `error` is the largest
-    /// error of the surfaces at the place: see [`World::place_error`].
+    /// Whether a ray that leaves a surface at the place of this one passes this one: surfaces that
+    /// may be absent, and sheets, exist for light that arrives at their place only. `error` is the
+    /// largest error of the surfaces at the place: see [`World::place_error`].
     #[inline]
     pub fn is_left(&self, ray: &Ray, vertex: &Vertex, error: f32) -> bool {
         self.interior(vertex).is_none()

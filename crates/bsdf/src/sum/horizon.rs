@@ -109,8 +109,8 @@ impl Bsdf {
         self.horizon = Horizon::new(if normal.z < 0.0 { -normal } else { normal });
     }
 
-    /// Turns diffuse reflection about `normal`, a unit vector in the frame of the lobes: the normal of
-    /// a map, where the frame has another.
+    /// Turns diffuse reflection about `normal`, a unit vector in the frame of the lobes: the normal
+    /// of a map, where the frame has another.
     pub fn tilt_diffuse(&mut self, normal: Vec3) {
         for one in &mut self.lobes {
             let diffuse = match one.lobe {

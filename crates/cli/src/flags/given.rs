@@ -1,4 +1,4 @@
-//! The flags of a command line, and refusals of those that cannot act.
+//! Flags that a command line gives, and refusals of flags that cannot act on its target.
 
 use super::table::{FLAGS, Flag};
 use crate::failure::Failure;

@@ -8,8 +8,8 @@ use clap::{Command, Error};
 use juggler::scene::suggest;
 use std::ffi::OsString;
 
-/// Replaces the parser's suggestion by a better one, or removes it. A tip leads only to flags of the
-/// command that the words name.
+/// Replaces the parser's suggestion by a better one, or removes it. A tip leads only to flags of
+/// the command that the words name.
 pub fn with_tip(mut error: Error, program: &Command, words: &[OsString]) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;

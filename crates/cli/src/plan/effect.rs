@@ -1,6 +1,6 @@
 //! Checks that flags and settings have an effect on a scene: a flag without effect is an error, a
-//! setting of the scene without effect is a warning. The table of flags refuses those that the
-//! target does not support.
+//! setting of the scene without effect is a warning. The table of flags refuses flags that
+//! the target does not support.
 
 use crate::failure::Failure;
 use crate::target::Target;

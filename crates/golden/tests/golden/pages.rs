@@ -1,5 +1,5 @@
-//! Paths in Markdown: every file that a page names exists. Dated notes and the changelog tell of the
-//! past and are left out.
+//! Paths in Markdown: every file that a page names exists. Dated notes and the changelog tell of
+//! the past and are left out.
 
 use crate::tree::root;
 use std::path::Path;

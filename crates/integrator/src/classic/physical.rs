@@ -24,9 +24,8 @@ struct ShadingPoint<'a> {
 }
 
 impl Classic {
-    /// Shades a vertex whose material is not the classic one, with this index of refraction outside of
-    /// it. Returns `false` if opacity lets the ray
-    /// pass.
+    /// Shades a vertex whose material is not the classic one, with this index of refraction outside
+    /// of it. Returns `false` if opacity lets the ray pass.
     #[inline(always)]
     pub(super) fn physical(
         &self,

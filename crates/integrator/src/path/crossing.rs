@@ -24,8 +24,8 @@ pub struct Interface {
     pub interior: Option<InteriorId>,
     /// Whether the surface is known to exist for the path, so that opacity no longer decides.
     pub is_present: bool,
-    /// Whether the surface is a sheet with others at its place. Light passes the sheet first, so rays
-    /// that it transmits start before the others.
+    /// Whether the surface is a sheet with others at its place. Light passes the sheet first, so
+    /// rays that it transmits start before the others.
     pub has_others_behind: bool,
     /// Medium on the other side and solids behind, if other interfaces are at the same place.
     net: Option<NetInterface>,

@@ -193,8 +193,8 @@ impl<'a> ShadingPoint<'a> {
         output.add_shadow_ray_inside(ray, radiance, world.light_group(light.emitter), inside);
     }
 
-    /// A ray that leaves the surface `from` in the direction `wi`, in the shading frame: it starts before
-    /// other surfaces at the place of a sheet that transmits it.
+    /// A ray that leaves the surface `from` in the direction `wi`, in the shading frame: it starts
+    /// before other surfaces at the place of a sheet that transmits it.
     #[inline]
     fn before_others(&self, ray: Ray, from: &Surface, wi: Vec3) -> Ray {
         if !self.interface.has_others_behind || wi.z * self.local.z >= 0.0 {

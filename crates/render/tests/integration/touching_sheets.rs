@@ -1,5 +1,5 @@
-//! Sheets, openings and fog at the surface of solids: white furnaces, closed forms, and equal pictures in
-//! every order of the objects.
+//! Sheets, openings and fog at the surface of solids: white furnaces, closed forms, and equal
+//! pictures in every order of the objects.
 
 use crate::probe::{camera, measure, path, read};
 use crate::touching::{Item, floor, fog, glass, is_near, orders, placements, scene, seen};
@@ -57,8 +57,8 @@ fn sheets_on_fog_keep_its_medium() {
     }
 }
 
-/// An opening in glass, and fog within glass, let light pass without refraction: its radiance over n²
-/// stays the same.
+/// An opening in glass, and fog within glass, let light pass without refraction: its radiance over
+/// n² stays the same.
 #[test]
 fn openings_and_fog_in_glass_are_invisible_in_a_white_furnace() {
     let half = r#"{"mask": {"opacity": 0.5, "material": {"dielectric": {"ior": 1.5}}}}"#;

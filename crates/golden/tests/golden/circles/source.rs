@@ -28,7 +28,7 @@ pub struct Module {
     pub imports: HashMap<String, Segments>,
     /// Paths of modules whose names are all imported.
     pub globs: Vec<Segments>,
-    /// All paths of its code, also those of one segment.
+    /// All paths in the code of the module; a single name is a path, too.
     pub paths: Vec<Segments>,
 }
 

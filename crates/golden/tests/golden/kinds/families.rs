@@ -171,7 +171,8 @@ pub const FAMILIES: &[Addition] = &[
     },
 ];
 
-/// Lines, with their files, that add the flag `--calm` to `juggler render`, which acts as `--quiet`.
+/// Lines, with their files, that add the flag `--calm` to `juggler render`, which acts as
+/// `--quiet`.
 pub const FLAG: &[(&str, &str)] = &[
     ("crates/cli/src/flags/table.rs", "flag(\"calm\", OUTPUT), <- flag(\"quiet\", OUTPUT),"),
     ("crates/cli/src/args.rs", "#[arg(long)] <- pub quiet: bool,"),
