@@ -16,28 +16,38 @@ impl PathState {
 }
 
 impl VertexOutput<'_> {
-    /// Skips surfaces of opacity 0. Returns the first other surface at the place of `vertex`; if
-    /// there is none, continues the camera ray behind them.
+    /// Skips surfaces of opacity 0. Returns the surface of the others at the place of `vertex` that a
+    /// path meets: one that bounds no solid before a face of a solid, and a face that the ray enters
+    /// before one that it leaves. If there is none, continues the camera ray behind them.
     pub(crate) fn skip_cut_outs(&mut self, world: &World, ray: &Ray, vertex: &Vertex) -> Option<Member> {
         let first = Member { vertex: *vertex, t: ray.t_max };
         let is_cut_out = |path: &PathState, vertex: &Vertex| {
             world.is_cut_out(vertex, -ray.direction, || path.sampler.skipped(0).next_1d())
         };
-        if !is_cut_out(self.path, vertex) {
+        if world.interior(vertex).is_none() && !is_cut_out(self.path, vertex) {
             return Some(first);
         }
         let mut cluster = Cluster::new(world, ray, vertex);
-        let (mut path, mut member) = (*self.path, first);
-        while is_cut_out(&path, &member.vertex) {
-            path = path::passed(world, ray, &path, &member.vertex, None)?;
+        let (mut path, mut member, mut face) = (*self.path, first, None::<Member>);
+        loop {
+            if !is_cut_out(&path, &member.vertex) {
+                if world.interior(&member.vertex).is_none() {
+                    return Some(member);
+                }
+                if face.is_none_or(|face| member.is_entered(ray) && !face.is_entered(ray)) {
+                    face = Some(member);
+                }
+            }
+            let Some(behind) = path::passed(world, ray, &path, &member.vertex, None) else { return face };
+            path = behind;
             match cluster.next() {
                 Some(next) => member = next,
+                None if face.is_some() => return face,
                 None => {
                     self.continue_straight(cluster.ray_behind(), &path);
                     return None;
                 }
             }
         }
-        Some(member)
     }
 }

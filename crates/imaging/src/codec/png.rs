@@ -180,7 +180,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let (interlaced, transfer_function, matrix) = (info.interlaced, transfer_function(info), to_srgb(info));
     let orientation = orientation(info);
     let (color, depth) = reader.output_color_type();
-    let row = Row::new(color, depth, transfer_function, u64::from(width) * u64::from(height));
+    let row = Row::new(color, depth, has_video_levels(info), transfer_function, u64::from(width) * u64::from(height));
     let mut pixels = Vec::new();
     if interlaced {
         let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
@@ -225,6 +225,7 @@ fn transfer_function(info: &png::Info) -> TransferFunction {
             5 => TransferFunction::Gamma(2.8),
             8 => TransferFunction::Linear,
             16 => TransferFunction::Pq,
+            17 => TransferFunction::Gamma(2.6),
             18 => TransferFunction::Hlg,
             _ => TransferFunction::Srgb,
         };
@@ -232,6 +233,34 @@ fn transfer_function(info: &png::Info) -> TransferFunction {
     match (info.srgb, info.gama_chunk) {
         (None, Some(gama)) if gama.into_value() > 0.0 => TransferFunction::Gamma(1.0 / f64::from(gama.into_value())),
         _ => TransferFunction::Srgb,
+    }
+}
+
+/// Whether the file states video levels (cICP): of 255, black has level 16 and white 235.
+fn has_video_levels(info: &png::Info) -> bool {
+    info.coding_independent_code_points.is_some_and(|codes| !codes.is_video_full_range_image)
+}
+
+/// Level from 0 to 1 of a video level out of `top` (ITU-R BT.2100, table 9).
+fn expanded(level: f64, top: f64) -> f64 {
+    // The digital values of 8 bits, times a power of two for more bits.
+    let unit = (top + 1.0) / 256.0;
+    ((level / unit - 16.0) / 219.0).clamp(0.0, 1.0)
+}
+
+/// Expands the video levels of colors; alpha keeps its levels.
+fn expand_video_levels(samples: &mut RasterSamples, channels: usize) {
+    let colors = if channels < 3 { 1 } else { 3 };
+    match samples {
+        RasterSamples::Bytes(levels) => levels
+            .chunks_mut(channels)
+            .flat_map(|pixel| pixel.iter_mut().take(colors))
+            .for_each(|level| *level = (255.0 * expanded(f64::from(*level), 255.0)).round() as u8),
+        RasterSamples::Words(levels) => levels
+            .chunks_mut(channels)
+            .flat_map(|pixel| pixel.iter_mut().take(colors))
+            .for_each(|level| *level = (65_535.0 * expanded(f64::from(*level), 65_535.0)).round() as u16),
+        RasterSamples::Floats(_) => {}
     }
 }
 
@@ -260,12 +289,15 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
     let orientation = orientation(reader.info());
     let is_first_of_several = reader.info().animation_control.is_some_and(|movie| movie.num_frames > 1);
     let (stored, channels) = (orientation.size((layout.width, layout.height)), usize::from(layout.channels));
-    let samples = if layout.sample_bytes == 2 {
+    let mut samples = if layout.sample_bytes == 2 {
         let words = bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect();
         RasterSamples::Words(orientation.turn(words, stored, channels))
     } else {
         RasterSamples::Bytes(orientation.turn(bytes, stored, channels))
     };
+    if has_video_levels(reader.info()) {
+        expand_video_levels(&mut samples, channels.max(1));
+    }
     Ok(Raster { layout, samples, transfer_function, is_first_of_several })
 }
 
@@ -281,15 +313,23 @@ struct Row {
     /// Samples per pixel: 1 gray, 2 gray and alpha, 3 RGB, 4 RGBA.
     samples: usize,
     is_16_bit: bool,
+    has_video_levels: bool,
     transfer_function: TransferFunction,
     /// Table of linear values by level; empty for images too small to pay for it.
     levels: Vec<f32>,
 }
 
 impl Row {
-    fn new(color: ColorType, depth: BitDepth, transfer_function: TransferFunction, pixels: u64) -> Self {
+    fn new(
+        color: ColorType,
+        depth: BitDepth,
+        has_video_levels: bool,
+        transfer_function: TransferFunction,
+        pixels: u64,
+    ) -> Self {
         let is_16_bit = depth == BitDepth::Sixteen;
-        let mut row = Self { samples: color.samples(), is_16_bit, transfer_function, levels: Vec::new() };
+        let mut row =
+            Self { samples: color.samples(), is_16_bit, has_video_levels, transfer_function, levels: Vec::new() };
         let count = if is_16_bit { 65_536 } else { 256 };
         if pixels > count {
             row.levels = (0..count as usize).map(|level| row.linear(level)).collect();
@@ -299,7 +339,11 @@ impl Row {
 
     fn linear(&self, level: usize) -> f32 {
         let top = if self.is_16_bit { 65_535.0 } else { 255.0 };
-        self.levels.get(level).copied().unwrap_or_else(|| self.transfer_function.decode(level as f64 / top) as f32)
+        self.levels.get(level).copied().unwrap_or_else(|| {
+            let level = level as f64;
+            let level = if self.has_video_levels { expanded(level, top) } else { level / top };
+            self.transfer_function.decode(level) as f32
+        })
     }
 
     fn append(&self, bytes: &[u8], pixels: &mut Vec<Rgb>) {

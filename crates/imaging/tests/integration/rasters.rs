@@ -98,7 +98,14 @@ fn png_states_primaries_and_transfer_functions_by_cicp() {
         raster.transfer_function
     };
     use TransferFunction::{Gamma, Hlg, Linear, Pq, Srgb};
-    assert_eq!([1, 4, 5, 8, 13, 16, 18].map(curve), [Srgb, Gamma(2.2), Gamma(2.8), Linear, Srgb, Pq, Hlg]);
+    let expected = [Srgb, Gamma(2.2), Gamma(2.8), Linear, Srgb, Pq, Gamma(2.6), Hlg];
+    assert_eq!([1, 4, 5, 8, 13, 16, 17, 18].map(curve), expected);
+    // Video levels: 16 is black, 235 is white, and what is beyond is clipped.
+    let bytes = png([1, 8, 0, 0], &[16, 235, 125, 0, 255, 17]);
+    assert_eq!(read(&bytes).unwrap().samples, RasterSamples::Bytes(vec![0, 255, 127, 0, 255, 1]));
+    let image = decode("a file", Cursor::new(&bytes), &LIMITS).unwrap();
+    let [low, high, half] = image.pixels()[0].to_array();
+    assert_eq!([low, high, half], [0.0, 1.0, 109.0 / 219.0]);
 }
 
 /// Little-endian Exif block with an orientation.

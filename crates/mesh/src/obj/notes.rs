@@ -18,6 +18,8 @@ pub(super) struct Notes {
     pub glued_comments: u64,
     /// Number of words such as `-nan(ind)` in normals.
     pub nan_words: u64,
+    /// Number of texture coordinates that are no numbers.
+    pub nan_coordinates: u64,
     ignored: BTreeMap<String, u64>,
     other_ignored: u64,
 }
@@ -53,6 +55,7 @@ impl Notes {
         self.weights += piece.weights;
         self.glued_comments += piece.glued_comments;
         self.nan_words += piece.nan_words;
+        self.nan_coordinates += piece.nan_coordinates;
         self.other_ignored += piece.other_ignored;
         piece.ignored.into_iter().for_each(|(name, count)| self.add(name, count));
     }
@@ -68,6 +71,9 @@ impl Notes {
         }
         if self.nan_words > 0 {
             warnings.push(format!("numbers of normals that are no numbers and count as missing: {}", self.nan_words));
+        }
+        if self.nan_coordinates > 0 {
+            warnings.push(format!("texture coordinates that are no numbers and become 0: {}", self.nan_coordinates));
         }
         let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {

@@ -11,7 +11,7 @@ use crate::mesh_file::MeshFile;
 use crate::pieces::{next_line_start, read_pieces};
 use crate::text::{Scanner, integer};
 use crate::weld::{Key, Welded, WeldedPiece};
-use juggler_math::{Vec2, Vec3, vec2, vec3};
+use juggler_math::{Vec2, Vec3, vec3};
 use rayon::prelude::*;
 
 /// Index of an element that a corner does not have.
@@ -146,7 +146,7 @@ impl ObjPiece {
             }
             Some(b"vt") => {
                 limits.next_vertex(self.counts()[1])?;
-                self.uvs.push(texture_coordinates(scanner)?);
+                self.uvs.push(lenient::texture_coordinates(scanner, &mut self.notes)?);
             }
             Some(b"vn") => {
                 limits.next_vertex(self.counts()[2])?;
@@ -299,12 +299,6 @@ fn vertex_colors(mut colors: Vec<Vec3>, positions: usize, keys: &[Key], warnings
 
 const NAMES: [&str; 3] = ["vertex (v)", "texture coordinate (vt)", "normal (vn)"];
 const STREAMS: &str = "a face vertex v, v/vt, v//vn or v/vt/vn of integers";
-
-/// Parses `vt u [v [w]]`; v is 0 if absent.
-fn texture_coordinates(scanner: &mut Scanner<'_>) -> Result<Vec2, MeshErrorKind> {
-    let u = scanner.finite("u")?;
-    Ok(vec2(u, if scanner.at_line_end() { 0.0 } else { scanner.finite("v")? }))
-}
 
 /// Converts an index that counts from 1 or backwards to an index from 0; `None` for 0 and before
 /// the first element.

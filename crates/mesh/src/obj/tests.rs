@@ -211,5 +211,9 @@ fn normals_that_are_no_numbers_in_c_are_missing() {
         );
         assert_eq!(warnings.len(), expected.warnings.len() + 1, "{warnings:?}");
     }
+    let MeshFile { mesh, warnings, .. } = read(&format!("{SQUARE}vt nan 0.5\nvt 1 -nan(ind)\nvt 0 1\nf 1/1 2/2 3/3\n"));
+    assert_eq!(mesh.uvs, [vec2(0.0, 0.5), vec2(1.0, 0.0), vec2(0.0, 1.0)]);
+    assert_eq!(warnings, ["texture coordinates that are no numbers and become 0: 2"]);
+    assert_eq!(error(&format!("{SQUARE}vt inf 0\n")), (5, "expected a finite number for u, found inf".into()));
     assert_eq!(error(&format!("{SQUARE}vn nano 0 0\n")), (5, "expected a number for x, found 'nano'".into()));
 }

@@ -118,3 +118,25 @@ fn the_camera_leaves_a_solid_while_the_shutter_is_open() {
     let within = (0.5f64.powf(0.5) - 0.5) / (0.8 * 2f64.ln());
     is_near("rising camera", seen, within + 0.375 * 0.5, 0.003);
 }
+
+/// Integrators that show one property show that of the surface that a path meets first: the sheet on
+/// glass, and the face of the block that the ray enters.
+#[test]
+fn properties_of_surfaces_at_one_place_are_those_of_the_first_that_a_path_meets() {
+    let block = |low: f64, material: &str| Item::cuboid([-2.0, low, -2.0], [2.0, low + 1.0, 2.0], material);
+    let decal = Item::new(floor(3.0), r#"{"diffuse": {"reflectance": 0.3}}"#);
+    let open = Item::new(floor(3.5), r#"{"mask": {"opacity": 0, "material": {"diffuse": {}}}}"#);
+    let sunk = [vec![block(-1.0, &glass(1.5)), decal], vec![block(-1.0, &glass(1.7)), block(0.0, &fog(0.5)), open]];
+    for (items, from) in sunk.into_iter().zip([Vec3::new(0.2, 3.0, 0.4), Vec3::new(0.2, 0.5, 0.4)]) {
+        for integrator in [read(r#"{"albedo": {}}"#), read(r#"{"normals": {}}"#)] {
+            for (_, placement) in placements() {
+                let mean = |order: Vec<Item>| seen(&order, &placement, from, 1.0, &integrator).mean;
+                let means: Vec<f64> = orders(&items).into_iter().map(mean).collect();
+                assert!(means.iter().all(|mean| *mean == means[0]), "{integrator:?}: {means:?}");
+                if items.len() == 2 && format!("{integrator:?}").contains("Albedo") {
+                    assert!((means[0] - 0.3).abs() < 1e-5, "{means:?}");
+                }
+            }
+        }
+    }
+}

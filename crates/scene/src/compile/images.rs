@@ -140,7 +140,7 @@ pub(super) fn infinity_warning(file: &str, count: u64) -> Option<String> {
         1 => "1 pixel is infinite and becomes".to_owned(),
         count => format!("{count} pixels are infinite and become"),
     };
-    Some(format!("`{file}`: {pixels} 65504, the largest 16-bit float"))
+    Some(format!("`{file}`: {pixels} 65504, the largest 16-bit float, or 0 if negative"))
 }
 
 /// Warns of infinite pixels in the loaded images of the scene's textures, and of images of which the

@@ -41,6 +41,9 @@ pub fn material(
     };
     principled.base_color = base.color(textures, surface)?;
     layers(textures, &mut principled, extensions)?;
+    let is_replaced = glossiness.is_some() && extensions.specular.is_some();
+    let warning = "its KHR_materials_specular has no effect beside KHR_materials_pbrSpecularGlossiness";
+    textures.warnings.add(at, warning, u64::from(is_replaced));
     glass(textures, &mut principled, extensions)?;
     if let Some(model) = &extensions.dispersion {
         surface::set_dispersion(textures, &mut principled, model.dispersion, at);
@@ -124,10 +127,11 @@ fn layers(
     principled: &mut Principled,
     extensions: &MaterialExtensions,
 ) -> Result<(), Fault> {
-    if let Some(model) = &extensions.specular {
+    let is_metallic_roughness = extensions.specular_glossiness.is_none();
+    if let Some(model) = extensions.specular.as_ref().filter(|_| is_metallic_roughness) {
         specular(textures, principled, model)?;
     }
-    if let Some(ior) = extensions.ior.as_ref().filter(|_| extensions.specular_glossiness.is_none()) {
+    if let Some(ior) = extensions.ior.as_ref().filter(|_| is_metallic_roughness) {
         principled.ior = if ior.ior == 0.0 { 0.0 } else { index(ior.ior) };
     }
     if let Some(model) = &extensions.clearcoat {

@@ -302,6 +302,11 @@ fn specular_and_glossiness_replace_metallic_and_roughness() {
     assert!((reflectance - 0.04).abs() < 1e-6, "{reflectance}");
     let stated = format!(r#"{{"pbrMetallicRoughness": {{"metallicFactor": 0.5}}, {model}}}}}}}"#);
     assert_eq!(principled(&parts(&stated, &LIT)), material, "the extension wins over its fallback");
+    let beside = format!(r#"{{{model}}}, "KHR_materials_specular": {{"specularFactor": 0.5}}}}}}"#);
+    let beside = parts(&beside, &LIT);
+    assert_eq!(principled(&beside), material, "the extension wins over KHR_materials_specular");
+    let warning = "its KHR_materials_specular has no effect beside KHR_materials_pbrSpecularGlossiness";
+    assert_eq!(texts(&beside), [warning]);
     let textured = parts(&format!(r#"{{{model}, "specularGlossinessTexture": {{"index": 0}}}}}}}}"#), &LIT);
     let Input::Texture(name) = principled(&textured).roughness else { panic!("a texture") };
     let range = mix(&textured, &name);
