@@ -10,6 +10,8 @@ use std::collections::BTreeSet;
 const GRID: u32 = 24;
 /// Maximum number of places along a test ray.
 const MAX_PLACES: usize = 256;
+/// Number of crowded places that end the search, which would take too long.
+const MAX_CROWDED_PLACES: u32 = 8;
 /// Smallest difference of color that counts.
 const MIN_DIFFERENCE: f32 = 1e-3;
 
@@ -25,14 +27,22 @@ pub enum Ambiguity {
 /// Two scene entries, of which the first wins by its order alone.
 pub type AmbiguousEntries = (Ambiguity, u32, u32);
 
+/// Search for ambiguous entries.
+#[derive(Default)]
+struct Search {
+    found: BTreeSet<AmbiguousEntries>,
+    /// Number of places with many surfaces.
+    crowded_places: u32,
+}
+
 impl World {
     /// Finds scene entries whose order decides what is seen. Test rays parallel to the axes, on a grid
     /// over the bounding box, follow solids up to the first opaque surface. Small contacts, and those
-    /// inside closed rooms, may be missed.
+    /// inside closed rooms, may be missed, as may all after several places with many surfaces each.
     pub fn ambiguities(&self) -> BTreeSet<AmbiguousEntries> {
-        let (bounds, mut found) = (self.bounds(), BTreeSet::new());
+        let (bounds, mut search) = (self.bounds(), Search::default());
         if !bounds.is_finite() {
-            return found;
+            return search.found;
         }
         for axis in 0..3 {
             let [across, along] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -45,15 +55,18 @@ impl World {
                     origin[across] = bounds.min[across] + bounds.extent()[across] * at(cell % GRID, 0.4367);
                     origin[along] = bounds.min[along] + bounds.extent()[along] * at(cell / GRID, 0.5719);
                     let ray = Ray { time: 0.5, ..Ray::new(origin, Vec3::AXES[axis] * direction) };
-                    self.follow(&ray, &mut found);
+                    self.follow(&ray, &mut search);
+                    if search.crowded_places >= MAX_CROWDED_PLACES {
+                        return search.found;
+                    }
                 }
             }
         }
-        found
+        search.found
     }
 
     /// Follows a ray straight on, to the first opaque surface.
-    fn follow(&self, ray: &Ray, found: &mut BTreeSet<AmbiguousEntries>) {
+    fn follow(&self, ray: &Ray, search: &mut Search) {
         let (mut rest, mut open) = (*ray, Vec::<(InteriorId, Vertex)>::new());
         for _ in 0..MAX_PLACES {
             let hit = self.closest(&mut rest);
@@ -63,8 +76,12 @@ impl World {
             let first = Member { vertex: self.vertex(&rest, &hit), t: rest.t_max };
             let mut cluster = Cluster::new(self, &rest, &first.vertex);
             let members: Vec<Member> = std::iter::once(first).chain(&mut cluster).collect();
-            self.compare_surfaces(&members, ray, found);
-            self.cross_solids(&members, ray, &mut open, found);
+            search.crowded_places += u32::from(cluster.is_crowded());
+            if search.crowded_places >= MAX_CROWDED_PLACES {
+                return;
+            }
+            self.compare_surfaces(&members, ray, &mut search.found);
+            self.cross_solids(&members, ray, &mut open, &mut search.found);
             if members.iter().any(|member| !self.may_pass(&member.vertex)) {
                 return;
             }

@@ -10,6 +10,10 @@ use juggler_math::Ray;
 const MAX_SIDES: usize = 16;
 /// Maximum number of surfaces at one place; a ray passes the others together with the last one.
 const MAX_MEMBERS: u32 = 64;
+/// Number of hits at one place that make it crowded.
+const CROWD: u32 = 32;
+/// Number of hits of a vertex that is known to be alone, so that no other is sought.
+const ALONE: u32 = MAX_MEMBERS + 1;
 /// Smallest cosine between ray and normal by which errors along the normal become errors along the
 /// ray.
 const MIN_COSINE: f32 = 0.05;
@@ -68,7 +72,7 @@ pub struct Cluster<'w> {
     key: HitKey,
     /// Shape and side of each member so far.
     sides: ArrayVec<(u32, bool), MAX_SIDES>,
-    /// Number of hits behind the first one so far; [`MAX_MEMBERS`] if no other surface can be near.
+    /// Number of hits behind the first one so far; [`ALONE`] if no other surface can be near.
     visited: u32,
 }
 
@@ -77,10 +81,15 @@ impl<'w> Cluster<'w> {
     pub fn new(world: &'w World, ray: &Ray, vertex: &Vertex) -> Self {
         let first = Member { vertex: *vertex, t: ray.t_max };
         let reach = reach(ray, vertex);
-        let visited = if world.contacts.is_apart(vertex, reach) { MAX_MEMBERS } else { 0 };
+        let visited = if world.contacts.is_apart(vertex, reach) { ALONE } else { 0 };
         let mut sides = ArrayVec::new();
         sides.push((vertex.shape, first.is_entered(ray)));
         Self { world, ray: *ray, end: ray.t_max + reach, key: HitKey::new(first.t, vertex), sides, visited }
+    }
+
+    /// Whether many hits at the place were found so far, those of neighboring triangles included.
+    pub fn is_crowded(&self) -> bool {
+        (CROWD..ALONE).contains(&self.visited)
     }
 
     /// The cluster without surfaces beyond the distance `t_max`.

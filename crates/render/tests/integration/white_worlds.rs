@@ -6,6 +6,7 @@ use crate::probe::{Estimate, Scene, is_deep, path, read, square};
 use juggler_camera::AnyCamera;
 use juggler_math::Vec3;
 use juggler_math::testing::family_wise_deviations;
+use rayon::prelude::*;
 
 /// Tolerance of a mean.
 const NEAR: f64 = 0.002;
@@ -83,7 +84,7 @@ fn check(what: &str, pixels: &[f64], cases: usize) -> Result<(), String> {
 fn rough_glass_vanishes() {
     let (all, edge, samples) = if is_deep() { (glasses(), 64, 512) } else { (glasses(), 32, 144) };
     let wrong: Vec<String> = all
-        .iter()
+        .par_iter()
         .filter_map(|glass| check(&format!("{glass:?}"), &glass.pixels(edge, samples), all.len()).err())
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -2,16 +2,22 @@
 
 use super::Assembly;
 use crate::report::Finding;
-use juggler_world::{Ambiguity, World};
+use juggler_world::{Ambiguity, Object, World};
 
+/// Maximum number of shapes, instances counted, of a scene that is searched; a ray through a heap of
+/// more would take too long.
+const MAX_SHAPES: u64 = 2_000_000;
 /// Maximum number of warnings.
 const MAX_WARNINGS: usize = 5;
 
 impl Assembly {
     /// Builds the world and returns warnings about surfaces of unlike materials at one place,
-    /// and about overlapping solids of equal priority.
+    /// and about overlapping solids of equal priority; none in a scene of very many shapes.
     pub fn ambiguity_warnings(self) -> Vec<Finding> {
         let Self { objects, materials, lights, background, labels, names, .. } = self;
+        if objects.iter().map(Object::shapes).fold(0, u64::saturating_add) > MAX_SHAPES {
+            return Vec::new();
+        }
         let found = World::new(objects, materials, lights, background).with_labels(labels).ambiguities();
         let warning = |(kind, first, second): &(Ambiguity, u32, u32)| {
             let [first, second] = [first, second].map(|entry| names.object(*entry));
