@@ -19,6 +19,11 @@ fi
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/juggler-web
 version=$(apt-cache policy rustc-web | sed -n 's/ *Candidate: //p')
+needed=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$(dirname "$0")/../Cargo.toml")
+if dpkg --compare-versions "$version" lt "$needed"; then
+  echo "rustc-web $version is older than $needed: run apt-get update, which knows newer ones" >&2
+  exit 1
+fi
 prefix=$cache/rustc-$version
 lock=$cache/lock
 mkdir -p "$cache"

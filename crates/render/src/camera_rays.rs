@@ -48,7 +48,8 @@ pub fn path_start(job: &Job) -> PathStart {
 }
 
 /// History of a path that starts at a time of the shutter interval: the solids that contain the
-/// camera.
+/// camera. Kept out of line, since few cameras need it for each path.
+#[inline(never)]
 fn history_at(job: &Job, time: f32) -> PathHistory {
     let eye = job.camera.projection_at(time).eye();
     PathHistory { interiors: job.world.interiors_at(eye, time), ..PathHistory::CAMERA }
@@ -162,16 +163,18 @@ impl<'j> Pixel<'j> {
 
     /// Path of a camera ray at a time.
     fn path(&self, sample: u32, time: f32, slot: u32, weight: f32) -> PathState {
-        let PathStart { history, interiors_change, .. } = *self.start;
-        let history = if interiors_change { history_at(self.job, time) } else { history };
-        PathState {
+        let mut path = PathState {
             beta: Rgb::splat(weight),
             depth: 0,
             sampler: self.sampler(sample, FILM_DIMENSIONS + LENS_DIMENSIONS),
-            history,
+            history: self.start.history,
             cone: self.start.cone,
             slot,
+        };
+        if self.start.interiors_change {
+            path.history = history_at(self.job, time);
         }
+        path
     }
 
     /// Pushes the rays of the samples `first` and following. `points` is scratch memory.

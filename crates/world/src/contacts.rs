@@ -9,7 +9,7 @@ use juggler_math::{Aabb, Vec3};
 use juggler_shape::AnyShape;
 
 /// Maximum number of pairs of a solid and another object that are compared.
-const MAX_PAIRS: usize = 1 << 20;
+const MAX_PAIRS: usize = 1 << 22;
 /// Maximum number of triangles of a mesh of which each is compared.
 const MAX_TRIANGLES: usize = 1 << 12;
 /// Maximum number of regions of a solid; more are merged.

@@ -23,8 +23,12 @@ impl Classic {
         loop {
             let here = &mut output.at(&path);
             let is_straight = match surface(world, ray, &path, member, &mut cluster) {
-                Some((Member { vertex, t }, ior)) => {
-                    let material = Material::new(world, &vertex, ior);
+                Some((Member { vertex, t }, outside_ior)) => {
+                    let mut phong = world.phong(&vertex);
+                    if let Some(phong) = phong.as_mut().filter(|_| outside_ior != 1.0) {
+                        phong.to_mut().ior /= outside_ior;
+                    }
+                    let material = phong.as_deref().map_or(Material::Physical { outside_ior }, Material::Phong);
                     !self.interact(world, &ray.with_t_max(t), &path, &vertex, material, here)
                 }
                 None => true,

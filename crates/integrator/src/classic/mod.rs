@@ -20,7 +20,6 @@ use juggler_shape::surface::Surface;
 use juggler_world::{SceneLight, Vertex, World};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// Classic recursive ray tracing: Phong illumination from lights, mirrors and glass, without
 /// indirect diffuse light. Fast, with little noise.
@@ -65,9 +64,10 @@ struct ShadingPoint<'a> {
 }
 
 /// Material of a vertex.
-enum Material<'w> {
+#[derive(Clone, Copy)]
+enum Material<'p> {
     /// The classic one, with its index of refraction relative to the medium outside.
-    Phong(Cow<'w, PhongParameters>),
+    Phong(&'p PhongParameters),
     /// Any other.
     Physical {
         /// Index of refraction of the medium outside.
@@ -75,28 +75,17 @@ enum Material<'w> {
     },
 }
 
-impl<'w> Material<'w> {
-    /// Material of a vertex; `outside_ior` is the index of refraction of a solid that touches its
-    /// surface.
-    fn new(world: &'w World, vertex: &Vertex, outside_ior: f32) -> Self {
-        let Some(mut phong) = world.phong(vertex) else { return Self::Physical { outside_ior } };
-        if outside_ior != 1.0 {
-            phong.to_mut().ior /= outside_ior;
-        }
-        Self::Phong(phong)
-    }
-}
-
 impl Integrator for Classic {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
-        let material = Material::new(world, vertex, 1.0);
-        let may_pass = match &material {
-            Material::Phong(phong) => !phong.transparency.is_black(),
-            Material::Physical { .. } => world.has_transparency() || world.interior(vertex).is_some(),
+        let phong = world.phong(vertex);
+        let may_pass = match phong.as_deref() {
+            Some(phong) => world.has_transparency() && !phong.transparency.is_black(),
+            None => world.has_transparency() || may_touch(world, ray, vertex),
         };
         if may_pass {
             return self.cross_surfaces(world, ray, path, vertex, output);
         }
+        let material = phong.as_deref().map_or(Material::Physical { outside_ior: 1.0 }, Material::Phong);
         self.interact(world, ray, path, vertex, material, output);
     }
 
@@ -106,6 +95,11 @@ impl Integrator for Classic {
         let radiance = backdrop.unwrap_or_else(|| world.background_radiance(ray));
         output.add(radiance, world.background_group());
     }
+}
+
+/// Whether the vertex bounds a physical solid that others may touch, or that opacity may remove.
+fn may_touch(world: &World, ray: &Ray, vertex: &Vertex) -> bool {
+    world.interior(vertex).is_some() && (world.may_be_open(vertex) || !world.is_alone(ray, vertex))
 }
 
 impl<'a> ShadingPoint<'a> {
@@ -138,7 +132,7 @@ impl Classic {
         };
         let lifted = if phong.both_sides { None } else { world.lifted_surface(ray, vertex) };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
-        let point = ShadingPoint::new(ray, surfaces, &phong);
+        let point = ShadingPoint::new(ray, surfaces, phong);
         let mut sampler = path.sampler;
         // Record AOVs of the surface.
         if output.is_recording() {
