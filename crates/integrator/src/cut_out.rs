@@ -16,9 +16,10 @@ impl PathState {
 }
 
 impl VertexOutput<'_> {
-    /// Skips surfaces of opacity 0. Returns the surface of the others at the place of `vertex` that a
-    /// path meets: one that bounds no solid before a face of a solid, and a face that the ray enters
-    /// before one that it leaves. If there is none, continues the camera ray behind them.
+    /// Skips surfaces of opacity 0. Of the other surfaces at the place of `vertex`, returns the one
+    /// that a path meets first: a surface that bounds no solid before a face of a solid, and a face
+    /// that the ray enters before a face that it leaves. Without such a surface, the camera ray
+    /// continues behind the place.
     pub(crate) fn skip_cut_outs(&mut self, world: &World, ray: &Ray, vertex: &Vertex) -> Option<Member> {
         let first = Member { vertex: *vertex, t: ray.t_max };
         let is_cut_out = |path: &PathState, vertex: &Vertex| {

@@ -87,7 +87,8 @@ impl<'w> Cluster<'w> {
         Self { world, ray: *ray, end: ray.t_max + reach, key: HitKey::new(first.t, vertex), sides, visited }
     }
 
-    /// Whether many hits at the place were found so far, those of neighboring triangles included.
+    /// Whether the cluster has found many hits at its place so far. Hits of neighboring triangles
+    /// count one by one.
     pub fn is_crowded(&self) -> bool {
         (CROWD..ALONE).contains(&self.visited)
     }

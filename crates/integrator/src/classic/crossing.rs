@@ -28,7 +28,7 @@ impl Classic {
                     if let Some(phong) = phong.as_mut().filter(|_| outside_ior != 1.0) {
                         phong.to_mut().ior /= outside_ior;
                     }
-                    let material = phong.as_deref().map_or(Material::Physical { outside_ior }, Material::Phong);
+                    let material = Material::new(phong.as_deref(), outside_ior);
                     !self.interact(world, &ray.with_t_max(t), &path, &vertex, material, here)
                 }
                 None => true,

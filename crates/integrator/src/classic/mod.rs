@@ -75,6 +75,15 @@ enum Material<'p> {
     },
 }
 
+impl<'p> Material<'p> {
+    /// Material of a vertex with these classic parameters, if it has any, and this index of
+    /// refraction of the medium outside.
+    #[inline]
+    fn new(phong: Option<&'p PhongParameters>, outside_ior: f32) -> Self {
+        phong.map_or(Self::Physical { outside_ior }, Self::Phong)
+    }
+}
+
 impl Integrator for Classic {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput) {
         let phong = world.phong(vertex);
@@ -85,8 +94,7 @@ impl Integrator for Classic {
         if may_pass {
             return self.cross_surfaces(world, ray, path, vertex, output);
         }
-        let material = phong.as_deref().map_or(Material::Physical { outside_ior: 1.0 }, Material::Phong);
-        self.interact(world, ray, path, vertex, material, output);
+        self.interact(world, ray, path, vertex, Material::new(phong.as_deref(), 1.0), output);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, output: &mut VertexOutput) {

@@ -20,7 +20,8 @@ pub(super) fn normal(scanner: &mut Scanner<'_>, notes: &mut Notes) -> Result<Vec
     Ok(vec3(next("x")?, next("y")?, next("z")?))
 }
 
-/// Reads texture coordinates; v may be absent. Those that are no numbers become 0.
+/// Reads the texture coordinates `u [v [w]]` of a statement `vt`. The coordinate v is 0 if it is
+/// absent, and coordinates that are not numbers become 0.
 pub(super) fn texture_coordinates(scanner: &mut Scanner<'_>, notes: &mut Notes) -> Result<Vec2, MeshErrorKind> {
     let mut next = |scanner: &mut Scanner<'_>, name: &str| {
         let value = number(scanner, name, &mut 0)?;
