@@ -40,6 +40,8 @@ pub struct Conductor {
     multiple: Rgb,
     /// m of a perfect mirror, 1 / (π (1 - Ē)), which normalizes (1 - E(wi)) μi to a density.
     normalization: f32,
+    /// 1 - Ē; 0 without compensation.
+    mean_loss: f32,
     /// B, see above; black without compensation.
     bounced: Rgb,
 }
@@ -56,7 +58,8 @@ impl Conductor {
     /// roughness along x and y.
     #[inline]
     pub fn new(fresnel: Fresnel, alpha: Vec2) -> Self {
-        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK, normalization: 0.0, bounced: Rgb::BLACK }
+        let (multiple, bounced) = (Rgb::BLACK, Rgb::BLACK);
+        Self { ggx: Ggx::new(alpha), fresnel, multiple, normalization: 0.0, mean_loss: 0.0, bounced }
     }
 
     /// Conductor with multiple scattering between microfacets.
@@ -70,7 +73,7 @@ impl Conductor {
                 conductor.multiple =
                     mean_reflectance.map(|f| f * f * (1.0 - mean_loss) / (1.0 - f * mean_loss) * normalization);
                 conductor.bounced = mean_reflectance.map(|f| f * (1.0 - mean_loss) / (1.0 - f * mean_loss));
-                conductor.normalization = normalization;
+                (conductor.normalization, conductor.mean_loss) = (normalization, mean_loss);
             }
         }
         conductor
@@ -103,6 +106,7 @@ impl Conductor {
     /// Fraction of the light of further bounces that leaves along the directions of single
     /// scattering: 0 on isotropic surfaces, 1 where one alpha is half of the other or less, and
     /// smooth in between.
+    #[inline]
     fn scaled_fraction(&self) -> f32 {
         let t = ((1.0 - self.ggx.alpha_ratio()) * (1.0 / (1.0 - BRUSHED))).min(1.0);
         t * t * (3.0 - 2.0 * t)
@@ -125,6 +129,7 @@ impl Conductor {
     }
 
     /// 1 - E(w): fraction of light along `w` that single scattering loses.
+    #[inline]
     fn energy_loss(&self, w: Vec3) -> f32 {
         energy::mirror_loss(self.ggx, w)
     }
@@ -168,16 +173,17 @@ impl Conductor {
     /// Albedo of single scattering. On an anisotropic surface, the angles at visible microfacets
     /// depend on the slopes along `wo`: an isotropic surface of these slopes gives the mean Fresnel
     /// reflectance, a table of anisotropic surfaces the loss. That isotropic surface is as rough
-    /// across `wo` as along it; see [`Conductor::isotropic_cosine`].
-    fn single_albedo(&self, wo: Vec3) -> Rgb {
+    /// across `wo` as along it; see [`Conductor::isotropic_cosine`]. `lost` is the energy loss along
+    /// `wo`.
+    fn single_albedo(&self, wo: Vec3, lost: f32) -> Rgb {
         let alpha = self.ggx.alpha_towards(wo);
         if self.ggx.is_isotropic() {
-            return self.fresnel.rough_albedo(wo.z, alpha);
+            return self.fresnel.rough_albedo(wo.z, alpha, lost);
         }
         let cos = self.isotropic_cosine(wo, alpha);
-        let isotropic = self.fresnel.rough_albedo(cos, alpha);
-        isotropic
-            * ((1.0 - self.energy_loss(wo)) / (1.0 - energy::isotropic_mirror_loss(cos, alpha)).max(f32::MIN_POSITIVE))
+        let isotropic_loss = energy::isotropic_mirror_loss(cos, alpha);
+        let isotropic = self.fresnel.rough_albedo(cos, alpha, isotropic_loss);
+        isotropic * ((1.0 - lost) / (1.0 - isotropic_loss).max(f32::MIN_POSITIVE))
     }
 
     /// Cosine of the angle at which an isotropic surface of this alpha has the reflectance of this
@@ -236,13 +242,16 @@ impl ScatteringLobe for Conductor {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }
-        let single = self.single_albedo(wo);
+        if self.is_smooth() {
+            return self.fresnel.reflectance(wo.z);
+        }
+        let loss = self.energy_loss(wo);
+        let single = self.single_albedo(wo, loss);
         if self.multiple.is_black() {
             return single;
         }
-        let (loss, scaled) = (self.energy_loss(wo), self.scaled_fraction());
-        let mean_loss = energy::mean_mirror_loss(self.ggx);
-        let apart = self.multiple * (loss * mean_loss * std::f32::consts::PI);
+        let scaled = self.scaled_fraction();
+        let apart = self.multiple * (loss * self.mean_loss * std::f32::consts::PI);
         if scaled == 0.0 {
             return single + apart;
         }

@@ -99,15 +99,16 @@ impl Fresnel {
         }
     }
 
-    /// Directional albedo of single scattering at an angle of cosine `cos`, for isotropic `alpha`.
-    pub fn rough_albedo(&self, cos: f32, alpha: f32) -> Rgb {
+    /// Directional albedo of single scattering at an angle of cosine `cos`, for isotropic `alpha`, at
+    /// which a perfect mirror loses `lost`: [`energy::isotropic_mirror_loss`].
+    pub fn rough_albedo(&self, cos: f32, alpha: f32, lost: f32) -> Rgb {
         if alpha == 0.0 {
             return self.reflectance(cos);
         }
         if let Self::Dielectric { ior, color } = self {
-            return *color * energy::dielectric_reflection_albedo(cos, alpha, *ior);
+            return *color * energy::dielectric_reflection_albedo(cos, alpha, *ior, lost);
         }
-        let (lost, grazing) = (energy::isotropic_mirror_loss(cos, alpha), energy::grazing_albedo(cos, alpha));
+        let grazing = energy::grazing_albedo(cos, alpha, lost);
         // Evaluate bend and film at the typical angle of visible microfacets, which tilt towards
         // the viewer.
         let tilted = cos + (1.0 - cos) * 1.2 * alpha / (1.0 + alpha);

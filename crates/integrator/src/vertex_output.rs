@@ -255,15 +255,15 @@ impl<'a> VertexOutput<'a> {
         });
     }
 
-    /// Traces `ray` as the `child`-th branch of a ray tree, with the throughput times `weight` and
-    /// the history of the branch.
+    /// Traces `ray` as the `child`-th branch of a ray tree, with the throughput times `weight`.
+    /// `sees_backdrop` as in [`PathHistory`].
     #[inline]
-    pub fn trace_branch(&mut self, ray: Ray, weight: Rgb, history: PathHistory, child: u32) {
+    pub fn trace_branch(&mut self, ray: Ray, weight: Rgb, sees_backdrop: bool, child: u32) {
         let path = PathState {
             beta: self.beta * weight,
             depth: self.path.depth + 1,
             sampler: self.path.sampler.branch(child),
-            history,
+            history: PathHistory { sees_backdrop, ..self.path.history },
             cone: self.cone,
             ..*self.path
         };

@@ -85,7 +85,7 @@ pub(super) struct PointOnLight {
 
 /// Samples a point of a light with `u` in the unit square. `None` at the light's center, and where
 /// the falloff factor underflows or overflows.
-#[inline]
+#[inline(always)]
 pub(super) fn sample_extent(
     center: Vec3,
     extent: Option<Extent>,

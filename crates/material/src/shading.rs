@@ -118,13 +118,17 @@ impl Shading {
 /// Shading normal on the viewer's side, bent towards the geometric normal until the mirror
 /// direction lies above the surface (Keller et al., The Iray Light Transport Simulation and
 /// Rendering System, 2017, appendix A.3). Prevents black edges where both normals differ much.
-#[inline]
+#[inline(always)]
 pub fn facing_normal(view: &ShadingView, normal: Vec3) -> Vec3 {
     let sign = if view.is_outside() { 1.0 } else { -1.0 };
-    let (ng, normal) = (view.surface.normal * sign, normal * sign);
-    if ng == normal {
-        return normal;
-    }
+    if view.surface.normal == normal { normal * sign } else { bent_normal(view, normal * sign, sign) }
+}
+
+/// [`facing_normal`] where the normals differ; `sign` is that of the viewer's side. Kept out of line,
+/// since most surfaces have no shading normals.
+#[inline(never)]
+fn bent_normal(view: &ShadingView, normal: Vec3, sign: f32) -> Vec3 {
+    let ng = view.surface.normal * sign;
     let reflected = fresnel::reflect(view.wo, normal);
     let min_cosine = MIN_MIRROR_COSINE.min(0.9 * ng.dot(view.wo));
     let cosine = reflected.dot(ng);

@@ -95,8 +95,9 @@ fn push_center_rays(context: &PixelContext, work: &Work, range: Range<u64>, queu
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
         context.job.camera.rays(&films, &lenses, &[MIDDLE; LANES], count, &mut queue.rays);
         let slot = (start - range.start) as u32;
-        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, MIDDLE, slot + i, 1.0);
+        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
         queue.paths.extend((0..).zip(&pixels).take(count).map(path));
+        set_interiors(context.job, context.start, &[MIDDLE; LANES][..count], queue);
     }
 }
 
@@ -161,20 +162,16 @@ impl<'j> Pixel<'j> {
         if self.needs_time { self.sampler(sample, TIME_DIMENSION).next_1d() } else { 0.0 }
     }
 
-    /// Path of a camera ray at a time.
-    fn path(&self, sample: u32, time: f32, slot: u32, weight: f32) -> PathState {
-        let mut path = PathState {
+    /// Path of a camera ray.
+    fn path(&self, sample: u32, slot: u32, weight: f32) -> PathState {
+        PathState {
             beta: Rgb::splat(weight),
             depth: 0,
             sampler: self.sampler(sample, FILM_DIMENSIONS + LENS_DIMENSIONS),
             history: self.start.history,
             cone: self.start.cone,
             slot,
-        };
-        if self.start.interiors_change {
-            path.history = history_at(self.job, time);
         }
-        path
     }
 
     /// Pushes the rays of the samples `first` and following. `points` is scratch memory.
@@ -208,8 +205,20 @@ impl<'j> Pixel<'j> {
         let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
         let times = std::array::from_fn(|i| self.time(first + i as u32));
         camera.rays(&films, &lenses, &times, points.len(), &mut queue.rays);
-        let path = |(i, (weight, time)): (u32, (&f32, &f32))| self.path(first + i, *time, slot + i, *weight);
-        queue.paths.extend((0..).zip(weights.iter().zip(&times)).take(points.len()).map(path));
+        let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
+        queue.paths.extend((0..).zip(&weights).take(points.len()).map(path));
+        set_interiors(self.job, self.start, &times[..points.len()], queue);
+    }
+}
+
+/// Sets the solids that contain the last rays of the queue, at these times, if the solids around the
+/// camera change while the shutter is open.
+#[inline]
+fn set_interiors(job: &Job, start: &PathStart, times: &[f32], queue: &mut Queue) {
+    if start.interiors_change {
+        for (path, time) in queue.paths.iter_mut().rev().zip(times.iter().rev()) {
+            path.history = history_at(job, *time);
+        }
     }
 }
 

@@ -22,6 +22,7 @@ pub struct TriangleGeometry {
 
 impl TriangleGeometry {
     /// Twice the area as a vector along the normal; exactly zero for collinear corners.
+    #[inline]
     pub fn area_normal(&self) -> DVec3 {
         let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         (b - a).cross(c - a)
@@ -34,10 +35,16 @@ impl TriangleGeometry {
 
     /// Point and geometric normal at barycentrics of the second and third corner.
     pub fn point(&self, at: DVec2) -> (Vec3, Vec3) {
+        self.point_with_normal(at, self.area_normal())
+    }
+
+    /// [`TriangleGeometry::point`] with the result of [`TriangleGeometry::area_normal`].
+    #[inline]
+    fn point_with_normal(&self, at: DVec2, area_normal: DVec3) -> (Vec3, Vec3) {
         // In f64, weights that sum to one keep the point in the plane despite their own rounding.
         let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         let point = a + (b - a) * at.x + (c - a) * at.y;
-        (point.as_vec3(), self.area_normal().normalize_or(DVec3::Y).as_vec3())
+        (point.as_vec3(), area_normal.normalize_or(DVec3::Y).as_vec3())
     }
 
     /// The surface where a ray hits; `near` are approximate barycentrics of the second and third
@@ -45,10 +52,11 @@ impl TriangleGeometry {
     pub fn surface(&self, ray: &Ray, near: Vec2) -> Surface {
         let [a, b, c] = self.corners;
         let size = (b - a).abs().max((c - a).abs()).max_element();
-        let at = self.refine_barycentrics(ray, near.as_dvec2());
+        let area_normal = self.area_normal();
+        let at = self.refine_barycentrics(ray, near.as_dvec2(), area_normal);
         let beside_edge = at.min_element().min(1.0 - at.x - at.y) < BESIDE_EDGE;
         let at = if beside_edge { self.move_inwards(at, f64::from(EDGE_MARGIN * size)) } else { at };
-        let (point, normal) = self.point(at);
+        let (point, normal) = self.point_with_normal(at, area_normal);
         // The triangle test translates the corners to the ray in f32, with an error of up to 4 half
         // ulps of that translation each. (The measured error is a quarter of one half ulp, for
         // nearby triangles whose sides differ by up to a factor of 100,000.)
@@ -76,10 +84,10 @@ impl TriangleGeometry {
 
     /// Barycentrics of the ray's intersection with the plane, in `f64`: `f32` is too inaccurate for
     /// slender triangles.
-    fn refine_barycentrics(&self, ray: &Ray, near: DVec2) -> DVec2 {
+    #[inline]
+    fn refine_barycentrics(&self, ray: &Ray, near: DVec2, area_normal: DVec3) -> DVec2 {
         let (origin, direction) = to_f64(ray);
         let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
-        let area_normal = self.area_normal();
         let t = area_normal.dot(a - origin) / area_normal.dot(direction);
         if !t.is_finite() {
             return near;
@@ -104,6 +112,7 @@ impl TriangleGeometry {
 
     /// Unit shading normals at the corners, on the front: normals opposite to the winding are
     /// negated.
+    #[inline]
     fn front_normals(&self, normal: Vec3) -> Option<[Vec3; 3]> {
         let [a, b, c] = self.normals?.map(|n| n.normalize_or_zero());
         let turned = if (a + b + c).dot(normal) < 0.0 { -1.0 } else { 1.0 };

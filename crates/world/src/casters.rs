@@ -245,12 +245,15 @@ impl VisibleCasters {
         let all = self.total_weight.max(FULL_WEIGHT);
         let mut target = u * all;
         for (index, view) in (0..).zip(&self.views) {
-            for (is_refracted, weight) in [false, true].into_iter().zip(view.weights) {
-                if target < weight {
-                    return Some((CasterId { index, is_refracted }, weight / all));
-                }
-                target -= weight;
+            let [reflected, refracted] = view.weights;
+            if target < reflected {
+                return Some((CasterId { index, is_refracted: false }, reflected / all));
             }
+            target -= reflected;
+            if target < refracted {
+                return Some((CasterId { index, is_refracted: true }, refracted / all));
+            }
+            target -= refracted;
         }
         None
     }
@@ -322,11 +325,13 @@ impl World {
     /// Writes the result of [`World::visible_casters`] to `visible_casters`, which must be empty.
     /// The structure is too large to return by value cheaply.
     pub fn fill_visible_casters(&self, from: &LightSampleContext, visible_casters: &mut VisibleCasters) {
-        for caster in self.casters.iter().take(MAX_CASTERS) {
+        let mut total_weight = visible_casters.total_weight;
+        for caster in &self.casters {
             let view = caster.view_from(from);
-            visible_casters.total_weight = visible_casters.total_weight + view.weights[0] + view.weights[1];
-            visible_casters.views.push(view);
+            total_weight = total_weight + view.weights[0] + view.weights[1];
+            _ = visible_casters.views.try_push(view);
         }
+        visible_casters.total_weight = total_weight;
     }
 }
 

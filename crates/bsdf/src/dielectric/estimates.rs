@@ -27,7 +27,8 @@ impl Dielectric {
     /// Estimate of the fraction of light that single scattering reflects.
     fn single_reflection_albedo(&self, cos: f32, ior: f32) -> f32 {
         let alpha = self.ggx.mean_alpha();
-        let albedo = energy::dielectric_reflection_albedo(cos, alpha, ior);
+        let lost = energy::isotropic_mirror_loss(cos, alpha);
+        let albedo = energy::dielectric_reflection_albedo(cos, alpha, ior, lost);
         if self.specular.weight() == 1.0 {
             return albedo;
         }

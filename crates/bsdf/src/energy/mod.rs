@@ -94,18 +94,19 @@ pub fn isotropic_mirror_loss(cos: f32, alpha: f32) -> f32 {
 }
 
 /// Directional albedo, at an angle of cosine `cos`, of single scattering at microfacets of
-/// reflectance (1 - cos θ)⁵: the weight of the grazing color in Schlick's curve.
+/// reflectance (1 - cos θ)⁵: the weight of the grazing color in Schlick's curve. `lost` is
+/// [`isotropic_mirror_loss`].
 #[inline]
-pub fn grazing_albedo(cos: f32, alpha: f32) -> f32 {
+pub fn grazing_albedo(cos: f32, alpha: f32, lost: f32) -> f32 {
     let more = lerp_table(&MIRROR_GRAZING, table_position(alpha.sqrt(), ALPHA), table_position(cos.sqrt(), COS));
-    (plain_grazing(cos, alpha) + more).clamp(0.0, 1.0)
+    (plain_grazing(cos, alpha, lost) + more).clamp(0.0, 1.0)
 }
 
 /// Value for polished mirrors, to which the table adds corrections.
 #[inline]
-fn plain_grazing(cos: f32, alpha: f32) -> f32 {
+fn plain_grazing(cos: f32, alpha: f32, lost: f32) -> f32 {
     let m = 1.0 - cos;
-    polish(alpha) * m * m * m * m * m * (1.0 - isotropic_mirror_loss(cos, alpha))
+    polish(alpha) * m * m * m * m * m * (1.0 - lost)
 }
 
 /// Directional albedo of white [`Sheen`](super::Sheen) at an angle of cosine `cos`.
@@ -146,14 +147,15 @@ fn polish(alpha: f32) -> f32 {
 
 /// Reflection with Fresnel reflectance at the surface's own angle: exact for polished interfaces.
 #[inline]
-fn plain_reflection(cos: f32, alpha: f32, ior: f32) -> f32 {
-    polish(alpha) * fresnel::dielectric_reflectance(cos, ior) * (1.0 - isotropic_mirror_loss(cos, alpha))
+fn plain_reflection(cos: f32, alpha: f32, ior: f32, lost: f32) -> f32 {
+    polish(alpha) * fresnel::dielectric_reflectance(cos, ior) * (1.0 - lost)
 }
 
 /// Directional albedo, at an angle of cosine `cos`, of single reflection at a rough interface.
+/// `lost` is [`isotropic_mirror_loss`].
 #[inline]
-pub fn dielectric_reflection_albedo(cos: f32, alpha: f32, ior: f32) -> f32 {
-    (plain_reflection(cos, alpha, ior) + lerp_interface_table(&REFLECTION, cos, alpha, ior)).clamp(0.0, 1.0)
+pub fn dielectric_reflection_albedo(cos: f32, alpha: f32, ior: f32, lost: f32) -> f32 {
+    (plain_reflection(cos, alpha, ior, lost) + lerp_interface_table(&REFLECTION, cos, alpha, ior)).clamp(0.0, 1.0)
 }
 
 /// Cosine-weighted mean of [`dielectric_reflection_albedo`] over all directions.

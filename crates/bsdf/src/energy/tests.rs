@@ -116,8 +116,10 @@ fn mirror_row(alpha: usize, count: u32) -> Vec<i16> {
 fn grazing_row(alpha: usize, count: u32) -> Vec<i16> {
     let alpha = entry(alpha, ALPHA);
     let reflectance = |cos: f32| (1.0 - cos).powi(5);
-    let at =
-        |cos: f32| reflection_albedo(cos.max(1e-4), alpha, reflectance, count) - f64::from(plain_grazing(cos, alpha));
+    let at = |cos: f32| {
+        let plain = plain_grazing(cos, alpha, isotropic_mirror_loss(cos, alpha));
+        reflection_albedo(cos.max(1e-4), alpha, reflectance, count) - f64::from(plain)
+    };
     (0..COS).map(|c| stored(at(entry(c, COS)))).collect()
 }
 
@@ -150,7 +152,8 @@ fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> Vec<i16> {
     let at = |c| {
         let cos = entry(c, COS);
         let (reflected, _) = integrate(cos, alpha, Some(ior), count);
-        stored(reflected - f64::from(plain_reflection(cos, alpha, ior)))
+        let lost = isotropic_mirror_loss(cos, alpha);
+        stored(reflected - f64::from(plain_reflection(cos, alpha, ior, lost)))
     };
     (0..COS).map(at).collect()
 }
@@ -159,7 +162,8 @@ fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> Vec<i16> {
 fn clear_mean(table: &[Vec<Vec<Vec<i16>>>], side: usize, i: usize, a: usize) -> i16 {
     let (ior, alpha) = (ior_of(side, i), clear_alpha(a));
     let row: [i16; COS] = table[side][i][a].as_slice().try_into().unwrap();
-    mean(|cos| plain_reflection(cos, alpha, ior) + lerp_row(&row, table_position(cos.sqrt(), COS)))
+    let plain = |cos| plain_reflection(cos, alpha, ior, isotropic_mirror_loss(cos, alpha));
+    mean(|cos| plain(cos) + lerp_row(&row, table_position(cos.sqrt(), COS)))
 }
 
 /// Writes one file: its name and description, and each table's name, type and text.
@@ -217,7 +221,9 @@ fn energy_tables_match_integration_of_lobes() {
         let reflected = clear_row(side, i, alpha, 2048);
         assert!(near(&reflected, &REFLECTION[side][i][alpha]), "{side} {i} {alpha}: {reflected:?}");
         let tabulated = mean_dielectric_reflection_albedo(entry(alpha, ALPHA_CLEAR), ior_of(side, i));
-        let mean = mean(|cos| dielectric_reflection_albedo(cos, entry(alpha, ALPHA_CLEAR), ior_of(side, i)));
+        let alpha_entry = entry(alpha, ALPHA_CLEAR);
+        let lost = |cos| isotropic_mirror_loss(cos, alpha_entry);
+        let mean = mean(|cos| dielectric_reflection_albedo(cos, alpha_entry, ior_of(side, i), lost(cos)));
         assert!(close(tabulated, f32::from(mean) * UNIT, 2e-3), "{side} {i} {alpha}: {tabulated} {mean}");
     }
 }
@@ -232,7 +238,8 @@ fn interpolated_energy_tables_match_integration() {
             let w = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             let tabulated = InterfaceLoss::new(Ggx::isotropic(alpha), ior).at(Side::from_ior(ior), w);
             assert!(close(tabulated, loss as f32, 0.005), "{cos} {alpha} {ior}: {loss} {tabulated}");
-            let tabulated = dielectric_reflection_albedo(cos, alpha, ior);
+            let lost = isotropic_mirror_loss(cos, alpha);
+            let tabulated = dielectric_reflection_albedo(cos, alpha, ior, lost);
             assert!(close(tabulated, reflected as f32, 0.03), "{cos} {alpha} {ior}: {reflected} {tabulated}");
         }
     }

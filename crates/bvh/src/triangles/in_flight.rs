@@ -13,13 +13,16 @@ use crate::lanes::Lanes;
 use crate::node::Child;
 use crate::single::{TraversalMemory, last_child, nearest, pop_nearer_than};
 use crate::slabs::{Slabs, cull_distance};
-use crate::stack::Stack;
+use crate::stack::{Stack, StackView};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
 /// Number of interleaved rays. A cache miss takes as long as about a dozen steps.
 const IN_FLIGHT: usize = 16;
+
+/// Stacks of the rays in flight, apart from the rays, so that a ray moves without its stack.
+type Stacks = [Stack; IN_FLIGHT];
 
 /// A ray in flight.
 struct RayInFlight<'a, S: Simd, F> {
@@ -29,15 +32,16 @@ struct RayInFlight<'a, S: Simd, F> {
     slabs: Slabs,
     ray_visitor: RayVisitor<'a, S, F>,
     current: Child,
-    stack: Stack,
+    /// Index of the ray's stack.
+    stack: usize,
 }
 
 impl<'a, S: Lanes, F: Filter> RayInFlight<'a, S, F> {
     #[inline(always)]
-    fn new(simd: S, query: Query<'a, F>, number: usize, ray: &Ray) -> Self {
+    fn new(simd: S, query: Query<'a, F>, number: usize, ray: &Ray, stack: usize) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
         let ray_visitor = RayVisitor::new(simd, query, ray, &slabs);
-        Self { number, ray: *ray, slabs, ray_visitor, current: Child::ROOT, stack: Stack::new() }
+        Self { number, ray: *ray, slabs, ray_visitor, current: Child::ROOT, stack }
     }
 
     #[inline(always)]
@@ -47,7 +51,11 @@ impl<'a, S: Lanes, F: Filter> RayInFlight<'a, S, F> {
         self.slabs = Slabs::of_ray(simd, ray);
         self.ray_visitor = RayVisitor::new(simd, query, ray, &self.slabs);
         self.current = Child::ROOT;
-        self.stack.clear();
+    }
+
+    #[inline(always)]
+    fn view<'s>(&self, stacks: &'s mut Stacks) -> StackView<'s> {
+        stacks[self.stack % IN_FLIGHT].view()
     }
 }
 
@@ -55,13 +63,14 @@ impl<'a, F: Filter> Query<'a, F> {
     /// [`TriangleBvh::closest`](super::TriangleBvh::closest) of all rays.
     #[inline(always)]
     pub(super) fn closest_in_flight<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let mut stacks: Stacks = std::array::from_fn(|_| Stack::new());
         let mut flights = self.start_rays(simd, rays);
         let mut waiting = flights.len();
         let mut at = 0;
         while !flights.is_empty() {
             at = if at + 1 < flights.len() { at + 1 } else { 0 };
             let flight = &mut flights[at];
-            if self.closest_step(simd, flight) {
+            if self.closest_step(simd, flight, &mut stacks) {
                 continue;
             }
             let number = flight.number;
@@ -69,6 +78,7 @@ impl<'a, F: Filter> Query<'a, F> {
             if let Some(hit) = flight.ray_visitor.hit {
                 rays[number].t_max = hit.t;
             }
+            stacks[flight.stack % IN_FLIGHT].clear();
             self.replace(simd, &mut flights, at, (waiting, rays.get(waiting)));
             waiting += 1;
         }
@@ -77,14 +87,16 @@ impl<'a, F: Filter> Query<'a, F> {
     /// [`TriangleBvh::any`](super::TriangleBvh::any) of all rays.
     #[inline(always)]
     pub(super) fn any_in_flight<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
+        let mut stacks: Stacks = std::array::from_fn(|_| Stack::new());
         let mut flights = self.start_rays(simd, rays);
         let mut waiting = flights.len();
         let mut at = 0;
         while !flights.is_empty() {
             at = if at + 1 < flights.len() { at + 1 } else { 0 };
             let flight = &mut flights[at];
-            let Some(found) = self.any_step(simd, flight) else { continue };
+            let Some(found) = self.any_step(simd, flight, &mut stacks) else { continue };
             occluded[flight.number] = found;
+            stacks[flight.stack % IN_FLIGHT].clear();
             self.replace(simd, &mut flights, at, (waiting, rays.get(waiting)));
             waiting += 1;
         }
@@ -95,7 +107,7 @@ impl<'a, F: Filter> Query<'a, F> {
     fn start_rays<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<RayInFlight<'a, S, F>, IN_FLIGHT> {
         let mut flights = ArrayVec::new();
         for (number, ray) in rays.iter().enumerate().take(IN_FLIGHT) {
-            flights.push(RayInFlight::new(simd, *self, number, ray));
+            flights.push(RayInFlight::new(simd, *self, number, ray, number));
         }
         flights
     }
@@ -117,7 +129,7 @@ impl<'a, F: Filter> Query<'a, F> {
 
     /// Advances a ray by one node or leaf. Returns whether it continues.
     #[inline(always)]
-    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>) -> bool {
+    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>, stacks: &mut Stacks) -> bool {
         let next = if flight.current.is_leaf() {
             flight.ray_visitor.closest(flight.number, &mut flight.ray, flight.current.items());
             flight.slabs.t_max = cull_distance(flight.ray.t_max);
@@ -128,17 +140,17 @@ impl<'a, F: Filter> Query<'a, F> {
             nearest(
                 mask,
                 &enter.into(),
-                &mut flight.stack.view(),
+                &mut flight.view(stacks),
                 #[inline(always)]
                 |slot| node.children[slot].0,
             )
         };
-        self.fetch(flight, next)
+        self.fetch(flight, stacks, next)
     }
 
     /// Advances a ray by one node or leaf. Returns the result, or `None` if the ray continues.
     #[inline(always)]
-    fn any_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>) -> Option<bool> {
+    fn any_step<S: Lanes>(&self, simd: S, flight: &mut RayInFlight<S, F>, stacks: &mut Stacks) -> Option<bool> {
         let next = if flight.current.is_leaf() {
             if flight.ray_visitor.any(flight.number, &flight.ray, flight.current.items()) {
                 return Some(true);
@@ -149,7 +161,7 @@ impl<'a, F: Filter> Query<'a, F> {
             let (mask, _) = node.test(simd, &flight.slabs);
             let largest = last_child(
                 mask,
-                &mut flight.stack.view(),
+                &mut flight.view(stacks),
                 #[inline(always)]
                 |slot| node.children[slot].0,
             );
@@ -158,16 +170,16 @@ impl<'a, F: Filter> Query<'a, F> {
                 |slot| node.children[slot & 7].0,
             )
         };
-        if self.fetch(flight, next) { None } else { Some(false) }
+        if self.fetch(flight, stacks, next) { None } else { Some(false) }
     }
 
     /// Selects and prefetches the next child, given or from the stack. Returns whether there is
     /// one.
     #[inline(always)]
-    fn fetch<S: Lanes>(&self, flight: &mut RayInFlight<S, F>, next: Option<u32>) -> bool {
+    fn fetch<S: Lanes>(&self, flight: &mut RayInFlight<S, F>, stacks: &mut Stacks, next: Option<u32>) -> bool {
         let next = match next {
             Some(word) => Some(Child(word)),
-            None => pop_nearer_than(&mut flight.stack.view(), flight.slabs.t_max),
+            None => pop_nearer_than(&mut flight.view(stacks), flight.slabs.t_max),
         };
         let Some(child) = next else { return false };
         flight.current = child;

@@ -11,7 +11,7 @@
 mod crossing;
 mod physical;
 
-use super::{Integrator, PathHistory, PathState, SurfaceHit, VertexOutput};
+use super::{Integrator, PathState, SurfaceHit, VertexOutput};
 use juggler_bsdf::{ConeSampling, Highlight, PhongParameters, Scatter, cone, fresnel};
 use juggler_camera::aov::LightGroup;
 use juggler_camera::sampler::Sampler;
@@ -218,13 +218,12 @@ impl Classic {
             // Total internal reflection: the mirror gets the transmitted part as well.
             reflection += transmission;
         }
-        let history = PathHistory { sees_backdrop: false, ..path.history };
-        let bundle = Bundle { path, point, history, min_weight: self.min_weight };
+        let bundle = Bundle { path, point, sees_backdrop: false, min_weight: self.min_weight };
         bundle.trace(reflected, phong.glossy, reflection, sampler, 0, output);
         if let Some(refracted) = refracted {
             let mut sampler = *sampler;
             sampler.skip(1);
-            let bundle = Bundle { history: path.history, ..bundle };
+            let bundle = Bundle { sees_backdrop: path.history.sees_backdrop, ..bundle };
             bundle.trace(refracted, phong.blurry, transmission, &sampler, phong.glossy.rays, output);
         }
     }
@@ -234,8 +233,8 @@ impl Classic {
 struct Bundle<'a> {
     path: &'a PathState,
     point: &'a ShadingPoint<'a>,
-    /// History of the paths along the rays.
-    history: PathHistory,
+    /// Whether the paths along the rays see the backdrop: see [`PathHistory`](crate::PathHistory).
+    sees_backdrop: bool,
     min_weight: f32,
 }
 
@@ -262,7 +261,7 @@ impl Bundle<'_> {
                 axis
             };
             let ray = surface.spawn_ray(direction, self.point.time);
-            output.trace_branch(ray, weight, self.history, first_child + i);
+            output.trace_branch(ray, weight, self.sees_backdrop, first_child + i);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::crossing::opacity_choice;
 use super::{Classic, sample_weight};
-use crate::{PathHistory, PathState, VertexOutput};
+use crate::{PathState, VertexOutput};
 use juggler_bsdf::{BsdfSample, Scatter};
 use juggler_camera::sampler::Sampler;
 use juggler_material::Shading;
@@ -74,10 +74,10 @@ impl Classic {
     #[inline(always)]
     fn reflect(&self, point: &ShadingPoint, path: &PathState, mut sampler: Sampler, output: &mut VertexOutput) {
         let mut child = 0;
-        for sample in point.shading.bsdf.deltas(point.wo) {
+        point.shading.bsdf.deltas(point.wo).for_each(|sample| {
             self.trace_sample(point, path, &sample, child, output);
             child += 1;
-        }
+        });
         if !point.shading.bsdf.is_glossy() {
             return;
         }
@@ -98,9 +98,8 @@ impl Classic {
         if (path.beta * sample.weight).max_channel() >= self.min_weight && !sample.weight.is_black() {
             let direction = point.shading.frame.to_world(sample.wi);
             let sees_backdrop = path.history.sees_backdrop && sample.wi.z * point.wo.z < 0.0;
-            let history = PathHistory { sees_backdrop, ..path.history };
             let from = if sample.scatter == Scatter::Specular { point.surface } else { point.scattering };
-            output.trace_branch(from.spawn_ray(direction, point.time), sample.weight, history, child);
+            output.trace_branch(from.spawn_ray(direction, point.time), sample.weight, sees_backdrop, child);
         }
     }
 }

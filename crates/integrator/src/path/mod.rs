@@ -138,7 +138,7 @@ impl Path {
 
     /// State of the path with a wavelength, if the path has none and hits the interface of a
     /// dispersive solid. The color of the wavelength scales all that the path finds from here on.
-    #[inline]
+    #[inline(never)]
     fn disperse(
         &self,
         world: &World,
@@ -146,7 +146,7 @@ impl Path {
         interior: Option<InteriorId>,
         output: &mut VertexOutput,
     ) -> Option<PathState> {
-        if !world.has_dispersion() || path.history.wavelength.is_some() {
+        if path.history.wavelength.is_some() {
             return None;
         }
         interior.and_then(|id| world.interior_at(id)).filter(|interior| interior.dispersion > 0.0)?;
@@ -188,7 +188,8 @@ impl Path {
         output: &mut VertexOutput,
     ) -> Option<PathHistory> {
         // Choose a wavelength at the first dispersive surface.
-        let dispersed = self.disperse(world, path, interface.interior, output);
+        let dispersed =
+            if world.has_dispersion() { self.disperse(world, path, interface.interior, output) } else { None };
         let path = dispersed.as_ref().unwrap_or(path);
         // Evaluate the material.
         let mut shading = Shading::black();
@@ -215,12 +216,13 @@ impl Path {
         // Remove lobes whose limit is reached.
         self.limit_lobes(&mut shading.bsdf, path);
         let mut visible_casters = VisibleCasters::empty();
-        let is_lifted = !shading.transmissive && !shading.bsdf.is_specular();
+        let is_specular = shading.bsdf.is_specular();
+        let is_lifted = !shading.transmissive && !is_specular;
         let lifted = if is_lifted { world.lifted_surface(ray, vertex) } else { None };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
         let mut point = ShadingPoint::new(ray, surfaces, &shading, interface);
         // Sample direct illumination, also through specular spheres.
-        if !point.shading.bsdf.is_specular() {
+        if !is_specular {
             point.find_visible_casters(world, &mut visible_casters);
             point.sample_lights(self.light_sample_count(world, path), self.sampling, world, path, output);
             self.sample_caustics(&point, world, path, output);

@@ -21,11 +21,14 @@ pub struct ShadingPoint<'a> {
     /// describe, else `surface`. Specular reflection and transmission leave from `surface`.
     pub scattering: &'a Surface,
     pub shading: &'a Shading,
-    /// Unit vector towards the origin of the ray, in world space and in the shading frame.
-    wo: Vec3,
+    /// Unit vector towards the origin of the ray, in the shading frame.
     pub local: Vec3,
+    /// Cosine between `wo` and the geometric normal.
+    cos_geometric: f32,
     pub time: f32,
     interface: &'a Interface,
+    /// Context of light samples at the vertex.
+    pub light_sample_context: LightSampleContext,
     /// Specular spheres visible from the vertex; `None` where the path samples no light through
     /// them.
     pub visible_casters: Option<&'a VisibleCasters>,
@@ -58,7 +61,22 @@ impl<'a> ShadingPoint<'a> {
     ) -> Self {
         let wo = -ray.direction;
         let local = shading.frame.to_local(wo);
-        Self { surface, scattering, shading, wo, local, time: ray.time, interface, visible_casters: None }
+        let (time, cos_geometric, visible_casters) = (ray.time, surface.normal.dot(wo), None);
+        // Shading normal on the illuminated side; zero if light may arrive from both.
+        let normal = if shading.transmissive { Vec3::ZERO } else { shading.frame.normal };
+        let light_sample_context =
+            LightSampleContext { point: scattering.point, error: scattering.position_error, normal, time };
+        Self {
+            surface,
+            scattering,
+            shading,
+            local,
+            cos_geometric,
+            time,
+            interface,
+            light_sample_context,
+            visible_casters,
+        }
     }
 
     /// Factor of a light sample's contribution: its multiple importance sampling weight over
@@ -74,18 +92,8 @@ impl<'a> ShadingPoint<'a> {
     #[inline]
     pub fn find_visible_casters(&mut self, world: &World, visible_casters: &'a mut VisibleCasters) {
         if world.has_casters() {
-            world.fill_visible_casters(&self.light_sample_context(), visible_casters);
+            world.fill_visible_casters(&self.light_sample_context, visible_casters);
             self.visible_casters = Some(visible_casters);
-        }
-    }
-
-    /// Context of light samples at the vertex.
-    fn light_sample_context(&self) -> LightSampleContext {
-        LightSampleContext {
-            point: self.scattering.point,
-            error: self.scattering.position_error,
-            normal: self.receiving_normal(),
-            time: self.time,
         }
     }
 
@@ -155,11 +163,10 @@ impl<'a> ShadingPoint<'a> {
         path: &PathState,
         output: &mut VertexOutput,
     ) {
-        let to = self.light_sample_context();
         let sampler = path.sampler.skipped(Dimension::Light as u32);
         for part in 0..u32::from(count) {
             let u = sampler.subsequence(part, u32::from(count)).next_2d();
-            if let Some(light) = world.sample_light(&to, u) {
+            if let Some(light) = world.sample_light(&self.light_sample_context, u) {
                 let pdf = light.pdf * f32::from(count);
                 self.add_light_sample(&EmitterSample { pdf, ..light }, sampling, world, path, output);
             }
@@ -206,7 +213,7 @@ impl<'a> ShadingPoint<'a> {
     /// Solids that contain a ray that continues in the direction `wi`, in the shading frame.
     pub fn interiors_towards(&self, path: &PathState, wi: Vec3) -> Interiors {
         if wi.z * self.local.z < 0.0 {
-            self.interface.interiors_behind(path, self.surface.normal.dot(self.wo) > 0.0)
+            self.interface.interiors_behind(path, self.cos_geometric > 0.0)
         } else {
             path.history.interiors
         }
@@ -225,16 +232,10 @@ impl<'a> ShadingPoint<'a> {
         emitter == EmitterId::Background && world.backdrop().is_some() && self.sees_backdrop(path, wi)
     }
 
-    /// Shading normal on the illuminated side; zero if light may arrive from both.
-    fn receiving_normal(&self) -> Vec3 {
-        if self.shading.transmissive { Vec3::ZERO } else { self.shading.frame.normal }
-    }
-
     /// Whether the geometric and the shading normal have `wi` on the same side of the surface.
     /// `local` is `wi` in the shading frame.
     fn same_hemisphere(&self, wi: Vec3, local: Vec3) -> bool {
-        let normal = self.surface.normal;
-        (normal.dot(wi) * normal.dot(self.wo) < 0.0) == (local.z * self.local.z < 0.0)
+        (self.surface.normal.dot(wi) * self.cos_geometric < 0.0) == (local.z * self.local.z < 0.0)
     }
 
     /// Whether light may be scattered into `wi`, which is `local` in the shading frame, but for
@@ -243,7 +244,7 @@ impl<'a> ShadingPoint<'a> {
         self.same_hemisphere(wi, local)
             || !std::ptr::eq(self.surface, self.scattering)
                 && local.z * self.local.z >= 0.0
-                && self.surface.shading_normal.dot(wi) * self.surface.normal.dot(self.wo) > 0.0
+                && self.surface.shading_normal.dot(wi) * self.cos_geometric > 0.0
     }
 
     fn history(
@@ -277,7 +278,7 @@ impl<'a> ShadingPoint<'a> {
                 ..path.history
             };
         }
-        let LightSampleContext { point: from, error, normal, .. } = self.light_sample_context();
+        let LightSampleContext { point: from, error, normal, .. } = self.light_sample_context;
         PathHistory {
             from,
             error,
