@@ -1,4 +1,5 @@
-# `check.sh deep`: checks that take too long for every change, each part at most an hour.
+# `check.sh deep`: checks that take too long for every change, each part an hour and a quarter at
+# most on two cores.
 # shellcheck shell=bash
 
 deep_parts=(dist matrix noise rays furnaces memory kills kinds fuzz bombs web cluster
