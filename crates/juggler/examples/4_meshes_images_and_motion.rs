@@ -6,7 +6,7 @@
 
 use juggler::material::{Conductor, Diffuse};
 use juggler::prelude::*;
-use serde_json::json;
+use juggler::scene::{Animated, ValueSource};
 
 /// Points along an edge of the surface.
 const POINTS: u32 = 240;
@@ -71,16 +71,16 @@ fn main() -> Result<(), Error> {
             Object::new(Plane::default())
                 .at(0.0, -0.25, 0.0)
                 .material(Diffuse { reflectance: Rgb::splat(0.25).into(), ..Default::default() }),
-        )
-        .add(Object::new(Sphere { radius: 0.09 }).material(Conductor::default()));
+        );
     if let Some(image) = colors() {
         scene = scene.image("colors", image);
     }
 
-    // Move the sphere around the wave by expressions of the frame, and keep the shutter open for
+    // Move a sphere around the wave by expressions of the frame, and keep the shutter open for
     // half a frame.
-    let path = json!([{"translate": ["=0.62 * cos(frame / 12)", -0.02, "=0.62 * sin(frame / 12)"]}]);
-    let mut scene = scene.with_value("/objects/2/transform", path)?;
+    let circle = ValueSource::expressions(["0.62 * cos(frame / 12)", "-0.02", "0.62 * sin(frame / 12)"]);
+    let ball = Object::new(Sphere { radius: 0.09 }).material(Conductor::default());
+    let mut scene = scene.add_animated(Animated::new(ball).moved(circle))?;
     scene.description.render.shutter = [0.0, 0.5];
     let picture = Picture::new(&scene, &Settings::default())?;
     picture.render_image(&Control::default())?.save("wave.png")?;

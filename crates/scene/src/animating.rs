@@ -1,27 +1,25 @@
 //! Animation built by programs.
 
-use crate::animate::{Along, Animate, Joint, Key, ValueForm};
-use crate::description::{Animation, ScenePath};
+use crate::animate::{Along, Animate, Joint, Key, KeyTime, Posed, ValueForm, ValueSource};
+use crate::animated::Animated;
+use crate::description::{Animation, BackgroundInput, Object, ScenePath};
+use crate::item::Item;
+use crate::motion::ItemContent;
 use crate::path::Path;
+use crate::report::{Finding, Problems};
 use crate::{Scene, SceneError};
+use juggler_camera::AnyCamera;
+use juggler_imaging::Tone;
+use juggler_light::AnyLight;
+use juggler_light::background::AnyBackground;
+use juggler_material::AnyMaterial;
+use juggler_texture::AnyTexture;
 use serde::Serialize;
-use serde_json::{Value, json};
-
-/// Source of an animated value: an expression of time, or a value form such as [`Animate`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct ValueSource(Value);
-
-impl ValueSource {
-    /// Creates a source that evaluates an expression such as `2*pi*frame/frames` at each frame.
-    pub fn expression(expression: &str) -> Self {
-        Self(format!("={expression}").into())
-    }
-}
+use serde_json::json;
 
 impl From<ValueForm> for ValueSource {
     fn from(form: ValueForm) -> Self {
-        // Value forms are plain data. A number that is not finite becomes null, which is refused.
-        Self(serde_json::to_value(form).unwrap_or_default())
+        Self::from_form(&form)
     }
 }
 
@@ -43,20 +41,28 @@ impl From<Joint> for ValueSource {
     }
 }
 
+impl From<Posed> for ValueSource {
+    fn from(posed: Posed) -> Self {
+        ValueForm::Posed(posed).into()
+    }
+}
+
 impl Animate {
-    /// Creates keyframes from pairs of a time in seconds and a value, in increasing order of time:
-    /// numbers, arrays of numbers, colors or rotations of one form.
+    /// Creates keyframes from pairs of a time, in [`Seconds`](crate::animate::Seconds) or
+    /// [`Frames`](crate::animate::Frames), and a value, in increasing order of time: numbers, arrays of
+    /// numbers, colors or rotations of one form.
     ///
     /// ```
-    /// use juggler_scene::animate::{Animate, Interpolation};
-    /// let keys = Animate::from_keys([(0.0, [0.0, 1.0, 0.0]), (1.5, [2.0, 0.0, 0.0])]);
+    /// use juggler_scene::animate::{Animate, Frames, Interpolation, Seconds};
+    /// let keys = Animate::from_keys([(Seconds(0.0), [0.0, 1.0, 0.0]), (Seconds(1.5), [2.0, 0.0, 0.0])]);
     /// let smooth = Animate { interpolation: Interpolation::Smooth, ..keys };
+    /// let light = Animate::from_keys([(Frames(0.0), 0.0), (Frames(12.0), 40.0)]);
     /// ```
-    pub fn from_keys<V: Serialize>(keys: impl IntoIterator<Item = (f64, V)>) -> Self {
-        let key = |(time, value): (f64, V)| Key(json!([time, value]));
+    pub fn from_keys<T: KeyTime, V: Serialize>(keys: impl IntoIterator<Item = (T, V)>) -> Self {
+        let key = |(time, value): (T, V)| Key(json!([time.number(), value]));
         Self {
             keys: keys.into_iter().map(key).collect(),
-            at: None,
+            at: T::NOW.map(|now| ValueSource::expression(now).into()),
             interpolation: Default::default(),
             ease: Default::default(),
             repeat: Default::default(),
@@ -64,7 +70,8 @@ impl Animate {
     }
 }
 
-/// Animating a scene.
+/// Animating a scene. Errors are those of [`Scene::with_value`]; variables and paths that a source
+/// refers to are added before.
 impl Scene {
     /// Sets the number of frames and the frames per second.
     #[must_use]
@@ -73,31 +80,89 @@ impl Scene {
         self
     }
 
-    /// Animates the value at a JSON pointer. Errors are those of [`Scene::with_value`].
-    ///
-    /// ```
-    /// use juggler_scene::animate::Animate;
-    /// use juggler_scene::{Object, Scene, ValueSource};
-    /// use juggler_shape::Sphere;
-    ///
-    /// let fall = Animate::from_keys([(0.0, 2.0), (1.0, 0.0)]);
-    /// let scene = Scene::new()
-    ///     .frames(30, 30.0)
-    ///     .add(Object::new(Sphere::default()).at(0.0, 2.0, 0.0))
-    ///     .animate("/objects/0/transform/0/translate/1", fall)?
-    ///     .animate("/objects/0/shape/sphere/radius", ValueSource::expression("1 + seconds/10"))?;
-    /// let (first, last) = (scene.compile()?, scene.at_frame(30.0)?.compile()?);
-    /// assert_eq!((first.bounds.max.y, last.bounds.max.y), (3.0, 1.1));
-    /// # Ok::<(), juggler_scene::SceneError>(())
-    /// ```
-    pub fn animate(self, pointer: &str, source: impl Into<ValueSource>) -> Result<Self, SceneError> {
-        self.with_value(pointer, source.into().0)
+    /// Adds an object with animated fields.
+    pub fn add_animated(mut self, object: Animated<Object>) -> Result<Self, SceneError> {
+        let path = Path::root().key("objects").index(self.description.objects.len());
+        self.description.objects.push(Item::from(object.value().clone()));
+        self.animate_fields(&path, object)
+    }
+
+    /// Adds a light with animated fields.
+    pub fn animated_light(mut self, light: Animated<impl Into<AnyLight> + Clone>) -> Result<Self, SceneError> {
+        let light = light.map(Into::into);
+        let path = Path::root().key("lights").index(self.description.lights.len());
+        self.description.lights.push(Item::from(light.value().clone()));
+        self.animate_fields(&path, light)
+    }
+
+    /// Adds a material with animated fields under a name.
+    pub fn animated_material(
+        self,
+        name: impl Into<String>,
+        material: Animated<impl Into<AnyMaterial> + Clone>,
+    ) -> Result<Self, SceneError> {
+        let (name, material) = (name.into(), material.map(Into::into));
+        let path = Path::root().key("materials").key(name.as_str());
+        self.material(name, material.value().clone()).animate_fields(&path, material)
+    }
+
+    /// Adds a texture with animated fields under a name.
+    pub fn animated_texture(
+        self,
+        name: impl Into<String>,
+        texture: Animated<impl Into<AnyTexture> + Clone>,
+    ) -> Result<Self, SceneError> {
+        let (name, texture) = (name.into(), texture.map(Into::into));
+        let path = Path::root().key("textures").key(name.as_str());
+        self.texture(name, texture.value().clone()).animate_fields(&path, texture)
+    }
+
+    /// Adds a camera with animated fields under a name.
+    pub fn animated_camera(
+        self,
+        name: impl Into<String>,
+        camera: Animated<impl Into<AnyCamera> + Clone>,
+    ) -> Result<Self, SceneError> {
+        let (name, camera) = (name.into(), camera.map(Into::into));
+        let path = Path::root().key("cameras").key(name.as_str());
+        self.camera(name, camera.value().clone()).animate_fields(&path, camera)
+    }
+
+    /// Sets a background with animated fields.
+    pub fn animated_background(
+        self,
+        background: Animated<impl Into<AnyBackground> + Clone>,
+    ) -> Result<Self, SceneError> {
+        let background = background.map(Into::into);
+        let scene = self.background(background.value().clone());
+        scene.animate_fields(&Path::root().key("background"), background.map(BackgroundInput::from))
+    }
+
+    /// Sets the tone mapping, with animated fields.
+    pub fn animated_tone(self, tone: Animated<Tone>) -> Result<Self, SceneError> {
+        let scene = self.tone(tone.value().clone());
+        scene.animate_fields(&Path::root().key("tone"), tone)
+    }
+
+    /// Sets the sources of the fields of the item at `path`.
+    fn animate_fields<T: ItemContent>(self, path: &Path, animated: Animated<T>) -> Result<Self, SceneError> {
+        let mut scene = self;
+        for (inner, source) in animated.sources(ItemContent::json_without_arrays) {
+            let Some(inner) = inner else {
+                let message = "a source is given to a field that is not part of the scene format";
+                let finding = Finding::error(message).at(path);
+                return Err(SceneError::Problems(Problems::new(vec![finding], scene.sources().clone(), &|_| None)));
+            };
+            let field = Path::from_steps(path.steps().iter().chain(inner.steps()));
+            scene = scene.with_value(&field.pointer(), source.into())?;
+        }
+        Ok(scene)
     }
 
     /// Adds a variable for expressions, or replaces the variable of that name. A variable may use
     /// those added before it.
     pub fn variable(self, name: &str, source: impl Into<ValueSource>) -> Result<Self, SceneError> {
-        self.with_value(&Path::root().key("variables").key(name).pointer(), source.into().0)
+        self.with_value(&Path::root().key("variables").key(name).pointer(), source.into().into())
     }
 
     /// Adds a curve for [`Along`], or replaces the curve of that name.
@@ -108,73 +173,4 @@ impl Scene {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::animate::{Extrapolation, Interpolation, PathName};
-    use crate::{Object, TransformStep};
-    use juggler_math::vec3;
-    use juggler_shape::Sphere;
-
-    fn sphere() -> Scene {
-        Scene::new().frames(20, 10.0).add(Object::new(Sphere::default()).at(0.0, 0.0, 0.0))
-    }
-
-    const PLACE: &str = "/objects/0/transform/0/translate";
-
-    /// Center of the sphere at a frame.
-    fn center(scene: &Scene, frame: f64) -> juggler_math::Vec3 {
-        match scene.at_frame(frame).unwrap().description.objects[0].transform[..] {
-            [TransformStep::Translate(by)] => by,
-            ref other => panic!("{other:?}"),
-        }
-    }
-
-    #[test]
-    fn every_kind_of_animation_source_moves_a_value() {
-        let keys = Animate {
-            repeat: Extrapolation::PingPong,
-            ..Animate::from_keys([(0.0, vec3(0.0, 0.0, 0.0)), (1.0, vec3(0.0, 4.0, 0.0))])
-        };
-        let scene = sphere().animate(PLACE, keys).unwrap();
-        assert_eq!([5.0, 10.0, 15.0].map(|frame| center(&scene, frame).y), [2.0, 4.0, 2.0]);
-        let path = ScenePath { points: vec![[0.0; 3], [8.0, 0.0, 0.0]], closed: false };
-        let along = Along { path: PathName("line".into()), at: 0.25 };
-        let scene = sphere().path("line", path).unwrap().animate(PLACE, along).unwrap();
-        assert!((center(&scene, 3.0).x - 2.0).abs() < 1e-6);
-        let joint = Joint {
-            from: [0.0; 3],
-            to: [0.0, 4.0, 0.0],
-            lengths: [3.0, 3.0],
-            plane_normal: [0.0, 0.0, 1.0],
-            keep_lengths: true,
-        };
-        let scene = sphere().animate(PLACE, joint).unwrap();
-        assert!((center(&scene, 0.0) - vec3(5_f32.sqrt(), 2.0, 0.0)).length() < 1e-6, "{}", center(&scene, 0.0));
-        let scene = sphere().variable("half", ValueSource::expression("frame / 2")).unwrap();
-        let scene = scene.animate(&format!("{PLACE}/2"), ValueSource::expression("half + 1")).unwrap();
-        assert_eq!(center(&scene, 6.0).z, 4.0);
-    }
-
-    /// A scene that a program animates is the scene that its JSON describes.
-    #[test]
-    fn built_motion_is_written_and_read() {
-        let keys = Animate { interpolation: Interpolation::Smooth, ..Animate::from_keys([(0.0, 0.0), (1.0, 2.0)]) };
-        let scene = sphere().animate(&format!("{PLACE}/0"), keys).unwrap();
-        let read = Scene::from_json(scene.to_json(), "scene.json").unwrap();
-        assert!(read == scene && read.at_frame(7.0).unwrap() == scene.at_frame(7.0).unwrap());
-    }
-
-    #[test]
-    fn wrong_sources_are_refused() {
-        let refused = |scene: Result<Scene, SceneError>, words: &str| {
-            let message = scene.unwrap_err().to_string();
-            assert!(message.contains(words), "{message}");
-        };
-        refused(sphere().animate(PLACE, Animate::from_keys([(1.0, [0.0; 3]), (0.0, [0.0; 3])])), "in order of time");
-        refused(sphere().animate(PLACE, Animate::from_keys([(0.0, [f64::NAN; 3])])), "number");
-        refused(sphere().animate(PLACE, ValueSource::expression("nothing")), "nothing");
-        refused(sphere().animate("/objects/7/visible", ValueSource::expression("1")), "objects");
-        let along = Along { path: PathName("none".into()), at: 0.0 };
-        refused(sphere().animate(PLACE, along), "no path is called `none`");
-    }
-}
+mod tests;

@@ -10,6 +10,7 @@
 //! Errors are collected in a [`report`] with file, line, column, path and suggested fix.
 
 pub mod animate;
+mod animated;
 mod animating;
 mod asset;
 mod building;
@@ -43,7 +44,8 @@ mod unpack;
 mod update;
 pub mod validate;
 
-pub use animating::ValueSource;
+pub use animate::ValueSource;
+pub use animated::Animated;
 pub use asset::Asset;
 pub use camera_text::{camera_json, with_camera};
 pub use change::{Change, Changed};

@@ -21,22 +21,28 @@ use tree_resolver::TreeResolver;
 
 mod curve;
 mod easing;
+mod field_value;
+mod key_time;
 mod paths;
 mod programs;
 mod resolver;
 mod spline;
 mod survey;
 mod tree_resolver;
+mod value_source;
 mod values;
 mod variables;
 
 pub use easing::{Ease, Easing};
+pub use field_value::FieldValue;
+pub use key_time::{Frames, KeyTime, Seconds};
 pub use paths::{MAX_POINTS, PathName};
 pub(crate) use programs::Programs;
 pub(crate) use resolver::Resolver;
 pub use survey::{FormSummary, Survey, depends_on_time};
 pub(crate) use survey::{TimeDependence, has_expressions};
 pub use tree_resolver::MAX_NESTING;
+pub use value_source::{Animatable, ValueSource};
 pub(crate) use values::posed_files;
 pub use values::{Along, Animate, Extrapolation, Interpolation, Joint, Key, MAX_KEYS, Posed, ValueForm};
 

@@ -59,7 +59,7 @@ pub enum Component {
     /// Expression, with or without a leading `=`.
     Expression(String),
     /// Value form that yields a number or, outside of an array, up to 4 numbers.
-    Form(ValueForm),
+    Form(Box<ValueForm>),
 }
 
 /// Curve through points, for the value form `along`: `{"along": {"path": NAME, "at": SHARE}}`.

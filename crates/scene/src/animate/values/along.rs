@@ -9,6 +9,7 @@ use crate::animate::numbers;
 use crate::animate::paths::{PathLookup, PathName};
 use crate::animate::survey::FormSummary;
 use crate::animate::tree_resolver::TreeResolver;
+use crate::animate::value_source::Animatable;
 use crate::document::Node;
 use crate::path::PathRef;
 use crate::report::Finding;
@@ -24,13 +25,14 @@ pub struct Along {
     pub path: PathName,
     /// Fraction of the path's arc length: 0 is the start, 1 the end. A closed path wraps around; an
     /// open path stays at its ends.
-    pub at: f64,
+    pub at: Animatable<f64>,
 }
 
 pub const KIND: Kind = Kind { name: "along", value };
 
 fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> Option<Node> {
     let Along { path: PathName(name), at: share } = resolver.read("Along", content, at)?;
+    let share = share.value()?;
     resolver.record_form(at, |track| FormSummary { along: Some(name.clone()), ..track });
     let written = content.get("path").unwrap_or(content);
     let at = at.key("path");

@@ -7,6 +7,7 @@
 use super::Kind;
 use crate::animate::numbers;
 use crate::animate::tree_resolver::TreeResolver;
+use crate::animate::value_source::Animatable;
 use crate::description::{Bones, positive_items};
 use crate::document::Node;
 use crate::path::PathRef;
@@ -21,20 +22,20 @@ use serde::{Deserialize, Serialize};
 /// The bones bend from the line between the ends toward the direction of the cross product
 /// (to − from) × `plane_normal`. The distance between the ends must not exceed the sum of the
 /// lengths, nor fall below their difference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Joint {
     /// One end: a hand or a foot.
     #[schemars(extend("x-unit" = "scene units"))]
-    pub from: [f64; 3],
+    pub from: Animatable<[f64; 3]>,
     /// Other end: a shoulder or a hip.
     #[schemars(extend("x-unit" = "scene units"))]
-    pub to: [f64; 3],
+    pub to: Animatable<[f64; 3]>,
     /// Lengths of the bones at `from` and at `to`.
     #[schemars(transform = positive_items, extend("x-unit" = "scene units"))]
-    pub lengths: [f64; 2],
+    pub lengths: Animatable<[f64; 2]>,
     /// Normal of the plane in which the bones bend, in the space of `from` and `to`. It has any
     /// length except zero and must not be parallel to `to − from`.
-    pub plane_normal: [f64; 3],
+    pub plane_normal: Animatable<[f64; 3]>,
     /// Whether the bones keep their lengths if `plane_normal` is not perpendicular to `to − from`.
     /// With `false`, the joint moves closer to the line between the ends.
     #[serde(default = "yes")]
@@ -50,7 +51,8 @@ pub const KIND: Kind = Kind { name: "joint", value };
 fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> Option<Node> {
     let Joint { from, to, lengths, plane_normal, keep_lengths } = resolver.read("Joint", content, at)?;
     resolver.record_form(at, |track| track);
-    let [from, to, plane_normal] = [from, to, plane_normal].map(DVec3::from);
+    let [from, to, plane_normal] = [from.value()?, to.value()?, plane_normal.value()?].map(DVec3::from);
+    let lengths = lengths.value()?;
     match (Bones { from, to, lengths, plane_normal, keep_lengths }).joint() {
         Ok(joint) if joint.is_finite() => Some(numbers(joint.to_array(), content)),
         Ok(_) => {

@@ -8,6 +8,7 @@ use super::Kind;
 use crate::animate::numbers;
 use crate::animate::survey::FormSummary;
 use crate::animate::tree_resolver::TreeResolver;
+use crate::animate::value_source::Animatable;
 use crate::document::{Node, Value};
 use crate::model::{AnimationChoice, ModelChoice, ModelRepeat, NameOrIndex};
 use crate::path::PathRef;
@@ -33,7 +34,7 @@ pub struct Posed {
     /// Time in the clip. Defaults to the time of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "seconds"))]
-    pub at: Option<f64>,
+    pub at: Option<Animatable<f64>>,
     /// What happens after the end of the clip.
     #[serde(default)]
     pub repeat: ModelRepeat,
@@ -79,7 +80,7 @@ fn node_transform(
     let file = model.file.as_ref().map_err(|faults| ("file", faults.clone()))?;
     let choice = ModelChoice {
         animation: AnimationChoice::from_setting(posed.animation.as_ref()),
-        seconds: posed.at.unwrap_or_else(|| resolver.seconds()),
+        seconds: posed.at.as_ref().and_then(Animatable::value).unwrap_or_else(|| resolver.seconds()),
         repeat: posed.repeat,
         ..ModelChoice::default()
     };

@@ -12,6 +12,7 @@ use crate::animate::numbers;
 use crate::animate::spline::{hermite, tangent};
 use crate::animate::survey::FormSummary;
 use crate::animate::tree_resolver::TreeResolver;
+use crate::animate::value_source::Animatable;
 use crate::document::{Node, Value};
 use crate::path::PathRef;
 use juggler_expression::modulo;
@@ -32,7 +33,7 @@ pub struct Animate {
     /// `"=seconds - 2"` delays the animation by two seconds, `"=2 * seconds"` doubles its speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "seconds"))]
-    pub at: Option<f64>,
+    pub at: Option<Animatable<f64>>,
     /// Interpolation between the keys.
     #[serde(default)]
     pub interpolation: Interpolation,
@@ -91,7 +92,7 @@ fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> O
     let keys = Keys::read(resolver, list, &at.key("keys"), interpolation)?;
     let settings = settings.filter(|_| ease.is_none())?;
     record_form(resolver, at, &settings, &keys);
-    let time = settings.at.unwrap_or_else(|| resolver.seconds());
+    let time = settings.at.as_ref().and_then(Animatable::value).unwrap_or_else(|| resolver.seconds());
     let value = keys.value(&settings, time)?;
     if interpolation == Interpolation::Step || is_finite(&value) {
         return Some(value);
