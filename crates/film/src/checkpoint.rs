@@ -124,7 +124,7 @@ fn open_verified(path: &Path) -> Result<Option<PartialRender>, PartialRenderErro
 /// The partial render belongs to another image, its stop rule is incompatible, or it holds samples
 /// that `film` does not expect.
 pub fn resume(partial_render: &PartialRender, goal: &RenderDescription, film: &Film) -> Result<(), ResumeError> {
-    let file = || partial_render.path().display().to_string();
+    let file = || partial_render.name().to_owned();
     let found = partial_render.description();
     let differences = goal.mismatches(found);
     let differences: Vec<String> = differences

@@ -1,4 +1,4 @@
-//! Partial renders on disk (`.jfilm` files): checkpoints, shards and merging.
+//! Partial renders on disk (`.jfilm` files) and in memory: checkpoints, shards and merging.
 //!
 //! - [`checkpoint`]: saves a render in progress and resumes it;
 //! - [`partial_render`]: the `.jfilm` container, which holds any samples of any tiles of one image

@@ -22,20 +22,9 @@ struct Span {
     partial_render: u32,
 }
 
-/// Opens and verifies all files. Returns the compatible partial renders and the description of the
-/// merged result, or every problem at once.
-pub(super) fn check<P: AsRef<Path>>(
-    files: &[P],
-    goal: MergeGoal,
-) -> Result<(Vec<PartialRender>, RenderDescription), MergeError> {
+/// Opens all files. Returns the partial renders, and a problem for each that cannot be opened.
+pub(super) fn open<P: AsRef<Path>>(files: &[P]) -> (Vec<PartialRender>, Vec<MergeProblem>) {
     let mut problems = Vec::new();
-    let refused = |problems| {
-        let files = files.iter().map(|file| file.as_ref().display().to_string()).collect();
-        Err(MergeError { files, problems })
-    };
-    if files.is_empty() {
-        problems.push(MergeProblem::None);
-    }
     let mut partial_renders = Vec::new();
     for file in files {
         match PartialRender::open(file.as_ref()) {
@@ -43,13 +32,29 @@ pub(super) fn check<P: AsRef<Path>>(
             Err(error) => problems.push(MergeProblem::Unreadable(error)),
         }
     }
+    (partial_renders, problems)
+}
+
+/// Verifies all partial renders. Returns the compatible ones and the description of the merged
+/// result, or every problem at once, after those of opening them. `names` are the names of all
+/// partial renders, also of those that could not be opened.
+pub(super) fn check(
+    names: Vec<String>,
+    partial_renders: Vec<PartialRender>,
+    mut problems: Vec<MergeProblem>,
+    goal: MergeGoal,
+) -> Result<(Vec<PartialRender>, RenderDescription), MergeError> {
+    let refused = |problems| Err(MergeError { files: names, problems });
+    if partial_renders.is_empty() && problems.is_empty() {
+        problems.push(MergeProblem::None);
+    }
     let partial_renders = without_foreign(partial_renders, &mut problems);
     let (partial_renders, mut spans) = verified(partial_renders, &mut problems);
     spans.sort_unstable();
     problems.extend(duplicates(&partial_renders, &spans));
     let Some(first) = partial_renders
         .iter()
-        .min_by_key(|partial_render| (partial_render.description().shard.index, partial_render.path()))
+        .min_by_key(|partial_render| (partial_render.description().shard.index, partial_render.name()))
     else {
         return refused(problems);
     };
@@ -68,7 +73,7 @@ pub(super) fn check<P: AsRef<Path>>(
 }
 
 fn name(partial_render: &PartialRender) -> String {
-    partial_render.path().display().to_string()
+    partial_render.name().to_owned()
 }
 
 /// Keeps the largest group of partial renders with equal settings and reports every other one as

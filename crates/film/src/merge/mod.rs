@@ -1,6 +1,6 @@
 //! Merges partial renders into an image or a larger one, bit-identical to a single render.
 //!
-//! [`Merge::open`] first validates everything: all partial renders belong to one image, every byte
+//! [`Merge::open`] and [`Merge::new`] first validate everything: all partial renders belong to one image, every byte
 //! matches its hash, no sample is missing or present twice. It reports all problems at once. The
 //! image is then streamed in bands of tile rows with one file open at a time, so memory depends on
 //! neither the number of partial renders nor the image height, except for a few dozen bytes per
@@ -42,7 +42,16 @@ pub struct Merge {
 impl Merge {
     /// Opens and validates the partial renders in `files`; their order does not matter.
     pub fn open<P: AsRef<Path>>(files: &[P], goal: MergeGoal) -> Result<Self, MergeError> {
-        let (partial_renders, description) = check::check(files, goal)?;
+        let names = files.iter().map(|file| file.as_ref().display().to_string()).collect();
+        let (partial_renders, problems) = check::open(files);
+        let (partial_renders, description) = check::check(names, partial_renders, problems, goal)?;
+        Ok(Self { partial_renders, description })
+    }
+
+    /// Validates partial renders in files or in memory; their order does not matter.
+    pub fn new(partial_renders: Vec<PartialRender>, goal: MergeGoal) -> Result<Self, MergeError> {
+        let names = partial_renders.iter().map(|partial_render| partial_render.name().to_owned()).collect();
+        let (partial_renders, description) = check::check(names, partial_renders, Vec::new(), goal)?;
         Ok(Self { partial_renders, description })
     }
 
@@ -104,6 +113,27 @@ impl Merge {
         proceed: impl Fn() -> Result<(), E>,
     ) -> Result<u64, E> {
         let mut writer = PartialRenderWriter::create(path, &self.description)?;
+        self.write_tiles(&mut writer, proceed)?;
+        Ok(writer.finish()?)
+    }
+
+    /// Returns the bytes of the partial render that [`Merge::write`] writes. Messages call it by
+    /// `name`.
+    pub fn to_bytes<E: From<PartialRenderError>>(
+        &self,
+        name: &str,
+        proceed: impl Fn() -> Result<(), E>,
+    ) -> Result<Vec<u8>, E> {
+        let mut writer = PartialRenderWriter::in_memory(name, &self.description)?;
+        self.write_tiles(&mut writer, proceed)?;
+        Ok(writer.into_bytes()?)
+    }
+
+    fn write_tiles<E: From<PartialRenderError>>(
+        &self,
+        writer: &mut PartialRenderWriter,
+        proceed: impl Fn() -> Result<(), E>,
+    ) -> Result<(), E> {
         let tiling = self.description.tiling();
         for band in bands(&tiling).filter(|band| self.holds_any(band)) {
             let tiles = self.gather(&tiling, &band)?;
@@ -112,7 +142,7 @@ impl Merge {
                 writer.add(number, &Chunk::encode(tile, self.description.clamped))?;
             }
         }
-        Ok(writer.finish()?)
+        Ok(())
     }
 
     fn holds_any(&self, band: &Range<u64>) -> bool {

@@ -51,6 +51,33 @@ impl Folder {
     }
 }
 
+#[test]
+fn partial_renders_in_memory_merge_as_files() {
+    let folder = Folder::new();
+    let files = [2, 0, 1].map(|index| folder.shard(index, 3));
+    let in_memory = |files: &[PathBuf]| {
+        let read = |file: &PathBuf| PartialRender::from_bytes(file.to_str().unwrap(), std::fs::read(file).unwrap());
+        files.iter().map(|file| read(file).unwrap()).collect::<Vec<_>>()
+    };
+    let proceed = || Ok::<(), PartialRenderError>(());
+    let from_files = Merge::open(&files, MergeGoal::PartialRender).unwrap();
+    from_files.write(&folder.path("whole.jfilm"), proceed).unwrap();
+    let from_memory = Merge::new(in_memory(&files), MergeGoal::PartialRender).unwrap();
+    let bytes = from_memory.to_bytes("whole", proceed).unwrap();
+    assert_eq!(bytes, std::fs::read(folder.path("whole.jfilm")).unwrap());
+    let rows = |merge: &Merge| merge.rows(|_| Ok::<(), PartialRenderError>(())).unwrap();
+    let whole = Merge::new(vec![PartialRender::from_bytes("whole", bytes).unwrap()], MergeGoal::Whole).unwrap();
+    assert_eq!(rows(&whole), rows(&from_files));
+    // What is wrong is told in the same words.
+    for wrong in [&files[..2], &[files[0].clone(), files[0].clone()], &[]] {
+        let told = Merge::new(in_memory(wrong), MergeGoal::Whole).unwrap_err().to_string();
+        assert_eq!(told, Merge::open(wrong, MergeGoal::Whole).unwrap_err().to_string());
+    }
+    let cancelled =
+        from_memory.to_bytes("whole", || Err(PartialRenderError::NotAPartialRender { file: "stop".into() }));
+    assert!(cancelled.is_err());
+}
+
 /// An image of the largest size with no tiles is reported at once and in little memory.
 #[test]
 fn a_large_image_without_tiles_is_reported_at_once() {

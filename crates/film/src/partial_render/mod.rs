@@ -7,6 +7,7 @@ mod error;
 mod format;
 mod pack;
 mod read;
+mod storage;
 #[cfg(test)]
 mod tests;
 mod write;

@@ -1,21 +1,23 @@
-//! Reading of `.jfilm` files: header and index on opening, tiles on demand.
+//! Reading of partial renders: header and index on opening, tiles on demand.
 
 use super::chunk::decode;
 use super::format::{ENTRY, Entry, Header, MAGIC, MAX_HEADER, PRELUDE, Prelude, SEAL, VERSION, describe, layers};
+use super::storage::{Storage, StorageReader};
 use super::{PartialRenderError, RenderDescription};
 use juggler_camera::film::{Tile, Tiling};
-use juggler_imaging::regular;
-use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 
 /// Bytes of the index that are read at once.
 const INDEX_BUFFER: usize = 1024 * ENTRY;
 
-/// A partial render whose header and index are verified. It keeps no file open.
+/// A partial render in a file or in memory, whose header and index are verified. It keeps no file
+/// open.
 #[derive(Clone, Debug)]
 pub struct PartialRender {
-    path: PathBuf,
+    name: String,
+    storage: Storage,
     description: RenderDescription,
     tiling: Tiling,
     /// Chunk locations, sorted by tile number.
@@ -39,13 +41,38 @@ impl PartialRender {
     /// Reads and verifies header and index. Memory is bounded by a small multiple of the file's
     /// length, whatever sizes the file claims.
     pub fn open(path: &Path) -> Result<Self, PartialRenderError> {
-        let source = Source::open(path)?;
-        source.into_partial_render(path)
+        let source = Source::open(path.display().to_string(), Storage::File(path.to_owned()))?;
+        source.into_partial_render()
     }
 
-    /// Path of the file.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// Verifies header and index of a partial render in memory, as [`PartialRender::open`] does.
+    /// Messages call it by `name`.
+    pub fn from_bytes(name: &str, bytes: impl Into<Arc<[u8]>>) -> Result<Self, PartialRenderError> {
+        Source::open(name.to_owned(), Storage::Memory(bytes.into()))?.into_partial_render()
+    }
+
+    /// Path of the file, or the name of a partial render in memory.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// All bytes of the file, or those in memory.
+    pub fn to_bytes(&self) -> Result<Arc<[u8]>, PartialRenderError> {
+        let failed = |source| PartialRenderError::Read { file: self.name.clone(), source };
+        if let Storage::Memory(bytes) = &self.storage {
+            return Ok(Arc::clone(bytes));
+        }
+        let mut bytes = Vec::new();
+        let length = self.storage.open().and_then(|reader| reader.take(self.bytes).read_to_end(&mut bytes));
+        if length.map_err(failed)? as u64 != self.bytes {
+            return Err(self.changed("it is shorter"));
+        }
+        // Between opening and reading, another file may have taken the place of this one.
+        let read = Self::from_bytes(&self.name, bytes)?;
+        if read.description != self.description {
+            return Err(self.changed("it has another description"));
+        }
+        read.to_bytes()
     }
 
     /// Length of the file in bytes.
@@ -78,19 +105,16 @@ impl PartialRender {
 
     /// Opens the file for reading tiles.
     pub fn reader(&self) -> Result<TileReader<'_>, PartialRenderError> {
-        let name = self.path.display().to_string();
-        match regular::open(&self.path) {
-            Ok(file) => Ok(TileReader { partial_render: self, file, name, bytes: Vec::new() }),
+        let name = self.name.clone();
+        match self.storage.open() {
+            Ok(reader) => Ok(TileReader { partial_render: self, reader, name, bytes: Vec::new() }),
             Err(source) => Err(PartialRenderError::Read { file: name, source }),
         }
     }
 
     /// Error of a file that was modified after it was opened.
     pub(crate) fn changed(&self, what: &str) -> PartialRenderError {
-        PartialRenderError::Damaged {
-            file: self.path.display().to_string(),
-            what: format!("changed while it was read: {what}"),
-        }
+        PartialRenderError::Damaged { file: self.name.clone(), what: format!("changed while it was read: {what}") }
     }
 
     /// Reads and verifies every chunk, one at a time.
@@ -104,7 +128,7 @@ impl PartialRender {
 #[derive(Debug)]
 pub struct TileReader<'p> {
     partial_render: &'p PartialRender,
-    file: File,
+    reader: StorageReader,
     name: String,
     bytes: Vec<u8>,
 }
@@ -135,27 +159,27 @@ impl TileReader<'_> {
     fn fetch(&mut self, offset: u64, length: usize) -> Result<(), PartialRenderError> {
         let failed = |source| PartialRenderError::Read { file: self.name.clone(), source };
         self.bytes.resize(length, 0);
-        self.file.seek(SeekFrom::Start(offset)).map_err(failed)?;
-        self.file.read_exact(&mut self.bytes).map_err(failed)
+        self.reader.seek(SeekFrom::Start(offset)).map_err(failed)?;
+        self.reader.read_exact(&mut self.bytes).map_err(failed)
     }
 }
 
-/// A file that is being opened.
+/// A partial render that is being opened.
 struct Source {
     name: String,
-    file: BufReader<File>,
+    storage: Storage,
+    reader: BufReader<StorageReader>,
     length: u64,
 }
 
 impl Source {
-    fn open(path: &Path) -> Result<Self, PartialRenderError> {
-        let name = path.display().to_string();
-        let opened = regular::open(path).and_then(|file| {
-            let length = file.metadata()?.len();
-            Ok((file, length))
+    fn open(name: String, storage: Storage) -> Result<Self, PartialRenderError> {
+        let opened = storage.open().and_then(|reader| {
+            let length = reader.length()?;
+            Ok((reader, length))
         });
         match opened {
-            Ok((file, length)) => Ok(Self { name, file: BufReader::new(file), length }),
+            Ok((reader, length)) => Ok(Self { name, storage, reader: BufReader::new(reader), length }),
             Err(source) => Err(PartialRenderError::Read { file: name, source }),
         }
     }
@@ -169,7 +193,7 @@ impl Source {
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), PartialRenderError> {
-        self.file.read_exact(bytes).map_err(|source| PartialRenderError::Read { file: self.name.clone(), source })
+        self.reader.read_exact(bytes).map_err(|source| PartialRenderError::Read { file: self.name.clone(), source })
     }
 
     /// Reads the prelude and checks the magic number and the minimum length.
@@ -177,7 +201,7 @@ impl Source {
         let mut bytes = [0; PRELUDE];
         let there = self.length.min(PRELUDE as u64) as usize;
         let start = bytes.get_mut(..there).unwrap_or_default();
-        self.file.read_exact(start).map_err(|source| PartialRenderError::Read { file: self.name.clone(), source })?;
+        self.reader.read_exact(start).map_err(|source| PartialRenderError::Read { file: self.name.clone(), source })?;
         let name = MAGIC.len().min(there);
         if bytes.get(..name) != MAGIC.get(..name) {
             return Err(PartialRenderError::NotAPartialRender { file: self.name.clone() });
@@ -188,7 +212,7 @@ impl Source {
         Ok(bytes)
     }
 
-    fn into_partial_render(mut self, path: &Path) -> Result<PartialRender, PartialRenderError> {
+    fn into_partial_render(mut self) -> Result<PartialRender, PartialRenderError> {
         let bytes = self.prelude()?;
         let prelude = Prelude::from_bytes(&bytes);
         if prelude.version != VERSION {
@@ -209,7 +233,7 @@ impl Source {
         self.read(&mut header)?;
         hasher.update(&header);
         let failed = |source| PartialRenderError::Read { file: self.name.clone(), source };
-        self.file.seek(SeekFrom::Start(index)).map_err(failed)?;
+        self.reader.seek(SeekFrom::Start(index)).map_err(failed)?;
         let (locations, end) = self.index(prelude.chunks, chunks, &mut hasher)?;
         let mut seal = [0; SEAL];
         self.read(&mut seal)?;
@@ -217,7 +241,7 @@ impl Source {
             return Err(self.damaged("the checksum of its header and index is wrong"));
         }
         let description = self.description(&header)?;
-        self.finish(path, description, locations)
+        self.finish(description, locations)
     }
 
     /// Reads the index; returns the chunk locations and the end offset of the last chunk.
@@ -260,7 +284,6 @@ impl Source {
 
     fn finish(
         self,
-        path: &Path,
         description: RenderDescription,
         mut locations: Vec<ChunkLocation>,
     ) -> Result<PartialRender, PartialRenderError> {
@@ -272,6 +295,7 @@ impl Source {
         if let Some(location) = locations.last().filter(|location| location.entry.tile >= tiling.tile_count()) {
             return Err(self.damaged(format!("tile {} is outside of its region", location.entry.tile)));
         }
-        Ok(PartialRender { path: path.to_owned(), description, tiling, locations, bytes: self.length })
+        let Self { name, storage, length: bytes, .. } = self;
+        Ok(PartialRender { name, storage, description, tiling, locations, bytes })
     }
 }

@@ -1,22 +1,19 @@
-//! Writing of `.jfilm` files: chunks go to a temporary file, which replaces the destination once it
-//! is synced to disk.
+//! Writing of partial renders: to a temporary file, which replaces the destination once it is synced
+//! to disk, or to memory.
 
 use super::chunk::MAX_RUNS;
 use super::format::{Entry, Header, MAX_HEADER, PRELUDE, Prelude, SEAL, VERSION, layers};
+use super::storage::Destination;
 use super::{Chunk, PartialRenderError, RenderDescription};
 use juggler_camera::film::{Tile, Tiling};
-use juggler_imaging::atomic::AtomicFile;
-use std::fs::File;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// A `.jfilm` file being written. An existing file stays in place until
+/// A partial render being written. An existing file stays in place until
 /// [`PartialRenderWriter::finish`].
 #[derive(Debug)]
 pub struct PartialRenderWriter {
     name: String,
-    file: AtomicFile,
-    out: BufWriter<File>,
+    out: Destination,
     tiling: Tiling,
     clamped: bool,
     header: Vec<u8>,
@@ -30,13 +27,28 @@ impl PartialRenderWriter {
         let name = path.display().to_string();
         let header = encode_header(&name, description)?;
         let failed = |source| PartialRenderError::Write { file: name.clone(), source };
-        let file = AtomicFile::create(path).map_err(failed)?;
-        let mut out = BufWriter::with_capacity(1 << 16, file.handle().map_err(failed)?);
+        let out = Destination::create(path).map_err(failed)?;
+        Self::begin(name, out, header, description)
+    }
+
+    /// Starts a partial render in memory. Messages call it by `name`.
+    pub fn in_memory(name: &str, description: &RenderDescription) -> Result<Self, PartialRenderError> {
+        let header = encode_header(name, description)?;
+        Self::begin(name.to_owned(), Destination::Memory(Vec::new()), header, description)
+    }
+
+    fn begin(
+        name: String,
+        out: Destination,
+        header: Vec<u8>,
+        description: &RenderDescription,
+    ) -> Result<Self, PartialRenderError> {
+        let (tiling, clamped) = (description.tiling(), description.clamped);
+        let mut writer = Self { name, out, tiling, clamped, header: Vec::new(), entries: Vec::new(), length: 0 };
         // The prelude is written last, when its lengths are known.
-        out.write_all(&[0; PRELUDE]).and_then(|()| out.write_all(&header)).map_err(failed)?;
-        let length = (PRELUDE + header.len()) as u64;
-        let RenderDescription { clamped, .. } = *description;
-        Ok(Self { name, file, out, tiling: description.tiling(), clamped, header, entries: Vec::new(), length })
+        writer.put(&[0; PRELUDE])?;
+        writer.put(&header)?;
+        Ok(Self { header, ..writer })
     }
 
     /// Appends a tile, given its number in the region's layout. Tiles may come in any order, each
@@ -61,7 +73,16 @@ impl PartialRenderWriter {
 
     /// Writes index and seal, syncs the file to disk and moves it to its destination. Returns its
     /// length in bytes.
-    pub fn finish(mut self) -> Result<u64, PartialRenderError> {
+    pub fn finish(self) -> Result<u64, PartialRenderError> {
+        self.end().map(|(length, _)| length)
+    }
+
+    /// Writes index and seal, and returns the bytes of a partial render in memory.
+    pub fn into_bytes(self) -> Result<Vec<u8>, PartialRenderError> {
+        self.end().map(|(_, bytes)| bytes)
+    }
+
+    fn end(mut self) -> Result<(u64, Vec<u8>), PartialRenderError> {
         self.check_doubles()?;
         let mut index = Vec::new();
         self.entries.iter().for_each(|entry| entry.append_to(&mut index));
@@ -73,14 +94,14 @@ impl PartialRenderWriter {
         hasher.update(&prelude).update(&self.header).update(&index);
         self.put(&index)?;
         self.put(hasher.finalize().as_bytes())?;
-        let Self { name, file, out, .. } = self;
-        end(file, out, &prelude).map_err(|source| PartialRenderError::Write { file: name, source })?;
-        Ok(length)
+        let Self { name, out, .. } = self;
+        let bytes = out.finish(&prelude).map_err(|source| PartialRenderError::Write { file: name, source })?;
+        Ok((length, bytes))
     }
 
     fn put(&mut self, bytes: &[u8]) -> Result<(), PartialRenderError> {
         self.length += bytes.len() as u64;
-        self.out.write_all(bytes).map_err(|source| PartialRenderError::Write { file: self.name.clone(), source })
+        self.out.append(bytes).map_err(|source| PartialRenderError::Write { file: self.name.clone(), source })
     }
 
     fn check_doubles(&self) -> Result<(), PartialRenderError> {
@@ -95,13 +116,6 @@ impl PartialRenderWriter {
     fn invalid(&self, what: String) -> PartialRenderError {
         PartialRenderError::Invalid { file: self.name.clone(), what }
     }
-}
-
-fn end(file: AtomicFile, mut out: BufWriter<File>, prelude: &[u8]) -> io::Result<()> {
-    out.seek(SeekFrom::Start(0))?;
-    out.write_all(prelude)?;
-    out.flush()?;
-    file.commit_durably()
 }
 
 fn encode_header(name: &str, description: &RenderDescription) -> Result<Vec<u8>, PartialRenderError> {

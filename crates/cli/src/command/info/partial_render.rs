@@ -41,7 +41,7 @@ fn to_words(partial_render: &PartialRender, contents: &Contents) -> String {
     let RenderDescription { size: [width, height], region, samples, stop, shard, .. } = partial_render.description();
     let [fewest, most] = contents.samples;
     let of = partial_render.description().tiling().tile_count();
-    let mut lines = vec![partial_render.path().display().to_string()];
+    let mut lines = vec![partial_render.name().to_owned()];
     let mut say = |key: &str, value: String| lines.push(row(key, &value));
     let finished = if partial_render.description().finished { "finished" } else { "not finished" };
     say("shard", format!("{}, {finished}", describe_shard(shard, *samples)));
@@ -90,7 +90,7 @@ fn goal(stop: Stop, samples: u32) -> String {
 fn to_json(partial_render: &PartialRender, contents: &Contents) -> String {
     json!({
         "version": 1,
-        "file": partial_render.path().display().to_string(),
+        "file": partial_render.name(),
         "bytes": partial_render.bytes(),
         "tiles": contents.tiles,
         "samples": contents.samples,

@@ -24,7 +24,7 @@ fn a_partial_render_is_read_back() {
     let bytes = write(&path, &description, tiles.clone()).unwrap();
     assert_eq!(bytes, std::fs::metadata(&path).unwrap().len());
     let partial_render = PartialRender::open(&path).unwrap();
-    assert_eq!((partial_render.bytes(), partial_render.path()), (bytes, path.as_path()));
+    assert_eq!((partial_render.bytes(), partial_render.name()), (bytes, path.to_str().unwrap()));
     assert_eq!(partial_render.description(), &description);
     assert_eq!(partial_render.tiles().collect::<Vec<_>>(), (0..6).collect::<Vec<_>>());
     assert_eq!(partial_render.tiles_in(2, 5).collect::<Vec<_>>(), [2, 3, 4]);
@@ -34,6 +34,65 @@ fn a_partial_render_is_read_back() {
         assert_eq!(partial_render.tile(number).unwrap(), tile);
     }
     assert!(matches!(partial_render.tile(6), Err(PartialRenderError::Damaged { .. })), "no such tile");
+}
+
+/// In memory, a partial render has the bytes of the file, and is read alike.
+#[test]
+fn a_partial_render_in_memory_is_that_of_the_file() {
+    let (_folder, path) = place("a.jfilm");
+    let description = description(REGION, 100);
+    write(&path, &description, tiles(REGION, 0..100)).unwrap();
+    let mut writer = PartialRenderWriter::in_memory("a", &description).unwrap();
+    for (number, tile) in tiles(REGION, 0..100) {
+        writer.add(number, &Chunk::encode(&tile, description.clamped)).unwrap();
+    }
+    let bytes = writer.into_bytes().unwrap();
+    assert_eq!(bytes, std::fs::read(&path).unwrap());
+    let (file, memory) = (PartialRender::open(&path).unwrap(), PartialRender::from_bytes("a", bytes.clone()).unwrap());
+    assert_eq!((memory.name(), memory.bytes()), ("a", file.bytes()));
+    assert_eq!((memory.description(), &*memory.to_bytes().unwrap()), (file.description(), bytes.as_slice()));
+    assert_eq!(*file.to_bytes().unwrap(), bytes);
+    for number in 0..6 {
+        assert_eq!(memory.tile(number).unwrap(), file.tile(number).unwrap());
+    }
+}
+
+#[test]
+fn damage_in_memory_is_reported_as_in_files() {
+    let (_folder, path) = place("a.jfilm");
+    let description = description(REGION, 100);
+    write(&path, &description, tiles(REGION, 0..20)).unwrap();
+    let good = std::fs::read(&path).unwrap();
+    let told = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        let read = |opened: Result<PartialRender, PartialRenderError>| opened.and_then(|read| read.verify()).err();
+        let [file, memory] = [PartialRender::open(&path), PartialRender::from_bytes("a.jfilm", bytes)].map(read);
+        let file = file.map(|error| error.to_string().replace(path.to_str().unwrap(), "a.jfilm"));
+        assert_eq!(file, memory.map(|error| error.to_string()));
+        file
+    };
+    assert_eq!(told(&good), None);
+    for cut in [0, 3, 20, 200, good.len() / 2, good.len() - 1] {
+        assert!(told(&good[..cut]).is_some(), "{cut} bytes");
+    }
+    for at in (0..good.len()).step_by(good.len() / 97) {
+        let mut bad = good.clone();
+        bad[at] ^= 4;
+        assert!(told(&bad).is_some(), "byte {at}");
+    }
+    assert!(told(&[good.as_slice(), b"x"].concat()).is_some());
+}
+
+/// A file that another one replaces between opening and reading is not mistaken for it.
+#[test]
+fn the_bytes_of_a_replaced_file_are_refused() {
+    let (_folder, path) = place("a.jfilm");
+    write(&path, &description(REGION, 100), tiles(REGION, 0..20)).unwrap();
+    let opened = PartialRender::open(&path).unwrap();
+    write(&path, &description(REGION, 101), tiles(REGION, 0..20)).unwrap();
+    assert!(matches!(opened.to_bytes(), Err(PartialRenderError::Damaged { .. })));
+    std::fs::write(&path, b"short").unwrap();
+    assert!(matches!(opened.to_bytes(), Err(PartialRenderError::Damaged { .. })));
 }
 
 #[test]
