@@ -4,6 +4,7 @@
 
 mod answers;
 mod aovs;
+mod before;
 mod errors;
 mod harness;
 mod inputs;
