@@ -31,18 +31,7 @@ pub use juggler_light::background;
 pub use juggler_texture as texture;
 
 // Scenes, and values that change with time.
-pub use juggler_scene::animate::{
-    Along,
-    Animate,
-    Ease,
-    Easing,
-    Extrapolation,
-    Interpolation,
-    Joint,
-    PathName,
-    Posed,
-    // Types of animation are added in this alphabetical list and in the next.
-};
+pub use juggler_scene::animate::{Along, Animate, Ease, Easing, Extrapolation, Interpolation, Joint, PathName, Posed};
 pub use juggler_scene::description::{Animation, LookAt, Rotate, ScenePath};
 pub use juggler_scene::{
     Asset, Chain, ControlSphere, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, Scene, TransformStep,

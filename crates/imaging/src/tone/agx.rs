@@ -40,7 +40,7 @@ pub struct Agx {
 }
 
 impl Agx {
-    /// Creates AgX with a look.
+    /// Creates the AgX curve with a look.
     pub fn new(look: AgxLook) -> Self {
         Self { look }
     }

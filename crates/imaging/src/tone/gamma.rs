@@ -16,7 +16,7 @@ pub struct Gamma {
 }
 
 impl Gamma {
-    /// Creates a power curve of an exponent.
+    /// Creates a curve for displays of an exponent.
     pub fn new(gamma: f64) -> Self {
         Self { gamma }
     }
