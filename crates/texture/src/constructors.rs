@@ -28,10 +28,11 @@ fn constructors_equal_json() {
     check(Fbm::new("a", "b"), r#"{"fbm": {"low": "a", "high": "b"}}"#);
     check(Turbulence::new("a", "b"), r#"{"turbulence": {"low": "a", "high": "b"}}"#);
     check(Marble::new("a", "b"), r#"{"marble": {"stone": "a", "vein": "b"}}"#);
-    check(Wood::new("a", "b"), r#"{"wood": {"light": "a", "dark": "b"}}"#);
     check(Voronoi::new("a", "b"), r#"{"voronoi": {"low": "a", "high": "b"}}"#);
     check(Brick::new("a", "b"), r#"{"brick": {"brick": "a", "mortar": "b"}}"#);
     check(Dots::new("a", "b"), r#"{"dots": {"dot": "a", "ground": "b"}}"#);
-    check(Wave::new("a", "b"), r#"{"wave": {"low": "a", "high": "b"}}"#);
     check(Triplanar::new("a"), r#"{"triplanar": {"texture": "a"}}"#);
+    // `Default` of these two has 3 octaves, JSON without `octaves` 6.
+    check(Wood::new("a", "b"), r#"{"wood": {"light": "a", "dark": "b", "octaves": 3}}"#);
+    check(Wave::new("a", "b"), r#"{"wave": {"low": "a", "high": "b", "octaves": 3}}"#);
 }
