@@ -7,6 +7,7 @@ use juggler_math::{Rgb, Vec2, portable};
 /// Angular falloff of the highlight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Highlight {
     /// `(r · v)^shininess` (Phong 1975), with `r` the mirror direction of the light and `v` the
     /// direction to the viewer.

@@ -18,6 +18,13 @@ pub struct VirtualScreen {
     pub distance: f32,
 }
 
+impl VirtualScreen {
+    /// Creates a screen of a width at a distance from the eye.
+    pub fn new(width: f32, distance: f32) -> Self {
+        Self { width, distance }
+    }
+}
+
 /// Field of view as a virtual screen of a given width and height. A picture of another aspect ratio
 /// is stretched over it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,6 +38,13 @@ pub struct ViewPlane {
     /// Distance from the eye in scene units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
     pub distance: f32,
+}
+
+impl ViewPlane {
+    /// Creates a view plane of a width and a height at a distance from the eye.
+    pub fn new(width: f32, height: f32, distance: f32) -> Self {
+        Self { width, height, distance }
+    }
 }
 
 /// Field of view as a description gives it. If all fields are `None`, it is 40 degrees vertically.

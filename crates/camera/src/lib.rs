@@ -26,6 +26,8 @@ mod thin_lens;
 mod world_to_film;
 
 #[cfg(test)]
+mod constructors;
+#[cfg(test)]
 mod contract;
 
 pub use field_of_view::{ViewPlane, VirtualScreen};

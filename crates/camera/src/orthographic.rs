@@ -84,6 +84,11 @@ impl Default for Orthographic {
 }
 
 impl Orthographic {
+    /// Creates a camera at `eye` that looks at a point and sees an area of this height.
+    pub fn new(eye: impl Into<Vec3>, look_at: impl Into<Vec3>, height: f32) -> Self {
+        Self { eye: eye.into(), look_at: Some(look_at.into()), height: Some(height), ..Self::default() }
+    }
+
     fn pose(&self) -> Pose {
         Pose {
             eye: self.eye,

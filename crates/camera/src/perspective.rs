@@ -91,6 +91,11 @@ impl Default for Perspective {
 }
 
 impl Perspective {
+    /// Creates a camera at `eye` that looks at a point, with the y axis up.
+    pub fn new(eye: impl Into<Vec3>, look_at: impl Into<Vec3>) -> Self {
+        Self { eye: eye.into(), look_at: Some(look_at.into()), ..Self::default() }
+    }
+
     fn pose(&self) -> Pose {
         Pose {
             eye: self.eye,

@@ -36,6 +36,13 @@ pub struct LocalTranslation {
     pub forward: f32,
 }
 
+impl LocalTranslation {
+    /// Creates a translation along the camera's own axes, in scene units.
+    pub fn new(right: f32, up: f32, forward: f32) -> Self {
+        Self { right, up, forward }
+    }
+}
+
 /// Pose of a camera as a description gives it.
 pub(super) struct Pose {
     pub eye: Vec3,

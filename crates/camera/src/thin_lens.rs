@@ -101,6 +101,11 @@ impl Default for ThinLens {
 }
 
 impl ThinLens {
+    /// Creates a camera at `eye` that looks at a point, with the y axis up, through a lens.
+    pub fn new(eye: impl Into<Vec3>, look_at: impl Into<Vec3>, lens_radius: f32, focus_distance: f32) -> Self {
+        Self { eye: eye.into(), look_at: Some(look_at.into()), lens_radius, focus_distance, ..Self::default() }
+    }
+
     fn pose(&self) -> Pose {
         Pose {
             eye: self.eye,

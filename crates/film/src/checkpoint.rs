@@ -30,6 +30,7 @@ pub struct OpenedCheckpoint {
 
 /// Why a render cannot resume from a partial render.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ResumeError {
     /// The file cannot be read or is damaged.
     #[error(transparent)]

@@ -5,6 +5,7 @@ use std::io;
 
 /// Why an image could not be written, read or compared. `file` is the file as the user named it.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// The file extension names no known image format.
     #[error("`{file}` has an unknown extension; supported: {}", ImageFormat::extensions())]

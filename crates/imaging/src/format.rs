@@ -7,6 +7,7 @@ use std::path::Path;
 /// Still image file format. Juggler reads all formats and writes the formats of
 /// [`ImageFormat::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ImageFormat {
     /// Portable Network Graphics, 8 or 16 bits, lossless.
     Png,

@@ -103,6 +103,7 @@ impl RasterSamples {
 
 /// Transfer function of color samples; alpha is always linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum TransferFunction {
     /// sRGB, assumed for integer samples if the file states nothing.
     Srgb,

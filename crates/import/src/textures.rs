@@ -73,7 +73,7 @@ pub fn channel_suffix(channel: Channel) -> &'static str {
 pub fn with_vertex_colors<T: InputValue>(input: Input<T>) -> Input<T> {
     let attribute = Some(VERTEX_COLORS.to_owned());
     let product = match input {
-        Input::Value(value) if value == T::ZERO => return value.into(),
+        Input::Value(value) if value == T::ZERO => return Input::Value(value),
         Input::Value(value) => {
             InputProduct { texture: None, factor: Some(value).filter(|value| *value != T::ONE), attribute }
         }

@@ -27,6 +27,7 @@ pub use aov_record::{AovRecord, SurfaceHit};
 pub use clamp::ClampState;
 pub use clamp::{Clamp, PathKind};
 pub use cone::RayCone;
+pub use path::Sampling;
 pub use path_history::{CausticStage, CausticState, PathHistory, ScatterCounts};
 pub use path_log::{HitRecord, PathLog, ShadingPoint};
 pub use path_log::{ScatterEvent, Scattering};

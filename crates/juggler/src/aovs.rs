@@ -19,6 +19,7 @@ pub const MAX_GAIN: f32 = 1e6;
 
 /// Arbitrary output variable of the first visible surface, of light paths, or of the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Aov {
     /// Coverage of the pixel by surfaces, 0 to 1.
     Alpha,

@@ -12,6 +12,7 @@ use std::path::Path;
 
 /// Denoising algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Denoiser {
     /// Own filter, bit-identical on all machines.
     Own,

@@ -6,6 +6,7 @@ use juggler_scene::SceneError;
 
 /// Error that prevented an image.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The scene has errors, or cannot be read.
     #[error(transparent)]

@@ -21,6 +21,13 @@ pub struct Ambient {
     pub intensity: f32,
 }
 
+impl Ambient {
+    /// Creates white ambient light of an intensity.
+    pub fn new(intensity: f32) -> Self {
+        Self { intensity, ..Self::default() }
+    }
+}
+
 impl Default for Ambient {
     fn default() -> Self {
         Self { color: Rgb::WHITE, intensity: 0.1 }

@@ -57,6 +57,7 @@ pub struct Area {
 /// Form and size of a surface that emits light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum AreaShape {
     /// A rectangle that emits to one side.
     Rectangle {
@@ -142,6 +143,11 @@ impl AreaShape {
 }
 
 impl Area {
+    /// Creates a white area light of a radiance around a position. Its front faces down.
+    pub fn new(shape: AreaShape, position: impl Into<Vec3>, radiance: f32) -> Self {
+        Self { shape, position: position.into(), radiance: Some(radiance), ..Self::default() }
+    }
+
     /// Radiance of the front per channel.
     pub fn radiance(&self) -> Rgb {
         let of_power = |power: f32| power / (PI * self.shape.area());

@@ -41,6 +41,13 @@ pub struct Directional {
     pub light_group: Option<String>,
 }
 
+impl Directional {
+    /// Creates white light that travels along a direction.
+    pub fn new(direction: impl Into<Vec3>, intensity: f32) -> Self {
+        Self { direction: direction.into(), intensity, ..Self::default() }
+    }
+}
+
 fn is_zero(angle: &f32) -> bool {
     *angle == 0.0
 }

@@ -31,6 +31,7 @@ pub struct Attenuation {
 /// changes only the shadows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Extent {
     /// Sphere. The hemisphere that faces the lit point emits uniformly.
     Sphere {
@@ -63,6 +64,11 @@ impl Default for Attenuation {
 }
 
 impl Attenuation {
+    /// Creates the attenuation 1 / (constant + linear d + quadratic d²) over the distance d.
+    pub fn new(constant: f32, linear: f32, quadratic: f32) -> Self {
+        Self { constant, linear, quadratic }
+    }
+
     /// Falloff factor at `distance`.
     #[inline]
     pub fn at(&self, distance: f32) -> f32 {

@@ -18,6 +18,8 @@ mod spot_falloff;
 mod strength;
 
 #[cfg(test)]
+mod constructors;
+#[cfg(test)]
 mod contract;
 
 pub use area::AreaShape;

@@ -82,6 +82,11 @@ impl Default for Point {
 }
 
 impl Point {
+    /// Creates a white point light of an intensity, in watts per steradian.
+    pub fn new(position: impl Into<Vec3>, intensity: f32) -> Self {
+        Self { position: position.into(), intensity: Some(intensity), ..Self::default() }
+    }
+
     /// Radiant intensity in watts per steradian, without the color.
     fn intensity(&self) -> f32 {
         self.power.map_or(self.intensity.unwrap_or(1.0), |power| {

@@ -111,6 +111,11 @@ impl Default for Spot {
 }
 
 impl Spot {
+    /// Creates a white spot light of an intensity in watts per steradian, along an axis.
+    pub fn new(position: impl Into<Vec3>, direction: impl Into<Vec3>, intensity: f32) -> Self {
+        Self { position: position.into(), direction: direction.into(), intensity: Some(intensity), ..Self::default() }
+    }
+
     /// Falloff of the intensity at an angle with cosine `cos` from the axis, 0 to 1.
     fn angular_falloff(&self, cos: f32) -> f32 {
         let (beam, cutoff) = (self.beam_degrees.to_radians(), self.cutoff_degrees.to_radians());

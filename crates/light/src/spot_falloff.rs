@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// 0..1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SpotFalloff {
     /// Linear in the angle itself, not in its cosine (Mitsuba).
     #[default]

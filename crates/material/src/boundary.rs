@@ -22,6 +22,13 @@ pub struct Boundary {
     pub priority: i32,
 }
 
+impl Boundary {
+    /// Creates the invisible boundary of a medium.
+    pub fn new(medium: Medium) -> Self {
+        Self { medium, ..Self::default() }
+    }
+}
+
 impl Material for Boundary {
     fn compile(&self, _resolver: &mut dyn MaterialResolver) -> Result<CompiledMaterial, MaterialError> {
         let medium = compile_medium(&self.medium)?;

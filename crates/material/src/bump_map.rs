@@ -32,6 +32,13 @@ pub struct BumpMap {
     pub material: MaterialRef,
 }
 
+impl BumpMap {
+    /// Creates a material whose shading normals follow a height, in scene units.
+    pub fn new(height: impl Into<Input<f32>>, material: impl Into<MaterialRef>) -> Self {
+        Self { height: height.into(), material: material.into(), ..Self::default() }
+    }
+}
+
 /// Smallest step of the finite differences, in surface coordinates.
 const STEP: f32 = 1.0 / 2048.0;
 

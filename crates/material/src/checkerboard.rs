@@ -31,6 +31,13 @@ pub struct Checkerboard {
     pub odd: MaterialRef,
 }
 
+impl Checkerboard {
+    /// Creates a checkerboard of two materials, with squares of edge length 1.
+    pub fn new(even: impl Into<MaterialRef>, odd: impl Into<MaterialRef>) -> Self {
+        Self { even: even.into(), odd: odd.into(), ..Self::default() }
+    }
+}
+
 /// Coordinate plane of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

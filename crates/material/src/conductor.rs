@@ -73,6 +73,7 @@ pub struct Conductor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(transform = with_aluminium)]
+#[non_exhaustive]
 pub enum MetalName {
     /// Rakić (1995): 0.907, 0.916, 0.922.
     #[serde(alias = "aluminium")]
@@ -185,6 +186,16 @@ impl Material for Conductor {
 }
 
 impl Conductor {
+    /// Creates a smooth metal of a reflectance at normal incidence.
+    pub fn new(reflectance: impl Into<Input<Rgb>>) -> Self {
+        Self { reflectance: reflectance.into(), ..Self::default() }
+    }
+
+    /// Creates a smooth surface of a metal with measured optical constants.
+    pub fn from_metal(metal: MetalName) -> Self {
+        Self { metal: Some(metal), ..Self::default() }
+    }
+
     fn color(&self, textures: &TextureTable) -> Result<Color, MaterialError> {
         let channels = |color: Option<Rgb>| color.into_iter().flat_map(Rgb::to_array);
         channels(self.eta).try_for_each(|v| in_range("eta", v, 1e-3, 1e3))?;

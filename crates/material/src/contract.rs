@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::f32::consts::FRAC_1_PI;
 
 mod coat;
+mod constructors;
 mod examples;
 mod maps;
 mod one_sided;

@@ -61,6 +61,13 @@ pub struct Dielectric {
     pub energy_compensation: bool,
 }
 
+impl Dielectric {
+    /// Creates smooth, clear glass or liquid of an index of refraction.
+    pub fn new(ior: f32) -> Self {
+        Self { ior, ..Self::default() }
+    }
+}
+
 impl Default for Dielectric {
     fn default() -> Self {
         Self {

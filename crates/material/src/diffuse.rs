@@ -29,6 +29,13 @@ pub struct Diffuse {
     pub sides: SurfaceSides,
 }
 
+impl Diffuse {
+    /// Creates a diffuse material of a reflectance.
+    pub fn new(reflectance: impl Into<Input<Rgb>>) -> Self {
+        Self { reflectance: reflectance.into(), ..Self::default() }
+    }
+}
+
 impl Default for Diffuse {
     fn default() -> Self {
         Self { reflectance: Rgb::splat(0.8).into(), roughness: 0.0.into(), sides: SurfaceSides::Both }

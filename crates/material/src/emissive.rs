@@ -30,9 +30,17 @@ pub struct Emissive {
     pub material: Option<MaterialRef>,
 }
 
+impl Emissive {
+    /// Creates a material whose front emits a radiance.
+    pub fn new(radiance: impl Into<Input<Rgb>>) -> Self {
+        Self { radiance: radiance.into(), ..Self::default() }
+    }
+}
+
 /// Sides of a surface that emit light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Sides {
     /// The side of the surface normals: the outside of a solid, the upper side of a rectangle.
     #[default]

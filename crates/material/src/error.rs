@@ -5,6 +5,7 @@ use juggler_texture::{InputError, UnknownTexture};
 
 /// Error in a material's description.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MaterialError {
     /// The scene has no texture of this name.
     #[error(transparent)]

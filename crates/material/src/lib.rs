@@ -39,8 +39,10 @@ mod velvet;
 #[cfg(test)]
 mod contract;
 
+pub use checkerboard::Plane as CheckerboardPlane;
 pub use compiled::{CompiledMaterial, ScatteringMaterial};
 pub use compiler::{MAX_NESTING, MaterialCompiler};
+pub use conductor::MetalName;
 pub use emissive::{Sides, SurfaceEmission};
 pub use error::MaterialError;
 pub use one_sided::SurfaceSides;
@@ -85,6 +87,20 @@ impl Default for MaterialRef {
 impl<M: Into<AnyMaterial>> From<M> for MaterialRef {
     fn from(material: M) -> Self {
         Self::Inline(Box::new(material.into()))
+    }
+}
+
+/// Name of a material of the scene.
+impl From<&str> for MaterialRef {
+    fn from(name: &str) -> Self {
+        Self::Name(name.to_owned())
+    }
+}
+
+/// Name of a material of the scene.
+impl From<String> for MaterialRef {
+    fn from(name: String) -> Self {
+        Self::Name(name)
     }
 }
 

@@ -28,6 +28,13 @@ pub struct Mask {
     pub material: MaterialRef,
 }
 
+impl Mask {
+    /// Creates a mask that makes a material as opaque as a number or texture says.
+    pub fn new(opacity: impl Into<Input<f32>>, material: impl Into<MaterialRef>) -> Self {
+        Self { opacity: opacity.into(), material: material.into(), ..Self::default() }
+    }
+}
+
 impl Default for Mask {
     fn default() -> Self {
         Self { opacity: 1.0.into(), cutoff: None, material: MaterialRef::default() }

@@ -22,6 +22,13 @@ pub struct Mix {
     pub b: MaterialRef,
 }
 
+impl Mix {
+    /// Creates a blend of two materials; 0 for `amount` shows `a`, 1 shows `b`.
+    pub fn new(a: impl Into<MaterialRef>, b: impl Into<MaterialRef>, amount: impl Into<Input<f32>>) -> Self {
+        Self { amount: amount.into(), a: a.into(), b: b.into() }
+    }
+}
+
 impl Default for Mix {
     fn default() -> Self {
         Self { amount: 0.5.into(), a: MaterialRef::default(), b: MaterialRef::default() }

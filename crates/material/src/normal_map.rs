@@ -28,6 +28,13 @@ pub struct NormalMap {
     pub material: MaterialRef,
 }
 
+impl NormalMap {
+    /// Creates a material whose shading normals a texture tilts.
+    pub fn new(texture: impl Into<Input<Rgb>>, material: impl Into<MaterialRef>) -> Self {
+        Self { texture: texture.into(), material: material.into(), ..Self::default() }
+    }
+}
+
 /// Encoding of the unchanged normal.
 pub const UNCHANGED_NORMAL: Rgb = Rgb::new(0.5, 0.5, 1.0);
 

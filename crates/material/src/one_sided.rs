@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 /// the outside of a solid, the upper side of a rectangle. Transforms keep it, reflections included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SurfaceSides {
     /// Both sides look alike.
     #[default]

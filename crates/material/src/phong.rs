@@ -80,6 +80,7 @@ pub struct Phong {
 /// Normalization of diffuse reflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum DiffuseNormalization {
     /// Factor 1: a light of radiance 1 at normal incidence makes a white surface white.
     #[default]
@@ -197,6 +198,11 @@ impl Material for Phong {
 }
 
 impl Phong {
+    /// Creates a classic material of a diffuse color, without a highlight.
+    pub fn new(diffuse: impl Into<Input<Rgb>>) -> Self {
+        Self { diffuse: diffuse.into(), ..Self::default() }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         in_range("occlusion", self.occlusion, 0.0, 1.0)?;
         in_range("diffuse_weight", self.diffuse_weight, 0.0, MAX_LIGHT)?;
@@ -240,6 +246,11 @@ impl Phong {
 }
 
 impl Spread {
+    /// Creates a cone of a half angle, sampled by a number of rays.
+    pub fn new(half_angle_degrees: f32, rays: u32) -> Self {
+        Self { half_angle_degrees, rays }
+    }
+
     fn cone(self) -> ConeSampling {
         ConeSampling { half_angle_radians: self.half_angle_degrees.to_radians(), rays: self.rays }
     }

@@ -48,6 +48,13 @@ pub struct Plastic {
     pub sides: SurfaceSides,
 }
 
+impl Plastic {
+    /// Creates smooth plastic whose base under the coat has a diffuse reflectance.
+    pub fn new(reflectance: impl Into<Input<Rgb>>) -> Self {
+        Self { reflectance: reflectance.into(), ..Self::default() }
+    }
+}
+
 impl Default for Plastic {
     fn default() -> Self {
         Self {

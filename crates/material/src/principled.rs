@@ -216,6 +216,11 @@ impl Material for Principled {
 }
 
 impl Principled {
+    /// Creates a material of a base color: a plastic until other fields are set.
+    pub fn new(base_color: impl Into<Input<Rgb>>) -> Self {
+        Self { base_color: base_color.into(), ..Self::default() }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         for (field, input) in self.colors() {
             check_unit_color(field, input)?;

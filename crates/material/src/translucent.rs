@@ -24,6 +24,13 @@ pub struct Translucent {
     pub transmittance: Input<Rgb>,
 }
 
+impl Translucent {
+    /// Creates a thin material that reflects and transmits diffusely.
+    pub fn new(reflectance: impl Into<Input<Rgb>>, transmittance: impl Into<Input<Rgb>>) -> Self {
+        Self { reflectance: reflectance.into(), transmittance: transmittance.into() }
+    }
+}
+
 impl Default for Translucent {
     fn default() -> Self {
         Self { reflectance: Rgb::splat(0.4).into(), transmittance: Rgb::splat(0.4).into() }

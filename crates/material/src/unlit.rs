@@ -25,6 +25,13 @@ pub struct Unlit {
     pub opacity: Input<f32>,
 }
 
+impl Unlit {
+    /// Creates an opaque material that shows a color and neither reflects nor casts light.
+    pub fn new(color: impl Into<Input<Rgb>>) -> Self {
+        Self { color: color.into(), ..Self::default() }
+    }
+}
+
 impl Default for Unlit {
     fn default() -> Self {
         Self { color: Rgb::WHITE.into(), opacity: 1.0.into() }

@@ -35,6 +35,13 @@ pub struct Velvet {
     pub sides: SurfaceSides,
 }
 
+impl Velvet {
+    /// Creates velvet of a sheen color over a black base.
+    pub fn new(sheen_color: impl Into<Input<Rgb>>) -> Self {
+        Self { sheen_color: sheen_color.into(), ..Self::default() }
+    }
+}
+
 impl Default for Velvet {
     fn default() -> Self {
         Self {

@@ -17,6 +17,7 @@ pub struct MeshError {
 
 /// Cause of an [`MeshError`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshErrorKind {
     /// The file cannot be opened or read.
     #[error("cannot be read: {0}")]

@@ -16,6 +16,7 @@ const MAX_ROUND_SAMPLES: u32 = 16 * BLOCK_SAMPLES;
 
 /// Criterion by which a tile is finished. No tile receives more samples than its film requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum StopCriterion {
     /// All requested samples, in rounds of up to 256 per pixel, whose rays are coherent.
     #[default]

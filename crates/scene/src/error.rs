@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 /// Error of reading, building, compiling or saving a scene.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// The file cannot be read.
     #[error("cannot read `{}`: {}", path.display(), plain_io(source))]

@@ -20,6 +20,7 @@ pub struct IntegratorChoice {
 
 /// Reason for the choice of an integrator.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum IntegratorReason {
     /// `render.integrator` of the scene names it.
     Scene,

@@ -102,6 +102,11 @@ pub struct MeshAttribute {
 }
 
 impl MeshAttribute {
+    /// Creates an attribute of the vertices with this many numbers per value, 1 to 4.
+    pub fn new(channels: u32, data: AttributeData) -> Self {
+        Self { channels, data, domain: AttributeDomain::Vertex }
+    }
+
     /// Numbers of the value of a vertex or triangle, one per channel; 0 beyond the end.
     pub fn numbers(&self, index: usize) -> impl Iterator<Item = f32> {
         let channels = self.channels as usize;

@@ -50,6 +50,11 @@ fn axis_and_side(face: u32) -> (usize, bool) {
 }
 
 impl Cuboid {
+    /// Creates a cuboid between the corners of the smallest and of the largest coordinates.
+    pub fn new(min: impl Into<Vec3>, max: impl Into<Vec3>) -> Self {
+        Self { min: min.into(), max: max.into() }
+    }
+
     fn normal(face: u32) -> Vec3 {
         let (axis, far) = axis_and_side(face);
         if far { Vec3::AXES[axis] } else { -Vec3::AXES[axis] }

@@ -59,6 +59,11 @@ const BOTTOM: u32 = 2;
 const TOP: u32 = 3;
 
 impl Cylinder {
+    /// Creates a solid cylinder of a radius around the y axis, between two heights.
+    pub fn new(radius: f32, y_min: f32, y_max: f32) -> Self {
+        Self { radius, y_min, y_max, ..Self::default() }
+    }
+
     fn contains_y(&self, y: f64) -> bool {
         (f64::from(self.y_min)..=f64::from(self.y_max)).contains(&y)
     }

@@ -33,6 +33,13 @@ pub struct Disk {
     pub inner_radius: f32,
 }
 
+impl Disk {
+    /// Creates a disk of a radius around the origin, without a hole.
+    pub fn new(radius: f32) -> Self {
+        Self { radius, ..Self::default() }
+    }
+}
+
 impl Default for Disk {
     fn default() -> Self {
         Self { radius: 1.0, inner_radius: 0.0 }

@@ -37,6 +37,11 @@ impl Default for Rectangle {
 }
 
 impl Rectangle {
+    /// Creates a rectangle around the origin with edges of these lengths along x and z.
+    pub fn new(size: [f32; 2]) -> Self {
+        Self { size }
+    }
+
     fn corner(&self) -> Vec3 {
         Vec3::new(0.5 * self.size[0], 0.0, 0.5 * self.size[1])
     }

@@ -35,6 +35,13 @@ pub struct Sphere {
     pub radius: f32,
 }
 
+impl Sphere {
+    /// Creates a sphere of a radius around the origin.
+    pub fn new(radius: f32) -> Self {
+        Self { radius }
+    }
+}
+
 impl Default for Sphere {
     fn default() -> Self {
         Self { radius: 1.0 }

@@ -27,6 +27,13 @@ pub struct Tube {
     pub radius: f32,
 }
 
+impl Tube {
+    /// Creates an infinite tube of a radius around the y axis.
+    pub fn new(radius: f32) -> Self {
+        Self { radius }
+    }
+}
+
 impl Default for Tube {
     fn default() -> Self {
         Self { radius: 1.0 }

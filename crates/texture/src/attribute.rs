@@ -29,6 +29,13 @@ pub struct Attribute {
     pub channel: Channel,
 }
 
+impl Attribute {
+    /// Creates a texture of a mesh's attribute.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+}
+
 impl Default for Attribute {
     fn default() -> Self {
         Self { name: COLOR.to_owned(), channel: Channel::Rgb }

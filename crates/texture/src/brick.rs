@@ -49,6 +49,13 @@ pub struct Brick {
     pub mapping: Mapping,
 }
 
+impl Brick {
+    /// Creates a wall of bricks with mortar between them.
+    pub fn new(brick: impl Into<Input<Rgb>>, mortar: impl Into<Input<Rgb>>) -> Self {
+        Self { brick: brick.into(), mortar: mortar.into(), ..Self::default() }
+    }
+}
+
 impl Default for Brick {
     fn default() -> Self {
         Self {

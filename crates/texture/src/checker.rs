@@ -37,9 +37,17 @@ pub struct Checker {
     pub offset: Vec3,
 }
 
+impl Checker {
+    /// Creates a checkerboard of two colors, with cells of edge length 1.
+    pub fn new(even: impl Into<Input<Rgb>>, odd: impl Into<Input<Rgb>>) -> Self {
+        Self { even: even.into(), odd: odd.into(), ..Self::default() }
+    }
+}
+
 /// Axes along which the colors of a checkerboard alternate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Axes {
     /// All three axes: cubes in space, squares over (u, v).
     #[default]

@@ -18,6 +18,7 @@ pub const MAX_LOOKUPS: u32 = 1024;
 
 /// Error in a texture's description.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TextureError {
     /// A value is invalid.
     #[error(transparent)]

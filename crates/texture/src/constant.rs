@@ -22,6 +22,13 @@ pub struct Constant {
     pub color: Input<Rgb>,
 }
 
+impl Constant {
+    /// Creates a texture of one color.
+    pub fn new(color: impl Into<Input<Rgb>>) -> Self {
+        Self { color: color.into() }
+    }
+}
+
 impl Default for Constant {
     fn default() -> Self {
         Self { color: Rgb::splat(0.5).into() }

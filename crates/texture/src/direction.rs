@@ -32,6 +32,13 @@ pub struct Direction {
     pub turns: f32,
 }
 
+impl Direction {
+    /// Creates a texture of the rotations that the red and green of a color or texture encode.
+    pub fn new(of: impl Into<Input<Rgb>>) -> Self {
+        Self { of: of.into(), ..Self::default() }
+    }
+}
+
 impl Default for Direction {
     fn default() -> Self {
         Self { of: Rgb::new(1.0, 0.5, 0.0).into(), turns: 0.0 }

@@ -43,6 +43,13 @@ pub struct Dots {
     pub mapping: Mapping,
 }
 
+impl Dots {
+    /// Creates a pattern of dots on a ground.
+    pub fn new(dot: impl Into<Input<Rgb>>, ground: impl Into<Input<Rgb>>) -> Self {
+        Self { dot: dot.into(), ground: ground.into(), ..Self::default() }
+    }
+}
+
 impl Default for Dots {
     fn default() -> Self {
         Self {

@@ -8,7 +8,9 @@
 
 use super::CompiledTexture;
 use super::noise_blend::{CompiledNoiseBlend, NoiseBlend};
-use super::{InvalidTexture, SharedTexture, Texture, TextureError, TextureLookup, TextureResolver, TextureTable};
+use super::{
+    Input, InvalidTexture, SharedTexture, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,6 +23,13 @@ pub struct Fbm {
     /// Colors, octaves and placement.
     #[serde(flatten)]
     pub noise_blend: NoiseBlend,
+}
+
+impl Fbm {
+    /// Creates fractal noise between two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { noise_blend: NoiseBlend::new(low, high) }
+    }
 }
 
 impl Texture for Fbm {

@@ -40,6 +40,13 @@ pub struct Gradient {
     pub shape: GradientShape,
 }
 
+impl Gradient {
+    /// Creates a linear gradient along the surface coordinate v.
+    pub fn new(stops: impl Into<Vec<Stop>>) -> Self {
+        Self { stops: stops.into(), ..Self::default() }
+    }
+}
+
 /// Color at a position of a gradient or ramp.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stop {
@@ -50,8 +57,8 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Constant color at a position.
-    pub fn new(position: f32, color: Rgb) -> Self {
+    /// Creates a stop of a color at a position.
+    pub fn new(position: f32, color: impl Into<Input<Rgb>>) -> Self {
         Self { position, color: color.into() }
     }
 }
@@ -59,6 +66,7 @@ impl Stop {
 /// Shape of a gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum GradientShape {
     /// Positions grow along the direction from start to end.
     #[default]

@@ -63,9 +63,59 @@ impl InputValue for Rgb {
     const ONE: Self = Self::WHITE;
 }
 
-impl<T> From<T> for Input<T> {
-    fn from(value: T) -> Self {
-        Self::Value(value)
+/// Constant number.
+impl From<f32> for Input<f32> {
+    fn from(number: f32) -> Self {
+        Self::Value(number)
+    }
+}
+
+/// Constant number, rounded to the nearest `f32`. Literals such as `0.6` have this type.
+impl From<f64> for Input<f32> {
+    fn from(number: f64) -> Self {
+        Self::Value(number as f32)
+    }
+}
+
+/// Constant color.
+impl From<Rgb> for Input<Rgb> {
+    fn from(color: Rgb) -> Self {
+        Self::Value(color)
+    }
+}
+
+/// Constant color, linear red, green and blue.
+impl From<[f32; 3]> for Input<Rgb> {
+    fn from(channels: [f32; 3]) -> Self {
+        Self::Value(channels.into())
+    }
+}
+
+/// Constant gray.
+impl From<f32> for Input<Rgb> {
+    fn from(gray: f32) -> Self {
+        Self::Value(Rgb::splat(gray))
+    }
+}
+
+/// Constant gray, rounded to the nearest `f32`. Literals such as `0.6` have this type.
+impl From<f64> for Input<Rgb> {
+    fn from(gray: f64) -> Self {
+        Self::Value(Rgb::splat(gray as f32))
+    }
+}
+
+/// Name of a texture of the scene.
+impl<T> From<&str> for Input<T> {
+    fn from(texture: &str) -> Self {
+        Self::Texture(texture.to_owned())
+    }
+}
+
+/// Name of a texture of the scene.
+impl<T> From<String> for Input<T> {
+    fn from(texture: String) -> Self {
+        Self::Texture(texture)
     }
 }
 
@@ -140,11 +190,22 @@ mod tests {
     }
 
     #[test]
+    fn numbers_colors_and_names_convert() {
+        let numbers: [Input<f32>; 4] = [0.6.into(), 0.6_f32.into(), "wood".into(), String::from("wood").into()];
+        let wood = Input::Texture("wood".into());
+        assert_eq!(numbers, [Input::Value(0.6), Input::Value(0.6), wood.clone(), wood]);
+        let gray = Input::Value(Rgb::splat(0.6));
+        let grays: [Input<Rgb>; 4] = [0.6.into(), 0.6_f32.into(), [0.6; 3].into(), Rgb::splat(0.6).into()];
+        assert_eq!(grays, std::array::from_fn(|_| gray.clone()));
+        assert_eq!(Input::<Rgb>::from("wood"), Input::Texture("wood".into()));
+    }
+
+    #[test]
     fn products_are_constant_only_under_the_factor_zero() {
         assert_eq!(Input::product("t", 0.0).constant(), Some(0.0));
         assert_eq!(Input::product("t", 0.5).constant(), None);
         assert_eq!(Input::product("t", 0.5).constant_factor(), Some(0.5));
-        assert_eq!(Input::from(0.5).constant(), Some(0.5));
+        assert_eq!(Input::<f32>::from(0.5).constant(), Some(0.5));
         assert_eq!(Input::<f32>::Texture("t".into()).constant_factor(), None);
     }
 }

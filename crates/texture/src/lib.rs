@@ -41,6 +41,8 @@ mod wave;
 mod wood;
 
 #[cfg(test)]
+mod constructors;
+#[cfg(test)]
 mod contract;
 
 pub use checker::{Axes, is_odd_cell};
@@ -51,6 +53,7 @@ pub use image::{Channel, ColorSpace};
 pub use input::{Input, InputProduct, InputValue, TextureRef};
 pub use mapping::{Mapping, Scale};
 pub use mix::MixMode;
+pub use noise_blend::NoiseBlend;
 pub use octaves::Octaves;
 pub use pixels::{Filter, MipMap, Texel, Wrap};
 pub use product::CompiledProduct;
@@ -91,6 +94,7 @@ pub struct TextureLookup<'m> {
 /// Coordinate space of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Space {
     /// Surface coordinates: the point (u, v, 0).
     #[default]

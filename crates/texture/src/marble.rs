@@ -44,6 +44,13 @@ pub struct Marble {
     pub mapping: Mapping,
 }
 
+impl Marble {
+    /// Creates marble of a stone with veins.
+    pub fn new(stone: impl Into<Input<Rgb>>, vein: impl Into<Input<Rgb>>) -> Self {
+        Self { stone: stone.into(), vein: vein.into(), ..Self::default() }
+    }
+}
+
 impl Default for Marble {
     fn default() -> Self {
         Self {

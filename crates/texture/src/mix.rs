@@ -31,9 +31,17 @@ pub struct Mix {
     pub mode: MixMode,
 }
 
+impl Mix {
+    /// Creates a blend of two colors; 0 for `amount` shows `a`, 1 shows `b`.
+    pub fn new(a: impl Into<Input<Rgb>>, b: impl Into<Input<Rgb>>, amount: impl Into<Input<f32>>) -> Self {
+        Self { a: a.into(), b: b.into(), amount: amount.into(), ..Self::default() }
+    }
+}
+
 /// Blend mode of two colors a and b, per channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum MixMode {
     /// b.
     #[default]

@@ -31,6 +31,13 @@ pub struct Noise {
     pub mapping: Mapping,
 }
 
+impl Noise {
+    /// Creates smooth noise between two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { low: low.into(), high: high.into(), ..Self::default() }
+    }
+}
+
 impl Default for Noise {
     fn default() -> Self {
         Self { low: Rgb::BLACK.into(), high: Rgb::WHITE.into(), seed: 0, mapping: Mapping::default() }

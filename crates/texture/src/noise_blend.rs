@@ -34,6 +34,11 @@ impl Default for NoiseBlend {
 }
 
 impl NoiseBlend {
+    /// Creates a blend of two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { low: low.into(), high: high.into(), ..Self::default() }
+    }
+
     /// Checks all values.
     pub(super) fn check(&self) -> Result<(), InvalidTexture> {
         check::color("low", &self.low)?;

@@ -32,9 +32,17 @@ pub struct Ramp {
     pub interpolation: Steps,
 }
 
+impl Ramp {
+    /// Creates a texture that maps a number to the color of its place between the stops.
+    pub fn new(input: impl Into<Input<f32>>, stops: impl Into<Vec<Stop>>) -> Self {
+        Self { input: input.into(), stops: stops.into(), ..Self::default() }
+    }
+}
+
 /// Interpolation between the stops of a ramp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Steps {
     /// Linear interpolation, in linear light.
     #[default]

@@ -36,6 +36,13 @@ pub struct Triplanar {
     pub mapping: Mapping,
 }
 
+impl Triplanar {
+    /// Creates a projection of a texture along the three axes.
+    pub fn new(texture: impl Into<Input<Rgb>>) -> Self {
+        Self { texture: texture.into(), ..Self::default() }
+    }
+}
+
 impl Default for Triplanar {
     fn default() -> Self {
         Self { texture: Rgb::splat(0.5).into(), sharpness: 4.0, mapping: Mapping::default() }

@@ -9,7 +9,7 @@
 use super::CompiledTexture;
 use super::noise_blend::{CompiledNoiseBlend, NoiseBlend};
 use super::{
-    InvalidTexture, Octaves, SharedTexture, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
+    Input, InvalidTexture, Octaves, SharedTexture, Texture, TextureError, TextureLookup, TextureResolver, TextureTable,
 };
 use juggler_math::Rgb;
 use schemars::JsonSchema;
@@ -24,6 +24,13 @@ pub struct Turbulence {
     /// Colors, octaves and placement.
     #[serde(flatten)]
     pub noise_blend: NoiseBlend,
+}
+
+impl Turbulence {
+    /// Creates turbulence between two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { noise_blend: NoiseBlend::new(low, high) }
+    }
 }
 
 impl Texture for Turbulence {

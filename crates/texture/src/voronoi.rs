@@ -46,9 +46,17 @@ pub struct Voronoi {
     pub mapping: Mapping,
 }
 
+impl Voronoi {
+    /// Creates a Voronoi pattern between two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { low: low.into(), high: high.into(), ..Self::default() }
+    }
+}
+
 /// Feature of cellular noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Feature {
     /// F1: distance to the nearest feature point.
     #[default]
@@ -64,6 +72,7 @@ pub enum Feature {
 /// Metric of distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Metric {
     /// Euclidean distance.
     #[default]

@@ -44,9 +44,17 @@ pub struct Wave {
     pub mapping: Mapping,
 }
 
+impl Wave {
+    /// Creates a wave between two colors.
+    pub fn new(low: impl Into<Input<Rgb>>, high: impl Into<Input<Rgb>>) -> Self {
+        Self { low: low.into(), high: high.into(), ..Self::default() }
+    }
+}
+
 /// Direction of waves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum WaveShape {
     /// Along the pattern's x axis.
     #[default]
@@ -58,6 +66,7 @@ pub enum WaveShape {
 /// Shape of one period of a wave, whose phase runs from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum WaveProfile {
     /// Sine: trough at 0, crest at 1/2.
     #[default]

@@ -52,6 +52,13 @@ pub struct Wood {
     pub mapping: Mapping,
 }
 
+impl Wood {
+    /// Creates wood with light and dark rings.
+    pub fn new(light: impl Into<Input<Rgb>>, dark: impl Into<Input<Rgb>>) -> Self {
+        Self { light: light.into(), dark: dark.into(), ..Self::default() }
+    }
+}
+
 impl Default for Wood {
     fn default() -> Self {
         Self {

@@ -38,6 +38,7 @@ pub struct Tile {
 
 /// Error when adding samples to a tile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TileError {
     /// The tile already has some of the samples.
     #[error("the samples {} to {} occur twice", .0.start, .0.end)]

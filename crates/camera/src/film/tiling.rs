@@ -20,6 +20,11 @@ pub struct Rect {
 }
 
 impl Rect {
+    /// Creates the rectangle of a size whose top left pixel is (`x`, `y`).
+    pub fn new(x: u32, y: u32, width: u32, height: u32) -> Self {
+        Self { x, y, width, height }
+    }
+
     /// Number of pixels.
     pub fn area(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)

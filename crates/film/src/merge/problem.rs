@@ -9,6 +9,7 @@ const MAX_LISTED_RANGES: usize = 8;
 
 /// One reason; files are named as the user gave them.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum MergeProblem {
     /// The list of files is empty.
     None,

@@ -4,6 +4,7 @@ use std::io;
 
 /// Why a partial render cannot be written or read. `file` is its path as the user gave it.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PartialRenderError {
     /// Reading failed.
     #[error("cannot read `{file}`: {source}")]

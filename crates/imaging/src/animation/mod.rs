@@ -23,6 +23,7 @@ pub const DEFAULT_QUALITY: u8 = 80;
 
 /// Movie file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum AnimationFormat {
     /// Animated PNG, 8 bits per channel, lossless.
     Apng,
@@ -97,6 +98,13 @@ pub struct AnimationHeader {
     pub plays: u16,
     /// Quality from 1 (smallest file) to 100 (best); lossless formats ignore it.
     pub quality: u8,
+}
+
+impl AnimationHeader {
+    /// Creates a header for a movie in sRGB that loops forever, at quality 80.
+    pub fn new(width: u32, height: u32, frames: u32, frames_per_second: f64) -> Self {
+        Self { width, height, tone: Tone::default(), frames, frames_per_second, plays: 0, quality: DEFAULT_QUALITY }
+    }
 }
 
 /// Encoder that takes frames in order.

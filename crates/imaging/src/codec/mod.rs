@@ -110,6 +110,7 @@ impl Default for Options {
 
 /// Sample type of an EXR channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SampleDepth {
     /// 32-bit float.
     Float,
@@ -119,6 +120,7 @@ pub enum SampleDepth {
 
 /// Lossless compression of an EXR file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ExrCompression {
     /// Uncompressed.
     None,

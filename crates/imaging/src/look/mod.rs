@@ -13,6 +13,7 @@ use juggler_math::Rgb;
 
 /// Display look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DisplayLook {
     /// No look.
     #[default]

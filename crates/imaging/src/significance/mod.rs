@@ -67,6 +67,7 @@ pub struct LargestDifference {
 
 /// Why the images cannot be tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SignificanceError {
     /// A pixel has fewer than two blocks of samples, so its variance is unknown.
     #[error("there are too few samples: variances need at least 32 per pixel")]

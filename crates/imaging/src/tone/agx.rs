@@ -39,9 +39,17 @@ pub struct Agx {
     pub look: AgxLook,
 }
 
+impl Agx {
+    /// Creates the AgX curve with a look.
+    pub fn new(look: AgxLook) -> Self {
+        Self { look }
+    }
+}
+
 /// Color grade of AgX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum AgxLook {
     /// No grade: low contrast, a basis for color grading.
     #[default]

@@ -15,6 +15,13 @@ pub struct Gamma {
     pub gamma: f64,
 }
 
+impl Gamma {
+    /// Creates a curve for displays of an exponent.
+    pub fn new(gamma: f64) -> Self {
+        Self { gamma }
+    }
+}
+
 impl Default for Gamma {
     fn default() -> Self {
         Self { gamma: 2.2 }

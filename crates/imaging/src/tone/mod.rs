@@ -180,6 +180,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn constructors_equal_json() {
+        let curves: [(AnyCurve, &str); 3] = [
+            (AnyCurve::Gamma(Gamma::new(1.5)), r#"{"gamma": {"gamma": 1.5}}"#),
+            (AnyCurve::Reinhard(Reinhard::new(2.0)), r#"{"reinhard": {"white": 2}}"#),
+            (AnyCurve::Agx(Agx::new(AgxLook::Punchy)), r#"{"agx": {"look": "punchy"}}"#),
+        ];
+        for (built, json) in curves {
+            assert_eq!(built, serde_json::from_str(json).unwrap());
+        }
+        assert_eq!(WhiteBalance::new(4000.0), serde_json::from_str(r#"{"kelvin": 4000}"#).unwrap());
+    }
+
+    #[test]
     fn json_is_externally_tagged_and_has_defaults() {
         let read = |text: &str| serde_json::from_str::<Tone>(text).unwrap();
         assert_eq!(read("{}"), Tone::default());

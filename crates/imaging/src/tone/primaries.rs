@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// are kept as negative values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Primaries {
     /// sRGB and ITU-R BT.709, assumed if a file states nothing.
     #[default]

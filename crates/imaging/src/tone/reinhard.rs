@@ -19,6 +19,13 @@ pub struct Reinhard {
     pub white: f32,
 }
 
+impl Reinhard {
+    /// Creates a curve that maps the luminance `white` to white.
+    pub fn new(white: f32) -> Self {
+        Self { white }
+    }
+}
+
 impl Default for Reinhard {
     fn default() -> Self {
         Self { white: 4.0 }

@@ -39,6 +39,11 @@ impl Default for WhiteBalance {
 }
 
 impl WhiteBalance {
+    /// Creates the balance for light of a color temperature, without a tint.
+    pub fn new(kelvin: f64) -> Self {
+        Self { kelvin, ..Self::default() }
+    }
+
     /// Chromaticity of the light, CIE 1931 x, y.
     pub fn chromaticity(&self) -> [f64; 2] {
         let on_line = uv(locus(self.kelvin));

@@ -2,8 +2,8 @@
 
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
 use crate::common::Shared;
-use juggler_imaging::tone::{AnyCurve, Quantizer, Srgb};
-use juggler_imaging::{AnimationFormat, AnimationHeader, Destination, Tone, animation_writer, create_animation};
+use juggler_imaging::tone::Quantizer;
+use juggler_imaging::{AnimationFormat, AnimationHeader, Destination, animation_writer, create_animation};
 use juggler_math::Rgb;
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -11,8 +11,7 @@ use std::path::Path;
 const SIZE: [u32; 2] = [48, 32];
 
 fn header(frames: u32, frames_per_second: f64, plays: u16) -> AnimationHeader {
-    let tone = Tone::new(AnyCurve::Srgb(Srgb {}));
-    AnimationHeader { width: SIZE[0], height: SIZE[1], tone, frames, frames_per_second, plays, quality: 90 }
+    AnimationHeader { plays, quality: 90, ..AnimationHeader::new(SIZE[0], SIZE[1], frames, frames_per_second) }
 }
 
 /// A smooth sky with a moving square.

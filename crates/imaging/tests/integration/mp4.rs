@@ -3,11 +3,11 @@
 #![cfg(feature = "av1")]
 #[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
 use crate::common::Shared;
-use juggler_imaging::{AnimationFormat, AnimationHeader, Destination, Tone, animation_writer};
+use juggler_imaging::{AnimationFormat, AnimationHeader, Destination, animation_writer};
 use juggler_math::Rgb;
 
 fn header(width: u32, height: u32, frames: u32, frames_per_second: f64) -> AnimationHeader {
-    AnimationHeader { width, height, tone: Tone::default(), frames, frames_per_second, plays: 0, quality: 50 }
+    AnimationHeader { quality: 50, ..AnimationHeader::new(width, height, frames, frames_per_second) }
 }
 
 /// A moving gradient.

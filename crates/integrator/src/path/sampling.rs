@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 /// from surfaces that cannot be sampled, is always found by the path itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Sampling {
     /// Multiple importance sampling: light samples and BSDF samples, combined by the power
     /// heuristic (Veach 1997, section 9.2.2, exponent 2). The least noise.

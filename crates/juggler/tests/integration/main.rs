@@ -21,5 +21,6 @@ mod instances;
 mod models;
 mod motion;
 mod noise;
+mod prelude;
 mod probe;
 mod viewpoint;

@@ -38,6 +38,11 @@ impl Default for Dome {
 }
 
 impl Dome {
+    /// Creates a dome of a radius with the radiance of its bottom and of its top.
+    pub fn new(radius: f32, bottom: impl Into<Rgb>, top: impl Into<Rgb>) -> Self {
+        Self { radius, bottom: bottom.into(), top: top.into() }
+    }
+
     /// Sky as seen from the origin, where heights are those of directions.
     fn elevation_gradient(&self) -> ElevationGradient {
         let half = |end: Rgb| Hemisphere { base: self.bottom, end, squared: false };

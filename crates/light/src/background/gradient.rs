@@ -37,6 +37,7 @@ pub struct Gradient {
 /// Interpolation between the color at the horizon and the color at the zenith or nadir.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Blend {
     /// Linear in the sine of the elevation, the height of a unit direction.
     #[default]
@@ -58,6 +59,11 @@ impl Default for Gradient {
 }
 
 impl Gradient {
+    /// Creates a gradient from the radiance at the horizon to that at the zenith.
+    pub fn new(horizon: impl Into<Rgb>, zenith: impl Into<Rgb>) -> Self {
+        Self { horizon: horizon.into(), zenith: zenith.into(), ..Self::default() }
+    }
+
     fn elevation_gradient(&self) -> ElevationGradient {
         let half = |end: Rgb| Hemisphere { base: self.horizon, end, squared: self.blend == Blend::SineSquared };
         let axis = self.axis.normalize_or(Vec3::Y);

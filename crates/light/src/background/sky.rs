@@ -124,6 +124,11 @@ fn sun_size() -> f32 {
 }
 
 impl Sky {
+    /// Creates a clear sky with the sun at an elevation and an azimuth.
+    pub fn new(sun_elevation_degrees: f32, sun_azimuth_degrees: f32) -> Self {
+        Self { sun_elevation_degrees, sun_azimuth_degrees, ..Self::default() }
+    }
+
     /// Unit direction to the sun in local space.
     fn sun(&self) -> Vec3 {
         if let Some(towards) = self.sun_direction {

@@ -18,6 +18,13 @@ pub struct Solid {
     pub color: Rgb,
 }
 
+impl Solid {
+    /// Creates a background of uniform radiance.
+    pub fn new(color: impl Into<Rgb>) -> Self {
+        Self { color: color.into() }
+    }
+}
+
 impl Background for Solid {
     fn check(&self) -> Result<(), InvalidBackground> {
         check_color("color", self.color)

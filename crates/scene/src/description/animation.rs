@@ -30,6 +30,11 @@ impl Default for Animation {
 }
 
 impl Animation {
+    /// Creates an animation of a number of frames at a rate.
+    pub fn new(frames: u32, frames_per_second: f64) -> Self {
+        Self { frames, frames_per_second }
+    }
+
     /// Whether the settings equal the defaults, which describe a still image.
     pub fn is_still(&self) -> bool {
         *self == Self::default()
@@ -78,4 +83,11 @@ pub struct ScenePath {
     /// a closed path can be followed any number of times.
     #[serde(default)]
     pub closed: bool,
+}
+
+impl ScenePath {
+    /// Creates an open path through points.
+    pub fn new(points: impl Into<Vec<[f32; 3]>>) -> Self {
+        Self { points: points.into(), closed: false }
+    }
 }

@@ -24,6 +24,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 mod animation;
 mod bones;
+#[cfg(test)]
+mod constructors;
 mod instances;
 mod model;
 mod object;

@@ -24,6 +24,13 @@ pub struct ControlSphere {
     pub radius: f32,
 }
 
+impl ControlSphere {
+    /// Creates a sphere of a center and a radius.
+    pub fn new(center: impl Into<Vec3>, radius: f32) -> Self {
+        Self { center: center.into(), radius }
+    }
+}
+
 /// Spheres in a row, with centers and radii interpolated linearly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Chain {
@@ -92,6 +99,11 @@ pub struct ChainSphere {
 }
 
 impl Chain {
+    /// Creates a row of spheres that includes both ends.
+    pub fn new(from: ControlSphere, to: ControlSphere, count: u32) -> Self {
+        Self { from, to, count, include_last: true }
+    }
+
     /// Spheres of the chain.
     pub fn spheres(&self) -> impl Iterator<Item = ChainSphere> + '_ {
         let steps = if self.include_last { self.count.saturating_sub(1) } else { self.count }.max(1);
@@ -105,6 +117,19 @@ impl Chain {
 }
 
 impl Limb {
+    /// Creates a limb of eight spheres per bone, with the lengths of both bones and the radii at
+    /// `from`, at the joint and at `to`.
+    pub fn new(
+        from: impl Into<Vec3>,
+        to: impl Into<Vec3>,
+        lengths: [f32; 2],
+        plane_normal: impl Into<Vec3>,
+        radii: [f32; 3],
+    ) -> Self {
+        let (from, to, plane_normal) = (from.into(), to.into(), plane_normal.into());
+        Self { from, to, lengths, plane_normal, counts: eight(), keep_lengths: true, radii }
+    }
+
     /// Spheres of the limb: the bone at `from`, the joint, the bone at `to`. Returns an error if
     /// the bones cannot connect the ends.
     pub fn spheres(&self) -> Result<Vec<ChainSphere>, PlacementError> {

@@ -89,6 +89,13 @@ pub struct Rotate {
     pub degrees: f32,
 }
 
+impl Rotate {
+    /// Creates a rotation about an axis through the origin.
+    pub fn new(axis: impl Into<Vec3>, degrees: f32) -> Self {
+        Self { axis: axis.into(), degrees }
+    }
+}
+
 /// Position of an object and a point that it faces.
 ///
 /// A rotation takes the object's axis `forward` to the direction from `from` to `to` and turns the
@@ -124,6 +131,11 @@ fn z_axis() -> Vec3 {
 }
 
 impl LookAt {
+    /// Creates a step that moves an object to `from` and turns its z axis toward `to`, its y axis up.
+    pub fn new(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
+        Self { from: from.into(), to: to.into(), up: y_axis(), forward: z_axis() }
+    }
+
     fn transform(&self) -> Result<Transform, PlacementError> {
         let zero = |field, message: &str| PlacementError::new(field, message);
         let direction = (self.to.as_dvec3() - self.from.as_dvec3()).try_normalize();

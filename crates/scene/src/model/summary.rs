@@ -61,6 +61,7 @@ pub struct ModelExtension {
 
 /// Support of an extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ExtensionSupport {
     /// All of the extension has its effect.
     Whole,

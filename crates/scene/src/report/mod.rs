@@ -10,6 +10,7 @@ mod text;
 
 /// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Severity {
     /// The scene cannot be rendered.
     Error,

@@ -5,6 +5,7 @@ use crate::testing::{bounding_sphere, is_convex, is_flat, is_solid};
 use juggler_math::testing::Random;
 use juggler_math::{DVec3, Frame, Ray, Vec3, warp};
 
+mod constructors;
 mod derivatives;
 mod descriptions;
 mod extremes;

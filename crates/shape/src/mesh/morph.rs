@@ -51,6 +51,16 @@ pub struct MorphArrays<'a> {
 }
 
 impl MorphTarget {
+    /// Creates a target of positions, one for each of the mesh's, with a weight.
+    pub fn new(positions: impl Into<Vec<Vec3>>, weight: f32) -> Self {
+        Self { positions: positions.into(), weight, ..Self::default() }
+    }
+
+    /// Creates a target from a model file with a weight.
+    pub fn from_file(file: impl Into<String>, weight: f32) -> Self {
+        Self { file: Some(file.into()), weight, ..Self::default() }
+    }
+
     /// Arrays of a target that has no file.
     pub fn arrays(&self) -> MorphArrays<'_> {
         MorphArrays { positions: &self.positions, normals: &self.normals, tangents: &self.tangents }

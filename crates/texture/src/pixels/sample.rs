@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Continuation of an image beyond its borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Wrap {
     /// Repeats the image.
     #[default]
@@ -23,6 +24,7 @@ pub enum Wrap {
 /// Filter of an image texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Filter {
     /// Nearest texel. Texels show as blocks at close range.
     Nearest,

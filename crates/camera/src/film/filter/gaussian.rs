@@ -22,6 +22,13 @@ pub struct Gaussian {
     pub sigma: f32,
 }
 
+impl Gaussian {
+    /// Creates a Gaussian of a standard deviation `sigma`, cut off at a radius, both in pixels.
+    pub fn new(radius: f32, sigma: f32) -> Self {
+        Self { radius, sigma }
+    }
+}
+
 impl Default for Gaussian {
     fn default() -> Self {
         Self { radius: 1.5, sigma: 0.5 }

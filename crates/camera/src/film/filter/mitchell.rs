@@ -22,6 +22,13 @@ pub struct Mitchell {
     pub c: f32,
 }
 
+impl Mitchell {
+    /// Creates Mitchell's filter of the parameters B and C.
+    pub fn new(b: f32, c: f32) -> Self {
+        Self { b, c }
+    }
+}
+
 impl Default for Mitchell {
     fn default() -> Self {
         Self { b: 1.0 / 3.0, c: 1.0 / 3.0 }

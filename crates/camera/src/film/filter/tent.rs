@@ -18,6 +18,13 @@ pub struct Tent {
     pub radius: f32,
 }
 
+impl Tent {
+    /// Creates a tent of a radius in pixels.
+    pub fn new(radius: f32) -> Self {
+        Self { radius }
+    }
+}
+
 impl Default for Tent {
     fn default() -> Self {
         Self { radius: 1.0 }
