@@ -10,10 +10,6 @@ use std::fmt::Display;
 
 /// Placeholder in a command for the file that contains the command.
 const THIS_FILE: &str = "{this file}";
-/// Metadata key of the number of samples per pixel.
-pub const SAMPLES: &str = "Samples";
-/// Metadata key of the numbers of samples per tile.
-pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 
 /// Shortest command line that reproduces the picture.
 pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {

@@ -4,9 +4,7 @@
 //!
 //! `cargo run --release --example 4_meshes_images_and_motion`
 
-use juggler::material::{Conductor, Diffuse};
 use juggler::prelude::*;
-use juggler::scene::{Animated, ValueSource};
 
 /// Points along an edge of the surface.
 const POINTS: u32 = 240;

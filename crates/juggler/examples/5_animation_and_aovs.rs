@@ -24,31 +24,36 @@ fn vase() -> Mesh {
         [[a, c, b], [b, c, d]]
     });
     let glaze = heights.iter().flat_map(|h| [0.05 + 0.85 * h, 0.22 + 0.3 * h, 0.45 - 0.35 * h]).collect();
-    Mesh { smooth: true, ..Mesh::from_triangles(positions, triangles.collect::<Vec<_>>()) }
-        .with_attribute("glaze", MeshAttribute { channels: 3, values: glaze, per: PerElement::Vertex })
+    let mut mesh = Mesh::from_triangles(positions, triangles.collect::<Vec<_>>());
+    mesh.crease_angle_degrees = Some(60.0);
+    mesh.with_attribute("glaze", MeshAttribute::new(3, AttributeData::F32(glaze)))
 }
 
 fn scene() -> Result<Scene, Error> {
     // Turn the vase once in 48 frames, let the ball fly along a closed curve, and fade in the lamp.
     let turn = Animate::from_keys([(Frames(0.0), 0.0), (Frames(48.0), 360.0)]);
-    let around = Along { path: "ring".into(), at: ValueSource::expression("seconds / 2").into() };
+    let around = Along::new("ring", ValueSource::expression("seconds / 2"));
     let fade = Animate::from_keys([(Seconds(0.0), 5.0), (Seconds(1.0), 60.0)]);
-    let lamp = Point { position: vec3(-2.0, 4.0, 3.0), ..Point::default() };
-    let glaze = Principled { base_color: Input::attribute("glaze"), roughness: 0.25.into(), ..Principled::default() };
-    let ring = [[1.1, 0.3, 0.0], [0.0, 0.8, -1.1], [-1.1, 1.3, 0.0], [0.0, 0.8, 1.1]];
+    let lamp = Animated::new(Point::new([-2.0, 4.0, 3.0], 5.0)).field(|lamp| &mut lamp.intensity, fade);
+    let ball = Object::new(Sphere::new(0.13)).named("ball").material(Conductor::new(0.9));
+    let glaze = Principled { roughness: 0.25.into(), ..Principled::new(Input::attribute("glaze")) };
+    let ring = ScenePath {
+        closed: true,
+        ..ScenePath::new([[1.1, 0.3, 0.0], [0.0, 0.8, -1.1], [-1.1, 1.3, 0.0], [0.0, 0.8, 1.1]])
+    };
     let scene = Scene::new()
         .size(640, 360)
         .samples(64)
         .frames(48, 24.0)
-        .path("ring", ScenePath { points: ring.to_vec(), closed: true })?
-        .camera("main", Perspective { eye: vec3(0.0, 2.2, 4.2), look_at: vec3(0.0, 0.75, 0.0).into(), ..Perspective::default() })
-        .background(Rgb::new(0.3, 0.34, 0.4))
+        .path("ring", ring)?
+        .camera("main", Perspective::new([0.0, 2.2, 4.2], [0.0, 0.75, 0.0]))
+        .background([0.3, 0.34, 0.4])
         .material("glaze", glaze)
         .group("vase", [Object::new(vase()).material_named("glaze")])
         .add(Object::new(Plane::default()).named("floor"))
         .add_animated(Animated::new(Object::group("vase").named("vase")).rotated(Vec3::Y, turn))?
-        .add_animated(Animated::new(Object::new(Sphere { radius: 0.13 }).named("ball").material(Conductor::default())).moved(around))?
-        .animated_light(Animated::new(lamp).field(|lamp| &mut lamp.intensity, fade))?;
+        .add_animated(Animated::new(ball).moved(around))?
+        .animated_light(lamp)?;
     Ok(scene)
 }
 

@@ -1,5 +1,6 @@
 //! Errors of rendering.
 
+use juggler_film::{MergeError, PartialRenderError};
 use juggler_imaging::ImageError;
 use juggler_render::Cancelled;
 use juggler_scene::SceneError;
@@ -17,6 +18,12 @@ pub enum Error {
     /// The image cannot be encoded or written.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// A partial render cannot be read or written.
+    #[error(transparent)]
+    PartialRender(#[from] PartialRenderError),
+    /// Partial renders cannot be merged.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
     /// The render was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

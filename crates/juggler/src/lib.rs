@@ -17,14 +17,15 @@
 //! - [`Settings`] override values of the scene.
 //! - [`render()`] renders an image in memory, [`render_to_file`] a file of any size.
 //! - [`aovs`] are the arbitrary output variables (AOVs).
-//! - [`ImageExt`] saves an image in memory, or converts it to bytes.
+//! - [`RenderedImage`] is a rendered image in memory with its AOVs; [`ImageExt`] saves any image or
+//!   converts it to bytes.
 //! - [`Picture`] renders step by step, with progress, cancellation and statistics, and keeps the
 //!   world with its acceleration structures for further renders.
 //!
 //! Rendering uses the current rayon thread pool. The facade re-exports the crates [`math`],
 //! [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`], [`world`],
 //! [`integrator`], [`mod@render`], [`mesh`], [`scene`], [`imaging`] and [`film`]. The folder
-//! `examples/` is a course in five steps.
+//! `examples/` is a course in six lessons.
 
 pub mod aovs;
 pub mod denoise;
@@ -40,6 +41,7 @@ mod picture;
 pub mod prelude;
 pub mod probe;
 mod render_stats;
+mod rendered_image;
 mod scene_fingerprint;
 mod settings;
 mod viewpoint;
@@ -67,4 +69,5 @@ pub use kinds::{by_name, check_name, names};
 pub use partial_render::RenderOrigin;
 pub use picture::{Picture, View, render, render_to_file};
 pub use render_stats::RenderStats;
+pub use rendered_image::{RenderedImage, SAMPLES, SAMPLES_PER_TILE};
 pub use settings::{Limit, Settings};

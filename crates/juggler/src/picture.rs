@@ -360,12 +360,19 @@ pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
     Ok(Picture::new(scene, settings)?.render_image(&Control::default())?)
 }
 
-/// Renders a scene to a file of any size, row by row; the extension selects the format. The file
-/// replaces an existing one once it is complete.
+/// Renders a scene to a file; the extension selects the format. The file replaces an existing one
+/// once it is complete. Rows are written as they are rendered, unless the settings ask for AOVs, which
+/// an EXR file contains, for a denoiser or for a noise limit.
 pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<RenderStats, Error> {
     let path = path.as_ref();
     let format = ImageFormat::from_path(path)?;
     let picture = Picture::new(scene, settings)?;
+    if picture.needs_film() {
+        let image = picture.render_in_memory(None, &Control::default())?;
+        let start = Instant::now();
+        image.save(path)?;
+        return Ok(RenderStats { write: start.elapsed(), ..image.stats().clone() });
+    }
     let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
     picture.write(writer, &Control::default())
 }

@@ -31,11 +31,13 @@ pub use juggler_light::background;
 pub use juggler_texture as texture;
 
 // Scenes, and values that change with time.
-pub use juggler_scene::animate::{Along, Animate, Ease, Easing, Extrapolation, Interpolation, Joint, PathName, Posed};
+pub use juggler_scene::animate::{
+    Along, Animate, Ease, Easing, Extrapolation, Frames, Interpolation, Joint, PathName, Posed, Seconds,
+};
 pub use juggler_scene::description::{Animation, LookAt, Rotate, ScenePath};
 pub use juggler_scene::{
-    Asset, Chain, ControlSphere, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, Scene, TransformStep,
-    ValueSource,
+    Animated, Asset, Chain, ControlSphere, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, Scene,
+    TransformStep, ValueSource,
 };
 
 // Shapes.

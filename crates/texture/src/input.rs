@@ -126,6 +126,11 @@ impl<T: InputValue> Input<T> {
         Self::Product(Box::new(InputProduct { texture, factor: Some(factor), attribute: None }))
     }
 
+    /// Attribute of the mesh: its red, green and blue for colors, its alpha for numbers.
+    pub fn attribute(name: impl Into<String>) -> Self {
+        Self::Product(Box::new(InputProduct { texture: None, factor: None, attribute: Some(name.into()) }))
+    }
+
     /// Constant value or factor, which the range of the input limits; `None` for a texture alone.
     pub fn constant_factor(&self) -> Option<T> {
         match self {
@@ -186,6 +191,7 @@ mod tests {
         assert_eq!(read(r##"{"texture": "t", "factor": "#ffffff"}"##).unwrap(), Input::product("t", Rgb::WHITE));
         let number = serde_json::from_str::<Input<f32>>(r#"{"texture": "t", "factor": 0.25}"#).unwrap();
         assert_eq!(number, Input::product("t", 0.25));
+        assert_eq!(read(r#"{"attribute": "color"}"#).unwrap(), Input::attribute("color"));
         assert!(read(r#"{"checker": {}}"#).is_err() && read(r#"{"texture": "t", "scale": 1}"#).is_err());
     }
 

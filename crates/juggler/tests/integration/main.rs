@@ -23,4 +23,5 @@ mod motion;
 mod noise;
 mod prelude;
 mod probe;
+mod rendered_image;
 mod viewpoint;

@@ -129,14 +129,13 @@ fn the_prelude_makes_kinds_of_all_families() {
 
 #[test]
 fn the_prelude_animates() {
-    let keys = Animate { interpolation: Interpolation::Smooth, ..Animate::from_keys([(0.0, 0.1), (1.0, 0.2)]) };
-    let along = Along { path: PathName("arc".into()), at: 0.5 };
+    let keys = Animate::from_keys([(Seconds(0.0), 0.1), (Seconds(1.0), 0.2)]);
+    let keys = Animate { interpolation: Interpolation::Smooth, ..keys };
+    let ball = Animated::new(Sphere::new(0.1)).field(|sphere| &mut sphere.radius, keys).map(Object::new);
     let scene = Scene::new()
         .frames(2, 24.0)
-        .add(Object::new(Sphere::new(0.1)).at(0.0, 0.0, 0.0))
-        .animate("/objects/0/shape/sphere/radius", keys)
-        .and_then(|scene| scene.path("arc", ScenePath::new([[0.0; 3], [1.0, 0.0, 0.0]])))
-        .and_then(|scene| scene.animate("/objects/0/transform/0/translate", along));
+        .path("arc", ScenePath::new([[0.0; 3], [1.0, 0.0, 0.0]]))
+        .and_then(|scene| scene.add_animated(ball.moved(Along::new("arc", 0.5))));
     let moved = scene.and_then(|scene| scene.at_frame(24.0)).unwrap();
     let expected = Object::new(Sphere::new(0.2)).at(0.5, 0.0, 0.0);
     assert_eq!(*moved.description.objects[0], expected);

@@ -99,6 +99,13 @@ impl From<Rgb> for AnyBackground {
     }
 }
 
+impl From<[f32; 3]> for AnyBackground {
+    /// Creates a background of uniform radiance, linear red, green and blue.
+    fn from(channels: [f32; 3]) -> Self {
+        Rgb::from(channels).into()
+    }
+}
+
 /// Rejects a color with a channel below 0, above [`MAX_LIGHT`] or NaN.
 fn check_color(field: &'static str, color: Rgb) -> Result<(), InvalidBackground> {
     color.to_array().iter().try_for_each(|channel| orientation::in_range(field, *channel, 0.0, MAX_LIGHT))

@@ -1,6 +1,6 @@
 use super::*;
 use crate::TransformStep;
-use crate::animate::{Extrapolation, Frames, Interpolation, PathName, Seconds};
+use crate::animate::{Extrapolation, Frames, Interpolation, Seconds};
 use crate::description::ScaleFactors;
 use juggler_camera::Perspective;
 use juggler_light::Point;
@@ -41,17 +41,11 @@ fn every_kind_of_source_moves_a_value() {
     let up = moved(scene(), keys).unwrap();
     assert_eq!([5.0, 10.0, 15.0].map(|frame| center(&up, frame).y), [2.0, 4.0, 2.0]);
     let path = ScenePath { points: vec![[0.0; 3], [8.0, 0.0, 0.0]], closed: false };
-    let along = Along { path: PathName("line".into()), at: ValueSource::expression("seconds/4").into() };
+    let along = Along::new("line", ValueSource::expression("seconds/4"));
     let flight = moved(scene().path("line", path).unwrap(), along).unwrap();
     assert!((center(&flight, 10.0).x - 2.0).abs() < 1e-6 && (center(&flight, 20.0).x - 4.0).abs() < 1e-6);
-    let joint = Joint {
-        from: [0.0; 3].into(),
-        to: ValueSource::from(Animate::from_keys([(Seconds(0.0), [0.0, 4.0, 0.0]), (Seconds(1.0), [0.0, 6.0, 0.0])]))
-            .into(),
-        lengths: [3.0, 3.0].into(),
-        plane_normal: [0.0, 0.0, 1.0].into(),
-        keep_lengths: true,
-    };
+    let up = Animate::from_keys([(Seconds(0.0), [0.0, 4.0, 0.0]), (Seconds(1.0), [0.0, 6.0, 0.0])]);
+    let joint = Joint::new([0.0; 3], up, [3.0, 3.0], [0.0, 0.0, 1.0]);
     let elbow = moved(scene(), joint).unwrap();
     assert!((center(&elbow, 0.0) - vec3(5_f32.sqrt(), 2.0, 0.0)).length() < 1e-6, "{}", center(&elbow, 0.0));
     assert!((center(&elbow, 10.0) - vec3(0.0, 3.0, 0.0)).length() < 1e-6, "{}", center(&elbow, 10.0));
@@ -190,7 +184,7 @@ fn wrong_sources_are_refused() {
     refused(moved(scene(), Animate::from_keys([(Seconds(0.0), [f64::NAN; 3])])), "number");
     refused(moved(scene(), ValueSource::expression("nothing")), "nothing");
     refused(moved(scene(), ValueSource::expression("frame")), "transform");
-    refused(moved(scene(), Along { path: PathName("none".into()), at: 0.0.into() }), "no path is called `none`");
+    refused(moved(scene(), Along::new("none", 0.0)), "no path is called `none`");
     // A factor is a number or three numbers; the step itself cannot be written otherwise.
     assert!(matches!(
         scene().add_animated(sphere().scaled(ValueSource::expression("2"))).unwrap().description.objects[0].transform[..],

@@ -1,7 +1,7 @@
 //! One of the compared pictures, with its noise estimate.
 
 use crate::failure::Failure;
-use crate::reproduce::SAMPLES;
+use juggler::SAMPLES;
 use juggler::camera::film::{BLOCK_SAMPLES, Rect};
 use juggler::estimate;
 use juggler::film::{self, Merge, MergeGoal, RenderDescription};

@@ -10,7 +10,7 @@ use crate::interrupt::Interrupts;
 use crate::plan::aovs::{self, AovOutput};
 use crate::plan::{Checkpoint as CheckpointPlan, Cut, FrameOutput, Shard};
 use crate::progress::{Goal, Watch, with_progress};
-use crate::reproduce::{self, SAMPLES, SAMPLES_PER_TILE};
+use crate::reproduce;
 use juggler::camera::film::{Film, FilmDigest, FilmSummary, Rect, TILE_EDGE};
 use juggler::denoise::Denoised;
 use juggler::film::checkpoint::{self, Checkpoint};
@@ -21,7 +21,7 @@ use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{Header, inspect};
 use juggler::math::Rgb;
 use juggler::render::{Cancelled, Control};
-use juggler::{Limit, Picture, RenderOrigin, RenderStats, Settings};
+use juggler::{Limit, Picture, RenderOrigin, RenderStats, SAMPLES_PER_TILE, Settings};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -320,14 +320,7 @@ impl FilmRender<'_> {
                 Ok((picture.develop(&self.film, |_| Ok::<(), Failure>(()))?, Ok(())))
             }
             OutputKind::Picture(encoding) => {
-                if *picture.limit() != Limit::Samples {
-                    let statistics = SampleCountStats::from_film(&self.film).to_string();
-                    self.header.metadata.push((SAMPLES.to_owned(), statistics));
-                }
-                if matches!(picture.limit(), Limit::Time { .. }) {
-                    let counts = counts::to_text(&self.film.counts());
-                    self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
-                }
+                picture.add_sample_counts(&self.film, &mut self.header);
                 let (in_picture, beside) = self.write_beside(pixels)?;
                 let writer = || self.command.writer(encoding.format, output, &self.header);
                 let summary = match pixels {

@@ -28,6 +28,13 @@ pub struct Along {
     pub at: Animatable<f64>,
 }
 
+impl Along {
+    /// Creates the point at a fraction of the arc length of a path of the scene.
+    pub fn new(path: impl Into<String>, at: impl Into<Animatable<f64>>) -> Self {
+        Self { path: PathName(path.into()), at: at.into() }
+    }
+}
+
 pub const KIND: Kind = Kind { name: "along", value };
 
 fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> Option<Node> {

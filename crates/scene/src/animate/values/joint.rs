@@ -46,6 +46,19 @@ fn yes() -> bool {
     true
 }
 
+impl Joint {
+    /// Creates the joint of two bones between `from` and `to`, which keep their lengths.
+    pub fn new(
+        from: impl Into<Animatable<[f64; 3]>>,
+        to: impl Into<Animatable<[f64; 3]>>,
+        lengths: impl Into<Animatable<[f64; 2]>>,
+        plane_normal: impl Into<Animatable<[f64; 3]>>,
+    ) -> Self {
+        let [from, to, plane_normal] = [from.into(), to.into(), plane_normal.into()];
+        Self { from, to, lengths: lengths.into(), plane_normal, keep_lengths: true }
+    }
+}
+
 pub const KIND: Kind = Kind { name: "joint", value };
 
 fn value(resolver: &mut TreeResolver<'_>, content: &Node, at: &PathRef<'_>) -> Option<Node> {

@@ -1,0 +1,255 @@
+//! Rendered images in memory, with their AOVs and all that a file of them contains.
+
+use crate::denoise::DenoiserInput;
+use crate::{AovSet, Error, Limit, Picture, RenderStats};
+use juggler_camera::film::{Film, FilmDigest, FilmSummary, Rect, Tile};
+use juggler_film::counts::SampleCountStats;
+use juggler_film::{Merge, RenderDescription, Stop, counts};
+use juggler_imaging::layered::{LayerHeader, LayeredWriter};
+use juggler_imaging::{Header, ImageFormat, Options};
+use juggler_math::Rgb;
+use juggler_render::{Cancelled, Control, RayCounts};
+use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+/// Metadata key of the number of samples per pixel.
+pub const SAMPLES: &str = "Samples";
+/// Metadata key of the number of samples of each tile, under a time limit.
+pub const SAMPLES_PER_TILE: &str = "Samples per tile";
+
+/// Rendered image in memory. Its hash and its files are those of a render to a file with the same
+/// settings.
+#[derive(Clone, Debug)]
+pub struct RenderedImage {
+    /// Header of an image file; tone and options may be changed before it is saved.
+    pub header: Header,
+    /// Linear pixels, row by row from the top, denoised if the settings say so.
+    pixels: Vec<Rgb>,
+    /// AOVs with the names of objects, materials and light groups.
+    aovs: AovSet,
+    /// Channels of the AOVs, in the order of [`AovSet::headers`].
+    channels: Vec<Vec<f32>>,
+    /// Hash and mean of the pixels, numbers of samples and rays, and durations.
+    stats: RenderStats,
+}
+
+impl RenderedImage {
+    /// Linear pixels, row by row from the top: an array of shape (height, width).
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.header.width, self.header.height]
+    }
+
+    /// AOVs with the names of objects, materials and light groups.
+    pub fn aovs(&self) -> &AovSet {
+        &self.aovs
+    }
+
+    /// Layers of the AOVs, each with its channels, which have a number for each pixel, row by row.
+    pub fn layers(&self) -> impl Iterator<Item = (LayerHeader, &[Vec<f32>])> {
+        let mut rest = self.channels.as_slice();
+        self.aovs.headers().into_iter().map(move |layer| {
+            let (channels, others) = rest.split_at(layer.channels.len().min(rest.len()));
+            rest = others;
+            (layer, channels)
+        })
+    }
+
+    /// Hash and mean of the pixels, numbers of samples and rays, and durations.
+    pub fn stats(&self) -> &RenderStats {
+        &self.stats
+    }
+
+    /// Saves the image to a file, whose extension selects the format; an EXR file contains the AOVs.
+    /// Fails as [`ImageExt::save`](crate::ImageExt::save) does.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let format = ImageFormat::from_path(path)?;
+        if format == ImageFormat::Exr && !self.aovs.selected().is_empty() {
+            let mut writer = LayeredWriter::create(path, &self.aovs.file_header(&self.header, true))?;
+            let color = (0..3).map(|channel| self.pixels.iter().map(|pixel| pixel.to_array()[channel]).collect());
+            writer.write_rows(&color.chain(self.channels.iter().cloned()).collect::<Vec<Vec<f32>>>())?;
+            return Ok(writer.finish()?);
+        }
+        let mut writer = juggler_imaging::create(path, format, &self.header)?;
+        writer.write_rows(&self.pixels)?;
+        Ok(writer.finish()?)
+    }
+
+    /// Joins partial renders to the image, as the program's `merge` does: denoised if the film stores
+    /// what a denoiser needs. `library` is the path of Open Image Denoise where the system does not
+    /// find it. Fails for AOVs and tone settings that this version does not know, partial renders
+    /// that cannot be read, and a cancelled merge.
+    pub fn from_partial_renders(merge: &Merge, library: Option<&Path>, control: &Control) -> Result<Self, Error> {
+        let start = Instant::now();
+        let (description, aovs) = (merge.description(), AovSet::from_description(&merge.description().aovs)?);
+        let (header, samples) = merged_header(merge)?;
+        let mut parts = Parts::new(&aovs, description.region);
+        let mut summary = merge.tile_rows(|band, tiles, rows| {
+            if control.is_cancelled() {
+                return Err(Error::Cancelled(Cancelled));
+            }
+            parts.add(&aovs, band, tiles, rows);
+            Ok(())
+        })?;
+        let Parts { pixels, channels, denoiser_input } = parts;
+        let denoise = Instant::now();
+        let denoised = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?;
+        let pixels = denoised.unwrap_or(pixels);
+        if denoiser_input.is_some() {
+            let FilmSummary { hash, mean, .. } = digest(&pixels, description.region);
+            summary = FilmSummary { hash, mean, ..summary };
+        }
+        let (render, denoise) = (denoise - start, denoise.elapsed());
+        let (rays, write) = (RayCounts::default(), Duration::ZERO);
+        let stats = RenderStats { film: summary, samples, rays, render, denoise, write };
+        Ok(Self { header, pixels, aovs, channels, stats })
+    }
+}
+
+/// Contents of an image that are collected band by band.
+struct Parts {
+    pixels: Vec<Rgb>,
+    channels: Vec<Vec<f32>>,
+    denoiser_input: Option<DenoiserInput>,
+}
+
+impl Parts {
+    fn new(aovs: &AovSet, region: Rect) -> Self {
+        let denoiser_input = aovs.denoiser().map(|_| DenoiserInput::new(region));
+        Self { pixels: Vec::new(), channels: vec![Vec::new(); aovs.channels()], denoiser_input }
+    }
+
+    fn add(&mut self, aovs: &AovSet, band: &Rect, tiles: &[Tile], rows: &[Rgb]) {
+        self.pixels.extend_from_slice(rows);
+        let values = aovs.band_values(band, tiles, None);
+        self.channels.iter_mut().zip(values).for_each(|(channel, values)| channel.extend(values));
+        if let Some(input) = &mut self.denoiser_input {
+            tiles.iter().for_each(|tile| input.add(aovs, tile));
+        }
+    }
+}
+
+/// Denoised pixels; `None` without a denoiser.
+fn denoise_pixels(
+    aovs: &AovSet,
+    input: Option<&DenoiserInput>,
+    library: Option<&Path>,
+    control: &Control,
+) -> Result<Option<Vec<Rgb>>, Error> {
+    let Some((denoiser, input)) = aovs.denoiser().zip(input) else { return Ok(None) };
+    let denoised = input.denoise(denoiser, library, control)?.ok_or(Error::Cancelled(Cancelled))?;
+    Ok(Some(denoised.pixels))
+}
+
+/// Header of the image that partial renders make, and its numbers of samples.
+fn merged_header(merge: &Merge) -> Result<(Header, SampleCountStats), Error> {
+    let description = merge.description();
+    let RenderDescription { region, tone, metadata, viewpoint, .. } = description;
+    let tone = serde_json::from_value(tone.clone())
+        .map_err(|error| Error::Settings(format!("cannot read the tone settings of the partial renders: {error}")))?;
+    let (mut metadata, mut samples) = (metadata.clone(), SampleCountStats::uniform(description.samples));
+    if description.stop != Stop::Samples {
+        samples = SampleCountStats::from_counts(&description.tiling(), &merge.counts()?);
+        metadata.push((SAMPLES.to_owned(), samples.to_string()));
+    }
+    let (viewpoint, crop) = (*viewpoint, description.crop_frame());
+    Ok((Header { tone, metadata, viewpoint, crop, ..Header::new(region.width, region.height) }, samples))
+}
+
+/// Hash and mean of the pixels of a region.
+fn digest(pixels: &[Rgb], region: Rect) -> FilmSummary {
+    let mut digest = FilmDigest::new(region.width, region.height);
+    digest.update(pixels);
+    digest.finish()
+}
+
+impl Picture {
+    /// Returns whether the image needs a film in memory: for AOVs, denoising, and a limit of noise
+    /// or time.
+    pub fn needs_film(&self) -> bool {
+        !self.aovs().is_empty() || *self.limit() != Limit::Samples
+    }
+
+    /// Renders into memory, with AOVs and denoiser as the settings say. Fails if `control` cancels the render, or if
+    /// Open Image Denoise, whose path `library` may be, cannot be loaded.
+    pub fn render_in_memory(&self, library: Option<&Path>, control: &Control) -> Result<RenderedImage, Error> {
+        if self.needs_film() {
+            let (film, start) = (self.film(), Instant::now());
+            self.render_to_limit(&film, control)?;
+            return self.develop_in_memory(&film, start.elapsed(), library, control);
+        }
+        let (start, mut pixels) = (Instant::now(), Vec::with_capacity(self.region().area() as usize));
+        let film = self.render(Default::default(), control, |rows| {
+            pixels.extend_from_slice(rows);
+            Ok::<(), Cancelled>(())
+        })?;
+        let (samples, render) = (SampleCountStats::uniform(self.samples()), start.elapsed());
+        let (denoise, write) = (Duration::ZERO, Duration::ZERO);
+        let stats = RenderStats { film, samples, rays: control.rays(), render, denoise, write };
+        let (header, aovs) = (self.header(Options::default()), self.aovs().clone());
+        Ok(RenderedImage { header, pixels, aovs, channels: Vec::new(), stats })
+    }
+
+    /// Renders into a film as [`Picture::render_film`] does, and ends the render at its time limit.
+    pub fn render_to_limit(&self, film: &Film, control: &Control) -> Result<(), Cancelled> {
+        let Limit::Time { seconds } = *self.limit() else { return self.render_film(film, control) };
+        let limit = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        std::thread::scope(|scope| {
+            let (running, ended) = mpsc::channel::<()>();
+            scope.spawn(move || {
+                if ended.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+                    control.finish();
+                }
+            });
+            let result = self.render_film(film, control);
+            drop(running);
+            result
+        })
+    }
+
+    /// Develops a film, which took `render` to trace, to the image in memory. Fails as
+    /// [`Picture::render_in_memory`] does.
+    pub fn develop_in_memory(
+        &self,
+        film: &Film,
+        render: Duration,
+        library: Option<&Path>,
+        control: &Control,
+    ) -> Result<RenderedImage, Error> {
+        let (start, aovs, tiling) = (Instant::now(), self.aovs().clone(), film.tiling());
+        let mut parts = Parts::new(&aovs, self.region());
+        for (row, band) in (0..).zip(tiling.bands()) {
+            let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
+            let mut rows = vec![Rgb::BLACK; band.area() as usize];
+            tiles.iter().for_each(|tile| tile.copy_to(&band, &mut rows));
+            parts.add(&aovs, &band, &tiles, &rows);
+        }
+        let Parts { pixels, channels, denoiser_input } = parts;
+        let pixels = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?.unwrap_or(pixels);
+        let mut digest = FilmDigest::new(self.region().width, self.region().height);
+        digest.update(&pixels);
+        digest.add_clamped(film.clamped());
+        let (samples, denoise) = (SampleCountStats::from_film(film), start.elapsed());
+        let (rays, write) = (control.rays(), Duration::ZERO);
+        let stats = RenderStats { film: digest.finish(), samples, rays, render, denoise, write };
+        let mut header = self.header(Options::default());
+        self.add_sample_counts(film, &mut header);
+        Ok(RenderedImage { header, pixels, aovs, channels, stats })
+    }
+
+    /// Adds the numbers of samples that a limit of noise or time has decided to the metadata.
+    pub fn add_sample_counts(&self, film: &Film, header: &mut Header) {
+        if *self.limit() != Limit::Samples {
+            header.metadata.push((SAMPLES.to_owned(), SampleCountStats::from_film(film).to_string()));
+        }
+        if matches!(self.limit(), Limit::Time { .. }) {
+            header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts::to_text(&film.counts())));
+        }
+    }
+}
