@@ -94,12 +94,7 @@ impl From<SceneError> for Failure {
                 Self::System(error.to_string())
             }
             SceneError::Unknown(unknown) => unknown.into(),
-            SceneError::NotText { .. }
-            | SceneError::AssetName(_)
-            | SceneError::Foreign { .. }
-            | SceneError::Mesh(_)
-            | SceneError::Model { .. }
-            | SceneError::UnknownBuiltIn { .. } => Self::Invalid(error.to_string()),
+            _ => Self::Invalid(error.to_string()),
         }
     }
 }
@@ -147,7 +142,7 @@ impl From<ResumeError> for Failure {
                 "{error}\nhelp: give another file for --checkpoint, or remove this one to start over"
             )),
             ResumeError::Incompatible { .. } => Self::Invalid(error.to_string()),
-            ResumeError::Tile { .. } => Self::System(error.to_string()),
+            _ => Self::System(error.to_string()),
         }
     }
 }
@@ -165,7 +160,7 @@ impl From<Error> for Failure {
             Error::Scene(error) => error.into(),
             Error::Settings(message) => Self::Invalid(message),
             Error::Image(error) => error.into(),
-            Error::Cancelled(stopped) => Self::System(stopped.to_string()),
+            _ => Self::System(error.to_string()),
         }
     }
 }

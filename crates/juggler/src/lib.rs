@@ -3,11 +3,11 @@
 //! ```
 //! use juggler::prelude::*;
 //!
-//! let red = Phong { diffuse: Rgb::new(0.8, 0.1, 0.1).into(), ..Phong::default() };
+//! let red = Phong { shininess: 50.0, specular: 0.5.into(), ..Phong::new([0.8, 0.1, 0.1]) };
 //! let scene = Scene::new()
 //!     .size(32, 18)
 //!     .material("red", red)
-//!     .add(Object::new(Sphere::default()).at(0.0, 1.0, 0.0).material_named("red"));
+//!     .add(Object::new(Sphere::new(1.0)).at(0.0, 1.0, 0.0).material_named("red"));
 //! let image = juggler::render(&scene, &Settings { samples: Some(4), ..Settings::default() })?;
 //! assert_eq!((image.width(), image.height()), (32, 18));
 //! # Ok::<(), juggler::Error>(())

@@ -19,7 +19,6 @@ const MAX_SAMPLES_TIME: u32 = 1 << 24;
 
 /// Stop condition of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub enum Limit {
     /// Stops when all pixels have their samples.
     #[default]

@@ -64,7 +64,7 @@ const TRANSPORT: &[&str] = &[
 const NAMES: &[Retired] = &[
     retired("Trail", "PathHistory, PathRef"),
     // A row of spheres in a scene keeps the name.
-    retired("Chain", "CausticState").except(&["crates/scene/"]),
+    retired("Chain", "CausticState").except(&["crates/scene/", "/prelude.rs"]),
     retired("Emit", "VertexOutput"),
     retired("Harvest", "PathBuffers"),
     // The factor of a light group in an editing session keeps the name.

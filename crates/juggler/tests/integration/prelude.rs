@@ -116,11 +116,10 @@ fn the_prelude_makes_kinds_of_all_families() {
         let image = Picture::new(&scene, &settings).unwrap().render_image(&Control::default()).unwrap();
         assert!(image.pixels().iter().all(|pixel| pixel.is_finite()), "{camera}");
     }
-    let backgrounds: [AnyBackground; 4] = [
+    let backgrounds: [AnyBackground; 3] = [
         background::Solid::new([0.1, 0.2, 0.3]).into(),
         background::Gradient::new([1.0; 3], [0.2, 0.4, 1.0]).into(),
         background::Dome::new(1e4, [0.5; 3], [0.1; 3]).into(),
-        background::Studio::default().into(),
     ];
     for background in backgrounds {
         Picture::new(&scene.clone().background(background), &Settings::default()).unwrap();

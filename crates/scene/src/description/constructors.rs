@@ -22,6 +22,7 @@ fn constructors_equal_json() {
     );
     check(
         &Limb::new(from, to, [7.0, 8.0], [9.0, 10.0, 11.0], [12.0, 13.0, 14.0]),
-        r#"{"from": [1, 2, 3], "to": [4, 5, 6], "lengths": [7, 8], "plane_normal": [9, 10, 11], "radii": [12, 13, 14]}"#,
+        r#"{"from": [1, 2, 3], "to": [4, 5, 6], "lengths": [7, 8],
+            "plane_normal": [9, 10, 11], "radii": [12, 13, 14]}"#,
     );
 }

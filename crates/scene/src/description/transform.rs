@@ -131,7 +131,8 @@ fn z_axis() -> Vec3 {
 }
 
 impl LookAt {
-    /// Creates a step that moves an object to `from` and turns its z axis toward `to`, its y axis up.
+    /// Creates a step that moves an object to `from` and turns its z axis toward `to` and its y axis
+    /// up.
     pub fn new(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
         Self { from: from.into(), to: to.into(), up: y_axis(), forward: z_axis() }
     }

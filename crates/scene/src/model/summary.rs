@@ -61,7 +61,6 @@ pub struct ModelExtension {
 
 /// Support of an extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum ExtensionSupport {
     /// All of the extension has its effect.
     Whole,
