@@ -87,7 +87,7 @@ impl Default for Wave {
             shape: WaveShape::Bands,
             profile: WaveProfile::Sine,
             distortion: 0.0,
-            octaves: Octaves { octaves: 3, ..Octaves::default() },
+            octaves: Octaves::default(),
             mapping: Mapping::default(),
         }
     }

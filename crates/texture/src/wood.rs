@@ -66,7 +66,7 @@ impl Default for Wood {
             dark: Rgb::new(0.2, 0.08, 0.03).into(),
             distortion: 0.6,
             grain: 0.2,
-            octaves: Octaves { octaves: 3, ..Octaves::default() },
+            octaves: Octaves::default(),
             mapping: Mapping::default(),
         }
     }
