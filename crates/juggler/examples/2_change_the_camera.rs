@@ -19,7 +19,7 @@ fn main() -> Result<(), Error> {
     let scene = Scene::from_json(SCENE, "lesson.json")?;
     let picture = Picture::new(&scene, &Settings::default())?;
     picture.render_image(&Control::default())?.save("lesson.png")?;
-    let above = Perspective { eye: vec3(0.0, 8.0, 2.0), look_at: vec3(0.0, 0.0, 0.0).into(), ..Default::default() };
+    let above = Perspective::new([0.0, 8.0, 2.0], [0.0; 3]);
     let from_above = picture.with_view(View { camera: above.into(), ..picture.view() })?;
     from_above.render_image(&Control::default())?.save("from_above.png")?;
     Ok(())

@@ -54,8 +54,8 @@ fn colors() -> Option<Image> {
 
 fn main() -> Result<(), Error> {
     let sky = background::Sky { sun_elevation_degrees: 28.0, sun_azimuth_degrees: 200.0, ..Default::default() };
-    let camera = Perspective { eye: vec3(1.5, 1.25, 2.2), look_at: vec3(0.0, 0.25, 0.0).into(), ..Default::default() };
-    let paint = Diffuse { reflectance: Input::Texture("heights".into()), ..Default::default() };
+    let camera = Perspective::new([1.5, 1.25, 2.2], [0.0, 0.25, 0.0]);
+    let paint = Diffuse::new("heights");
     let mut scene = Scene::new()
         .size(800, 450)
         .samples(64)
@@ -65,11 +65,7 @@ fn main() -> Result<(), Error> {
         .texture("heights", texture::Image::new("colors"))
         .material("paint", paint)
         .add(Object::new(wave()).material_named("paint"))
-        .add(
-            Object::new(Plane::default())
-                .at(0.0, -0.25, 0.0)
-                .material(Diffuse { reflectance: Rgb::splat(0.25).into(), ..Default::default() }),
-        );
+        .add(Object::new(Plane::default()).at(0.0, -0.25, 0.0).material(Diffuse::new(0.25)));
     if let Some(image) = colors() {
         scene = scene.image("colors", image);
     }
@@ -77,7 +73,7 @@ fn main() -> Result<(), Error> {
     // Move a sphere around the wave by expressions of the frame, and keep the shutter open for
     // half a frame.
     let circle = ValueSource::expressions(["0.62 * cos(frame / 12)", "-0.02", "0.62 * sin(frame / 12)"]);
-    let ball = Object::new(Sphere { radius: 0.09 }).material(Conductor::default());
+    let ball = Object::new(Sphere::new(0.09)).material(Conductor::default());
     let mut scene = scene.add_animated(Animated::new(ball).moved(circle))?;
     scene.description.render.shutter = [0.0, 0.5];
     let picture = Picture::new(&scene, &Settings::default())?;
