@@ -33,8 +33,8 @@ fn scene() -> Result<Scene, Error> {
     // Turn the vase once in 48 frames, let the ball fly along a closed curve, and fade in the lamp.
     let turn = Animate::from_keys([(Frames(0.0), 0.0), (Frames(48.0), 360.0)]);
     let around = Along::new("ring", ValueSource::expression("seconds / 2"));
-    let fade = Animate::from_keys([(Seconds(0.0), 5.0), (Seconds(1.0), 60.0)]);
-    let lamp = Animated::new(Point::new([-2.0, 4.0, 3.0], 5.0)).field(|lamp| &mut lamp.intensity, fade);
+    let fade = Animate::from_keys([(Seconds(0.0), 4.0), (Seconds(1.0), 30.0)]);
+    let lamp = Animated::new(Point::new([-2.0, 4.0, 3.0], 4.0)).field(|lamp| &mut lamp.intensity, fade);
     let ball = Object::new(Sphere::new(0.13)).named("ball").material(Conductor::new(0.9));
     let glaze = Principled { roughness: 0.25.into(), ..Principled::new(Input::attribute("glaze")) };
     let ring = ScenePath {
@@ -50,7 +50,7 @@ fn scene() -> Result<Scene, Error> {
         .background([0.3, 0.34, 0.4])
         .material("glaze", glaze)
         .group("vase", [Object::new(vase()).material_named("glaze")])
-        .add(Object::new(Plane::default()).named("floor"))
+        .add(Object::new(Plane::default()).named("floor").material(Diffuse::new(0.35)))
         .add_animated(Animated::new(Object::group("vase").named("vase")).rotated(Vec3::Y, turn))?
         .add_animated(Animated::new(ball).moved(around))?
         .animated_light(lamp)?;
