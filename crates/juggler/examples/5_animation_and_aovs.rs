@@ -30,11 +30,11 @@ fn vase() -> Mesh {
 }
 
 fn scene() -> Result<Scene, Error> {
-    // Turn the vase once in 48 frames, let the ball fly along a closed curve, and fade in the lamp.
+    // Turn the vase once in 48 frames, let the ball fly along a closed curve, and fade in the light.
     let turn = Animate::from_keys([(Frames(0.0), 0.0), (Frames(48.0), 360.0)]);
     let around = Along::new("ring", ValueSource::expression("seconds / 2"));
     let fade = Animate::from_keys([(Seconds(0.0), 4.0), (Seconds(1.0), 30.0)]);
-    let lamp = Animated::new(Point::new([-2.0, 4.0, 3.0], 4.0)).field(|lamp| &mut lamp.intensity, fade);
+    let light = Animated::new(Point::new([-2.0, 4.0, 3.0], 4.0)).field(|light| &mut light.intensity, fade);
     let ball = Object::new(Sphere::new(0.13)).named("ball").material(Conductor::new(0.9));
     let glaze = Principled { roughness: 0.25.into(), ..Principled::new(Input::attribute("glaze")) };
     let ring = ScenePath {
@@ -53,7 +53,7 @@ fn scene() -> Result<Scene, Error> {
         .add(Object::new(Plane::default()).named("floor").material(Diffuse::new(0.35)))
         .add_animated(Animated::new(Object::group("vase").named("vase")).rotated(Vec3::Y, turn))?
         .add_animated(Animated::new(ball).moved(around))?
-        .animated_light(lamp)?;
+        .animated_light(light)?;
     Ok(scene)
 }
 

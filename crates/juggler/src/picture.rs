@@ -6,14 +6,13 @@ use crate::{AovSet, Error, Limit, RenderStats, Settings};
 use juggler_camera::film::{FilmDigest, FilmSummary, FilterSampler, Rect};
 use juggler_camera::{AnyCamera, Perspective, ShutterCamera};
 use juggler_film::counts::SampleCountStats;
-use juggler_imaging::{CropFrame, Header, ImageFormat, Options, RowWriter, Tone};
+use juggler_imaging::{CropFrame, Header, Options, RowWriter, Tone};
 use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_render::{BAND_PIXELS, Cancelled, Control, Job, Schedule, Scheduler};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_world::{SimdLevel, World};
-use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -344,37 +343,6 @@ impl Picture {
         })?;
         Ok(image)
     }
-}
-
-/// Renders a scene into memory, on the threads of the current rayon pool.
-///
-/// ```
-/// use juggler::prelude::*;
-///
-/// let scene = Scene::new().size(8, 8).add(Object::new(Sphere::default()));
-/// let image = juggler::render(&scene, &Settings { samples: Some(1), ..Settings::default() })?;
-/// assert!(image.pixels().iter().any(|pixel| pixel.luminance() > 0.5));
-/// # Ok::<(), juggler::Error>(())
-/// ```
-pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
-    Ok(Picture::new(scene, settings)?.render_image(&Control::default())?)
-}
-
-/// Renders a scene to a file; the extension selects the format. The file replaces an existing one
-/// once it is complete. Rows are written as they are rendered, unless the settings ask for AOVs, which
-/// an EXR file contains, for a denoiser or for a noise limit.
-pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<RenderStats, Error> {
-    let path = path.as_ref();
-    let format = ImageFormat::from_path(path)?;
-    let picture = Picture::new(scene, settings)?;
-    if picture.needs_film() {
-        let image = picture.render_in_memory(None, &Control::default())?;
-        let start = Instant::now();
-        image.save(path)?;
-        return Ok(RenderStats { write: start.elapsed(), ..image.stats().clone() });
-    }
-    let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
-    picture.write(writer, &Control::default())
 }
 
 /// Returns the reason for the choice of the integrator under these settings.

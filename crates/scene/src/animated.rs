@@ -1,7 +1,8 @@
 //! Values of which sources give some fields at each frame.
 
-use crate::animate::{FieldValue, ValueSource};
+use crate::animate::ValueSource;
 use crate::description::{Object, Rotate, ScaleFactors, TransformStep};
+use crate::field_value::FieldValue;
 use crate::path::{Path, Step};
 use juggler_math::Vec3;
 use serde_json::Value;

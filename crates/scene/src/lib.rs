@@ -22,6 +22,7 @@ pub mod document;
 mod edit;
 mod equality;
 mod error;
+mod field_value;
 mod fingerprint;
 mod integrator;
 mod item;
@@ -54,6 +55,7 @@ pub use description::{
     Chain, ControlSphere, Description, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, TransformStep,
 };
 pub use error::SceneError;
+pub use field_value::FieldValue;
 pub use fingerprint::Fingerprint;
 pub use integrator::{IntegratorChoice, IntegratorReason};
 pub use item::Item;

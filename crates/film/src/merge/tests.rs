@@ -68,10 +68,10 @@ fn partial_renders_in_memory_merge_as_files() {
     let rows = |merge: &Merge| merge.rows(|_| Ok::<(), PartialRenderError>(())).unwrap();
     let whole = Merge::new(vec![PartialRender::from_bytes("whole", bytes).unwrap()], MergeGoal::Whole).unwrap();
     assert_eq!(rows(&whole), rows(&from_files));
-    // What is wrong is told in the same words.
+    // What is wrong is reported in the same words.
     for wrong in [&files[..2], &[files[0].clone(), files[0].clone()], &[]] {
-        let told = Merge::new(in_memory(wrong), MergeGoal::Whole).unwrap_err().to_string();
-        assert_eq!(told, Merge::open(wrong, MergeGoal::Whole).unwrap_err().to_string());
+        let reported = Merge::new(in_memory(wrong), MergeGoal::Whole).unwrap_err().to_string();
+        assert_eq!(reported, Merge::open(wrong, MergeGoal::Whole).unwrap_err().to_string());
     }
     let cancelled =
         from_memory.to_bytes("whole", || Err(PartialRenderError::NotAPartialRender { file: "stop".into() }));

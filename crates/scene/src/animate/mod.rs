@@ -21,7 +21,6 @@ use tree_resolver::TreeResolver;
 
 mod curve;
 mod easing;
-mod field_value;
 mod key_time;
 mod paths;
 mod programs;
@@ -34,7 +33,6 @@ mod values;
 mod variables;
 
 pub use easing::{Ease, Easing};
-pub use field_value::FieldValue;
 pub use key_time::{Frames, KeyTime, Seconds};
 pub use paths::{MAX_POINTS, PathName};
 pub(crate) use programs::Programs;

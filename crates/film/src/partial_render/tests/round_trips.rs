@@ -63,7 +63,7 @@ fn damage_in_memory_is_reported_as_in_files() {
     let description = description(REGION, 100);
     write(&path, &description, tiles(REGION, 0..20)).unwrap();
     let good = std::fs::read(&path).unwrap();
-    let told = |bytes: &[u8]| {
+    let reported = |bytes: &[u8]| {
         std::fs::write(&path, bytes).unwrap();
         let read = |opened: Result<PartialRender, PartialRenderError>| opened.and_then(|read| read.verify()).err();
         let [file, memory] = [PartialRender::open(&path), PartialRender::from_bytes("a.jfilm", bytes)].map(read);
@@ -71,16 +71,16 @@ fn damage_in_memory_is_reported_as_in_files() {
         assert_eq!(file, memory.map(|error| error.to_string()));
         file
     };
-    assert_eq!(told(&good), None);
+    assert_eq!(reported(&good), None);
     for cut in [0, 3, 20, 200, good.len() / 2, good.len() - 1] {
-        assert!(told(&good[..cut]).is_some(), "{cut} bytes");
+        assert!(reported(&good[..cut]).is_some(), "{cut} bytes");
     }
     for at in (0..good.len()).step_by(good.len() / 97) {
         let mut bad = good.clone();
         bad[at] ^= 4;
-        assert!(told(&bad).is_some(), "byte {at}");
+        assert!(reported(&bad).is_some(), "byte {at}");
     }
-    assert!(told(&[good.as_slice(), b"x"].concat()).is_some());
+    assert!(reported(&[good.as_slice(), b"x"].concat()).is_some());
 }
 
 /// A file that another one replaces between opening and reading is not mistaken for it.
