@@ -72,10 +72,13 @@ fn limits_state_their_samples() {
     let image = rendered(&noise);
     let text = |key: &str| image.header.metadata.iter().find(|(known, _)| known == key).map(|(_, text)| text.clone());
     assert_eq!(text("Samples"), Some(image.stats().samples.to_string()));
-    let time = Settings { limit: Limit::Time { seconds: 0.05 }, ..Settings::default() };
-    let image = rendered(&time);
-    assert!(image.stats().samples.max > 0);
-    assert!(image.header.metadata.iter().any(|(key, _)| key == juggler::SAMPLES_PER_TILE));
+    // The first render ends at its samples, the second after its time, perhaps before any sample.
+    for (seconds, samples) in [(1e9, 4), (0.01, 1 << 20)] {
+        let time = Settings { limit: Limit::Time { seconds }, samples: Some(samples), ..Settings::default() };
+        let image = rendered(&time);
+        assert!(image.stats().samples.max <= samples && (samples > 4 || image.stats().samples.min == samples));
+        assert!(image.header.metadata.iter().any(|(key, _)| key == juggler::SAMPLES_PER_TILE));
+    }
 }
 
 /// The shards of a picture, in memory.
