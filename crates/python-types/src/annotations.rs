@@ -4,18 +4,11 @@ use crate::model::{Model, VALUE_FORM, choices, kinds, object, reference, words};
 use crate::names;
 use serde_json::Value;
 
-/// Alternatives of a type, without duplicates.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Union {
-    members: Vec<Member>,
-}
-
 /// One alternative of a type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Member {
     Number,
     Integer,
-    Flag,
     Text,
     /// Value form, which may replace any value.
     Form,
@@ -38,14 +31,9 @@ pub struct Annotations<'m, 's> {
 }
 
 impl<'m, 's> Annotations<'m, 's> {
-    /// Annotations inside the module `typing`.
-    pub fn in_typing(model: &'m Model<'s>) -> Self {
-        Self { model, prefix: "" }
-    }
-
-    /// Annotations of stubs, which import the module `typing` as `t`.
-    pub fn in_stubs(model: &'m Model<'s>) -> Self {
-        Self { model, prefix: "t." }
+    /// Annotations whose names of the module `typing` have a prefix.
+    pub fn new(model: &'m Model<'s>, prefix: &'static str) -> Self {
+        Self { model, prefix }
     }
 
     /// What a field accepts, beside `None`.
@@ -66,11 +54,11 @@ impl<'m, 's> Annotations<'m, 's> {
         types.join(" | ")
     }
 
-    fn union(&self, schema: &'s Value) -> Union {
+    fn union(&self, schema: &'s Value) -> Vec<Member> {
         reference(schema).map_or_else(|| self.written_out(schema), |name| self.named(name))
     }
 
-    fn named(&self, name: &'s str) -> Union {
+    fn named(&self, name: &'s str) -> Vec<Member> {
         let member = match name.split_once('_') {
             _ if name == VALUE_FORM => Member::Form,
             _ if name == "Expression" => Member::Text,
@@ -81,7 +69,7 @@ impl<'m, 's> Annotations<'m, 's> {
                 None => return self.model.definition(name).map(|schema| self.written_out(schema)).unwrap_or_default(),
             },
         };
-        Union { members: vec![member] }
+        vec![member]
     }
 
     /// Alias for the values of a definition that has classes or dictionaries of its own.
@@ -96,17 +84,19 @@ impl<'m, 's> Annotations<'m, 's> {
         (object(schema).is_some() || kinds(schema).next().is_some()).then(|| format!("{name}Like"))
     }
 
-    fn written_out(&self, schema: &'s Value) -> Union {
-        let mut union = Union::default();
+    fn written_out(&self, schema: &'s Value) -> Vec<Member> {
+        let mut union = Vec::new();
         let literals: Vec<String> = words(schema).iter().map(|word| format!("\"{word}\"")).collect();
         if !literals.is_empty() && kinds(schema).next().is_none() {
-            union.extend([Member::Other(format!("Literal[{}]", literals.join(", ")))]);
+            union.push(Member::Other(format!("Literal[{}]", literals.join(", "))));
         }
         for branch in choices(schema) {
-            if branch.get("anyOf").is_some() || reference(branch).is_some() {
-                union.extend(self.union(branch).members);
-            } else {
-                union.extend(self.plain(branch));
+            let is_choice = branch.get("anyOf").is_some() || reference(branch).is_some();
+            let members = if is_choice { self.union(branch) } else { self.plain(branch) };
+            for member in members {
+                if !union.contains(&member) {
+                    union.push(member);
+                }
             }
         }
         union
@@ -117,7 +107,7 @@ impl<'m, 's> Annotations<'m, 's> {
         let one = match schema.get("type").and_then(Value::as_str) {
             Some("number") => Member::Number,
             Some("integer") => Member::Integer,
-            Some("boolean") => Member::Flag,
+            Some("boolean") => Member::Other("bool".into()),
             Some("string") => Member::Text,
             Some("array") => return self.array(schema),
             Some("object") => match schema.get("additionalProperties").filter(|others| others.is_object()) {
@@ -139,33 +129,33 @@ impl<'m, 's> Annotations<'m, 's> {
         let Some(items) = schema.get("items") else { return vec![Member::Other("Sequence[Any]".into())] };
         let inner = self.union(items);
         let bound = |key: &str| schema.get(key).and_then(Value::as_u64);
-        if inner.members.iter().any(|member| matches!(member, Member::Number | Member::Integer)) && inner.is_scalar() {
+        if inner.iter().any(|member| matches!(member, Member::Number | Member::Integer)) && inner.iter().all(is_scalar)
+        {
             return vec![Member::Vector(bound("minItems").filter(|least| Some(*least) == bound("maxItems")))];
         }
         let mut members = vec![Member::Other(format!("Sequence[{}]", self.render(&inner)))];
-        if inner.members.iter().any(|member| matches!(member, Member::Vector(_))) {
+        if inner.iter().any(|member| matches!(member, Member::Vector(_))) {
             members.push(Member::Other(format!("{}ArrayLike", self.prefix)));
         }
         members
     }
 
-    fn render(&self, union: &Union) -> String {
-        let has_form = union.members.contains(&Member::Form);
-        let covers_text = union.members.iter().any(|member| match member {
+    fn render(&self, union: &[Member]) -> String {
+        let has_form = union.contains(&Member::Form);
+        let covers_text = union.iter().any(|member| match member {
             Member::Number | Member::Integer => has_form,
             Member::Vector(_) | Member::Alias(_) => true,
             _ => false,
         });
-        let covers_form = covers_text || union.members.iter().any(|member| matches!(member, Member::Like(_)));
+        let covers_form = covers_text || union.iter().any(|member| matches!(member, Member::Like(_)));
         let own = |name: &str| format!("{}{name}", self.prefix);
         let mut texts: Vec<String> = Vec::new();
-        for member in &union.members {
+        for member in union {
             texts.push(match member {
                 Member::Number if has_form => own("Number"),
                 Member::Number => "float".into(),
                 Member::Integer if has_form => own("Integer"),
                 Member::Integer => "int".into(),
-                Member::Flag => "bool".into(),
                 Member::Text if covers_text => continue,
                 Member::Text => "str".into(),
                 Member::Form if covers_form => continue,
@@ -201,7 +191,7 @@ impl<'m, 's> Annotations<'m, 's> {
         match schema.get("type").and_then(Value::as_str) {
             Some("array") => inner("items").map(|items| format!("list[{items}]")).into_iter().collect(),
             Some("object") => inner("additionalProperties").map(|o| format!("dict[str, {o}]")).into_iter().collect(),
-            _ => self.written_out(schema).members.iter().filter_map(usual_name).collect(),
+            _ => self.written_out(schema).iter().filter_map(usual_name).collect(),
         }
     }
 }
@@ -210,7 +200,6 @@ fn usual_name(member: &Member) -> Option<String> {
     Some(match member {
         Member::Number => "float".into(),
         Member::Integer => "int".into(),
-        Member::Flag => "bool".into(),
         Member::Text => "str".into(),
         Member::Other(text) if text != "Any" => text.clone(),
         _ => return None,
@@ -223,19 +212,7 @@ pub fn input_alias(value: &str) -> String {
     format!("{noun}Input")
 }
 
-impl Union {
-    fn extend(&mut self, members: impl IntoIterator<Item = Member>) {
-        for member in members {
-            if !self.members.contains(&member) {
-                self.members.push(member);
-            }
-        }
-    }
-
-    /// Whether all alternatives are single numbers.
-    fn is_scalar(&self) -> bool {
-        let is_scalar =
-            |member: &Member| matches!(member, Member::Number | Member::Integer | Member::Text | Member::Form);
-        self.members.iter().all(is_scalar)
-    }
+/// Whether an alternative is a single number.
+fn is_scalar(member: &Member) -> bool {
+    matches!(member, Member::Number | Member::Integer | Member::Text | Member::Form)
 }

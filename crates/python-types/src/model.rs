@@ -89,10 +89,9 @@ impl<'s> Model<'s> {
         let classes = model.kind_classes("animate", forms)?;
         let summary = "Value forms, which replace a value that changes over time.".to_owned();
         model.modules.push(Module { name: "animate".into(), family: Some(VALUE_FORM), summary, classes });
-        let classes = model.scene_classes()?;
+        let classes = model.scene_classes("scene_types");
         let summary = "The scene and its parts that are no kinds of a family.".to_owned();
         model.modules.push(Module { name: "scene_types".into(), family: None, summary, classes });
-        model.check()?;
         Ok(model)
     }
 
@@ -107,13 +106,7 @@ impl<'s> Model<'s> {
         self.root.get("$defs")?.get(name)
     }
 
-    /// Resolves a reference: the definition with its name, or the schema itself.
-    pub fn follow(&self, schema: &'s Value) -> (Option<&'s str>, &'s Value) {
-        let name = reference(schema);
-        name.and_then(|name| Some((Some(name), self.definition(name)?))).unwrap_or((None, schema))
-    }
-
-    /// Module and class of a definition that is no kind.
+    /// Class of a definition that is no kind.
     pub fn class_of(&self, definition: &str) -> Option<&Class<'s>> {
         let name = names::definition_class(definition);
         let scene_types = self.modules.iter().find(|module| module.name == "scene_types")?;
@@ -128,53 +121,42 @@ impl<'s> Model<'s> {
     }
 
     fn kind_classes(&self, module: &str, family: &'s Value) -> Result<Vec<Class<'s>>, UnknownSchema> {
-        let mut classes = Vec::new();
-        for kind in kinds(family) {
-            let (definition, target) = self.follow(kind.content);
+        let class = |kind: Kind<'s>| {
+            let definition = reference(kind.content);
+            let target = definition.and_then(|name| self.definition(name)).unwrap_or(kind.content);
             let texts = [target, kind.content, kind.variant].map(description);
             let object = object(target).ok_or_else(|| UnknownSchema(format!("kind `{}`", kind.name)))?;
-            let name = names::kind_class(kind.name);
-            classes.push(Class {
-                kind: Some(kind.name),
-                definition,
-                description: texts.into_iter().find(|text| !text.is_empty()).unwrap_or_default(),
-                fields: fields(object),
-                constants: Vec::new(),
-                extension: extension(module, &name),
-                name,
-            });
-        }
-        Ok(classes)
+            let description = texts.into_iter().find(|text| !text.is_empty()).unwrap_or_default();
+            let class = Class::new(module, names::kind_class(kind.name), description, object);
+            Ok(Class { kind: Some(kind.name), definition, ..class })
+        };
+        kinds(family).map(class).collect()
     }
 
     /// Classes of the scene and of the objects that are no kinds. Definitions of one generic type
     /// share the class of the first, whose color accepts what the numbers of the others accept.
-    fn scene_classes(&self) -> Result<Vec<Class<'s>>, UnknownSchema> {
-        let root = self.root.as_object().ok_or_else(|| UnknownSchema("no object".into()))?;
-        let mut classes = vec![scene_class("Scene".into(), None, self.root, root)];
+    fn scene_classes(&self, module: &str) -> Vec<Class<'s>> {
+        let scene = self.root.as_object().map(|root| Class::new(module, "Scene".into(), description(self.root), root));
+        let mut classes: Vec<Class<'_>> = scene.into_iter().collect();
         let kinds = self.kind_contents();
         for (definition, schema) in self.definitions().filter(|(name, _)| !kinds.contains(name)) {
             let name = names::definition_class(definition);
             if let Some(object) = object(schema).filter(|_| classes.iter().all(|class| class.name != name)) {
-                classes.push(scene_class(name, Some(definition), schema, object));
+                let class = Class::new(module, name, description(schema), object);
+                classes.push(Class { definition: Some(definition), ..class });
             }
         }
-        Ok(classes)
-    }
-
-    /// Checks that names are unique where Python needs it.
-    fn check(&self) -> Result<(), UnknownSchema> {
-        for module in &self.modules {
-            let names: BTreeSet<&str> = module.classes.iter().map(|class| class.name.as_str()).collect();
-            if names.len() < module.classes.len() {
-                return Err(UnknownSchema(format!("two classes of `{}` have one name", module.name)));
-            }
-        }
-        Ok(())
+        classes
     }
 }
 
-impl Class<'_> {
+impl<'s> Class<'s> {
+    fn new(module: &str, name: String, description: &'s str, object: &'s Map<String, Value>) -> Self {
+        let constants = properties(object).filter_map(|(key, schema)| Some((key.as_str(), schema.get("const")?)));
+        let (constants, extension) = (constants.collect(), extension(module, &name));
+        Self { name, kind: None, definition: None, description, fields: fields(object), constants, extension }
+    }
+
     /// Fields that are also positional arguments: those of the extension, or the required fields if
     /// there are at most two.
     pub fn positional(&self) -> Vec<&str> {
@@ -183,6 +165,16 @@ impl Class<'_> {
         }
         let required: Vec<&str> = self.required().collect();
         if required.len() <= 2 { required } else { Vec::new() }
+    }
+
+    /// All fields, the positional ones first, as `Node` orders them.
+    pub fn match_args(&self) -> Vec<&str> {
+        let mut names = self.positional();
+        let extra = self.extra().iter().map(|(name, _, _)| *name);
+        let others = extra.chain(self.fields.iter().map(|field| field.name.as_str()));
+        let others: Vec<&str> = others.filter(|name| !names.contains(name)).collect();
+        names.extend(others);
+        names
     }
 
     /// Fields that only the base class has: name, annotation and description.
@@ -211,7 +203,7 @@ pub struct Kind<'s> {
 
 /// The kinds of a family.
 pub fn kinds(family: &Value) -> impl Iterator<Item = Kind<'_>> {
-    choices(family).flat_map(|branch| variants(branch)).filter_map(|variant| {
+    choices(family).flat_map(variants).filter_map(|variant| {
         let (name, content) = variant.get("properties")?.as_object()?.iter().next()?;
         Some(Kind { name, variant, content })
     })
@@ -257,30 +249,12 @@ fn variants(schema: &Value) -> impl Iterator<Item = &Value> {
     variants.filter(|variant| variant.get("type").is_some())
 }
 
-/// The members of an object with their schemas.
-pub fn properties(object: &Map<String, Value>) -> impl Iterator<Item = (&String, &Value)> {
+fn properties(object: &Map<String, Value>) -> impl Iterator<Item = (&String, &Value)> {
     object.get("properties").and_then(Value::as_object).into_iter().flatten()
 }
 
-fn scene_class<'s>(
-    name: String,
-    definition: Option<&'s str>,
-    schema: &'s Value,
-    object: &'s Map<String, Value>,
-) -> Class<'s> {
-    let constants = properties(object).filter_map(|(key, schema)| Some((key.as_str(), schema.get("const")?)));
-    Class {
-        kind: None,
-        definition,
-        description: description(schema),
-        fields: fields(object),
-        constants: constants.collect(),
-        extension: extension("scene_types", &name),
-        name,
-    }
-}
-
-fn fields(object: &Map<String, Value>) -> Vec<Field<'_>> {
+/// Fields of an object, without those that have only one possible value.
+pub fn fields(object: &Map<String, Value>) -> Vec<Field<'_>> {
     let required: Vec<&Value> = object.get("required").and_then(Value::as_array).into_iter().flatten().collect();
     let free = properties(object).filter(|(_, schema)| schema.get("const").is_none());
     let fields = free.filter_map(|(key, schema)| {

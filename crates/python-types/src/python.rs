@@ -10,12 +10,17 @@ pub fn module(model: &Model<'_>, module: &Module<'_>) -> String {
     for base in bases(module) {
         let _ = writeln!(text, "{base}");
     }
-    let names: Vec<String> = module.classes.iter().map(|class| format!("\"{}\"", class.name)).collect();
-    let _ = write!(text, "\n__all__ = [\n{}]\n", list(&names, "    "));
+    text.push_str(&all(module));
     for one in &module.classes {
         text.push_str(&class(model, module, one));
     }
     text
+}
+
+/// Assignment of the names of a module's classes.
+pub fn all(module: &Module<'_>) -> String {
+    let names = quoted(module.classes.iter().map(|class| class.name.as_str()));
+    format!("\n__all__ = [\n{}]\n", list(&names, "    "))
 }
 
 /// Statements that import the base classes of a module.
@@ -34,10 +39,9 @@ pub fn base(class: &Class<'_>) -> (&'static str, &'static str) {
 /// The module that lists what the package has, so that `import juggler` need not load the classes.
 pub fn exports(model: &Model<'_>) -> String {
     let mut text = format!("{NOTICE}\"\"\"Names of the modules and of the classes of `scene_types`.\"\"\"\n");
-    let modules: Vec<String> = model.modules.iter().map(|module| format!("\"{}\"", module.name)).collect();
-    let families = model.modules.iter().filter(|module| module.family.is_none());
-    let types: Vec<String> =
-        families.flat_map(|module| &module.classes).map(|class| format!("\"{}\"", class.name)).collect();
+    let modules = quoted(model.modules.iter().map(|module| module.name.as_str()));
+    let others = model.modules.iter().filter(|module| module.family.is_none());
+    let types = quoted(others.flat_map(|module| &module.classes).map(|class| class.name.as_str()));
     let _ = write!(text, "\nMODULES = (\n{})\nSCENE_TYPES = (\n{})\n", list(&modules, "    "), list(&types, "    "));
     text
 }
@@ -45,16 +49,14 @@ pub fn exports(model: &Model<'_>) -> String {
 fn class(model: &Model<'_>, module: &Module<'_>, class: &Class<'_>) -> String {
     let mut text =
         format!("\n\nclass {}({}):\n{}\n", class.name, base(class).1, docstring::class(model, module, class));
-    let quoted = |names: &[&str]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>();
-    let names: Vec<&str> = class.fields.iter().map(|field| field.name.as_str()).collect();
-    text.push_str(&tuple("__slots__", &quoted(&names)));
+    text.push_str(&tuple("__slots__", &quoted(class.fields.iter().map(|field| field.name.as_str()))));
     if let Some(kind) = class.kind {
         let _ = writeln!(text, "    _kind = \"{kind}\"");
     }
     let required: Vec<&str> = class.required().collect();
     for (attribute, names) in [("_positional", class.positional()), ("_required", required)] {
         if !names.is_empty() {
-            text.push_str(&tuple(attribute, &quoted(&names)));
+            text.push_str(&tuple(attribute, &quoted(names)));
         }
     }
     let renamed: Vec<String> = class
@@ -72,8 +74,13 @@ fn class(model: &Model<'_>, module: &Module<'_>, class: &Class<'_>) -> String {
     text
 }
 
+/// Names as strings of Python.
+pub fn quoted<'n>(names: impl IntoIterator<Item = &'n str>) -> Vec<String> {
+    names.into_iter().map(|name| format!("\"{name}\"")).collect()
+}
+
 /// Assignment of a tuple to an attribute of a class.
-fn tuple(attribute: &str, items: &[String]) -> String {
+pub fn tuple(attribute: &str, items: &[String]) -> String {
     let line = match items {
         [one] => format!("    {attribute} = ({one},)\n"),
         items => format!("    {attribute} = ({})\n", items.join(", ")),

@@ -28,7 +28,7 @@ pub fn module(model: &Model<'_>, module: &Module<'_>) -> String {
     for base in python::bases(module) {
         let _ = writeln!(text, "{base}");
     }
-    text + &classes
+    text + &python::all(module) + &classes
 }
 
 fn uses(text: &str, name: &str) -> bool {
@@ -36,9 +36,10 @@ fn uses(text: &str, name: &str) -> bool {
 }
 
 fn class(model: &Model<'_>, module: &Module<'_>, class: &Class<'_>) -> String {
-    let annotations = Annotations::in_stubs(model);
+    let annotations = Annotations::new(model, "t.");
     let docstring = docstring::class(model, module, class);
     let mut text = format!("\nclass {}({}):\n{docstring}", class.name, python::base(class).1);
+    text.push_str(&python::tuple("__match_args__", &python::quoted(class.match_args())));
     for field in &class.fields {
         let _ = writeln!(text, "    {}: {}", field.name, annotations.gives(field.schema, &module.name));
     }

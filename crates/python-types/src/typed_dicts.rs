@@ -1,55 +1,25 @@
 //! The module `typing`: the scene format as dictionaries, and aliases for what fields accept.
 
 use crate::annotations::{Annotations, input_alias};
-use crate::model::{Class, Model, Module, VALUE_FORM, choices, kinds, object, reference, words};
+use crate::model::{Class, Field, Kind, Model, Module, VALUE_FORM, choices, fields, kinds, object, reference, words};
 use crate::{NOTICE, names};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// Start of the module, after the imports of the package.
-const ALIASES: &str = r#"
-
-class ArrayLike(Protocol):
-    """Array of any library, such as NumPy, that converts itself to lists."""
-
-    def tolist(self) -> Any: ...
-
-
-Number: TypeAlias = "float | SupportsFloat | str | ValueForm"
-"""Number, expression such as "=2 * radius", or value form."""
-Integer: TypeAlias = "int | SupportsIndex | str | ValueForm"
-"""Whole number, expression or value form."""
-VectorLike: TypeAlias = "Sequence[Number] | ArrayLike | str | ValueForm"
-"""Array of numbers, expression or value form."""
-Vec2Like: TypeAlias = "Sequence[Number] | ArrayLike | str | ValueForm"
-"""Two numbers, expression or value form."""
-Vec3Like: TypeAlias = "Sequence[Number] | ArrayLike | str | ValueForm"
-"""Three numbers, expression or value form."""
-Vec4Like: TypeAlias = "Sequence[Number] | ArrayLike | str | ValueForm"
-"""Four numbers, expression or value form."""
-ColorLike: TypeAlias = "str | Number | Sequence[Number] | ArrayLike"
-"""Color: "\#rrggbb", a gray as one number, or three numbers in linear light."""
-"#;
+/// Start of the module, with the aliases that do not depend on the schema.
+const HEAD: &str = include_str!("typing_head.py");
 
 /// The module.
 pub fn module(model: &Model<'_>) -> String {
-    let mut text = format!(
-        "{NOTICE}\"\"\"Types of the scene format for type checkers: dictionaries, and what fields accept.\n\n\
-         Import this module under `TYPE_CHECKING`: nothing needs it at run time.\n\"\"\"\n\n\
-         from __future__ import annotations\n\n\
-         from collections.abc import Mapping, Sequence\n\
-         from typing import TYPE_CHECKING, Any, Literal, Protocol, Required, SupportsFloat, SupportsIndex\n\
-         from typing import TypeAlias, TypedDict\n\n\
-         if TYPE_CHECKING:\n"
-    );
     let mut modules: Vec<&str> = model.modules.iter().map(|module| module.name.as_str()).collect();
     modules.sort_unstable();
-    for module in modules {
-        let _ = writeln!(text, "    from . import {module}");
+    let mut text = format!("{NOTICE}{}", HEAD.replace("MODULES", &modules.join("\n    from . import ")));
+    let writer = Writer { model, annotations: Annotations::new(model, "") };
+    for (name, schema) in model.definitions() {
+        if let Some(value) = name.strip_prefix("Input_") {
+            alias(&mut text, &input_alias(value), &writer.annotations.definition(schema));
+        }
     }
-    text.push_str(&ALIASES.replace("\\#", "#"));
-    let writer = Writer { model, annotations: Annotations::in_typing(model) };
-    writer.inputs(&mut text);
     for module in &model.modules {
         match module.family {
             Some(family) => writer.family(&mut text, module, family),
@@ -60,8 +30,7 @@ pub fn module(model: &Model<'_>) -> String {
     while text.contains("\n\n\n\n") {
         text = text.replace("\n\n\n\n", "\n\n\n");
     }
-    text.truncate(text.trim_end().len());
-    text + "\n"
+    format!("{}\n", text.trim_end())
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,20 +40,6 @@ struct Writer<'m, 's> {
 }
 
 impl<'s> Writer<'_, 's> {
-    /// Aliases for the inputs of materials and textures.
-    fn inputs(&self, text: &mut String) {
-        for (name, schema) in self.model.definitions() {
-            if let Some(value) = name.strip_prefix("Input_") {
-                let _ = writeln!(
-                    text,
-                    "{}: TypeAlias = \"{}\"",
-                    input_alias(value),
-                    escaped(&self.annotations.definition(schema))
-                );
-            }
-        }
-    }
-
     fn family(&self, text: &mut String, module: &Module<'s>, family: &str) {
         let classes: Vec<String> =
             module.classes.iter().map(|class| format!("{}.{}", module.name, class.name)).collect();
@@ -94,7 +49,9 @@ impl<'s> Writer<'_, 's> {
             None => format!("{}Dict", class.name),
         };
         let members = module.classes.iter().filter_map(|class| {
-            let value = if family == VALUE_FORM { dict(class) } else { format!("{} | ValueForm", dict(class)) };
+            // With the dictionaries of value forms in every type, mypy takes five times as long.
+            let any = (family == VALUE_FORM).then(|| "Mapping[str, Any]".to_owned());
+            let value = any.unwrap_or_else(|| format!("{} | ValueForm", dict(class)));
             Some((class.kind?, value, false))
         });
         typed_dict(text, &format!("{noun}Dict"), &members.collect::<Vec<_>>());
@@ -124,70 +81,47 @@ impl<'s> Writer<'_, 's> {
 
     fn class(&self, text: &mut String, name: &str, class: &Class<'s>) {
         let constants = class.constants.iter().map(|(key, value)| (*key, format!("Literal[{value}]"), true));
-        let fields =
-            class.fields.iter().map(|field| (field.key, self.annotations.accepts(field.schema), field.required));
-        typed_dict(text, name, &constants.chain(fields).collect::<Vec<_>>());
+        typed_dict(text, name, &constants.chain(self.members(&class.fields)).collect::<Vec<_>>());
+    }
+
+    fn members(&self, fields: &[Field<'s>]) -> Vec<(&'s str, String, bool)> {
+        let member = |field: &Field<'s>| (field.key, self.annotations.accepts(field.schema), field.required);
+        fields.iter().map(member).collect()
     }
 
     /// Dictionaries of the definitions that have no class, such as the steps of a transform.
     fn other_definitions(&self, text: &mut String) {
+        let classes = || self.model.modules.iter().flat_map(|module| &module.classes);
         for (name, schema) in self.model.definitions() {
-            let is_family = names::family(name).is_some() || name == VALUE_FORM;
-            let is_class = self.model.modules.iter().flat_map(|module| &module.classes).any(|class| {
-                class.definition == Some(name) || class.kind.is_none() && names::definition_class(name) == class.name
-            });
-            if is_family || is_class {
-                continue;
-            }
-            let kinds: Vec<_> = kinds(schema).collect();
-            if !kinds.is_empty() {
-                self.variants(text, name, schema);
-            } else if object(schema).is_some() {
-                self.object(text, &format!("{name}Dict"), schema);
-                alias(text, &format!("{name}Like"), &format!("{name}Dict | ValueForm"));
+            let is_class = self.model.class_of(name).is_some() || classes().any(|class| class.definition == Some(name));
+            let mut members = object(schema).map(|object| self.members(&fields(object))).unwrap_or_default();
+            members.extend(kinds(schema).map(|kind| (kind.name, self.variant(text, name, kind), false)));
+            if !is_class && names::family(name).is_none() && name != VALUE_FORM && !members.is_empty() {
+                typed_dict(text, &format!("{name}Dict"), &members);
+                let classes = self.classes_like(schema);
+                alias(text, &format!("{name}Like"), &format!("{classes}{name}Dict | ValueForm"));
             }
         }
     }
 
-    fn variants(&self, text: &mut String, name: &str, schema: &'s Value) {
-        let mut members = Vec::new();
-        for kind in kinds(schema) {
-            let value = match object(kind.content).filter(|_| reference(kind.content).is_none()) {
-                Some(_) => {
-                    let inner = format!("{name}{}Dict", names::camel(kind.name));
-                    self.object(text, &inner, kind.content);
-                    format!("{inner} | ValueForm")
-                }
-                None => self.annotations.accepts(kind.content),
-            };
-            members.push((kind.name, value, false));
-        }
-        typed_dict(text, &format!("{name}Dict"), &members);
-        let classes = self.classes_like(schema);
-        alias(text, &format!("{name}Like"), &format!("{classes}{name}Dict | ValueForm"));
+    /// Annotation of a variant; the object of a variant without a definition gets a dictionary.
+    fn variant(&self, text: &mut String, owner: &str, kind: Kind<'s>) -> String {
+        let Some(object) = object(kind.content) else { return self.annotations.accepts(kind.content) };
+        let name = format!("{owner}{}Dict", names::camel(kind.name));
+        typed_dict(text, &name, &self.members(&fields(object)));
+        format!("{name} | ValueForm")
     }
 
     /// The classes of a family whose kinds have the names of all variants of another definition:
     /// the shapes of area lights are shapes.
     fn classes_like(&self, schema: &'s Value) -> String {
         let keys: Vec<&str> = kinds(schema).map(|kind| kind.name).collect();
-        let classes = self.model.modules.iter().find_map(|module| {
+        let classes = self.model.modules.iter().filter(|_| !keys.is_empty()).find_map(|module| {
             let class = |key: &&str| module.classes.iter().find(|class| class.kind == Some(key));
-            let found: Option<Vec<_>> = keys.iter().map(class).collect();
-            Some((&module.name, found?))
+            let name = |key| class(key).map(|class| format!("{}.{} | ", module.name, class.name));
+            keys.iter().map(name).collect()
         });
-        let Some((module, classes)) = classes else { return String::new() };
-        classes.iter().map(|class| format!("{module}.{} | ", class.name)).collect()
-    }
-
-    fn object(&self, text: &mut String, name: &str, schema: &'s Value) {
-        let Some(object) = object(schema) else { return };
-        let required = |key: &str| {
-            object.get("required").and_then(Value::as_array).is_some_and(|keys| keys.iter().any(|one| one == key))
-        };
-        let fields = object.get("properties").and_then(Value::as_object).into_iter().flatten();
-        let members = fields.map(|(key, schema)| (key.as_str(), self.annotations.accepts(schema), required(key)));
-        typed_dict(text, name, &members.collect::<Vec<_>>());
+        classes.unwrap_or_default()
     }
 }
 

@@ -43,10 +43,12 @@ fn phrases<'s>(model: &Model<'s>, schema: &'s Value, many: bool) -> Vec<String> 
     }
     let mut alternatives = Vec::new();
     for branch in choices(schema) {
-        if branch.get("anyOf").is_some() || reference(branch).is_some() {
-            add(&mut alternatives, phrases(model, branch, many));
-        } else {
-            add(&mut alternatives, plain(model, branch, many));
+        let is_choice = branch.get("anyOf").is_some() || reference(branch).is_some();
+        let more = if is_choice { phrases(model, branch, many) } else { plain(model, branch, many) };
+        for one in more {
+            if !alternatives.contains(&one) {
+                alternatives.push(one);
+            }
         }
     }
     alternatives
@@ -162,13 +164,5 @@ fn joined(alternatives: &[String]) -> String {
     match alternatives.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
         _ => alternatives.concat(),
-    }
-}
-
-fn add(alternatives: &mut Vec<String>, more: Vec<String>) {
-    for one in more {
-        if !alternatives.contains(&one) {
-            alternatives.push(one);
-        }
     }
 }

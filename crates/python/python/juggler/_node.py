@@ -82,7 +82,7 @@ def _shown(value):
 
 
 class _Signature:
-    """The signature of a class for `inspect`, made when it is asked for."""
+    """Signature of a class for `inspect`, made when it is read."""
 
     def __get__(self, node, cls):
         from inspect import Parameter, Signature

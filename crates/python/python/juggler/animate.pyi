@@ -7,6 +7,13 @@ from typing import Any, Literal, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Keys",
+    "Along",
+    "Joint",
+    "Posed",
+]
+
 class Keys(Node):
     """Value interpolated between keys: a number, an array of numbers, a color or a rotation. With
     `step` interpolation, any value.
@@ -29,6 +36,7 @@ class Keys(Node):
     Example:
         animate.Keys([(0, 0), (2, 360)], repeat="loop")
     """
+    __match_args__ = ("keys", "at", "interpolation", "ease", "repeat")
     keys: Any
     at: float | Any
     interpolation: Literal["step", "linear", "smooth", "slerp"] | Any
@@ -65,6 +73,7 @@ class Along(Node):
     Example:
         animate.Along("track", "=seconds / 10")
     """
+    __match_args__ = ("path", "at")
     path: str | Any
     at: float | Any
     def __init__(
@@ -102,6 +111,7 @@ class Joint(Node):
     Example:
         animate.Joint(from_=(0, 0, 0), to=(1.5, 0, 0), lengths=(1, 1), plane_normal=(0, 0, 1))
     """
+    __match_args__ = ("from_", "to", "lengths", "plane_normal", "keep_lengths")
     from_: list[float | Any] | Any
     to: list[float | Any] | Any
     lengths: list[float | Any] | Any
@@ -150,6 +160,7 @@ class Posed(Node):
     Example:
         animate.Posed("fox.glb", "head", point=(0, 0, 0))
     """
+    __match_args__ = ("file", "node", "animation", "at", "repeat", "point", "vector")
     file: str | Any
     node: str | Any
     animation: int | str | Any

@@ -6,6 +6,15 @@ from typing import Any, Literal, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Solid",
+    "Gradient",
+    "Dome",
+    "Environment",
+    "Sky",
+    "Studio",
+]
+
 class Solid(Node):
     """Background of uniform radiance.
 
@@ -16,6 +25,7 @@ class Solid(Node):
     Example:
         backgrounds.Solid("#87ceeb")
     """
+    __match_args__ = ("color",)
     color: Any
     def __init__(
         self,
@@ -41,6 +51,7 @@ class Gradient(Node):
     Example:
         backgrounds.Gradient(horizon="#d0e0ff", zenith="#3060c0")
     """
+    __match_args__ = ("horizon", "zenith", "nadir", "axis", "blend")
     horizon: Any
     zenith: Any
     nadir: Any
@@ -78,6 +89,7 @@ class Dome(Node):
     Example:
         backgrounds.Dome(bottom="#ffffff", top="#4070c0")
     """
+    __match_args__ = ("radius", "bottom", "top")
     radius: float | Any
     bottom: Any
     top: Any
@@ -115,6 +127,7 @@ class Environment(Node):
     Example:
         backgrounds.Environment("studio.hdr", rotation_degrees=90)
     """
+    __match_args__ = ("file", "scale", "rotation_degrees", "up", "visible_as")
     file: str | Any
     scale: float | Any
     rotation_degrees: float | Any
@@ -162,6 +175,16 @@ class Sky(Node):
     Example:
         backgrounds.Sky(sun_elevation_degrees=30, turbidity=3)
     """
+    __match_args__ = (
+        "sun_elevation_degrees",
+        "sun_azimuth_degrees",
+        "sun_direction",
+        "turbidity",
+        "ground_albedo",
+        "intensity",
+        "sun",
+        "up",
+    )
     sun_elevation_degrees: float | Any
     sun_azimuth_degrees: float | Any
     sun_direction: list[float | Any] | Any
@@ -213,6 +236,7 @@ class Studio(Node):
     Example:
         backgrounds.Studio(rotation_degrees=45)
     """
+    __match_args__ = ("scale", "rotation_degrees", "up", "visible_as")
     scale: float | Any
     rotation_degrees: float | Any
     up: list[float | Any] | Any

@@ -7,6 +7,12 @@ from . import scene_types
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Perspective",
+    "ThinLens",
+    "Orthographic",
+]
+
 class Perspective(Node):
     """Pinhole camera: objects at all distances are sharp.
 
@@ -41,6 +47,21 @@ class Perspective(Node):
     Example:
         cameras.Perspective(eye=(0, 2, 6), look_at=(0, 1, 0), vertical_fov_degrees=40)
     """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "vertical_fov_degrees",
+        "horizontal_fov_degrees",
+        "screen",
+        "view_plane",
+        "fit_aspect",
+    )
     eye: list[float | Any] | Any
     look_at: list[float | Any] | Any
     direction: list[float | Any] | Any
@@ -127,6 +148,23 @@ class ThinLens(Node):
     Example:
         cameras.ThinLens(eye=(0, 2, 6), look_at=(0, 1, 0), lens_radius=0.05, focus_distance=6)
     """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "vertical_fov_degrees",
+        "horizontal_fov_degrees",
+        "screen",
+        "view_plane",
+        "fit_aspect",
+        "lens_radius",
+        "focus_distance",
+    )
     eye: list[float | Any] | Any
     look_at: list[float | Any] | Any
     direction: list[float | Any] | Any
@@ -211,6 +249,19 @@ class Orthographic(Node):
     Example:
         cameras.Orthographic(eye=(0, 2, 6), look_at=(0, 1, 0), height=4)
     """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "height",
+        "width",
+        "fit_aspect",
+    )
     eye: list[float | Any] | Any
     look_at: list[float | Any] | Any
     direction: list[float | Any] | Any

@@ -6,12 +6,23 @@ from typing import Any, Literal, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Srgb",
+    "Gamma",
+    "Linear",
+    "Reinhard",
+    "Aces",
+    "Agx",
+    "PbrNeutral",
+]
+
 class Srgb(Node):
     """sRGB curve (IEC 61966-2-1), which displays expect. Values above 1 are clipped.
 
     Example:
         curves.Srgb()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -29,6 +40,7 @@ class Gamma(Node):
     Example:
         curves.Gamma(gamma=2.2)
     """
+    __match_args__ = ("gamma",)
     gamma: float | Any
     def __init__(
         self,
@@ -48,6 +60,7 @@ class Linear(Node):
     Example:
         curves.Linear()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -66,6 +79,7 @@ class Reinhard(Node):
     Example:
         curves.Reinhard(white=4)
     """
+    __match_args__ = ("white",)
     white: float | Any
     def __init__(
         self,
@@ -86,6 +100,7 @@ class Aces(Node):
     Example:
         curves.Aces()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -104,6 +119,7 @@ class Agx(Node):
     Example:
         curves.Agx(look="punchy")
     """
+    __match_args__ = ("look",)
     look: Literal["base", "punchy", "golden"] | Any
     def __init__(
         self,
@@ -123,6 +139,7 @@ class PbrNeutral(Node):
     Example:
         curves.PbrNeutral()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...

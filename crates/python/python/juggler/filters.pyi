@@ -6,6 +6,14 @@ from typing import Any, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Box",
+    "Tent",
+    "Gaussian",
+    "Mitchell",
+    "Juggler",
+]
+
 class Box(Node):
     """Box filter: uniform over the pixel. No blur beyond the pixel, but more aliasing than wider
     filters.
@@ -13,6 +21,7 @@ class Box(Node):
     Example:
         filters.Box()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -30,6 +39,7 @@ class Tent(Node):
     Example:
         filters.Tent(radius=1)
     """
+    __match_args__ = ("radius",)
     radius: float | Any
     def __init__(
         self,
@@ -53,6 +63,7 @@ class Gaussian(Node):
     Example:
         filters.Gaussian(radius=1.5, sigma=0.5)
     """
+    __match_args__ = ("radius", "sigma")
     radius: float | Any
     sigma: float | Any
     def __init__(
@@ -81,6 +92,7 @@ class Mitchell(Node):
     Example:
         filters.Mitchell(b=0.3, c=0.35)
     """
+    __match_args__ = ("b", "c")
     b: float | Any
     c: float | Any
     def __init__(
@@ -103,6 +115,7 @@ class Juggler(Node):
     Example:
         filters.Juggler()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...

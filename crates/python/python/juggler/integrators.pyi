@@ -6,6 +6,16 @@ from typing import Any, Literal, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Classic",
+    "Path",
+    "Direct",
+    "AmbientOcclusion",
+    "Albedo",
+    "Normals",
+    "Depth",
+]
+
 class Classic(Node):
     """Classic recursive ray tracing: Phong illumination from lights, mirrors and glass, without
     indirect diffuse light. Fast, with little noise.
@@ -24,6 +34,7 @@ class Classic(Node):
     Example:
         integrators.Classic(max_depth=5)
     """
+    __match_args__ = ("max_depth", "min_weight", "occlusion_distance")
     max_depth: int | Any
     min_weight: float | Any
     occlusion_distance: float | Any
@@ -79,6 +90,18 @@ class Path(Node):
     Example:
         integrators.Path(max_depth=8, clamp_indirect=10)
     """
+    __match_args__ = (
+        "max_depth",
+        "max_diffuse",
+        "max_glossy",
+        "max_specular",
+        "max_volume",
+        "roulette_depth",
+        "light_samples",
+        "sampling",
+        "clamp_direct",
+        "clamp_indirect",
+    )
     max_depth: int | Any
     max_diffuse: int | Any
     max_glossy: int | Any
@@ -125,6 +148,7 @@ class Direct(Node):
     Example:
         integrators.Direct()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -144,6 +168,7 @@ class AmbientOcclusion(Node):
     Example:
         integrators.AmbientOcclusion(distance=2)
     """
+    __match_args__ = ("distance",)
     distance: float | Any
     def __init__(
         self,
@@ -162,6 +187,7 @@ class Albedo(Node):
     Example:
         integrators.Albedo()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -176,6 +202,7 @@ class Normals(Node):
     Example:
         integrators.Normals()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -194,6 +221,7 @@ class Depth(Node):
     Example:
         integrators.Depth(far=20)
     """
+    __match_args__ = ("far",)
     far: float | Any
     def __init__(
         self,

@@ -7,6 +7,14 @@ from . import scene_types
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Ambient",
+    "Area",
+    "Directional",
+    "Point",
+    "Spot",
+]
+
 class Ambient(Node):
     """Ambient light: constant incident radiance at every surface, scaled by each material's ambient
     reflectance. Only the classic integrator uses it; with path tracing, use a background instead.
@@ -18,6 +26,7 @@ class Ambient(Node):
     Example:
         lights.Ambient(intensity=0.1)
     """
+    __match_args__ = ("color", "intensity")
     color: Any
     intensity: float | Any
     def __init__(
@@ -56,6 +65,16 @@ class Area(Node):
     Example:
         lights.Area(shape=shapes.Rectangle(size=(2, 1)), position=(0, 4, 0), look_at=(0, 0, 0), radiance=10)
     """
+    __match_args__ = (
+        "shape",
+        "position",
+        "direction",
+        "look_at",
+        "color",
+        "radiance",
+        "power",
+        "light_group",
+    )
     shape: Any
     position: list[float | Any] | Any
     direction: list[float | Any] | Any
@@ -108,6 +127,7 @@ class Directional(Node):
     Example:
         lights.Directional(direction=(-1, -2, -1), intensity=2)
     """
+    __match_args__ = ("direction", "color", "intensity", "angle_degrees", "samples", "light_group")
     direction: list[float | Any] | Any
     color: Any
     intensity: float | Any
@@ -162,6 +182,18 @@ class Point(Node):
     Example:
         lights.Point(position=(-4, 7, 5), intensity=75)
     """
+    __match_args__ = (
+        "position",
+        "color",
+        "intensity",
+        "power",
+        "attenuation",
+        "range",
+        "extent",
+        "samples",
+        "ies",
+        "light_group",
+    )
     position: list[float | Any] | Any
     color: Any
     intensity: float | Any
@@ -237,6 +269,23 @@ class Spot(Node):
     Example:
         lights.Spot(position=(0, 5, 0), direction=(0, -1, 0), cutoff_degrees=30, intensity=100)
     """
+    __match_args__ = (
+        "position",
+        "direction",
+        "color",
+        "intensity",
+        "power",
+        "attenuation",
+        "range",
+        "beam_degrees",
+        "cutoff_degrees",
+        "falloff",
+        "beam_exponent",
+        "extent",
+        "samples",
+        "ies",
+        "light_group",
+    )
     position: list[float | Any] | Any
     direction: list[float | Any] | Any
     color: Any

@@ -7,6 +7,25 @@ from . import scene_types
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Phong",
+    "Diffuse",
+    "Conductor",
+    "Dielectric",
+    "Plastic",
+    "Velvet",
+    "Translucent",
+    "Principled",
+    "Emissive",
+    "Unlit",
+    "Checkerboard",
+    "Mask",
+    "Mix",
+    "NormalMap",
+    "BumpMap",
+    "Boundary",
+]
+
 class Phong(Node):
     """Classic model of Phong and Whitted: ambient, diffuse and specular reflection, mirror
     reflection and refraction. The integrator `classic` follows it exactly, path tracers approximate
@@ -47,6 +66,25 @@ class Phong(Node):
     Example:
         materials.Phong(diffuse="#c02020", shininess=40, reflection=0.1)
     """
+    __match_args__ = (
+        "emission",
+        "ambient",
+        "occlusion",
+        "diffuse",
+        "diffuse_weight",
+        "diffuse_normalization",
+        "specular",
+        "highlight_color",
+        "shininess",
+        "highlight",
+        "reflection",
+        "glossy",
+        "transparency",
+        "blurry",
+        "ior",
+        "fresnel",
+        "both_sides",
+    )
     emission: Any
     ambient: Any
     occlusion: float | Any
@@ -122,6 +160,7 @@ class Diffuse(Node):
     Example:
         materials.Diffuse(reflectance="#b8ae9c")
     """
+    __match_args__ = ("reflectance", "roughness", "sides")
     reflectance: Any
     roughness: Any
     sides: Literal["both", "front", "black_behind"] | Any
@@ -179,6 +218,19 @@ class Conductor(Node):
     Example:
         materials.Conductor(metal="gold", roughness=0.2)
     """
+    __match_args__ = (
+        "metal",
+        "eta",
+        "k",
+        "reflectance",
+        "edge_tint",
+        "grazing",
+        "roughness",
+        "anisotropy",
+        "anisotropy_rotation",
+        "energy_compensation",
+        "sides",
+    )
     metal: Literal["aluminum", "brass", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "platinum", "silver", "titanium", "tungsten", "zinc", "aluminium"] | Any
     eta: Any
     k: Any
@@ -259,6 +311,19 @@ class Dielectric(Node):
     Example:
         materials.Dielectric(ior=1.5)
     """
+    __match_args__ = (
+        "ior",
+        "dispersion",
+        "roughness",
+        "anisotropy",
+        "anisotropy_rotation",
+        "reflection_tint",
+        "transmission_tint",
+        "thin",
+        "medium",
+        "priority",
+        "energy_compensation",
+    )
     ior: float | Any
     dispersion: float | Any
     roughness: Any
@@ -330,6 +395,17 @@ class Plastic(Node):
     Example:
         materials.Plastic(reflectance="#c02020", roughness=0.1)
     """
+    __match_args__ = (
+        "reflectance",
+        "diffuse_roughness",
+        "ior",
+        "roughness",
+        "anisotropy",
+        "anisotropy_rotation",
+        "reflection_tint",
+        "nonlinear",
+        "sides",
+    )
     reflectance: Any
     diffuse_roughness: Any
     ior: float | Any
@@ -386,6 +462,7 @@ class Velvet(Node):
     Example:
         materials.Velvet(sheen_color="#ffffff", reflectance="#401020")
     """
+    __match_args__ = ("sheen_color", "sheen_roughness", "reflectance", "roughness", "sides")
     sheen_color: Any
     sheen_roughness: Any
     reflectance: Any
@@ -424,6 +501,7 @@ class Translucent(Node):
     Example:
         materials.Translucent(reflectance=0.4, transmittance=0.4)
     """
+    __match_args__ = ("reflectance", "transmittance")
     reflectance: Any
     transmittance: Any
     def __init__(
@@ -520,6 +598,39 @@ class Principled(Node):
     Example:
         materials.Principled(base_color="#c02020", metallic=0, roughness=0.4)
     """
+    __match_args__ = (
+        "base_color",
+        "metallic",
+        "roughness",
+        "ior",
+        "dispersion",
+        "specular",
+        "specular_color",
+        "anisotropy",
+        "anisotropy_rotation",
+        "clearcoat",
+        "clearcoat_roughness",
+        "clearcoat_ior",
+        "clearcoat_normal",
+        "clearcoat_normal_scale",
+        "sheen_color",
+        "sheen_roughness",
+        "iridescence",
+        "iridescence_ior",
+        "iridescence_thickness",
+        "transmission",
+        "diffuse_transmission",
+        "diffuse_transmission_color",
+        "thin",
+        "medium",
+        "priority",
+        "emissive",
+        "emissive_strength",
+        "opacity",
+        "alpha_cutoff",
+        "sides",
+        "energy_compensation",
+    )
     base_color: Any
     metallic: Any
     roughness: Any
@@ -637,6 +748,7 @@ class Emissive(Node):
     Example:
         materials.Emissive(radiance=(10, 9, 8))
     """
+    __match_args__ = ("radiance", "scale", "sides", "material")
     radiance: Any
     scale: float | Any
     sides: Literal["front", "both"] | Any
@@ -673,6 +785,7 @@ class Unlit(Node):
     Example:
         materials.Unlit(color="#c02020")
     """
+    __match_args__ = ("color", "opacity")
     color: Any
     opacity: Any
     def __init__(
@@ -703,6 +816,7 @@ class Checkerboard(Node):
     Example:
         materials.Checkerboard(size=1, even="white", odd="black")
     """
+    __match_args__ = ("size", "plane", "even", "odd")
     size: float | Any
     plane: Literal["xz", "xy", "yz"] | Any
     even: str | t.Material | Any
@@ -739,6 +853,7 @@ class Mask(Node):
     Example:
         materials.Mask(opacity="leaf", material="green")
     """
+    __match_args__ = ("opacity", "cutoff", "material")
     opacity: Any
     cutoff: float | Any
     material: str | t.Material | Any
@@ -769,6 +884,7 @@ class Mix(Node):
     Example:
         materials.Mix(amount=0.3, a="paint", b="rust")
     """
+    __match_args__ = ("amount", "a", "b")
     amount: Any
     a: str | t.Material | Any
     b: str | t.Material | Any
@@ -801,6 +917,7 @@ class NormalMap(Node):
     Example:
         materials.NormalMap(texture="normals", material="stone")
     """
+    __match_args__ = ("texture", "strength", "material")
     texture: Any
     strength: Any
     material: str | t.Material | Any
@@ -834,6 +951,7 @@ class BumpMap(Node):
     Example:
         materials.BumpMap(height="scratches", distance=0.01, material="steel")
     """
+    __match_args__ = ("height", "distance", "material")
     height: Any
     distance: float | Any
     material: str | t.Material | Any
@@ -865,6 +983,7 @@ class Boundary(Node):
     Example:
         materials.Boundary(medium=Medium(scattering=0.3, absorption=0.01))
     """
+    __match_args__ = ("medium", "priority")
     medium: scene_types.Medium | Any
     priority: int | Any
     def __init__(

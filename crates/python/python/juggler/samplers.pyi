@@ -6,6 +6,13 @@ from typing import Any, Self
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Sobol",
+    "Stratified",
+    "Independent",
+    "BlueNoise",
+]
+
 class Sobol(Node):
     """Owen-scrambled Sobol points: a low-discrepancy sequence with low noise at any number of
     samples, best at powers of two.
@@ -13,6 +20,7 @@ class Sobol(Node):
     Example:
         samplers.Sobol()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -31,6 +39,7 @@ class Stratified(Node):
     Example:
         samplers.Stratified(side=4)
     """
+    __match_args__ = ("side",)
     side: int | Any
     def __init__(
         self,
@@ -50,6 +59,7 @@ class Independent(Node):
     Example:
         samplers.Independent()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -64,6 +74,7 @@ class BlueNoise(Node):
     Example:
         samplers.BlueNoise()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...

@@ -8,6 +8,32 @@ from . import typing as t
 from ._node import Node
 from ._placement import Placement
 
+__all__ = [
+    "Scene",
+    "Path",
+    "RenderSettings",
+    "Tone",
+    "WhiteBalance",
+    "Move",
+    "Screen",
+    "ViewPlane",
+    "InputProduct",
+    "Stop",
+    "Spread",
+    "Medium",
+    "Object",
+    "MeshAttribute",
+    "Morph",
+    "Chain",
+    "ControlSphere",
+    "Limb",
+    "Model",
+    "Instances",
+    "Attenuation",
+    "Ies",
+    "Animation",
+]
+
 class Scene(Node):
     """Scene: everything that determines the rendered image.
 
@@ -46,6 +72,25 @@ class Scene(Node):
     Example:
         Scene(objects=[Object(shapes.Plane()), Object(shapes.Sphere(radius=1)).translate(0, 1, 0)])
     """
+    __match_args__ = (
+        "title",
+        "description",
+        "include",
+        "animation",
+        "variables",
+        "paths",
+        "render",
+        "tone",
+        "camera",
+        "cameras",
+        "background",
+        "background_light_group",
+        "textures",
+        "materials",
+        "groups",
+        "lights",
+        "objects",
+    )
     title: str | Any
     description: str | Any
     include: str | list[str | Any] | Any
@@ -123,6 +168,7 @@ class Path(Node):
     Example:
         Path([(0, 0, 0), (1, 0, 2), (3, 1, 2)], closed=True)
     """
+    __match_args__ = ("points", "closed")
     points: list[list[float | Any] | Any] | Any
     closed: bool | Any
     def __init__(
@@ -165,6 +211,16 @@ class RenderSettings(Node):
     Example:
         RenderSettings(size=(1280, 720), samples=256, integrator=integrators.Path(max_depth=8))
     """
+    __match_args__ = (
+        "size",
+        "samples",
+        "seed",
+        "camera",
+        "shutter",
+        "integrator",
+        "sampler",
+        "filter",
+    )
     size: list[int | Any] | Any
     samples: int | Any
     seed: int | Any
@@ -219,6 +275,7 @@ class Tone(Node):
     Example:
         Tone(curve=curves.Agx(), exposure_stops=1)
     """
+    __match_args__ = ("curve", "exposure_stops", "white_balance", "primaries", "dither")
     curve: t.Curve | Any
     exposure_stops: float | Any
     white_balance: WhiteBalance | Any
@@ -257,6 +314,7 @@ class WhiteBalance(Node):
     Example:
         WhiteBalance(kelvin=4000)
     """
+    __match_args__ = ("kelvin", "tint")
     kelvin: float | Any
     tint: float | Any
     def __init__(
@@ -283,6 +341,7 @@ class Move(Node):
     Example:
         Move(forward=1)
     """
+    __match_args__ = ("right", "up", "forward")
     right: float | Any
     up: float | Any
     forward: float | Any
@@ -312,6 +371,7 @@ class Screen(Node):
     Example:
         Screen(0.036, 0.05)
     """
+    __match_args__ = ("width", "distance")
     width: float | Any
     distance: float | Any
     def __init__(
@@ -338,6 +398,7 @@ class ViewPlane(Node):
     Example:
         ViewPlane(width=4, height=3, distance=5)
     """
+    __match_args__ = ("width", "height", "distance")
     width: float | Any
     height: float | Any
     distance: float | Any
@@ -373,6 +434,7 @@ class InputProduct(Node):
     Example:
         InputProduct(texture="wood", factor=(1, 0.5, 0.5), attribute="color")
     """
+    __match_args__ = ("texture", "factor", "attribute")
     texture: str | t.Texture | Any
     factor: Any
     attribute: str | Any
@@ -402,6 +464,7 @@ class Stop(Node):
     Example:
         Stop(0.5, "#c02020")
     """
+    __match_args__ = ("position", "color")
     position: float | Any
     color: Any
     def __init__(
@@ -428,6 +491,7 @@ class Spread(Node):
     Example:
         Spread(half_angle_degrees=5, rays=4)
     """
+    __match_args__ = ("half_angle_degrees", "rays")
     half_angle_degrees: float | Any
     rays: int | Any
     def __init__(
@@ -462,6 +526,7 @@ class Medium(Node):
     Example:
         Medium(color=(0.4, 0.9, 0.5), distance=2)
     """
+    __match_args__ = ("absorption", "scattering", "anisotropy", "color", "distance")
     absorption: Any
     scattering: Any
     anisotropy: float | Any
@@ -518,6 +583,20 @@ class Object(Placement):
     Example:
         Object(shapes.Sphere(), material="gold").translate(0, 1, 0)
     """
+    __match_args__ = (
+        "shape",
+        "name",
+        "group",
+        "objects",
+        "chain",
+        "limb",
+        "model",
+        "instances",
+        "transform",
+        "material",
+        "light_group",
+        "visible",
+    )
     name: str | Any
     shape: t.Shape | Any
     group: str | Any
@@ -577,6 +656,7 @@ class MeshAttribute(Node):
     Example:
         MeshAttribute(1, {"f32": [0, 0.5, 1]}, domain="vertex")
     """
+    __match_args__ = ("channels", "data", "domain")
     domain: Literal["vertex", "face"] | Any
     channels: int | Any
     data: Any
@@ -617,6 +697,7 @@ class Morph(Node):
     Example:
         Morph(file="smile.ply", weight=0.5)
     """
+    __match_args__ = ("file", "positions", "normals", "tangents", "weight")
     file: str | Any
     positions: list[list[float | Any] | Any] | Any
     normals: list[list[float | Any] | Any] | Any
@@ -655,6 +736,7 @@ class Chain(Node):
     Example:
         Chain(from_=ControlSphere((0, 0, 0), 0.2), to=ControlSphere((0, 2, 0), 0.1), count=10)
     """
+    __match_args__ = ("from_", "to", "count", "include_last")
     from_: ControlSphere | Any
     to: ControlSphere | Any
     count: int | Any
@@ -686,6 +768,7 @@ class ControlSphere(Node):
     Example:
         ControlSphere((0, 1, 0), 0.5)
     """
+    __match_args__ = ("center", "radius")
     center: list[float | Any] | Any
     radius: float | Any
     def __init__(
@@ -727,6 +810,7 @@ class Limb(Node):
     Example:
         Limb(from_=(0, 0, 0), to=(1.5, 0, 0), lengths=(1, 1), plane_normal=(0, 0, 1), radii=(0.1, 0.1, 0.1))
     """
+    __match_args__ = ("from_", "to", "lengths", "plane_normal", "counts", "keep_lengths", "radii")
     from_: list[float | Any] | Any
     to: list[float | Any] | Any
     lengths: list[float | Any] | Any
@@ -783,6 +867,19 @@ class Model(Node):
     Example:
         Model("fox.glb", animation="Run")
     """
+    __match_args__ = (
+        "file",
+        "scene",
+        "variant",
+        "animation",
+        "at",
+        "repeat",
+        "materials",
+        "nodes",
+        "hide",
+        "lights",
+        "photometric",
+    )
     file: str | Any
     scene: int | str | Any
     variant: int | str | Any
@@ -850,6 +947,7 @@ class Instances(Node):
     Example:
         Instances(positions=[(0, 0, 0), (2, 0, 0)], scales=[1, 0.5])
     """
+    __match_args__ = ("positions", "rotations", "scales", "matrices", "colors", "end_colors")
     positions: list[list[float | Any] | Any] | Any
     rotations: list[list[float | Any] | Any] | Any
     scales: list[float | list[float | Any] | Any] | Any
@@ -892,6 +990,7 @@ class Attenuation(Node):
     Example:
         Attenuation(quadratic=1)
     """
+    __match_args__ = ("constant", "linear", "quadratic")
     constant: float | Any
     linear: float | Any
     quadratic: float | Any
@@ -929,6 +1028,7 @@ class Ies(Node):
     Example:
         Ies("downlight.ies", rotation_degrees=90)
     """
+    __match_args__ = ("file", "direction", "rotation_degrees", "absolute")
     file: str | Any
     direction: list[float | Any] | Any
     rotation_degrees: float | Any
@@ -962,6 +1062,7 @@ class Animation(Node):
     Example:
         Animation(frames=96, frames_per_second=24)
     """
+    __match_args__ = ("frames", "frames_per_second")
     frames: int | Any
     frames_per_second: float | Any
     def __init__(

@@ -8,6 +8,19 @@ from . import scene_types
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Sphere",
+    "Plane",
+    "Disk",
+    "Rectangle",
+    "Triangle",
+    "Polygon",
+    "Cuboid",
+    "Cylinder",
+    "Tube",
+    "Mesh",
+]
+
 class Sphere(Node):
     """A sphere around the origin of object space.
 
@@ -20,6 +33,7 @@ class Sphere(Node):
     Example:
         shapes.Sphere(radius=1)
     """
+    __match_args__ = ("radius",)
     radius: float | Any
     def __init__(
         self,
@@ -40,6 +54,7 @@ class Plane(Node):
     Example:
         shapes.Plane()
     """
+    __match_args__ = ()
     def __init__(
         self,
     ) -> None: ...
@@ -61,6 +76,7 @@ class Disk(Node):
     Example:
         shapes.Disk(radius=2, inner_radius=0.5)
     """
+    __match_args__ = ("radius", "inner_radius")
     radius: float | Any
     inner_radius: float | Any
     def __init__(
@@ -89,6 +105,7 @@ class Rectangle(Node):
     Example:
         shapes.Rectangle(size=(2, 1))
     """
+    __match_args__ = ("size",)
     size: list[float | Any] | Any
     def __init__(
         self,
@@ -116,6 +133,7 @@ class Triangle(Node):
     Example:
         shapes.Triangle([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
     """
+    __match_args__ = ("vertices", "normals", "uvs")
     vertices: list[list[float | Any] | Any] | Any
     normals: list[list[float | Any] | Any] | Any
     uvs: list[list[float | Any] | Any] | Any
@@ -147,6 +165,7 @@ class Polygon(Node):
     Example:
         shapes.Polygon([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
     """
+    __match_args__ = ("vertices",)
     vertices: list[list[float | Any] | Any] | Any
     def __init__(
         self,
@@ -175,6 +194,7 @@ class Cuboid(Node):
     Example:
         shapes.Cuboid(min=(-1, 0, -1), max=(1, 2, 1))
     """
+    __match_args__ = ("min", "max")
     min: list[float | Any] | Any
     max: list[float | Any] | Any
     def __init__(
@@ -206,6 +226,7 @@ class Cylinder(Node):
     Example:
         shapes.Cylinder(radius=0.5, y_min=0, y_max=2)
     """
+    __match_args__ = ("radius", "y_min", "y_max", "capped")
     radius: float | Any
     y_min: float | Any
     y_max: float | Any
@@ -239,6 +260,7 @@ class Tube(Node):
     Example:
         shapes.Tube(radius=0.5)
     """
+    __match_args__ = ("radius",)
     radius: float | Any
     def __init__(
         self,
@@ -287,6 +309,18 @@ class Mesh(Node):
     Example:
         shapes.Mesh("bunny.ply")
     """
+    __match_args__ = (
+        "file",
+        "positions",
+        "triangles",
+        "normals",
+        "uvs",
+        "uvs1",
+        "tangents",
+        "attributes",
+        "crease_angle_degrees",
+        "morphs",
+    )
     file: str | Any
     positions: list[list[float | Any] | Any] | Any
     triangles: list[list[int | Any] | Any] | Any

@@ -8,6 +8,28 @@ from . import scene_types
 from . import typing as t
 from ._node import Node
 
+__all__ = [
+    "Image",
+    "Attribute",
+    "Constant",
+    "Direction",
+    "Checker",
+    "Gradient",
+    "Ramp",
+    "Mix",
+    "Noise",
+    "Fbm",
+    "Turbulence",
+    "Marble",
+    "Wood",
+    "Voronoi",
+    "Brick",
+    "Dots",
+    "Wave",
+    "Triplanar",
+    "Uv",
+]
+
 class Image(Node):
     """Image texture: PNG, JPEG, WebP, TIFF, TGA, BMP, GIF (the first frame), OpenEXR, Radiance HDR
     or PFM.
@@ -52,6 +74,22 @@ class Image(Node):
     Example:
         textures.Image("wood.png", wrap="mirror", scale=2)
     """
+    __match_args__ = (
+        "file",
+        "color_space",
+        "channel",
+        "invert",
+        "factor",
+        "wrap",
+        "wrap_v",
+        "filter",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     file: str | Any
     color_space: Literal["auto", "srgb", "linear"] | Any
     channel: Literal["rgb", "r", "g", "b", "a", "luminance"] | Any
@@ -117,6 +155,7 @@ class Attribute(Node):
     Example:
         textures.Attribute("color")
     """
+    __match_args__ = ("name", "channel")
     name: str | Any
     channel: Literal["rgb", "r", "g", "b", "a", "luminance"] | Any
     def __init__(
@@ -142,6 +181,7 @@ class Constant(Node):
     Example:
         textures.Constant("#c02020")
     """
+    __match_args__ = ("color",)
     color: Any
     def __init__(
         self,
@@ -166,6 +206,7 @@ class Direction(Node):
     Example:
         textures.Direction(of="normal")
     """
+    __match_args__ = ("of", "turns")
     of: Any
     turns: float | Any
     def __init__(
@@ -200,6 +241,7 @@ class Checker(Node):
     Example:
         textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")
     """
+    __match_args__ = ("size", "even", "odd", "space", "axes", "offset")
     size: float | Any
     even: Any
     odd: Any
@@ -244,6 +286,7 @@ class Gradient(Node):
     Example:
         textures.Gradient(stops=[Stop(0, "#000000"), Stop(1, "#ffffff")])
     """
+    __match_args__ = ("stops", "space", "start", "end", "shape")
     stops: list[scene_types.Stop | Any] | Any
     space: Literal["uv", "local", "world"] | Any
     start: list[float | Any] | Any
@@ -282,6 +325,7 @@ class Ramp(Node):
     Example:
         textures.Ramp(input="height", stops=[Stop(0, "#000000"), Stop(1, "#ffffff")])
     """
+    __match_args__ = ("input", "stops", "interpolation")
     input: Any
     stops: list[scene_types.Stop | Any] | Any
     interpolation: Literal["linear", "smooth", "hold"] | Any
@@ -315,6 +359,7 @@ class Mix(Node):
     Example:
         textures.Mix(a="moss", b="stone", amount=0.3)
     """
+    __match_args__ = ("a", "b", "amount", "mode")
     a: Any
     b: Any
     amount: Any
@@ -367,6 +412,17 @@ class Noise(Node):
     Example:
         textures.Noise(low="#202020", high="#e0e0e0", scale=4)
     """
+    __match_args__ = (
+        "low",
+        "high",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     low: Any
     high: Any
     seed: int | Any
@@ -441,6 +497,20 @@ class Fbm(Node):
     Example:
         textures.Fbm(octaves=5, scale=2)
     """
+    __match_args__ = (
+        "low",
+        "high",
+        "octaves",
+        "lacunarity",
+        "gain",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     low: Any
     high: Any
     octaves: int | Any
@@ -524,6 +594,20 @@ class Turbulence(Node):
     Example:
         textures.Turbulence(octaves=5, scale=2)
     """
+    __match_args__ = (
+        "low",
+        "high",
+        "octaves",
+        "lacunarity",
+        "gain",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     low: Any
     high: Any
     octaves: int | Any
@@ -610,6 +694,22 @@ class Marble(Node):
     Example:
         textures.Marble(stone="#f0ece4", vein="#404048", scale=3)
     """
+    __match_args__ = (
+        "stone",
+        "vein",
+        "distortion",
+        "sharpness",
+        "octaves",
+        "lacunarity",
+        "gain",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     stone: Any
     vein: Any
     distortion: float | Any
@@ -701,6 +801,22 @@ class Wood(Node):
     Example:
         textures.Wood(light="#c89858", dark="#6b4020")
     """
+    __match_args__ = (
+        "light",
+        "dark",
+        "distortion",
+        "grain",
+        "octaves",
+        "lacunarity",
+        "gain",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     light: Any
     dark: Any
     distortion: float | Any
@@ -788,6 +904,20 @@ class Voronoi(Node):
     Example:
         textures.Voronoi(feature="f2_minus_f1", scale=6)
     """
+    __match_args__ = (
+        "low",
+        "high",
+        "feature",
+        "metric",
+        "jitter",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     low: Any
     high: Any
     feature: Literal["f1", "f2", "f2_minus_f1", "cell"] | Any
@@ -873,6 +1003,22 @@ class Brick(Node):
     Example:
         textures.Brick(brick="#a04030", mortar="#c8c0b8")
     """
+    __match_args__ = (
+        "brick",
+        "mortar",
+        "width",
+        "height",
+        "mortar_width",
+        "shift",
+        "variation",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     brick: Any
     mortar: Any
     width: float | Any
@@ -959,6 +1105,20 @@ class Dots(Node):
     Example:
         textures.Dots(dot="#ffffff", ground="#c02020", radius=0.3)
     """
+    __match_args__ = (
+        "dot",
+        "ground",
+        "radius",
+        "softness",
+        "jitter",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     dot: Any
     ground: Any
     radius: float | Any
@@ -1046,6 +1206,23 @@ class Wave(Node):
     Example:
         textures.Wave(shape="rings", profile="sine", scale=4)
     """
+    __match_args__ = (
+        "low",
+        "high",
+        "shape",
+        "profile",
+        "distortion",
+        "octaves",
+        "lacunarity",
+        "gain",
+        "seed",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     low: Any
     high: Any
     shape: Literal["bands", "rings"] | Any
@@ -1130,6 +1307,16 @@ class Triplanar(Node):
     Example:
         textures.Triplanar(texture="rock", sharpness=4)
     """
+    __match_args__ = (
+        "texture",
+        "sharpness",
+        "space",
+        "uv_set",
+        "scale",
+        "rotate_degrees",
+        "offset",
+        "matrix",
+    )
     texture: Any
     sharpness: float | Any
     space: Literal["uv", "local", "world"] | Any
@@ -1189,6 +1376,7 @@ class Uv(Node):
     Example:
         textures.Uv()
     """
+    __match_args__ = ("space", "uv_set", "scale", "rotate_degrees", "offset", "matrix")
     space: Literal["uv", "local", "world"] | Any
     uv_set: int | Any
     scale: float | list[float | Any] | Any

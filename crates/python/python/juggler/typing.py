@@ -894,10 +894,10 @@ class SpotLightDict(TypedDict, total=False):
 
 
 class ValueFormDict(TypedDict, total=False):
-    animate: KeysDict
-    along: AlongDict
-    joint: JointDict
-    posed: PosedDict
+    animate: Mapping[str, Any]
+    along: Mapping[str, Any]
+    joint: Mapping[str, Any]
+    posed: Mapping[str, Any]
 
 
 ValueForm: TypeAlias = "animate.Keys | animate.Along | animate.Joint | animate.Posed | ValueFormDict"
