@@ -113,13 +113,6 @@ impl<'s> Model<'s> {
         scene_types.classes.iter().find(|class| class.name == name && class.definition.is_some())
     }
 
-    /// Content of the kinds that stand for another definition's objects, such as the steps of a
-    /// transform.
-    fn kind_contents(&self) -> BTreeSet<&'s str> {
-        let kinds = self.definitions().flat_map(|(_, schema)| kinds(schema));
-        kinds.filter_map(|kind| reference(kind.content)).collect()
-    }
-
     fn kind_classes(&self, module: &str, family: &'s Value) -> Result<Vec<Class<'s>>, UnknownSchema> {
         let class = |kind: Kind<'s>| {
             let definition = reference(kind.content);
@@ -138,8 +131,9 @@ impl<'s> Model<'s> {
     fn scene_classes(&self, module: &str) -> Vec<Class<'s>> {
         let scene = self.root.as_object().map(|root| Class::new(module, "Scene".into(), description(self.root), root));
         let mut classes: Vec<Class<'_>> = scene.into_iter().collect();
-        let kinds = self.kind_contents();
-        for (definition, schema) in self.definitions().filter(|(name, _)| !kinds.contains(name)) {
+        let kinds = self.definitions().flat_map(|(_, schema)| kinds(schema));
+        let contents: BTreeSet<&str> = kinds.filter_map(|kind| reference(kind.content)).collect();
+        for (definition, schema) in self.definitions().filter(|(name, _)| !contents.contains(name)) {
             let name = names::definition_class(definition);
             if let Some(object) = object(schema).filter(|_| classes.iter().all(|class| class.name != name)) {
                 let class = Class::new(module, name, description(schema), object);

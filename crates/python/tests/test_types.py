@@ -194,6 +194,25 @@ class Nodes(unittest.TestCase):
         self.assertEqual((ball._fields, repr(ball)), (("radius", "mass"), "Ball(radius=2, mass=3)"))
         self.assertEqual(ball.to_dict(), {"sphere": {"radius": 2, "mass": 3}})
 
+    def test_base_classes_may_store_arrays_elsewhere(self):
+        class Picture(Node):
+            __slots__ = ("array",)
+            _unwritten = ("array",)
+
+            def _members(self, collect):
+                members = super()._members(collect)
+                return members if self.array is None else {**members, "file": collect(self.array)}
+
+        class Image(Picture):
+            __slots__ = ("file", "wrap")
+            _kind = "image"
+            _positional = ("file",)
+
+        self.assertEqual(Image.__match_args__, ("file", "array", "wrap"))
+        self.assertEqual(Image("a.png").to_dict(), {"image": {"file": "a.png"}})
+        json_form = Image(array=[1], wrap="clamp").to_json(lambda array: f"array {array}")
+        self.assertEqual(json_form, {"image": {"wrap": "clamp", "file": "array [1]"}})
+
 
 class Array:
     """Array as NumPy has them, as far as nodes use it."""

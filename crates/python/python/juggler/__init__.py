@@ -3,6 +3,10 @@
 The classes of the scene format are in modules that load when they are first used: one for each
 family of kinds (`shapes`, `materials`, ...), `animate` for values that change over time, and
 `scene_types`, whose classes (`Scene`, `Object`, ...) are here, too.
+
+A number may be an expression such as `"=2 * radius"`, and every value may be a value form of
+`animate`. Lists, tuples and arrays are equivalent, and so are classes and the dictionaries of scene
+files. A field that is `None` is absent: the documentation of its class tells the default.
 """
 
 from ._exports import MODULES as _MODULES

@@ -127,6 +127,8 @@ class Node:
     _keys = {}
     # Members that have only one possible value.
     _constants = {}
+    # Fields that are no members of the JSON form: an override of `_members` writes them.
+    _unwritten = ()
 
     def __init_subclass__(cls, **arguments):
         super().__init_subclass__(**arguments)
@@ -210,7 +212,7 @@ class Node:
         members = dict(self._constants)
         for name in self._fields:
             value = getattr(self, name)
-            if value is None:
+            if value is None or name in self._unwritten:
                 continue
             try:
                 members[self._keys.get(name, name)] = plain(value, collect)

@@ -13,6 +13,7 @@ class Node:
     _required: ClassVar[tuple[str, ...]]
     _keys: ClassVar[dict[str, str]]
     _constants: ClassVar[dict[str, Any]]
+    _unwritten: ClassVar[tuple[str, ...]]
     def __eq__(self, other: object, /) -> bool: ...
     def __replace__(self, **changes: Any) -> Self: ...
     def to_dict(self) -> dict[str, Any]:
