@@ -218,7 +218,7 @@ class Array:
     """Array as NumPy has them, as far as nodes use it."""
 
     def __init__(self, numbers, shape):
-        self.numbers, self.shape = numbers, shape
+        self.numbers, self.shape, self.ndim = numbers, shape, len(shape)
 
     def tolist(self):
         return self.numbers
@@ -237,14 +237,15 @@ class Arrays(unittest.TestCase):
         found = []
 
         def collect(value):
-            if value.shape[:1] < (100,):
+            if value.shape[0] < 100:
                 return None
             found.append(value)
             return f"asset {len(found)}"
 
         large, small = Array([], (100, 3)), Array([[0, 0, 1]], (1, 3))
-        scene = Scene(objects=[Object(shapes.Mesh(positions=large, normals=small))])
-        mesh = {"mesh": {"positions": "asset 1", "normals": [[0, 0, 1]]}}
+        sharp = Array(30, ())
+        scene = Scene(objects=[Object(shapes.Mesh(positions=large, normals=small, crease_angle_degrees=sharp))])
+        mesh = {"mesh": {"positions": "asset 1", "normals": [[0, 0, 1]], "crease_angle_degrees": 30}}
         self.assertEqual(scene.to_json(collect)["objects"], [{"shape": mesh}])
         self.assertEqual(found, [large])
 

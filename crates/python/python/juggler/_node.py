@@ -17,8 +17,9 @@ class _Unfit(TypeError):
 def plain(value, collect=None):
     """Converts a value to what `json` can write: dicts, lists, strings, numbers and booleans.
 
-    `collect` is called with each array (an object with `tolist`). It returns what stands for the
-    array in the result, or `None` for its numbers as lists.
+    `collect` is called with each array (an object with `tolist` that is no single number, of any
+    library). It returns what stands for the array in the result, or `None` for its numbers as
+    lists.
     """
     if type(value) in _PLAIN:
         return value
@@ -29,7 +30,8 @@ def plain(value, collect=None):
     if isinstance(value, dict):
         return {_key(key): plain(item, collect) for key, item in value.items()}
     if hasattr(value, "tolist"):
-        found = None if collect is None else collect(value)
+        is_scalar = getattr(value, "ndim", 1) == 0
+        found = None if collect is None or is_scalar else collect(value)
         return value.tolist() if found is None else found
     return _other(value, collect)
 

@@ -204,7 +204,7 @@ class Direction(Node):
         turns (number from -1000 to 1000; default 0): Angle that is added, in full turns.
 
     Example:
-        textures.Direction(of="normal")
+        textures.Direction(of="flow", turns=0.25)
     """
     __match_args__ = ("of", "turns")
     of: Any
