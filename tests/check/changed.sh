@@ -22,13 +22,15 @@ dependents() {
   local name
   name=$(sed -n 's/^name = "\(.*\)"/\1/p' "crates/$1/Cargo.toml" | head -1)
   cargo tree --workspace --locked --edges normal,build,dev --prefix none --invert "$name" |
-    sed -n 's|^juggler[a-z-]* v[^ ]* (.*/crates/\([a-z]*\)).*|\1|p'
+    sed -n 's|^juggler[a-z-]* v[^ ]* (.*/crates/\([a-z-]*\)).*|\1|p'
 }
 
-# Prints the package whose tests read a file outside of crates/.
+# Prints the packages whose tests read a file outside of their own folder in crates/.
 readers() {
   case "$1" in
-    scenes/* | schema/* | docs/scene-format.md) echo scene ;;
+    schema/*) printf '%s\n' scene python-types ;;
+    scenes/* | docs/scene-format.md) echo scene ;;
+    crates/python/python/*) printf '%s\n' python python-types ;;
     docs/gallery.md) echo juggler ;;
     docs/viewer.md) echo viewer ;;
     Cargo.toml | Cargo.lock | clippy.toml | rustfmt.toml | check.sh | .ci/* | tests/check/*) echo all ;;
@@ -50,7 +52,7 @@ is_commented() {
 affected_packages() {
   local base=$1 file package direct=
   while read -r file; do
-    if [[ $file != crates/*/* ]]; then
+    if [[ $file != crates/*/* || $file == crates/python/python/* ]]; then
       direct+="$(readers "$file")"$'\n'
     elif is_commented "$base" "$file"; then
       printf '%s\ndescriptions\n' "$(cut -d/ -f2 <<< "$file")"

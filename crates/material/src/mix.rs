@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Mixture of two materials: each sample chooses one of them at random.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
+#[schemars(rename = "MixMaterial")]
 pub struct Mix {
     /// Weight of `b`, 0 to 1; the weight of `a` is 1 - `amount`.
     pub amount: Input<f32>,

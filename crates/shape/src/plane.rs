@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 /// Surface coordinates: u is x, v is z, in scene units.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
+#[schemars(rename = "PlaneShape")]
 pub struct Plane {}
 
 /// Distance and point where a ray crosses the plane y = 0; the point is exactly on the plane.

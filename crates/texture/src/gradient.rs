@@ -23,6 +23,7 @@ use std::sync::Arc;
 /// Color gradient along a line or around a point, interpolated in linear light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
+#[schemars(rename = "GradientTexture")]
 pub struct Gradient {
     /// Stops in order of rising position. Two stops at one position form a sharp edge.
     #[schemars(length(min = 1))]

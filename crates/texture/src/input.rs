@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// or a product of a texture, a factor and an attribute of the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, a color, the name of a texture or a product")]
+#[schemars(rename = "Input_{T}")]
 pub enum Input<T> {
     /// Constant value.
     Value(T),
@@ -21,6 +22,7 @@ pub enum Input<T> {
 /// is required. Products outside of the input's range are clamped, as values of textures are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "InputProduct_{T}")]
 pub struct InputProduct<T> {
     /// Texture: inline, or the name of one. Numbers use its luminance. Without it, the product
     /// consists of the other parts.

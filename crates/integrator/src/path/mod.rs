@@ -60,6 +60,7 @@ const DEFAULT_LIGHT_SAMPLES: u32 = 2;
 /// media.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
+#[schemars(rename = "PathIntegrator")]
 pub struct Path {
     /// Maximum number of path segments between camera and light, 1 to 10,000. 1 shows only
     /// emitters, 2 adds direct lighting, larger values add indirect bounces. Scenes with much glass

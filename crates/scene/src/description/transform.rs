@@ -163,7 +163,6 @@ fn orthonormal_frame(axis: DVec3, top: DVec3) -> DMat3 {
 /// 0, except at some frames of an animation: at these, the object is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[schemars(rename = "Axes")]
 pub enum ScaleFactors {
     /// Factor along all axes.
     All(f32),

@@ -98,9 +98,9 @@ pub fn fixed(family: &Value) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Name of a definition without the number that distinguishes it from others of the same name.
+/// Name of a definition without its type parameter: `Input_Color` becomes `Input`.
 pub fn family(name: &str) -> &str {
-    name.trim_end_matches(|c: char| c.is_ascii_digit())
+    name.split_once('_').map_or(name, |(generic, _)| generic)
 }
 
 /// Whether strings of a definition are names of textures.

@@ -1,0 +1,42 @@
+# Generated from schema/scene.schema.json by crates/python-types. Do not edit.
+"""Names of the modules and of the classes of `scene_types`."""
+
+MODULES = (
+    "integrators",
+    "samplers",
+    "filters",
+    "curves",
+    "cameras",
+    "backgrounds",
+    "textures",
+    "materials",
+    "shapes",
+    "lights",
+    "animate",
+    "scene_types",
+)
+SCENE_TYPES = (
+    "Scene",
+    "Path",
+    "RenderSettings",
+    "Tone",
+    "WhiteBalance",
+    "Move",
+    "Screen",
+    "ViewPlane",
+    "InputProduct",
+    "Stop",
+    "Spread",
+    "Medium",
+    "Object",
+    "MeshAttribute",
+    "Morph",
+    "Chain",
+    "ControlSphere",
+    "Limb",
+    "Model",
+    "Instances",
+    "Attenuation",
+    "Ies",
+    "Animation",
+)

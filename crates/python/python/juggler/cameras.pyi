@@ -1,0 +1,305 @@
+# Generated from schema/scene.schema.json by crates/python-types. Do not edit.
+"""Kinds of cameras."""
+
+from typing import Any, Self
+
+from . import scene_types
+from . import typing as t
+from ._node import Node
+
+__all__ = [
+    "Perspective",
+    "ThinLens",
+    "Orthographic",
+]
+
+class Perspective(Node):
+    """Pinhole camera: objects at all distances are sharp.
+
+    Args:
+        eye (3 numbers; scene units; default (0, 0, 5)): Position of the camera, in world space.
+        look_at (3 numbers; scene units): Point that the camera looks at before yaw, pitch and roll,
+            in world space. The default is the origin, unless `direction` is given.
+        direction (3 numbers): View direction, of any length; replaces `look_at`.
+        up (3 numbers; default (0, 1, 0)): Direction of the picture's top, of any length. It is
+            projected perpendicular to the view direction.
+        yaw_degrees (number; default 0): Rotation to the right about the camera's up axis, in
+            degrees.
+        pitch_degrees (number; default 0): Upward rotation about the camera's right axis, in
+            degrees, after yaw.
+        roll_degrees (number; default 0): Clockwise rotation of the camera about the view direction,
+            in degrees, after pitch; its top leans to the right.
+        move (`Move`): Translation along the camera's axes, after the rotations.
+        vertical_fov_degrees (number above 0 below 180): Vertical field of view in degrees, between
+            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen` and
+            `view_plane` may be given; the default is 40.
+        horizontal_fov_degrees (number above 0 below 180): Horizontal field of view in degrees,
+            between 0 and 180.
+        screen (`Screen`): Field of view as a screen of a given width at a given distance; pixels
+            are square.
+        view_plane (`ViewPlane`): Field of view as a rectangle at a given distance; the picture is
+            stretched over it.
+        fit_aspect (number above 0): Aspect ratio, width / height, of the narrowest picture that
+            keeps `vertical_fov_degrees`. A narrower picture keeps the width that a picture of this
+            aspect ratio has and shows more above and below, so nothing at its sides is lost. By
+            default `vertical_fov_degrees` holds for every picture.
+
+    Example:
+        cameras.Perspective(eye=(0, 2, 6), look_at=(0, 1, 0), vertical_fov_degrees=40)
+    """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "vertical_fov_degrees",
+        "horizontal_fov_degrees",
+        "screen",
+        "view_plane",
+        "fit_aspect",
+    )
+    eye: list[float | Any] | Any
+    look_at: list[float | Any] | Any
+    direction: list[float | Any] | Any
+    up: list[float | Any] | Any
+    yaw_degrees: float | Any
+    pitch_degrees: float | Any
+    roll_degrees: float | Any
+    move: scene_types.Move | Any
+    vertical_fov_degrees: float | Any
+    horizontal_fov_degrees: float | Any
+    screen: scene_types.Screen | Any
+    view_plane: scene_types.ViewPlane | Any
+    fit_aspect: float | Any
+    def __init__(
+        self,
+        *,
+        eye: t.Vec3Like | None = None,
+        look_at: t.Vec3Like | None = None,
+        direction: t.Vec3Like | None = None,
+        up: t.Vec3Like | None = None,
+        yaw_degrees: t.Number | None = None,
+        pitch_degrees: t.Number | None = None,
+        roll_degrees: t.Number | None = None,
+        move: t.MoveLike | None = None,
+        vertical_fov_degrees: t.Number | None = None,
+        horizontal_fov_degrees: t.Number | None = None,
+        screen: t.ScreenLike | None = None,
+        view_plane: t.ViewPlaneLike | None = None,
+        fit_aspect: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        eye: t.Vec3Like | None = ...,
+        look_at: t.Vec3Like | None = ...,
+        direction: t.Vec3Like | None = ...,
+        up: t.Vec3Like | None = ...,
+        yaw_degrees: t.Number | None = ...,
+        pitch_degrees: t.Number | None = ...,
+        roll_degrees: t.Number | None = ...,
+        move: t.MoveLike | None = ...,
+        vertical_fov_degrees: t.Number | None = ...,
+        horizontal_fov_degrees: t.Number | None = ...,
+        screen: t.ScreenLike | None = ...,
+        view_plane: t.ViewPlaneLike | None = ...,
+        fit_aspect: t.Number | None = ...,
+    ) -> Self: ...
+
+class ThinLens(Node):
+    """Thin-lens camera: a plane in focus, depth-of-field blur before and behind it.
+
+    Args:
+        eye (3 numbers; scene units; default (0, 0, 5)): Position of the camera, in world space.
+        look_at (3 numbers; scene units): Point that the camera looks at before yaw, pitch and roll,
+            in world space. The default is the origin, unless `direction` is given.
+        direction (3 numbers): View direction, of any length; replaces `look_at`.
+        up (3 numbers; default (0, 1, 0)): Direction of the picture's top, of any length. It is
+            projected perpendicular to the view direction.
+        yaw_degrees (number; default 0): Rotation to the right about the camera's up axis, in
+            degrees.
+        pitch_degrees (number; default 0): Upward rotation about the camera's right axis, in
+            degrees, after yaw.
+        roll_degrees (number; default 0): Clockwise rotation of the camera about the view direction,
+            in degrees, after pitch; its top leans to the right.
+        move (`Move`): Translation along the camera's axes, after the rotations.
+        vertical_fov_degrees (number above 0 below 180): Vertical field of view in degrees, between
+            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen` and
+            `view_plane` may be given; the default is 40.
+        horizontal_fov_degrees (number above 0 below 180): Horizontal field of view in degrees,
+            between 0 and 180.
+        screen (`Screen`): Field of view as a screen of a given width at a given distance; pixels
+            are square.
+        view_plane (`ViewPlane`): Field of view as a rectangle at a given distance; the picture is
+            stretched over it.
+        fit_aspect (number above 0): Aspect ratio, width / height, of the narrowest picture that
+            keeps `vertical_fov_degrees`. A narrower picture keeps the width that a picture of this
+            aspect ratio has and shows more above and below, so nothing at its sides is lost. By
+            default `vertical_fov_degrees` holds for every picture.
+        lens_radius (number from 0; default 0.05): Radius of the lens in scene units, 0 or more.
+            Larger lenses blur more outside the focal plane; 0 is a pinhole.
+        focus_distance (number above 0; default 5): Distance from the eye to the plane in focus
+            along the view direction, in scene units. It must be above 0.
+
+    Example:
+        cameras.ThinLens(eye=(0, 2, 6), look_at=(0, 1, 0), lens_radius=0.05, focus_distance=6)
+    """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "vertical_fov_degrees",
+        "horizontal_fov_degrees",
+        "screen",
+        "view_plane",
+        "fit_aspect",
+        "lens_radius",
+        "focus_distance",
+    )
+    eye: list[float | Any] | Any
+    look_at: list[float | Any] | Any
+    direction: list[float | Any] | Any
+    up: list[float | Any] | Any
+    yaw_degrees: float | Any
+    pitch_degrees: float | Any
+    roll_degrees: float | Any
+    move: scene_types.Move | Any
+    vertical_fov_degrees: float | Any
+    horizontal_fov_degrees: float | Any
+    screen: scene_types.Screen | Any
+    view_plane: scene_types.ViewPlane | Any
+    fit_aspect: float | Any
+    lens_radius: float | Any
+    focus_distance: float | Any
+    def __init__(
+        self,
+        *,
+        eye: t.Vec3Like | None = None,
+        look_at: t.Vec3Like | None = None,
+        direction: t.Vec3Like | None = None,
+        up: t.Vec3Like | None = None,
+        yaw_degrees: t.Number | None = None,
+        pitch_degrees: t.Number | None = None,
+        roll_degrees: t.Number | None = None,
+        move: t.MoveLike | None = None,
+        vertical_fov_degrees: t.Number | None = None,
+        horizontal_fov_degrees: t.Number | None = None,
+        screen: t.ScreenLike | None = None,
+        view_plane: t.ViewPlaneLike | None = None,
+        fit_aspect: t.Number | None = None,
+        lens_radius: t.Number | None = None,
+        focus_distance: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        eye: t.Vec3Like | None = ...,
+        look_at: t.Vec3Like | None = ...,
+        direction: t.Vec3Like | None = ...,
+        up: t.Vec3Like | None = ...,
+        yaw_degrees: t.Number | None = ...,
+        pitch_degrees: t.Number | None = ...,
+        roll_degrees: t.Number | None = ...,
+        move: t.MoveLike | None = ...,
+        vertical_fov_degrees: t.Number | None = ...,
+        horizontal_fov_degrees: t.Number | None = ...,
+        screen: t.ScreenLike | None = ...,
+        view_plane: t.ViewPlaneLike | None = ...,
+        fit_aspect: t.Number | None = ...,
+        lens_radius: t.Number | None = ...,
+        focus_distance: t.Number | None = ...,
+    ) -> Self: ...
+
+class Orthographic(Node):
+    """Orthographic camera: all rays are parallel.
+
+    Args:
+        eye (3 numbers; scene units; default (0, 0, 5)): Position of the camera, in world space.
+        look_at (3 numbers; scene units): Point that the camera looks at before yaw, pitch and roll,
+            in world space. The default is the origin, unless `direction` is given.
+        direction (3 numbers): View direction, of any length; replaces `look_at`.
+        up (3 numbers; default (0, 1, 0)): Direction of the picture's top, of any length. It is
+            projected perpendicular to the view direction.
+        yaw_degrees (number; default 0): Rotation to the right about the camera's up axis, in
+            degrees.
+        pitch_degrees (number; default 0): Upward rotation about the camera's right axis, in
+            degrees, after yaw.
+        roll_degrees (number; default 0): Clockwise rotation of the camera about the view direction,
+            in degrees, after pitch; its top leans to the right.
+        move (`Move`): Translation along the camera's axes, after the rotations.
+        height (number above 0): Height of the visible area in scene units, above 0. If only `width`
+            is given, the aspect ratio of the picture gives the height, so pixels are square. If
+            both are given, the picture is stretched. The default is 4.
+        width (number above 0): Width of the visible area in scene units, above 0. The default
+            follows from `height`.
+        fit_aspect (number above 0): Aspect ratio, width / height, of the narrowest picture that
+            keeps `height`. A narrower picture keeps the width that a picture of this aspect ratio
+            has and shows more above and below, so nothing at its sides is lost. By default `height`
+            holds for every picture.
+
+    Example:
+        cameras.Orthographic(eye=(0, 2, 6), look_at=(0, 1, 0), height=4)
+    """
+    __match_args__ = (
+        "eye",
+        "look_at",
+        "direction",
+        "up",
+        "yaw_degrees",
+        "pitch_degrees",
+        "roll_degrees",
+        "move",
+        "height",
+        "width",
+        "fit_aspect",
+    )
+    eye: list[float | Any] | Any
+    look_at: list[float | Any] | Any
+    direction: list[float | Any] | Any
+    up: list[float | Any] | Any
+    yaw_degrees: float | Any
+    pitch_degrees: float | Any
+    roll_degrees: float | Any
+    move: scene_types.Move | Any
+    height: float | Any
+    width: float | Any
+    fit_aspect: float | Any
+    def __init__(
+        self,
+        *,
+        eye: t.Vec3Like | None = None,
+        look_at: t.Vec3Like | None = None,
+        direction: t.Vec3Like | None = None,
+        up: t.Vec3Like | None = None,
+        yaw_degrees: t.Number | None = None,
+        pitch_degrees: t.Number | None = None,
+        roll_degrees: t.Number | None = None,
+        move: t.MoveLike | None = None,
+        height: t.Number | None = None,
+        width: t.Number | None = None,
+        fit_aspect: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        eye: t.Vec3Like | None = ...,
+        look_at: t.Vec3Like | None = ...,
+        direction: t.Vec3Like | None = ...,
+        up: t.Vec3Like | None = ...,
+        yaw_degrees: t.Number | None = ...,
+        pitch_degrees: t.Number | None = ...,
+        roll_degrees: t.Number | None = ...,
+        move: t.MoveLike | None = ...,
+        height: t.Number | None = ...,
+        width: t.Number | None = ...,
+        fit_aspect: t.Number | None = ...,
+    ) -> Self: ...

@@ -1,0 +1,1079 @@
+# Generated from schema/scene.schema.json by crates/python-types. Do not edit.
+"""The scene and its parts that are no kinds of a family."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Self
+
+from . import typing as t
+from ._node import Node
+from ._placement import Placement
+
+__all__ = [
+    "Scene",
+    "Path",
+    "RenderSettings",
+    "Tone",
+    "WhiteBalance",
+    "Move",
+    "Screen",
+    "ViewPlane",
+    "InputProduct",
+    "Stop",
+    "Spread",
+    "Medium",
+    "Object",
+    "MeshAttribute",
+    "Morph",
+    "Chain",
+    "ControlSphere",
+    "Limb",
+    "Model",
+    "Instances",
+    "Attenuation",
+    "Ies",
+    "Animation",
+]
+
+class Scene(Node):
+    """Scene: everything that determines the rendered image.
+
+    Args:
+        title (string): Title of the scene, for people.
+        description (string): Description of the scene in one sentence, for people.
+        include (string or list of strings): Paths of other scene files, relative to this one.
+        animation (`Animation`): Length and frame rate of an animation.
+        variables (dict from names to numbers, strings or lists of numbers or strings): Named
+            numbers and vectors for expressions such as `"=2 * radius"`. A variable may refer to
+            variables above it.
+        paths (dict from names to `Path` objects): Named curves for the value form `along`. A scene
+            that is saved at a single frame has no paths.
+        render (`RenderSettings`): Render settings: image size, samples, shutter, integrator,
+            sampler and filter.
+        tone (`Tone`): Tone mapping from linear radiance to the pixel values of an image file.
+        camera (camera): Camera of a scene with a single camera. Without `camera` and `cameras`, a
+            default camera sees all objects.
+        cameras (dict from names to cameras): Cameras by name, in place of `camera`. The first is
+            used unless `render.camera` or the command line selects another.
+        background (color or background): Radiance of rays that leave the scene. Defaults to black,
+            or to a uniform gray of 0.25 in a scene without lights and emissive materials.
+        background_light_group (string): Light group of the background; each light group is written
+            to an AOV of its own. Without it, the background belongs to the group `rest`.
+        textures (dict from names to textures): Textures by name.
+        materials (dict from names to materials): Materials by name.
+        groups (dict from names to lists of `Object` objects): Groups of objects by name, which
+            objects place any number of times. Groups may place other groups. Large groups with many
+            placements are stored once and instanced.
+        lights (list of lights): Lights. A scene without lights, without emissive materials and
+            without a background that lights it gets a default light above the camera. An
+            `environment` and a `sky` light the scene; with the integrators `path` and `direct`, so
+            does every other background that is not black.
+        objects (list of `Object` objects; default []): Objects of the scene, in world space.
+
+    Example:
+        Scene(objects=[Object(shapes.Plane()), Object(shapes.Sphere(radius=1)).translate(0, 1, 0)])
+    """
+    __match_args__ = (
+        "title",
+        "description",
+        "include",
+        "animation",
+        "variables",
+        "paths",
+        "render",
+        "tone",
+        "camera",
+        "cameras",
+        "background",
+        "background_light_group",
+        "textures",
+        "materials",
+        "groups",
+        "lights",
+        "objects",
+    )
+    title: str | Any
+    description: str | Any
+    include: str | list[str | Any] | Any
+    animation: Animation | Any
+    variables: dict[str, float | str | list[float | str | Any] | Any] | Any
+    paths: dict[str, Path | Any] | Any
+    render: RenderSettings | Any
+    tone: Tone | Any
+    camera: t.Camera | Any
+    cameras: dict[str, t.Camera | Any] | Any
+    background: t.Background | Any
+    background_light_group: str | Any
+    textures: dict[str, t.Texture | Any] | Any
+    materials: dict[str, t.Material | Any] | Any
+    groups: dict[str, list[Object | Any] | Any] | Any
+    lights: list[t.Light | Any] | Any
+    objects: list[Object | Any] | Any
+    def __init__(
+        self,
+        *,
+        title: str | None = None,
+        description: str | None = None,
+        include: str | Sequence[str] | None = None,
+        animation: t.AnimationLike | None = None,
+        variables: Mapping[str, t.Number | t.VectorLike] | None = None,
+        paths: Mapping[str, t.PathLike] | None = None,
+        render: t.RenderSettingsLike | None = None,
+        tone: t.ToneLike | None = None,
+        camera: t.CameraLike | None = None,
+        cameras: Mapping[str, t.CameraLike] | None = None,
+        background: t.ColorLike | t.BackgroundLike | None = None,
+        background_light_group: str | t.ValueForm | None = None,
+        textures: Mapping[str, t.TextureLike] | None = None,
+        materials: Mapping[str, t.MaterialLike] | None = None,
+        groups: Mapping[str, Sequence[t.ObjectLike] | t.ValueForm] | None = None,
+        lights: Sequence[t.LightLike] | t.ValueForm | None = None,
+        objects: Sequence[t.ObjectLike] | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        title: str | None = ...,
+        description: str | None = ...,
+        include: str | Sequence[str] | None = ...,
+        animation: t.AnimationLike | None = ...,
+        variables: Mapping[str, t.Number | t.VectorLike] | None = ...,
+        paths: Mapping[str, t.PathLike] | None = ...,
+        render: t.RenderSettingsLike | None = ...,
+        tone: t.ToneLike | None = ...,
+        camera: t.CameraLike | None = ...,
+        cameras: Mapping[str, t.CameraLike] | None = ...,
+        background: t.ColorLike | t.BackgroundLike | None = ...,
+        background_light_group: str | t.ValueForm | None = ...,
+        textures: Mapping[str, t.TextureLike] | None = ...,
+        materials: Mapping[str, t.MaterialLike] | None = ...,
+        groups: Mapping[str, Sequence[t.ObjectLike] | t.ValueForm] | None = ...,
+        lights: Sequence[t.LightLike] | t.ValueForm | None = ...,
+        objects: Sequence[t.ObjectLike] | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class Path(Node):
+    """Curve through points, for the value form `along`: `{"along": {"path": NAME, "at": SHARE}}`.
+
+    The curve is a centripetal Catmull-Rom spline. It passes through all points in order with a
+    continuous tangent and stays close to straight lines between points that are close to each
+    other. Consecutive equal points count as one.
+
+    Args:
+        points (1 to 10000 groups of 3 numbers; required): Points `[x, y, z]` that the curve passes
+            through, in the space of the value that uses the path.
+        closed (True or False; default False): Whether the curve continues from the last point back
+            to the first. Set it for cyclic motion: a closed path can be followed any number of
+            times.
+
+    Example:
+        Path([(0, 0, 0), (1, 0, 2), (3, 1, 2)], closed=True)
+    """
+    __match_args__ = ("points", "closed")
+    points: list[list[float | Any] | Any] | Any
+    closed: bool | Any
+    def __init__(
+        self,
+        points: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm,
+        *,
+        closed: bool | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        points: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm = ...,
+        closed: bool | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class RenderSettings(Node):
+    """Render settings: image size, sampling, shutter and integrator.
+
+    Args:
+        size (2 whole numbers from 1 to 65536; default (640, 360)): Width and height of the image in
+            pixels; at most 2³¹ pixels in total.
+        samples (whole number from 1 to 16777216; default 16): Samples per pixel. Four times as many
+            samples halve the noise and take four times as long.
+        seed (whole number from 0; default 0): Seed of the sampler. The same seed reproduces an
+            image bit for bit; another seed gives other noise.
+        camera (string): Name of the camera to render with. Defaults to the first camera.
+        shutter (2 numbers from -1000 to 1000): Times at which the shutter opens and closes, in
+            frames relative to the frame's own time, in this order. Motion in between is blurred.
+            `[0, 0.5]` is the 180° shutter of a movie camera; the default `[0, 0]` disables motion
+            blur.
+        integrator (integrator): Light transport algorithm. Defaults to `path` if the scene contains
+            anything that `classic` does not support: an `emissive` material, an `area` light, an
+            `environment` or a `sky`, a medium, any material except `phong` and combinations of it.
+            Otherwise defaults to `classic`. `juggler info` prints the choice and its reason.
+        sampler (sampler; default "sobol"): Sampler: distribution of the samples in pixel, lens,
+            time and light dimensions.
+        filter (filter; default "box"): Reconstruction filter, which weights the samples near a
+            pixel.
+
+    Example:
+        RenderSettings(size=(1280, 720), samples=256, integrator=integrators.Path(max_depth=8))
+    """
+    __match_args__ = (
+        "size",
+        "samples",
+        "seed",
+        "camera",
+        "shutter",
+        "integrator",
+        "sampler",
+        "filter",
+    )
+    size: list[int | Any] | Any
+    samples: int | Any
+    seed: int | Any
+    camera: str | Any
+    shutter: list[float | Any] | Any
+    integrator: t.Integrator | Any
+    sampler: t.Sampler | Any
+    filter: t.Filter | Any
+    def __init__(
+        self,
+        *,
+        size: t.Vec2Like | None = None,
+        samples: t.Integer | None = None,
+        seed: t.Integer | None = None,
+        camera: str | t.ValueForm | None = None,
+        shutter: t.Vec2Like | None = None,
+        integrator: t.IntegratorLike | None = None,
+        sampler: t.SamplerLike | None = None,
+        filter: t.FilterLike | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        size: t.Vec2Like | None = ...,
+        samples: t.Integer | None = ...,
+        seed: t.Integer | None = ...,
+        camera: str | t.ValueForm | None = ...,
+        shutter: t.Vec2Like | None = ...,
+        integrator: t.IntegratorLike | None = ...,
+        sampler: t.SamplerLike | None = ...,
+        filter: t.FilterLike | None = ...,
+    ) -> Self: ...
+
+class Tone(Node):
+    """Tone mapping from linear RGB to the levels of an image file. EXR, HDR and PFM files store
+    linear values and ignore these settings, except for the primaries of EXR.
+
+    Args:
+        curve (curve; default "srgb"): Tone curve. The default `srgb` clips values above 1;
+            `reinhard`, `aces`, `agx` and `pbr_neutral` compress highlights instead.
+        exposure_stops (number from -64 to 64; default 0): Exposure in photographic stops, -64 to
+            64, applied before the curve: 1 doubles the radiance, -1 halves it.
+        white_balance (`WhiteBalance`): Light that appears white. By default colors are unchanged,
+            so that D65 (6,504 K) appears white.
+        primaries ("srgb", "display_p3", "rec2020" or "acescg"; default "srgb"): Primaries of the
+            file. PNG supports `display_p3` and `rec2020`, EXR these and `acescg`; the other formats
+            support sRGB only.
+        dither (True or False; default True): Dithers 8-bit images, so that gradients show no
+            banding; exact levels are preserved. Movies, images with a display look and interactive
+            previews are never dithered.
+
+    Example:
+        Tone(curve=curves.Agx(), exposure_stops=1)
+    """
+    __match_args__ = ("curve", "exposure_stops", "white_balance", "primaries", "dither")
+    curve: t.Curve | Any
+    exposure_stops: float | Any
+    white_balance: WhiteBalance | Any
+    primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | Any
+    dither: bool | Any
+    def __init__(
+        self,
+        *,
+        curve: t.CurveLike | None = None,
+        exposure_stops: t.Number | None = None,
+        white_balance: t.WhiteBalanceLike | None = None,
+        primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | t.ValueForm | None = None,
+        dither: bool | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        curve: t.CurveLike | None = ...,
+        exposure_stops: t.Number | None = ...,
+        white_balance: t.WhiteBalanceLike | None = ...,
+        primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | t.ValueForm | None = ...,
+        dither: bool | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class WhiteBalance(Node):
+    """Light source that appears white.
+
+    Args:
+        kelvin (number from 1667 to 25000; K; default 6504): Correlated color temperature of the
+            light in kelvin, 1667 to 25000; 2850 is an incandescent bulb, the default 6504 is D65.
+            Lower values make the image bluer.
+        tint (number from -50 to 50; 0.001 Duv; default 0): Distance of the light from the Planckian
+            or daylight locus in thousandths of Duv (ANSI C78.377), -50 to 50. Positive values state
+            that the light is greenish and make the image more magenta.
+
+    Example:
+        WhiteBalance(kelvin=4000)
+    """
+    __match_args__ = ("kelvin", "tint")
+    kelvin: float | Any
+    tint: float | Any
+    def __init__(
+        self,
+        *,
+        kelvin: t.Number | None = None,
+        tint: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        kelvin: t.Number | None = ...,
+        tint: t.Number | None = ...,
+    ) -> Self: ...
+
+class Move(Node):
+    """Translation along the camera's axes, in scene units.
+
+    Args:
+        right (number; scene units; default 0): Distance to the picture's right.
+        up (number; scene units; default 0): Distance to the picture's top.
+        forward (number; scene units; default 0): Distance into the picture.
+
+    Example:
+        Move(forward=1)
+    """
+    __match_args__ = ("right", "up", "forward")
+    right: float | Any
+    up: float | Any
+    forward: float | Any
+    def __init__(
+        self,
+        *,
+        right: t.Number | None = None,
+        up: t.Number | None = None,
+        forward: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        right: t.Number | None = ...,
+        up: t.Number | None = ...,
+        forward: t.Number | None = ...,
+    ) -> Self: ...
+
+class Screen(Node):
+    """Field of view as a virtual screen in front of the eye. The aspect ratio of the picture gives
+    its height, so pixels are square.
+
+    Args:
+        width (number above 0; required): Width in scene units, above 0.
+        distance (number above 0; required): Distance from the eye in scene units, above 0.
+
+    Example:
+        Screen(0.036, 0.05)
+    """
+    __match_args__ = ("width", "distance")
+    width: float | Any
+    distance: float | Any
+    def __init__(
+        self,
+        width: t.Number,
+        distance: t.Number,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        width: t.Number = ...,
+        distance: t.Number = ...,
+    ) -> Self: ...
+
+class ViewPlane(Node):
+    """Field of view as a virtual screen of a given width and height. A picture of another aspect
+    ratio is stretched over it.
+
+    Args:
+        width (number above 0; required): Width in scene units, above 0.
+        height (number above 0; required): Height in scene units, above 0.
+        distance (number above 0; required): Distance from the eye in scene units, above 0.
+
+    Example:
+        ViewPlane(width=4, height=3, distance=5)
+    """
+    __match_args__ = ("width", "height", "distance")
+    width: float | Any
+    height: float | Any
+    distance: float | Any
+    def __init__(
+        self,
+        *,
+        width: t.Number,
+        height: t.Number,
+        distance: t.Number,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        width: t.Number = ...,
+        height: t.Number = ...,
+        distance: t.Number = ...,
+    ) -> Self: ...
+
+class InputProduct(Node):
+    """Product of a texture, a factor and an attribute of the mesh. At least a texture or an
+    attribute is required. Products outside of the input's range are clamped, as values of textures
+    are.
+
+    Args:
+        texture (texture or the name of one): Texture: inline, or the name of one. Numbers use its
+            luminance. Without it, the product consists of the other parts.
+        factor (color): Constant factor, in the range of the input; without it, 1.
+        attribute (string): Name of an attribute of the mesh, such as `color`. Colors use its red,
+            green and blue, numbers its alpha, which is 1 where the attribute has fewer than four
+            channels. Surfaces without an attribute of this name count as white. For other channels,
+            use the texture `attribute`.
+
+    Example:
+        InputProduct(texture="wood", factor=(1, 0.5, 0.5), attribute="color")
+    """
+    __match_args__ = ("texture", "factor", "attribute")
+    texture: str | t.Texture | Any
+    factor: Any
+    attribute: str | Any
+    def __init__(
+        self,
+        *,
+        texture: str | t.TextureLike | None = None,
+        factor: t.ColorLike | None = None,
+        attribute: str | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        texture: str | t.TextureLike | None = ...,
+        factor: t.ColorLike | None = ...,
+        attribute: str | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class Stop(Node):
+    """Color at a position of a gradient or ramp.
+
+    Args:
+        position (number; required): Position: from 0 at a gradient's start to 1 at its end, or the
+            number that a ramp maps.
+        color (color, texture, the name of one or `InputProduct`; required): Color at the position.
+
+    Example:
+        Stop(0.5, "#c02020")
+    """
+    __match_args__ = ("position", "color")
+    position: float | Any
+    color: Any
+    def __init__(
+        self,
+        position: t.Number,
+        color: t.ColorInput,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        position: t.Number = ...,
+        color: t.ColorInput = ...,
+    ) -> Self: ...
+
+class Spread(Node):
+    """Cone of rays around a reflected or refracted direction.
+
+    Args:
+        half_angle_degrees (number from 0 to 90; default 0): Half of the cone's opening angle, in
+            degrees. 0 gives sharp images, larger values blur more.
+        rays (whole number from 1 to 10000; default 1): Rays per sample in the integrator `classic`.
+            More rays reduce noise.
+
+    Example:
+        Spread(half_angle_degrees=5, rays=4)
+    """
+    __match_args__ = ("half_angle_degrees", "rays")
+    half_angle_degrees: float | Any
+    rays: int | Any
+    def __init__(
+        self,
+        *,
+        half_angle_degrees: t.Number | None = None,
+        rays: t.Integer | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        half_angle_degrees: t.Number | None = ...,
+        rays: t.Integer | None = ...,
+    ) -> Self: ...
+
+class Medium(Node):
+    """Homogeneous participating medium.
+
+    Args:
+        absorption (color; 1/scene unit; default (0, 0, 0)): Absorption coefficient per channel, per
+            scene unit, 0 to 1e12: 1 leaves 1/e of the light after one unit.
+        scattering (color; 1/scene unit; default (0, 0, 0)): Scattering coefficient per channel, per
+            scene unit, 0 to 1e12. Black leaves the medium clear.
+        anisotropy (number from -0.999 to 0.999; default 0): Mean cosine g of the scattering angle
+            in the phase function of Henyey and Greenstein (1941). 0 scatters isotropically,
+            positive values forward: fog has some 0.8.
+        color (color; default (1, 1, 1)): Color of white light after `distance`, 0 to 1 per channel:
+            a convenient way to state absorption, which is added to `absorption`.
+        distance (number from 1e-12; default 1): Distance over which white light takes the color
+            `color`, in scene units.
+
+    Example:
+        Medium(color=(0.4, 0.9, 0.5), distance=2)
+    """
+    __match_args__ = ("absorption", "scattering", "anisotropy", "color", "distance")
+    absorption: Any
+    scattering: Any
+    anisotropy: float | Any
+    color: Any
+    distance: float | Any
+    def __init__(
+        self,
+        *,
+        absorption: t.ColorLike | None = None,
+        scattering: t.ColorLike | None = None,
+        anisotropy: t.Number | None = None,
+        color: t.ColorLike | None = None,
+        distance: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        absorption: t.ColorLike | None = ...,
+        scattering: t.ColorLike | None = ...,
+        anisotropy: t.Number | None = ...,
+        color: t.ColorLike | None = ...,
+        distance: t.Number | None = ...,
+    ) -> Self: ...
+
+class Object(Placement):
+    """Object of the scene. Requires exactly one of `shape`, `group`, `objects`, `chain`, `limb` and
+    `model`.
+
+    Args:
+        name (string): Name of the object. In the scene's own `objects`, it identifies the object in
+            masks; objects of equal name share a mask. It does not affect the image.
+        shape (shape): Single shape.
+        group (string): Name of a group of the scene, all of whose objects are placed.
+        objects (list of `Object` objects): Child objects, with this object's transform applied to
+            all of them.
+        chain (`Chain`): Row of spheres between two end spheres.
+        limb (`Limb`): Spheres along two bones that meet in a joint.
+        model (`Model`): Model file of another format.
+        instances (`Instances`): Instances of the object: it is placed once for each of them, then
+            by `transform`. In memory, a scene may have millions.
+        transform (list of transform steps or transform step): Transform from the object's space to
+            that of its parent: a list of steps, applied in order, or a single step. Defaults to the
+            identity.
+        material (material or the name of one): Material: inline, or the name of a material of the
+            scene. Defaults to the material of the enclosing object or group, or else to a gray
+            diffuse `phong` material.
+        light_group (string): Light group of the emitters inside this object; each light group is
+            written to an AOV of its own. It has an effect only in the scene's own `objects`.
+            Without it, the object belongs to the group `rest`.
+        visible (True, False or number): Whether the scene contains the object with its children.
+            Numbers other than 0 count as `true`, so an expression such as `"=seconds >= 1"` can
+            show and hide the object.
+
+    Example:
+        Object(shapes.Sphere(), material="gold").translate(0, 1, 0)
+    """
+    __match_args__ = (
+        "shape",
+        "name",
+        "group",
+        "objects",
+        "chain",
+        "limb",
+        "model",
+        "instances",
+        "transform",
+        "material",
+        "light_group",
+        "visible",
+    )
+    name: str | Any
+    shape: t.Shape | Any
+    group: str | Any
+    objects: list[Object | Any] | Any
+    chain: Chain | Any
+    limb: Limb | Any
+    model: Model | Any
+    instances: Instances | Any
+    transform: Any
+    material: str | t.Material | Any
+    light_group: str | Any
+    visible: bool | float | Any
+    def __init__(
+        self,
+        shape: t.ShapeLike | None = None,
+        *,
+        name: str | t.ValueForm | None = None,
+        group: str | t.ValueForm | None = None,
+        objects: Sequence[t.ObjectLike] | t.ValueForm | None = None,
+        chain: t.ChainLike | None = None,
+        limb: t.LimbLike | None = None,
+        model: t.ModelLike | None = None,
+        instances: t.InstancesLike | None = None,
+        transform: Sequence[t.TransformStepLike] | t.TransformStepLike | None = None,
+        material: str | t.MaterialLike | None = None,
+        light_group: str | t.ValueForm | None = None,
+        visible: bool | t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        name: str | t.ValueForm | None = ...,
+        shape: t.ShapeLike | None = ...,
+        group: str | t.ValueForm | None = ...,
+        objects: Sequence[t.ObjectLike] | t.ValueForm | None = ...,
+        chain: t.ChainLike | None = ...,
+        limb: t.LimbLike | None = ...,
+        model: t.ModelLike | None = ...,
+        instances: t.InstancesLike | None = ...,
+        transform: Sequence[t.TransformStepLike] | t.TransformStepLike | None = ...,
+        material: str | t.MaterialLike | None = ...,
+        light_group: str | t.ValueForm | None = ...,
+        visible: bool | t.Number | None = ...,
+    ) -> Self: ...
+
+class MeshAttribute(Node):
+    """Named attribute of a mesh, for the texture `attribute`.
+
+    Args:
+        domain ("vertex" or "face"; default "vertex"): Whether each vertex or each triangle has a
+            value.
+        channels (whole number from 1 to 4; required): Numbers per value, 1 to 4: gray; red and
+            green; red, green and blue; red, green, blue and alpha.
+        data (attribute array; required): Numbers of all values, in linear light: `channels` for
+            each vertex or triangle, in the order of `positions` or `triangles`.
+
+    Example:
+        MeshAttribute(1, {"f32": [0, 0.5, 1]}, domain="vertex")
+    """
+    __match_args__ = ("channels", "data", "domain")
+    domain: Literal["vertex", "face"] | Any
+    channels: int | Any
+    data: Any
+    def __init__(
+        self,
+        channels: t.Integer,
+        data: t.AttributeArrayLike,
+        *,
+        domain: Literal["vertex", "face"] | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        domain: Literal["vertex", "face"] | t.ValueForm | None = ...,
+        channels: t.Integer = ...,
+        data: t.AttributeArrayLike = ...,
+    ) -> Self: ...
+
+class Morph(Node):
+    """Morph target (blend shape) of a mesh: target positions of its corners and a weight. The
+    mesh's normals and tangents are blended with the target's normals and tangents. If a target has
+    no normals, new normals are computed from the blended surface; if a target has no tangents, the
+    mesh keeps its tangents.
+
+    Args:
+        file (string): Model file with as many corners as the mesh, relative to the scene file,
+            instead of `positions`, `normals` and `tangents`.
+        positions (list of groups of 3 numbers): Target positions in scene units, one for each of
+            the mesh's.
+        normals (list of groups of 3 numbers): Target normals, one for each position, of any length.
+            By default the mesh's normals are computed anew from the blended surface.
+        tangents (list of groups of 4 numbers): Target tangents, one for each position: x, y, z and
+            a sign, which is not used. By default the mesh's tangents stay.
+        weight (number from -100 to 100; default 0): Weight of the displacement from the mesh to the
+            target, -100 to 100: 0 has no effect, 1 reaches the target, and values outside 0 to 1
+            extrapolate.
+
+    Example:
+        Morph(file="smile.ply", weight=0.5)
+    """
+    __match_args__ = ("file", "positions", "normals", "tangents", "weight")
+    file: str | Any
+    positions: list[list[float | Any] | Any] | Any
+    normals: list[list[float | Any] | Any] | Any
+    tangents: list[list[float | Any] | Any] | Any
+    weight: float | Any
+    def __init__(
+        self,
+        *,
+        file: str | t.ValueForm | None = None,
+        positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        normals: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        tangents: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        weight: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        file: str | t.ValueForm | None = ...,
+        positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        normals: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        tangents: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        weight: t.Number | None = ...,
+    ) -> Self: ...
+
+class Chain(Node):
+    """Spheres in a row, with centers and radii interpolated linearly.
+
+    Args:
+        from_ (`ControlSphere`; required): First sphere.
+        to (`ControlSphere`; required): Sphere at the other end.
+        count (whole number from 1 to 100000; required): Number of spheres.
+        include_last (True or False; default True): Whether the row includes the sphere `to`. With
+            `false`, it ends one step before, so that the next chain can begin there without a
+            duplicate sphere.
+
+    Example:
+        Chain(from_=ControlSphere((0, 0, 0), 0.2), to=ControlSphere((0, 2, 0), 0.1), count=10)
+    """
+    __match_args__ = ("from_", "to", "count", "include_last")
+    from_: ControlSphere | Any
+    to: ControlSphere | Any
+    count: int | Any
+    include_last: bool | Any
+    def __init__(
+        self,
+        *,
+        from_: t.ControlSphereLike,
+        to: t.ControlSphereLike,
+        count: t.Integer,
+        include_last: bool | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        from_: t.ControlSphereLike = ...,
+        to: t.ControlSphereLike = ...,
+        count: t.Integer = ...,
+        include_last: bool | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class ControlSphere(Node):
+    """Sphere at one end of a chain.
+
+    Args:
+        center (3 numbers; scene units; required): Center, in object space.
+        radius (number above 0; scene units; required): Radius, in units of object space.
+
+    Example:
+        ControlSphere((0, 1, 0), 0.5)
+    """
+    __match_args__ = ("center", "radius")
+    center: list[float | Any] | Any
+    radius: float | Any
+    def __init__(
+        self,
+        center: t.Vec3Like,
+        radius: t.Number,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        center: t.Vec3Like = ...,
+        radius: t.Number = ...,
+    ) -> Self: ...
+
+class Limb(Node):
+    """Arm or leg: spheres along two bones that meet in a joint.
+
+    The limb bends from the line between its ends toward the direction of the cross product (to −
+    from) × `plane_normal`. The distance between the ends must not exceed the sum of the lengths,
+    nor fall below their difference.
+
+    Args:
+        from_ (3 numbers; scene units; required): One end, in object space: a hand or a foot.
+        to (3 numbers; scene units; required): Other end, in object space: a shoulder or a hip.
+        lengths (2 numbers above 0; scene units; required): Lengths of the bones at `from` and at
+            `to`.
+        plane_normal (3 numbers; required): Normal of the plane in which the limb bends, in the
+            space of `from` and `to`. It has any length except zero and must not be parallel to `to
+            − from`.
+        counts (2 whole numbers from 1 to 100000; default (8, 8)): Number of spheres on the bones at
+            `from` and at `to`; the joint has one more sphere.
+        keep_lengths (True or False; default True): Whether the bones keep their lengths if
+            `plane_normal` is not perpendicular to `to − from`. With `false`, the joint moves closer
+            to the line between the ends, as in the Juggler of 2010, whose forearms are up to 1 %
+            too short.
+        radii (3 numbers above 0; scene units; required): Radii at `from`, at the joint and at `to`,
+            interpolated linearly in between.
+
+    Example:
+        Limb(from_=(0, 0, 0), to=(1.5, 0, 0), lengths=(1, 1), plane_normal=(0, 0, 1), radii=(0.1, 0.1, 0.1))
+    """
+    __match_args__ = ("from_", "to", "lengths", "plane_normal", "counts", "keep_lengths", "radii")
+    from_: list[float | Any] | Any
+    to: list[float | Any] | Any
+    lengths: list[float | Any] | Any
+    plane_normal: list[float | Any] | Any
+    counts: list[int | Any] | Any
+    keep_lengths: bool | Any
+    radii: list[float | Any] | Any
+    def __init__(
+        self,
+        *,
+        from_: t.Vec3Like,
+        to: t.Vec3Like,
+        lengths: t.Vec2Like,
+        plane_normal: t.Vec3Like,
+        counts: t.Vec2Like | None = None,
+        keep_lengths: bool | t.ValueForm | None = None,
+        radii: t.Vec3Like,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        from_: t.Vec3Like = ...,
+        to: t.Vec3Like = ...,
+        lengths: t.Vec2Like = ...,
+        plane_normal: t.Vec3Like = ...,
+        counts: t.Vec2Like | None = ...,
+        keep_lengths: bool | t.ValueForm | None = ...,
+        radii: t.Vec3Like = ...,
+    ) -> Self: ...
+
+class Model(Node):
+    """Scene of a model file (glTF), placed as one object. Its materials, textures, lights and
+    cameras belong to the scene too, under names that begin with the name of the file.
+
+    Args:
+        file (string; required): Model file, relative to the scene file.
+        scene (whole number from 0 or string): Scene of the file, by name or index. Defaults to the
+            file's own choice.
+        variant (whole number from 0 or string): Variant of the materials, by name or index.
+            Defaults to the materials without a variant.
+        animation (whole number from 0 or string): Animation clip, by name or index; `"none"` shows
+            the rest pose. Defaults to the first clip.
+        at (number; seconds): Time in the clip. Defaults to the time of the scene.
+        repeat ("loop" or "once"; default "loop"): What happens after the end of the clip.
+        materials (dict from names to materials or names of them): Materials that replace those of
+            the file, by the names of the file's materials.
+        nodes (list of strings): Names of nodes. If there are any, only these nodes are placed, with
+            the nodes below them.
+        hide (list of strings): Names of nodes that are not placed, nor the nodes below them.
+        lights (True or False; default True): Whether the lights of the file belong to the scene.
+        photometric (True or False; default False): Whether light intensities of the file are
+            photometric (candela, lux). They are then divided by 683 lm/W.
+
+    Example:
+        Model("fox.glb", animation="Run")
+    """
+    __match_args__ = (
+        "file",
+        "scene",
+        "variant",
+        "animation",
+        "at",
+        "repeat",
+        "materials",
+        "nodes",
+        "hide",
+        "lights",
+        "photometric",
+    )
+    file: str | Any
+    scene: int | str | Any
+    variant: int | str | Any
+    animation: int | str | Any
+    at: float | Any
+    repeat: Literal["loop", "once"] | Any
+    materials: dict[str, str | t.Material | Any] | Any
+    nodes: list[str | Any] | Any
+    hide: list[str | Any] | Any
+    lights: bool | Any
+    photometric: bool | Any
+    def __init__(
+        self,
+        file: str | t.ValueForm,
+        *,
+        scene: t.Integer | None = None,
+        variant: t.Integer | None = None,
+        animation: t.Integer | None = None,
+        at: t.Number | None = None,
+        repeat: Literal["loop", "once"] | t.ValueForm | None = None,
+        materials: Mapping[str, str | t.MaterialLike] | t.ValueForm | None = None,
+        nodes: Sequence[str | t.ValueForm] | t.ValueForm | None = None,
+        hide: Sequence[str | t.ValueForm] | t.ValueForm | None = None,
+        lights: bool | t.ValueForm | None = None,
+        photometric: bool | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        file: str | t.ValueForm = ...,
+        scene: t.Integer | None = ...,
+        variant: t.Integer | None = ...,
+        animation: t.Integer | None = ...,
+        at: t.Number | None = ...,
+        repeat: Literal["loop", "once"] | t.ValueForm | None = ...,
+        materials: Mapping[str, str | t.MaterialLike] | t.ValueForm | None = ...,
+        nodes: Sequence[str | t.ValueForm] | t.ValueForm | None = ...,
+        hide: Sequence[str | t.ValueForm] | t.ValueForm | None = ...,
+        lights: bool | t.ValueForm | None = ...,
+        photometric: bool | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class Instances(Node):
+    """Transforms of the instances of an object, each to the object's space. `matrices` give whole
+    transforms; without them, each instance is scaled, then rotated, then translated. All arrays
+    that are not empty have the same length.
+
+    Args:
+        positions (list of groups of 3 numbers): Positions of the instances' origins.
+        rotations (list of groups of 4 numbers): Rotations as quaternions `[x, y, z, w]` as in glTF.
+            They are normalized and must not be zero.
+        scales (list of numbers or groups of 3 numbers): Scale factors, other than 0: one, or one
+            for each axis.
+        matrices (list of groups of 12 numbers): Affine maps in place of positions, rotations and
+            scales: the 12 numbers of 3 rows of a matrix that multiplies column vectors. The
+            matrices must be invertible.
+        colors (list of groups of 4 numbers): Colors: red, green, blue and alpha of each instance,
+            from 0 to 1 in linear light. They are the attribute `color` of surfaces without
+            attributes of their own; a material shows them by the texture
+            [`attribute`](#texture-attribute).
+        end_colors (list of groups of 4 numbers): Colors at the surface coordinate v = 1, such as
+            the upper end of a `cylinder`. `colors` are then those at v = 0, and the colors between
+            are interpolated linearly. Needs `colors`.
+
+    Example:
+        Instances(positions=[(0, 0, 0), (2, 0, 0)], scales=[1, 0.5])
+    """
+    __match_args__ = ("positions", "rotations", "scales", "matrices", "colors", "end_colors")
+    positions: list[list[float | Any] | Any] | Any
+    rotations: list[list[float | Any] | Any] | Any
+    scales: list[float | list[float | Any] | Any] | Any
+    matrices: list[list[float | Any] | Any] | Any
+    colors: list[list[float | Any] | Any] | Any
+    end_colors: list[list[float | Any] | Any] | Any
+    def __init__(
+        self,
+        *,
+        positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = None,
+        matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = None,
+        colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = ...,
+        matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = ...,
+        colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class Attenuation(Node):
+    """Falloff with the distance d from the light's center: the factor 1 / (constant + linear · d +
+    quadratic · d²). The default is the physical inverse square.
+
+    A missing coefficient is 0: `{"constant": 1}` gives light without falloff. At least one
+    coefficient must be above 0.
+
+    Args:
+        constant (number from 0; default 0): Constant coefficient, 0 or more.
+        linear (number from 0; default 0): Coefficient of the distance, 0 or more.
+        quadratic (number from 0; default 0): Coefficient of the squared distance, 0 or more.
+
+    Example:
+        Attenuation(quadratic=1)
+    """
+    __match_args__ = ("constant", "linear", "quadratic")
+    constant: float | Any
+    linear: float | Any
+    quadratic: float | Any
+    def __init__(
+        self,
+        *,
+        constant: t.Number | None = None,
+        linear: t.Number | None = None,
+        quadratic: t.Number | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        constant: t.Number | None = ...,
+        linear: t.Number | None = ...,
+        quadratic: t.Number | None = ...,
+    ) -> Self: ...
+
+class Ies(Node):
+    """Photometric file (IES LM-63): the measured distribution of a luminaire's intensity over
+    directions.
+
+    Args:
+        file (string; required): Path of the file, relative to the scene file. Its photometry must
+            be of type C.
+        direction (3 numbers): Direction of vertical angle 0, of any length. The default is the
+            direction of a spot light, and straight down, along -Y, for other lights.
+        rotation_degrees (number from -10000 to 10000; default 0): Rotation of the luminaire about
+            that direction, in degrees from -10,000 to 10,000, counterclockwise as seen from behind
+            the luminaire. At 0, the horizontal angle 0 points along +X if the luminaire hangs down.
+        absolute (True or False; default False): Whether the intensity is multiplied by the file's
+            candelas. By default it is multiplied by the candelas relative to their maximum, so that
+            the file changes only the distribution.
+
+    Example:
+        Ies("downlight.ies", rotation_degrees=90)
+    """
+    __match_args__ = ("file", "direction", "rotation_degrees", "absolute")
+    file: str | Any
+    direction: list[float | Any] | Any
+    rotation_degrees: float | Any
+    absolute: bool | Any
+    def __init__(
+        self,
+        file: str | t.ValueForm,
+        *,
+        direction: t.Vec3Like | None = None,
+        rotation_degrees: t.Number | None = None,
+        absolute: bool | t.ValueForm | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        file: str | t.ValueForm = ...,
+        direction: t.Vec3Like | None = ...,
+        rotation_degrees: t.Number | None = ...,
+        absolute: bool | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class Animation(Node):
+    """Length and frame rate of an animation.
+
+    Args:
+        frames (whole number from 1 to 1000000; default 1): Number of frames. The default of 1
+            describes a still image.
+        frames_per_second (number above 0 to 1000; frames/second; default 30): Frame rate: playback
+            speed, and the ratio of `frame` to `seconds` in expressions.
+
+    Example:
+        Animation(frames=96, frames_per_second=24)
+    """
+    __match_args__ = ("frames", "frames_per_second")
+    frames: int | Any
+    frames_per_second: float | Any
+    def __init__(
+        self,
+        *,
+        frames: int | None = None,
+        frames_per_second: float | None = None,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        frames: int | None = ...,
+        frames_per_second: float | None = ...,
+    ) -> Self: ...

@@ -1,0 +1,239 @@
+# Generated from schema/scene.schema.json by crates/python-types. Do not edit.
+"""Kinds of shapes."""
+
+from ._node import Node
+
+__all__ = [
+    "Sphere",
+    "Plane",
+    "Disk",
+    "Rectangle",
+    "Triangle",
+    "Polygon",
+    "Cuboid",
+    "Cylinder",
+    "Tube",
+    "Mesh",
+]
+
+
+class Sphere(Node):
+    """A sphere around the origin of object space.
+
+    Surface coordinates: u is the longitude as a fraction of a turn (0 at +x, a quarter at -z), v
+    the latitude from 0 at the south pole (-y) to 1 at the north pole (+y).
+
+    Args:
+        radius (number above 0; default 1): Radius in scene units, above 0.
+
+    Example:
+        shapes.Sphere(radius=1)
+    """
+
+    __slots__ = ("radius",)
+    _kind = "sphere"
+
+
+class Plane(Node):
+    """The infinite plane y = 0; its front faces +y.
+
+    Surface coordinates: u is x, v is z, in scene units.
+
+    Example:
+        shapes.Plane()
+    """
+
+    __slots__ = ()
+    _kind = "plane"
+
+
+class Disk(Node):
+    """A disk in the plane y = 0 around the origin, with or without a hole; its front faces +y.
+
+    Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v goes
+    from 0 at the outer rim to 1 at the inner rim or the center.
+
+    Args:
+        radius (number above 0; default 1): Outer radius in scene units, above 0.
+        inner_radius (number from 0; default 0): Radius of the hole in scene units, 0 to less than
+            `radius`; 0 for no hole.
+
+    Example:
+        shapes.Disk(radius=2, inner_radius=0.5)
+    """
+
+    __slots__ = ("radius", "inner_radius")
+    _kind = "disk"
+
+
+class Rectangle(Node):
+    """A rectangle in the plane y = 0, centered on the origin; its front faces +y.
+
+    Surface coordinates from 0 to 1: u grows with x, v with -z, so that an image is upright seen
+    from above with -z up.
+
+    Args:
+        size (2 numbers above 0; default (1, 1)): Edge lengths along x and z in scene units, above
+            0.
+
+    Example:
+        shapes.Rectangle(size=(2, 1))
+    """
+
+    __slots__ = ("size",)
+    _kind = "rectangle"
+
+
+class Triangle(Node):
+    """A triangle. Its vertices run counter-clockwise seen from the front.
+
+    Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the vertices.
+
+    Args:
+        vertices (3 groups of 3 numbers; required): The three corners in scene units, not collinear.
+        normals (3 groups of 3 numbers): Shading normals at the corners, of any length above 0,
+            interpolated over the triangle. Without them, the triangle is shaded flat.
+        uvs (3 groups of 2 numbers): Surface coordinates of the corners, interpolated over the
+            triangle.
+
+    Example:
+        shapes.Triangle([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    """
+
+    __slots__ = ("vertices", "normals", "uvs")
+    _kind = "triangle"
+    _positional = ("vertices",)
+    _required = ("vertices",)
+
+
+class Polygon(Node):
+    """A flat convex polygon. Its vertices run counter-clockwise seen from the front.
+
+    Surface coordinates in scene units from the first vertex: u along the first edge, v at right
+    angles to it.
+
+    Args:
+        vertices (list of groups of 3 numbers; required): At least three corners in order, in scene
+            units: coplanar, convex, no corner twice.
+
+    Example:
+        shapes.Polygon([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    """
+
+    __slots__ = ("vertices",)
+    _kind = "polygon"
+    _positional = ("vertices",)
+    _required = ("vertices",)
+
+
+class Cuboid(Node):
+    """An axis-aligned box from one corner to the opposite one; by default the cube of edge 1 around
+    the origin.
+
+    Surface coordinates from 0 to 1 on each face. On the sides, v grows with y and u to the right,
+    seen from outside. On top and bottom, u grows with x; v grows with -z on top and with z on the
+    bottom.
+
+    Args:
+        min (3 numbers; default (-0.5, -0.5, -0.5)): Corner of the smallest coordinates, in scene
+            units.
+        max (3 numbers; default (0.5, 0.5, 0.5)): Corner of the largest coordinates, in scene units,
+            each greater than that of `min`.
+
+    Example:
+        shapes.Cuboid(min=(-1, 0, -1), max=(1, 2, 1))
+    """
+
+    __slots__ = ("min", "max")
+    _kind = "cuboid"
+
+
+class Cylinder(Node):
+    """A circular cylinder around the y axis from `y_min` to `y_max`.
+
+    Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z); v goes
+    from 0 at `y_min` to 1 at `y_max` on the side, from 0 at the rim to 1 at the center on the caps.
+
+    Args:
+        radius (number above 0; default 1): Radius in scene units, above 0.
+        y_min (number; default -1): Lower end on the y axis, in scene units.
+        y_max (number; default 1): Upper end on the y axis, in scene units; greater than `y_min`.
+        capped (True or False; default True): Whether disks close both ends and make the cylinder a
+            solid; without them, the inside is visible.
+
+    Example:
+        shapes.Cylinder(radius=0.5, y_min=0, y_max=2)
+    """
+
+    __slots__ = ("radius", "y_min", "y_max", "capped")
+    _kind = "cylinder"
+
+
+class Tube(Node):
+    """An infinite circular cylinder around the y axis.
+
+    Surface coordinates: u is the angle as a fraction of a turn (0 at +x, a quarter at -z), v is y
+    in scene units.
+
+    Args:
+        radius (number above 0; default 1): Radius in scene units, above 0.
+
+    Example:
+        shapes.Tube(radius=0.5)
+    """
+
+    __slots__ = ("radius",)
+    _kind = "tube"
+
+
+class Mesh(Node):
+    """A triangle mesh, from a file or from the arrays given here. The corners of a triangle run
+    counter-clockwise seen from the front.
+
+    Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of
+    each triangle.
+
+    Args:
+        file (string): Model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays
+            below.
+        positions (list of groups of 3 numbers): Corner positions in scene units.
+        triangles (list of groups of 3 whole numbers from 0): Three indices into `positions` for
+            each triangle, counted from 0.
+        normals (list of groups of 3 numbers): Shading normals, interpolated over each triangle:
+            none, or one per position, of any length. A zero normal counts as missing. Without
+            normals, `crease_angle_degrees` decides the shading.
+        uvs (list of groups of 2 numbers): Surface coordinates, interpolated over each triangle:
+            none, or one per position.
+        uvs1 (list of groups of 2 numbers): Second set of surface coordinates, for textures with
+            `uv_set` 1: none, or one per position.
+        tangents (list of groups of 4 numbers): Tangents x, y, z of any length, along which normal
+            maps and anisotropic highlights lie, and the sign of the bitangent, 1 or -1: none, or
+            one per position. Without tangents they follow the surface coordinates. A zero tangent
+            counts as missing.
+        attributes (dict from names to `MeshAttribute` objects): Named attributes of the vertices or
+            triangles, such as `color`, for the texture `attribute`.
+        crease_angle_degrees (number from 0 to 180): Largest angle between the normals of two
+            neighboring triangles whose edge is shaded smoothly, in degrees, 0 to 180: 30 to 60 for
+            machine parts, 180 for a wholly smooth surface. Without it, a mesh without `normals` is
+            shaded flat. It has no effect on a mesh with `normals`.
+        morphs (list of `Morph` objects): Morph targets (blend shapes), each added in proportion to
+            its weight: position = base + Σ weight · (target - base).
+
+    Example:
+        shapes.Mesh("bunny.ply")
+    """
+
+    __slots__ = (
+        "file",
+        "positions",
+        "triangles",
+        "normals",
+        "uvs",
+        "uvs1",
+        "tangents",
+        "attributes",
+        "crease_angle_degrees",
+        "morphs",
+    )
+    _kind = "mesh"
+    _positional = ("file",)

@@ -1,0 +1,57 @@
+"""Uses of the classes that type checkers accept, and the types that they infer.
+
+    pyright --project crates/python/tests/typed
+"""
+
+from typing import assert_type
+
+import juggler as jg
+from juggler import Object, Scene, animate, cameras, lights, materials, shapes, textures
+
+
+class Array:
+    """Array as NumPy has them."""
+
+    def tolist(self) -> list[list[float]]:
+        return [[0, 1, 2]]
+
+
+scene = Scene(
+    render=jg.RenderSettings(size=(640, 360), samples=64),
+    camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
+    textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
+    materials={"floor": materials.Phong(diffuse="tiles"), "gold": materials.Conductor(metal="gold", roughness=0.2)},
+    lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
+    objects=[Object(shapes.Plane(), material="floor"), Object(shapes.Sphere(), material="gold").translate(0, 1, 0)],
+)
+assert_type(scene.replace(render=scene.render.replace(samples=256)), Scene)
+scene.camera.replace(eye=(0, 2, 6))
+scene.objects[0].translate(0, 1, 0).rotate("y", 30).scale(2)
+
+# Arrays, expressions, value forms, names and dictionaries.
+mesh = shapes.Mesh(positions=Array(), triangles=[[0, 1, 2]])
+assert_type(mesh.replace(crease_angle_degrees=30), shapes.Mesh)
+Object(shapes.Sphere(radius="=frame"), instances=jg.Instances(positions=Array(), scales=[1, 2]))
+shapes.Sphere(radius=animate.Keys([(0, 1), (1, 2)], repeat="loop"))
+Object("sphere", transform=[{"translate": (0, 1, 0)}, {"rotate": {"axis": (0, 1, 0), "degrees": 30}}])
+Object({"sphere": {"radius": "=2 * frame"}}, material={"phong": {"diffuse": "#fff"}})
+lights.Area(shape=shapes.Rectangle(size=(1, 2)), radiance=5)
+lights.Area(shape={"disk": {"radius": 1}}, radiance=5)
+
+# Lists and dicts that are made elsewhere.
+numbers: list[float] = [1, 2, 3]
+rows: list[list[float]] = [numbers]
+objects: list[Object] = [Object("sphere")]
+phongs: dict[str, materials.Phong] = {}
+cameras.Perspective(eye=numbers)
+shapes.Polygon(rows)
+Scene(objects=objects, materials=phongs)
+
+match scene.camera:
+    case cameras.Perspective(eye=eye):
+        print(eye)
+    case _:
+        pass
+match mesh:
+    case shapes.Mesh(file):
+        print(file)
