@@ -106,6 +106,7 @@ step_features() {
 -p juggler-cli --no-default-features --features serve
 -p juggler-cli --no-default-features --features view
 -p juggler-import --no-default-features
+-p juggler-python --no-default-features
 -p juggler-web
 END
   # Check only the list of packages: building the page needs a compiler that few machines have (see

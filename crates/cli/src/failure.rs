@@ -160,6 +160,9 @@ impl From<Error> for Failure {
             Error::Scene(error) => error.into(),
             Error::Settings(message) => Self::Invalid(message),
             Error::Image(error) => error.into(),
+            Error::PartialRender(error) => error.into(),
+            Error::Merge(error) => error.into(),
+            Error::Resume(error) => error.into(),
             _ => Self::System(error.to_string()),
         }
     }

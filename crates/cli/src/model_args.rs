@@ -31,7 +31,7 @@ impl ModelArgs {
     pub fn values(&self) -> Vec<(String, serde_json::Value)> {
         let flags = [("variant", &self.variant), ("animation", &self.animation), ("scene", &self.model_scene)];
         let value = |(key, value): (&str, &Option<String>)| {
-            let value = serde_json::to_value(name_or_index(value.as_deref()?)).ok()?;
+            let value = serde_json::to_value(NameOrIndex::from(value.as_deref()?)).ok()?;
             Some((format!("/objects/0/model/{key}"), value))
         };
         flags.into_iter().filter_map(value).collect()
@@ -54,24 +54,12 @@ impl ModelArgs {
         let flags =
             [("--variant", &self.variant), ("--animation", &self.animation), ("--model-scene", &self.model_scene)];
         let Some((flag, _)) = flags.into_iter().find(|(_, value)| value.is_some()) else { return Ok(()) };
-        let is_single = scene.is_around_model();
-        let object = scene.description.objects.first_mut().filter(|_| is_single);
-        let Some(model) = object.and_then(|object| object.model.as_mut()) else {
+        let chosen = |text: &Option<String>| text.as_deref().map(NameOrIndex::from);
+        if !scene.choose_model(chosen(&self.variant), chosen(&self.animation), chosen(&self.model_scene)) {
             return Err(Failure::Invalid(format!(
                 "{flag} is for model files (.gltf, .glb); `{name}` is another scene"
             )));
-        };
-        let chosen = |text: &Option<String>| text.as_deref().map(name_or_index);
-        model.variant = chosen(&self.variant).or(model.variant.take());
-        model.animation = chosen(&self.animation).or(model.animation.take());
-        model.scene = chosen(&self.model_scene).or(model.scene.take());
-        scene.fit_animation();
-        scene.fit_background();
+        }
         Ok(())
     }
-}
-
-/// A number is an index, any other text a name.
-fn name_or_index(text: &str) -> NameOrIndex {
-    text.parse().map_or_else(|_| NameOrIndex::Name(text.to_owned()), NameOrIndex::Index)
 }

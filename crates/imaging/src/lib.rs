@@ -47,7 +47,7 @@ pub use flip::Flip;
 pub use format::ImageFormat;
 pub use input::{Limits, decode, inspect, read, read_within};
 pub use look::DisplayLook;
-pub use output::{Destination, create, to_standard_output, write_image};
+pub use output::{Destination, create, to_memory, to_standard_output, write_image};
 pub use raster::{Raster, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster};
 pub use tone::{AnyCurve, Matrix, Primaries, Tone, ToneCurveKind, WhiteBalance};
 pub use viewpoint::{Matrix4, Viewpoint};

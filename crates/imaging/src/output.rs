@@ -1,4 +1,4 @@
-//! Destinations of files: regular files (replaced atomically), devices, standard output, memory.
+//! Destinations of images: regular files (replaced atomically), devices, standard output, memory.
 
 use crate::atomic::{AtomicFile, is_device_or_pipe};
 use crate::{Header, ImageError, ImageFormat, RowWriter, writer};
@@ -6,6 +6,7 @@ use juggler_math::{Image, Rgb};
 use std::fs::File;
 use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Seekable output.
 pub trait WriteSeek: Write + Seek + Send {}
@@ -109,6 +110,52 @@ pub(crate) fn whole_file(path: &Path) -> Result<(Destination, Option<AtomicFile>
 /// Creates a writer to standard output.
 pub fn to_standard_output(format: ImageFormat, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     writer(format, Destination::stream("standard output", BufWriter::new(io::stdout())), header)
+}
+
+/// Encodes a complete image, given row by row, and returns the bytes of its file.
+///
+/// ```
+/// use juggler_imaging::{Header, ImageFormat, to_memory};
+/// use juggler_math::Rgb;
+///
+/// let bytes = to_memory(ImageFormat::Png, &Header::new(2, 1), &[Rgb::BLACK, Rgb::WHITE])?;
+/// assert!(bytes.starts_with(b"\x89PNG"));
+/// # Ok::<(), juggler_imaging::ImageError>(())
+/// ```
+pub fn to_memory(format: ImageFormat, header: &Header, pixels: &[Rgb]) -> Result<Vec<u8>, ImageError> {
+    format.check_dimensions(header.width, header.height)?;
+    header.check_primaries(format)?;
+    let bytes = SharedBytes::default();
+    let mut rows = writer(format, Destination::seekable("memory", bytes.clone()), header)?;
+    rows.write_rows(pixels)?;
+    rows.finish()?;
+    Ok(std::mem::take(bytes.lock().get_mut()))
+}
+
+/// Bytes that a writer writes and the function that made it reads.
+#[derive(Clone, Default)]
+struct SharedBytes(Arc<Mutex<Cursor<Vec<u8>>>>);
+
+impl SharedBytes {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Cursor<Vec<u8>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Write for SharedBytes {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.lock().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for SharedBytes {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.lock().seek(to)
+    }
 }
 
 /// Writes a complete image.

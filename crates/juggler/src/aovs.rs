@@ -242,6 +242,11 @@ impl AovSet {
         &self.aovs
     }
 
+    /// Returns the names of objects, materials and light groups; empty without AOVs.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
     /// Returns the names of the light groups that are stored separately, by index; empty without
     /// [`Aov::LightGroups`].
     pub fn light_groups(&self) -> &[String] {

@@ -1,6 +1,6 @@
 //! Errors of rendering.
 
-use juggler_film::{MergeError, PartialRenderError};
+use juggler_film::{MergeError, PartialRenderError, ResumeError};
 use juggler_imaging::ImageError;
 use juggler_render::Cancelled;
 use juggler_scene::SceneError;
@@ -21,6 +21,9 @@ pub enum Error {
     /// A partial render cannot be read or written.
     #[error(transparent)]
     PartialRender(#[from] PartialRenderError),
+    /// A render cannot go on from a partial render.
+    #[error(transparent)]
+    Resume(#[from] ResumeError),
     /// Partial renders cannot be merged.
     #[error(transparent)]
     Merge(#[from] MergeError),

@@ -28,6 +28,7 @@
 //! `examples/` is a course in six lessons.
 
 pub mod aovs;
+pub mod comparison;
 pub mod denoise;
 mod error;
 pub mod estimate;
@@ -71,5 +72,5 @@ pub use one_call::{render, render_to_file};
 pub use partial_render::RenderOrigin;
 pub use picture::{Picture, View};
 pub use render_stats::RenderStats;
-pub use rendered_image::{RenderedImage, SAMPLES, SAMPLES_PER_TILE};
+pub use rendered_image::{RenderedImage, SAMPLES, SAMPLES_PER_TILE, TONE};
 pub use settings::{Limit, Settings};

@@ -4,8 +4,10 @@ use crate::denoise::DenoiserInput;
 use crate::{Error, Limit, Picture};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Tile, Tiling};
 use juggler_film::partial_render::{AovDescription, RenderDescription, ShardDescription, Stop};
+use juggler_film::shard::Work;
+use juggler_film::{Chunk, PartialRender, PartialRenderWriter};
 use juggler_imaging::layered::LayeredWriter;
-use juggler_imaging::{Header, RowWriter};
+use juggler_imaging::{Header, Options, RowWriter};
 use juggler_math::Rgb;
 use juggler_render::{Cancelled, Control};
 
@@ -93,6 +95,42 @@ impl Picture {
             Limit::Noise(level) => Stop::Noise { level: f64::from(level) },
             Limit::Time { seconds } => Stop::Time { seconds },
         }
+    }
+
+    /// Renders one of `count` shards and returns the bytes of its partial render. Fails for an index
+    /// beyond the last shard, and if `control` cancels the render.
+    pub fn render_shard(
+        &self,
+        [index, count]: [u32; 2],
+        origin: &RenderOrigin,
+        control: &Control,
+    ) -> Result<Vec<u8>, Error> {
+        if index >= count {
+            return Err(Error::Settings(format!("there is no shard {index} of {count}: the first one is 0")));
+        }
+        let samples = 0..self.samples();
+        let work = Work { tiling: self.tiling(), crop: None, samples: samples.clone(), stop: self.stop() };
+        let units = work.shard(index, count).into_iter().map(|unit| (unit.tile, unit.samples));
+        let film = Film::from_tiles(self.tiling(), units);
+        self.render_to_limit(&film, control)?;
+        let (header, shard) =
+            (self.file_header(Options::default()), ShardDescription { index, count, samples, crop: None });
+        let description =
+            RenderDescription { finished: self.is_finished(&film), ..self.description(origin, &header, shard) };
+        let mut writer = PartialRenderWriter::in_memory(&format!("shard {index} of {count}"), &description)?;
+        for (number, tile) in film.tiles() {
+            writer.add(number, &Chunk::encode(&tile, description.clamped))?;
+        }
+        Ok(writer.into_bytes()?)
+    }
+
+    /// Creates the film of the picture with the samples of a partial render. Fails for a partial
+    /// render of another image, and for one with samples that this picture does not have.
+    pub fn resume_film(&self, partial_render: &PartialRender, origin: &RenderOrigin) -> Result<Film, Error> {
+        let (film, header) = (self.film(), self.file_header(Options::default()));
+        let goal = self.description(origin, &header, ShardDescription::whole(self.samples()));
+        juggler_film::resume(partial_render, &goal, &film)?;
+        Ok(film)
     }
 
     /// Returns the description of a partial render of this picture; `header` is that of the image

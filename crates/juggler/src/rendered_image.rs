@@ -1,12 +1,14 @@
 //! Rendered images in memory, with their AOVs and all that a file of them contains.
 
+mod encode;
+
 use crate::denoise::DenoiserInput;
 use crate::{AovSet, Error, Limit, Picture, RenderStats};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Rect, Tile};
 use juggler_film::counts::SampleCountStats;
 use juggler_film::{Merge, RenderDescription, Stop, counts};
 use juggler_imaging::layered::{LayerHeader, LayeredWriter};
-use juggler_imaging::{Header, ImageFormat, Options};
+use juggler_imaging::{Header, ImageFormat, Options, Tone};
 use juggler_math::Rgb;
 use juggler_render::{Cancelled, Control, RayCounts};
 use std::path::Path;
@@ -17,6 +19,9 @@ use std::time::{Duration, Instant};
 pub const SAMPLES: &str = "Samples";
 /// Metadata key of the number of samples of each tile, under a time limit.
 pub const SAMPLES_PER_TILE: &str = "Samples per tile";
+
+/// Metadata key of the tone settings, unless all have their defaults.
+pub const TONE: &str = "Tone";
 
 /// Rendered image in memory. Its hash and its files are those of a render to a file with the same
 /// settings.
@@ -35,6 +40,21 @@ pub struct RenderedImage {
 }
 
 impl RenderedImage {
+    /// Makes an image of its parts, such as those of an image of another process; `None` if their
+    /// numbers of pixels and channels do not fit. `channels` are those of [`RenderedImage::layers`].
+    pub fn from_parts(
+        header: Header,
+        pixels: Vec<Rgb>,
+        aovs: AovSet,
+        channels: Vec<Vec<f32>>,
+        stats: RenderStats,
+    ) -> Option<Self> {
+        let count = header.width as usize * header.height as usize;
+        let is_whole = pixels.len() == count && channels.len() == aovs.channels();
+        let image = Self { header, pixels, aovs, channels, stats };
+        (is_whole && image.channels.iter().all(|channel| channel.len() == count)).then_some(image)
+    }
+
     /// Linear pixels, row by row from the top: an array of shape (height, width).
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
@@ -192,7 +212,7 @@ impl Picture {
         let (samples, render) = (SampleCountStats::uniform(self.samples()), start.elapsed());
         let (denoise, write) = (Duration::ZERO, Duration::ZERO);
         let stats = RenderStats { film, samples, rays: control.rays(), render, denoise, write };
-        let (header, aovs) = (self.header(Options::default()), self.aovs().clone());
+        let (header, aovs) = (self.file_header(Options::default()), self.aovs().clone());
         Ok(RenderedImage { header, pixels, aovs, channels: Vec::new(), stats })
     }
 
@@ -222,25 +242,62 @@ impl Picture {
         library: Option<&Path>,
         control: &Control,
     ) -> Result<RenderedImage, Error> {
-        let (start, aovs, tiling) = (Instant::now(), self.aovs().clone(), film.tiling());
-        let mut parts = Parts::new(&aovs, self.region());
+        let start = Instant::now();
+        let parts = self.film_parts(film);
+        let denoised = denoise_pixels(self.aovs(), parts.denoiser_input.as_ref(), library, control)?;
+        let pixels = denoised.unwrap_or(parts.pixels);
+        Ok(self.image_of_film(film, pixels, parts.channels, [render, start.elapsed()], control))
+    }
+
+    /// The image that a film holds so far, without denoising; other threads may add samples
+    /// meanwhile. `render` is the time that its samples took.
+    pub fn snapshot(&self, film: &Film, render: Duration, control: &Control) -> RenderedImage {
+        let Parts { pixels, channels, .. } = self.film_parts(film);
+        self.image_of_film(film, pixels, channels, [render, Duration::ZERO], control)
+    }
+
+    /// Collects pixels, channels and the denoiser's input from a film.
+    fn film_parts(&self, film: &Film) -> Parts {
+        let (aovs, tiling) = (self.aovs(), film.tiling());
+        let mut parts = Parts::new(aovs, self.region());
         for (row, band) in (0..).zip(tiling.bands()) {
             let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
             let mut rows = vec![Rgb::BLACK; band.area() as usize];
             tiles.iter().for_each(|tile| tile.copy_to(&band, &mut rows));
-            parts.add(&aovs, &band, &tiles, &rows);
+            parts.add(aovs, &band, &tiles, &rows);
         }
-        let Parts { pixels, channels, denoiser_input } = parts;
-        let pixels = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?.unwrap_or(pixels);
+        parts
+    }
+
+    /// The image of a film, whose pixels may be denoised, after these times of rendering and
+    /// denoising.
+    fn image_of_film(
+        &self,
+        film: &Film,
+        pixels: Vec<Rgb>,
+        channels: Vec<Vec<f32>>,
+        [render, denoise]: [Duration; 2],
+        control: &Control,
+    ) -> RenderedImage {
         let mut digest = FilmDigest::new(self.region().width, self.region().height);
         digest.update(&pixels);
         digest.add_clamped(film.clamped());
-        let (samples, denoise) = (SampleCountStats::from_film(film), start.elapsed());
-        let (rays, write) = (control.rays(), Duration::ZERO);
-        let stats = RenderStats { film: digest.finish(), samples, rays, render, denoise, write };
-        let mut header = self.header(Options::default());
+        let (samples, rays) = (SampleCountStats::from_film(film), control.rays());
+        let stats = RenderStats { film: digest.finish(), samples, rays, render, denoise, write: Duration::ZERO };
+        let mut header = self.file_header(Options::default());
         self.add_sample_counts(film, &mut header);
-        Ok(RenderedImage { header, pixels, aovs, channels, stats })
+        RenderedImage { header, pixels, aovs: self.aovs().clone(), channels, stats }
+    }
+
+    /// Header of the image file with the tone settings among the metadata, unless all have their
+    /// defaults, since they are no part of the fingerprint.
+    pub fn file_header(&self, options: Options) -> Header {
+        let mut header = self.header(options);
+        if header.tone != Tone::default() {
+            let tone = serde_json::to_string(&header.tone).unwrap_or_default();
+            header.metadata.push((TONE.to_owned(), tone));
+        }
+        header
     }
 
     /// Adds the numbers of samples that a limit of noise or time has decided to the metadata.

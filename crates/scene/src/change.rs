@@ -35,6 +35,26 @@ pub enum Changed {
     Animation,
 }
 
+impl Changed {
+    /// Name of the kind, in snake case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Title => "title",
+            Self::Settings => "settings",
+            Self::Tone => "tone",
+            Self::Camera => "camera",
+            Self::Background => "background",
+            Self::Texture => "texture",
+            Self::Material => "material",
+            Self::Light => "light",
+            Self::Transform => "transform",
+            Self::Geometry => "geometry",
+            Self::Asset => "asset",
+            Self::Animation => "animation",
+        }
+    }
+}
+
 /// Everything in which two states of a scene differ. Compilation after an edit
 /// ([`Scene::compile_after`]) updates only what depends on it.
 ///
@@ -65,6 +85,11 @@ impl Change {
     /// Whether something of this kind changed.
     pub fn contains(&self, kind: Changed) -> bool {
         self.kinds.contains(&kind)
+    }
+
+    /// All kinds of changes.
+    pub fn kinds(&self) -> impl Iterator<Item = Changed> {
+        self.kinds.iter().copied()
     }
 
     /// Whether all changes are of these kinds.
@@ -222,7 +247,7 @@ mod tests {
     fn change(pointer: &str, value: serde_json::Value) -> (Vec<Changed>, Vec<String>) {
         let scene = scene();
         let change = scene.with_value(pointer, value).unwrap().change_since(&scene);
-        (change.kinds.iter().copied().collect(), change.paths.iter().map(Path::pointer).collect())
+        (change.kinds().collect(), change.paths.iter().map(Path::pointer).collect())
     }
 
     #[test]

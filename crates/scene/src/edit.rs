@@ -12,11 +12,11 @@ use serde_json::Value;
 use std::sync::Arc;
 
 /// Scene sections that are lists of items.
-const LISTS: [&str; 2] = ["objects", "lights"];
+pub(crate) const LISTS: [&str; 2] = ["objects", "lights"];
 /// Scene sections that are maps of items.
-const MAPS: [&str; 3] = ["cameras", "textures", "materials"];
+pub(crate) const MAPS: [&str; 3] = ["cameras", "textures", "materials"];
 /// Scene sections that are single items.
-const SINGLE: [&str; 4] = ["render", "tone", "camera", "background"];
+pub(crate) const SINGLE: [&str; 4] = ["render", "tone", "camera", "background"];
 
 impl Scene {
     /// Returns the scene with `value` stored at a JSON pointer such as
@@ -113,7 +113,7 @@ fn has_items(section: &str) -> bool {
 }
 
 /// JSON of the part of a scene that an edit at `path` can reach; other list elements are null.
-fn edited_json(scene: &Description, section: &str, path: &Path) -> Node {
+pub(crate) fn edited_json(scene: &Description, section: &str, path: &Path) -> Node {
     let steps = path.steps().get(1..).unwrap_or_default();
     let at = |steps: &[Step]| match steps.first() {
         Some(Step::Index(i)) => Some(*i),

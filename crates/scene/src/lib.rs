@@ -44,6 +44,7 @@ mod store;
 mod unpack;
 mod update;
 pub mod validate;
+mod value_at;
 
 pub use animate::ValueSource;
 pub use animated::Animated;
@@ -69,3 +70,4 @@ pub use schema::{reference, schema_json};
 pub use shared::Shared;
 pub use store::{Bundle, Store};
 pub use validate::names_page;
+pub use value_at::UnknownPath;

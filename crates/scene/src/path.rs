@@ -66,6 +66,25 @@ impl Path {
         path
     }
 
+    /// Parses a path as messages print it, such as `objects[3].shape["my sphere"].radius`, or a JSON
+    /// pointer. `None` for a text that is neither.
+    pub fn parse(text: &str) -> Option<Self> {
+        if text.starts_with('/') {
+            return Some(Self::from_pointer(text));
+        }
+        let (mut path, mut rest) = (Self::root(), text);
+        while !rest.is_empty() {
+            let is_first = path.0.is_empty();
+            let (step, after) = match rest.strip_prefix('[') {
+                Some(bracketed) => bracketed_step(bracketed)?,
+                None => plain_step(if is_first { rest } else { rest.strip_prefix('.')? })?,
+            };
+            path.0.push(step);
+            rest = after;
+        }
+        Some(path)
+    }
+
     /// Creates a path of these steps.
     pub(crate) fn from_steps<'p>(steps: impl IntoIterator<Item = &'p Step>) -> Self {
         Self(steps.into_iter().cloned().collect())
@@ -92,6 +111,28 @@ impl Path {
         steps.push(step);
         Self(steps)
     }
+}
+
+/// A key without brackets, and the text after it.
+fn plain_step(text: &str) -> Option<(Step, &str)> {
+    let (key, after) = text.split_at(text.find(['.', '[']).unwrap_or(text.len()));
+    (!key.is_empty()).then(|| (Step::Key(key.to_owned()), after))
+}
+
+/// An index or a quoted key, without its opening bracket, and the text after the closing one.
+fn bracketed_step(text: &str) -> Option<(Step, &str)> {
+    if !text.starts_with('"') {
+        let (index, after) = text.split_once(']')?;
+        return Some((Step::Index(index.parse().ok()?), after));
+    }
+    let mut is_escaped = false;
+    let end = text.char_indices().skip(1).find(|(_, character)| {
+        let ends = *character == '"' && !is_escaped;
+        is_escaped = *character == '\\' && !is_escaped;
+        ends
+    });
+    let (quoted, after) = text.split_at(end?.0 + 1);
+    Some((Step::Key(serde_json::from_str(quoted).ok()?), after.strip_prefix(']')?))
 }
 
 /// Path on the stack of a recursive walk: each step refers to its parent. Memory is allocated only
@@ -199,6 +240,13 @@ mod tests {
         let path = Path::root().key("objects").index(3).key("shape").key("my sphere").join("vertices[7].x");
         assert_eq!(path.to_string(), "objects[3].shape[\"my sphere\"].vertices[7].x");
         assert_eq!(Path::root().to_string(), "");
+        assert_eq!(Path::parse(&path.to_string()).as_ref(), Some(&path));
+        assert_eq!(Path::parse(&path.pointer()).unwrap().pointer(), path.pointer());
+        let odd = Path::root().key("materials").key("a\"]b\\").key("7");
+        assert_eq!(Path::parse(&odd.to_string()), Some(odd));
+        for wrong in ["objects[", "objects[x]", "objects[3", ".a", "a..b", "a[\"b]", "a[3]b"] {
+            assert_eq!(Path::parse(wrong), None, "{wrong}");
+        }
         let objects = PathRef::Root.key("objects");
         let path = objects.index(3);
         assert_eq!(Path::from(&path.key("shape")).to_string(), "objects[3].shape");

@@ -3,19 +3,17 @@
 
 mod memory;
 mod noise;
-mod side;
 
 use crate::console;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::value;
 use clap::Args;
+use juggler::comparison::{ComparedImage, NoiseTest};
 use juggler::imaging::flip::{self, DynamicRange, Flip};
 use juggler::imaging::{self, Difference, Header, ImageFormat, Tone};
 use juggler::math::Image;
-use noise::NoiseTest;
 use serde_json::json;
-use side::ComparedPicture;
 use std::path::Path;
 
 /// Maximum number of pixels for FLIP, which needs more than a hundred bytes per pixel and takes
@@ -63,15 +61,15 @@ impl Compare {
         let map = map.transpose()?;
         let names = [self.picture.as_str(), self.reference.as_str()];
         let has_room = memory::has_room_for_flip(names, map.is_some(), self.max_memory)?;
-        let (picture, reference) = (ComparedPicture::read(&self.picture)?, ComparedPicture::read(&self.reference)?);
+        let (picture, reference) =
+            (ComparedImage::read(Path::new(&self.picture))?, ComparedImage::read(Path::new(&self.reference))?);
         let difference = imaging::compare(&picture.image, &reference.image)?;
         // Tone-mapped files contain display values. If one file contains linear radiance, compare
         // both as HDR.
         let range =
             if picture.is_tone_mapped && reference.is_tone_mapped { DynamicRange::Ldr } else { DynamicRange::Hdr };
         let flip = if has_room { measured(&picture.image, &reference.image, range, &difference)? } else { None };
-        let noise =
-            if difference.same_bits { None } else { NoiseTest::from_pictures(&picture, &reference, self.significance) };
+        let noise = if difference.same_bits { None } else { NoiseTest::new(&picture, &reference, self.significance) };
         let equal = match self.tolerance {
             Some(most) => difference.rmse <= most,
             None => difference.same_bits || noise.as_ref().and_then(NoiseTest::is_same) == Some(true),
@@ -129,7 +127,7 @@ struct Comparison {
 impl Comparison {
     fn to_words(&self, has_tolerance: bool) -> String {
         let Difference { rmse, relative_mse, largest, same_bits } = self.difference;
-        let p_value = self.noise.as_ref().and_then(NoiseTest::p_value).filter(|_| !has_tolerance);
+        let p_value = self.noise.as_ref().and_then(noise::p_value).filter(|_| !has_tolerance);
         let answer = match (self.equal, same_bits, p_value) {
             (_, true, _) => "identical, bit for bit".to_owned(),
             (true, _, Some(p_value)) => format!("same up to noise, {p_value}"),
@@ -142,7 +140,7 @@ impl Comparison {
             None => "not measured: the pictures are too large".to_owned(),
         };
         let numbers = format!("RMSE    {rmse:.6e}\nrelMSE  {relative_mse:.6e}\nmax     {largest:.6e}\nFLIP    {flip}");
-        let noise = self.noise.iter().flat_map(NoiseTest::to_words);
+        let noise = self.noise.iter().flat_map(noise::to_words);
         [answer, numbers].into_iter().chain(noise).collect::<Vec<_>>().join("\n")
     }
 
@@ -156,7 +154,7 @@ impl Comparison {
             "rmse": rmse, "relative_mse": relative_mse, "max": largest, "flip": flip,
         });
         if let (Some(object), Some(noise)) = (json.as_object_mut(), &self.noise) {
-            object.insert("noise".to_owned(), noise.to_json());
+            object.insert("noise".to_owned(), noise::to_json(noise));
         }
         json.to_string()
     }

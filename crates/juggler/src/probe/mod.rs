@@ -19,11 +19,13 @@ mod names;
 mod outliers;
 mod path;
 mod shares;
+mod text;
 mod tree;
 
 pub use fireflies::{Fireflies, Firefly, PathGroup};
 pub use path::{Contribution, PathEvent, ProbeVertex, SampleProbe};
 pub use shares::{LightOrigins, Share, Shares};
+pub use text::{number, percent, vector};
 pub use tree::{Branch, Others};
 
 use crate::{Error, Picture};

@@ -1,4 +1,7 @@
-"""Juggler renders pictures of scenes by path tracing.
+"""Juggler renders pictures of scenes by path tracing, the same bits on every machine.
+
+    import juggler as jg
+    jg.render("juggler", samples=64).save("juggler.png")
 
 The classes of the scene format are in modules that load when they are first used: one for each
 family of kinds (`shapes`, `materials`, ...), `animate` for values that change over time, and
@@ -12,7 +15,37 @@ files. A field that is `None` is absent: the documentation of its class tells th
 from ._exports import MODULES as _MODULES
 from ._exports import SCENE_TYPES as _SCENE_TYPES
 
-__all__ = [*_MODULES, *_SCENE_TYPES]
+# Modules of the names that are no modules themselves.
+_NAMES = {
+    "Cancelled": "_errors",
+    "FileError": "_errors",
+    "InternalError": "_errors",
+    "MemoryBudgetError": "_errors",
+    "MergeError": "_errors",
+    "Problem": "_errors",
+    "SceneError": "_errors",
+    "SceneWarning": "_errors",
+    "SettingsError": "_errors",
+    "Comparison": "_comparison",
+    "compare": "_comparison",
+    "Camera": "_camera",
+    "Image": "_image",
+    "PartialRender": "_partial_render",
+    "merge": "_partial_render",
+    "Probe": "_probe",
+    "Progress": "_progress",
+    "Renderer": "_renderer",
+    "examples": "_api",
+    "frames": "_api",
+    "models": "_api",
+    "render": "_api",
+    "render_movie": "_api",
+    "show_config": "_api",
+    "__version__": "_api",
+    **dict.fromkeys(_SCENE_TYPES, "scene_types"),
+}
+
+__all__ = [*_MODULES, *(name for name in _NAMES if not name.startswith("_"))]
 
 
 def __getattr__(name):
@@ -20,8 +53,8 @@ def __getattr__(name):
 
     if name in _MODULES:
         return import_module(f".{name}", __name__)
-    if name in _SCENE_TYPES:
-        value = globals()[name] = getattr(import_module(".scene_types", __name__), name)
+    if name in _NAMES:
+        value = globals()[name] = getattr(import_module(f".{_NAMES[name]}", __name__), name)
         return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

@@ -32,6 +32,13 @@ pub enum NameOrIndex {
     Name(String),
 }
 
+/// A number is an index, any other text a name.
+impl From<&str> for NameOrIndex {
+    fn from(text: &str) -> Self {
+        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index)
+    }
+}
+
 /// Animation clip of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum AnimationChoice {

@@ -1,6 +1,6 @@
 //! Models of a scene: expansion on first use, and scenes around model files.
 
-use super::{Expansion, ModelSummary, SceneTime, describe_model_scene, expand, has_models};
+use super::{Expansion, ModelSummary, NameOrIndex, SceneTime, describe_model_scene, expand, has_models};
 use crate::animate::posed_files;
 use crate::compile::{AssetCache, Files};
 use crate::description::{Description, Model, Object};
@@ -80,6 +80,25 @@ impl Scene {
     pub fn is_around_model(&self) -> bool {
         self.sources().names().next().is_none()
             && matches!(self.description.objects.as_slice(), [object] if object.model.is_some())
+    }
+
+    /// Selects what the model of a scene around a model file shows; `None` keeps a choice of the file.
+    /// Returns `false`, without an effect, for other scenes.
+    pub fn choose_model(
+        &mut self,
+        variant: Option<NameOrIndex>,
+        animation: Option<NameOrIndex>,
+        scene: Option<NameOrIndex>,
+    ) -> bool {
+        let is_single = self.is_around_model();
+        let object = self.description.objects.first_mut().filter(|_| is_single);
+        let Some(model) = object.and_then(|object| object.model.as_mut()) else { return false };
+        model.variant = variant.or(model.variant.take());
+        model.animation = animation.or(model.animation.take());
+        model.scene = scene.or(model.scene.take());
+        self.fit_animation();
+        self.fit_background();
+        true
     }
 
     /// Sets the background of a scene around a model file to that of the chosen scene of the file.

@@ -203,7 +203,7 @@ fn locate(
 }
 
 /// Describes an I/O error in plain words.
-pub(crate) fn plain_io(error: &io::Error) -> String {
+pub fn plain_io(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "file not found".into(),
         io::ErrorKind::PermissionDenied => "permission denied".into(),

@@ -1,8 +1,8 @@
 //! Memory estimate of a comparison, from the headers of the files.
 
-use super::side::is_partial_render;
 use crate::failure::Failure;
 use crate::memory;
+use juggler::comparison::is_partial_render;
 use juggler::film::PartialRender;
 use juggler::imaging;
 use std::path::Path;

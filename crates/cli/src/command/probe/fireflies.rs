@@ -1,8 +1,7 @@
 //! Text report of fireflies.
 
-use super::words::{number, percent, vector};
 use crate::format::counted;
-use juggler::probe::{Fireflies, Firefly};
+use juggler::probe::{Fireflies, Firefly, number, percent, vector};
 
 /// Maximum number of kinds of paths listed.
 const MOST_KINDS: usize = 8;

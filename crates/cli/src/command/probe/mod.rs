@@ -1,7 +1,6 @@
 //! `juggler probe`: explains a pixel, or finds fireflies.
 
 mod fireflies;
-mod words;
 
 use crate::args::ViewArgs;
 use crate::console;
@@ -104,7 +103,7 @@ impl Probe {
         let detail =
             Detail { depth: self.tree_depth, branches: self.branches as usize, brightest: self.brightest as usize };
         let probe = prober.probe_pixel(pixel, &detail, &Control::default())?;
-        self.tell(&probe, || words::to_words(&probe))
+        self.tell(&probe, || probe.to_string())
     }
 
     fn fireflies(&self, prober: &Prober, count: usize) -> Result<(), Failure> {

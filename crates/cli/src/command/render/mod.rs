@@ -27,7 +27,7 @@ use juggler::imaging::{AnimationHeader, Header, ImageFormat, Tone};
 use juggler::memory::Effort;
 use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::{Picture, RenderStats};
+use juggler::{Picture, RenderStats, TONE};
 use movie::MovieEncoder;
 use std::time::Instant;
 
@@ -188,7 +188,7 @@ impl RenderCommand {
         if header.tone != Tone::default() {
             // The scene's tone is not part of its fingerprint.
             let tone = serde_json::to_string(&header.tone).unwrap_or_default();
-            header.metadata.push((movie::TONE.to_owned(), tone));
+            header.metadata.push((TONE.to_owned(), tone));
         }
         // Frames of a movie are read again and encoded, and dithering would make still areas
         // flicker.

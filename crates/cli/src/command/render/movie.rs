@@ -5,6 +5,7 @@ use super::folder::{Access, FrameFolder};
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{FrameOutput, Movie};
+use juggler::TONE;
 use juggler::imaging::{self, AnimationHeader, ExrWindows, FrameWriter, Header};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -12,9 +13,6 @@ use std::thread::{self, JoinHandle};
 
 /// Number of frames that may wait for the encoder.
 const WAITING: usize = 2;
-
-/// Metadata key of a frame's tone, if it is not the default.
-pub const TONE: &str = "Tone";
 
 /// Encodes finished frames on its own thread while the next ones render.
 pub struct MovieEncoder {

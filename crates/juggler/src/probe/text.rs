@@ -1,19 +1,25 @@
 //! Text report of a pixel.
 
-use crate::format::counted;
-use juggler::probe::{Branch, FirstHit, LightOrigins, Others, PathEvent, Probe, ProbeVertex, SampleProbe, Share};
+use super::{Branch, FirstHit, LightOrigins, Others, PathEvent, Probe, ProbeVertex, SampleProbe, Share};
+use std::fmt;
 
 /// Column at which the numbers of the tree start.
 const COLUMN: usize = 60;
 
-/// Renders the whole report.
-pub fn to_words(probe: &Probe) -> String {
+/// Formats as the report of `juggler probe`.
+impl fmt::Display for Probe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&report(self))
+    }
+}
+
+fn report(probe: &Probe) -> String {
     let Probe { pixel: [x, y], size: [width, height], integrator, samples, not_finite, .. } = probe;
-    let samples = counted((*samples).into(), "sample");
+    let samples = counted(*samples);
     let mut lines = vec![format!("pixel {x},{y} of {width}x{height}, {integrator}, {samples}")];
     lines.push(row("mean", &mean(probe)));
     if *not_finite > 0 {
-        let lost = counted((*not_finite).into(), "sample");
+        let lost = counted(*not_finite);
         lines.push(row("not finite", &format!("{lost}, counted as black")));
     }
     if probe.clamped != 0.0 {
@@ -25,6 +31,11 @@ pub fn to_words(probe: &Probe) -> String {
         None => lines.push(format!("the integrator `{integrator}` traces no paths to lights")),
     }
     lines.join("\n")
+}
+
+/// `1 sample`, `2 samples`.
+fn counted(samples: u32) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
 fn row(key: &str, value: &str) -> String {
@@ -125,12 +136,12 @@ fn vertex_line(number: usize, vertex: &ProbeVertex) -> String {
     format!("    {number:>2} {what}{at}, throughput {}{}", vector(vertex.throughput), lights.concat())
 }
 
-/// Numbers separated by spaces.
+/// Formats three numbers with four significant digits, separated by spaces.
 pub fn vector(values: [f32; 3]) -> String {
     values.map(|value| number(f64::from(value))).join(" ")
 }
 
-/// A number with four significant digits: `0.1235`, `12.35`, `1.235e-5`.
+/// Formats a number with four significant digits: `0.1235`, `12.35`, `1.235e-5`.
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !value.is_finite() {
@@ -144,7 +155,7 @@ pub fn number(value: f64) -> String {
     if digits == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
 }
 
-/// `12.3 %`.
+/// Formats a fraction as `12.3 %`.
 pub fn percent(share: f64) -> String {
     format!("{:.1} %", share * 100.0)
 }

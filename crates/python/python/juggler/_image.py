@@ -1,0 +1,194 @@
+"""Rendered images."""
+
+import os
+from _collections_abc import Mapping
+
+from juggler import _native
+
+# Greatest width of a preview in a notebook, in pixels.
+_PREVIEW_WIDTH = 1600
+
+
+def array(data, type_name, shape):
+    """Returns the NumPy array of these bytes, without a copy."""
+    try:
+        import numpy
+    except ImportError:
+        raise ImportError("arrays need NumPy: pip install numpy") from None
+    return numpy.frombuffer(data, dtype=type_name).reshape(shape)
+
+
+class Image:
+    """Rendered image, with linear pixels and AOVs.
+
+    `img.color` is an array of shape (height, width, 3), `img["depth"]` or `img.aovs["depth"]` that
+    of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
+    """
+
+    __slots__ = ("_native", "_arrays", "__weakref__")
+
+    def __init__(self, native):
+        if not isinstance(native, _native.Image):
+            raise TypeError("images are made by juggler.render")
+        self._native = native
+        self._arrays = {}
+
+    def __reduce__(self):
+        return _restore, (self._native.state(),)
+
+    def __repr__(self):
+        width, height = self.size
+        return f"<juggler.Image {width}x{height}, {self.stats['samples']:g} samples, hash {self.hash[:12]}>"
+
+    def __eq__(self, other):
+        if not isinstance(other, Image):
+            return NotImplemented
+        return self.size == other.size and self.hash == other.hash and self._layers() == other._layers()
+
+    def __hash__(self):
+        return hash(self.hash)
+
+    def _layers(self):
+        return [(name, self._native.layer(name)) for name, _, _ in self._native.layers()]
+
+    @property
+    def size(self):
+        """Width and height in pixels."""
+        return tuple(self._native.size)
+
+    @property
+    def color(self):
+        """Linear pixels: a read-only array of shape (height, width, 3), float32."""
+        if "color" not in self._arrays:
+            width, height = self.size
+            self._arrays["color"] = array(self._native.pixels(), "float32", (height, width, 3))
+        return self._arrays["color"]
+
+    @property
+    def aovs(self):
+        """Arrays of the AOVs by name, of shape (height, width) or (height, width, channels)."""
+        return Layers(self)
+
+    def __getitem__(self, name):
+        if name == "color":
+            return self.color
+        return self.aovs[name]
+
+    @property
+    def names(self):
+        """Names that the AOVs `object_id` and `material_id` number: `names["object_id"][id]`. The
+        number 0 is nothing.
+        """
+        found = {name: self._native.names(name) for name, _, _ in self._native.layers()}
+        return {name: [None, *names] for name, names in found.items() if names is not None}
+
+    @property
+    def hash(self):
+        """Hash of the linear pixels, in hexadecimal."""
+        return self._native.hash
+
+    @property
+    def fingerprint(self):
+        """Fingerprint of everything that determines the pixels."""
+        return self._native.fingerprint
+
+    @property
+    def frame(self):
+        """Frame of the animation."""
+        frame = self._native.frame
+        return int(frame) if frame.is_integer() else frame
+
+    @property
+    def stats(self):
+        """Mean of the pixels, and numbers of samples, rays and seconds."""
+        return self._native.stats()
+
+    @property
+    def metadata(self):
+        """Metadata of an image file, such as program, fingerprint and seed."""
+        return dict(self._native.metadata)
+
+    @property
+    def camera(self):
+        """Matrices of the camera; `None` for a camera without finite ones."""
+        from juggler._camera import Camera
+
+        viewpoint = self._native.viewpoint
+        return None if viewpoint is None else Camera(viewpoint, self._native.window)
+
+    def save(self, path):
+        """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
+        self._native.save(os.fspath(path))
+
+    def to_uint8(self, tone=None, exposure=None):
+        """Levels from 0 to 255 as an image file has them, with another tone curve or exposure in
+        stops if given, and without dithering: an array of shape (height, width, 3).
+        """
+        width, height = self.size
+        return array(self._native.to_rgb8(tone, exposure), "uint8", (height, width, 3))
+
+    def __array__(self, dtype=None, copy=None):
+        color = self.color if dtype is None else self.color.astype(dtype)
+        return color.copy() if copy else color
+
+    def __dlpack__(self, **arguments):
+        # The consumer may write, so it gets a copy.
+        return self.color.copy().__dlpack__(**arguments)
+
+    def __dlpack_device__(self):
+        return (1, 0)
+
+    def _repr_png_(self):
+        return self._native.encode("png", _PREVIEW_WIDTH)
+
+    def _repr_html_(self):
+        from juggler._notebook import html
+
+        return html(self)
+
+
+class Layers(Mapping):
+    """AOVs of an image by name."""
+
+    __slots__ = ("_image",)
+
+    def __init__(self, image):
+        self._image = image
+
+    def _all(self):
+        return {name: (channels, is_index) for name, channels, is_index in self._image._native.layers()}
+
+    def __getitem__(self, name):
+        arrays = self._image._arrays
+        if name not in arrays:
+            known = self._all()
+            if name not in known:
+                raise KeyError(_unknown(name, known))
+            channels, is_index = known[name]
+            width, height = self._image.size
+            shape = (height, width) if channels == 1 else (height, width, channels)
+            data = self._image._native.layer(name)
+            arrays[name] = array(data, "int32" if is_index else "float32", shape)
+        return arrays[name]
+
+    def __iter__(self):
+        return iter(self._all())
+
+    def __len__(self):
+        return len(self._all())
+
+    def __repr__(self):
+        return f"<AOVs {', '.join(self) or 'none'}>"
+
+
+def _unknown(name, known):
+    has = f"it has {', '.join(known)}" if known else "it has none"
+    return f"the image has no AOV {name!r}, {has}; render it with aovs=[{name!r}]"
+
+
+def _restore(state):
+    """Makes the image of another process."""
+    return Image(_native.Image.from_state(state))
+
+
+Image.__module__ = "juggler"

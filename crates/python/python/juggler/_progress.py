@@ -1,0 +1,107 @@
+"""Progress of renders."""
+
+import sys
+
+# Seconds after which a bar appears.
+_DELAY = 1.0
+# Characters of a bar.
+_WIDTH = 40
+
+
+class Progress:
+    """Progress of a render: `stage` ("build" or "render"), `share` (0 to 1), `seconds` so far,
+    `seconds_left` (`None` if unknown), and `samples` of all pixels so far.
+    """
+
+    __slots__ = ("stage", "share", "seconds", "seconds_left", "samples")
+
+    def __init__(self, stage, share, seconds, seconds_left, samples):
+        self.stage = stage
+        self.share = share
+        self.seconds = seconds
+        self.seconds_left = seconds_left
+        self.samples = samples
+
+    def __repr__(self):
+        return f"Progress({', '.join(f'{name}={getattr(self, name)!r}' for name in self.__slots__)})"
+
+
+def duration(seconds):
+    """Writes seconds as 4s, 9m56s or 2h03m04s."""
+    minutes, seconds = divmod(int(seconds + 0.5), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours}h{minutes:02}m{seconds:02}s"
+    return f"{minutes}m{seconds:02}s" if minutes else f"{seconds}s"
+
+
+class Display:
+    """Shows the progress of one render, as a context. This one shows nothing."""
+
+    callback = None
+    is_live = False
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return None
+
+
+class Callback(Display):
+    """Calls a function with each progress."""
+
+    def __init__(self, function):
+        self.callback = lambda *values: function(Progress(*values))
+
+
+class Bar(Display):
+    """Bar on a terminal."""
+
+    def __init__(self, stream):
+        self._stream = stream
+        self._is_shown = False
+        self.callback = self._show
+
+    def _show(self, *values):
+        progress = Progress(*values)
+        if progress.seconds < _DELAY:
+            return
+        done = round(_WIDTH * progress.share)
+        left = "" if progress.seconds_left is None else f" {duration(progress.seconds_left)} left"
+        text = "building" if progress.stage == "build" else f"{100 * progress.share:3.0f} %{left}"
+        self._stream.write(f"\r{'━' * done}{'┄' * (_WIDTH - done)} {text}\x1b[K")
+        self._stream.flush()
+        self._is_shown = True
+
+    def __exit__(self, *error):
+        if self._is_shown:
+            self._stream.write("\r\x1b[K")
+            self._stream.flush()
+
+
+def display(progress, live=True):
+    """Returns the display that `progress` selects: a function, True, False, or `None` for a bar on
+    a terminal and a growing image in a notebook.
+    """
+    if callable(progress):
+        return Callback(progress)
+    if progress is None or progress is True:
+        shell = _notebook_shell()
+        if shell is not None and live:
+            from juggler._notebook import LiveImage
+
+            return LiveImage()
+        if sys.stderr is not None and (progress or sys.stderr.isatty()):
+            return Bar(sys.stderr)
+    return Display()
+
+
+def _notebook_shell():
+    """Returns the shell of a notebook, if the code runs in one."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return shell if getattr(shell, "kernel", None) is not None else None
+
+
+Progress.__module__ = "juggler"

@@ -1,0 +1,73 @@
+"""Scenes and values in the forms that users give them."""
+
+import os
+import sys
+
+from juggler import _native
+
+
+def native_scene(scene, lenient=False):
+    """Returns the scene of a file, a built-in name, a dict, or an object with `to_dict`."""
+    if isinstance(scene, _native.Scene):
+        return scene
+    if isinstance(scene, (str, os.PathLike)):
+        return _native.Scene.named(os.fspath(scene), lenient)
+    if not isinstance(scene, dict) and not hasattr(scene, "to_dict"):
+        kind = type(scene).__name__
+        raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
+    return _native.Scene.from_json(to_json(scene), lenient)
+
+
+def to_json(value):
+    """Returns the JSON of a value of a scene."""
+    import json
+
+    if hasattr(value, "to_dict"):
+        value = value.to_dict()
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (ValueError, RecursionError) as error:
+        from juggler._errors import SceneError
+
+        reason = str(error).split(":")[0]
+        raise SceneError(f"the scene cannot be written as JSON: {reason}") from None
+
+
+def _plain(value):
+    """Returns a value that JSON has, for one that it does not have."""
+    for method in ("to_dict", "tolist", "__fspath__"):
+        if hasattr(value, method):
+            return getattr(value, method)()
+    raise TypeError(f"a scene cannot hold an object of the type {type(value).__name__}")
+
+
+def bytes_of(size):
+    """Returns the bytes of a size, such as "4G" or 4_000_000_000; K, M, G, T are powers of 1024."""
+    if size is None or isinstance(size, int):
+        return size
+    text = str(size).strip().lower().removesuffix("b").removesuffix("i")
+    power = "kmgt".find(text[-1:]) + 1 if text else 0
+    try:
+        count = float(text[:-1] if power else text) * 1024**power
+        if count >= 1:
+            return int(count)
+    except (ValueError, OverflowError):
+        pass
+    from juggler._errors import SettingsError
+
+    raise SettingsError(f"`max_memory` must be a number of bytes or a size such as \"4G\", not {size!r}")
+
+
+def warn(messages):
+    """Warns of the problems of a scene, at the line of the user's code."""
+    if not messages:
+        return
+    import warnings
+
+    from juggler._errors import SceneWarning
+
+    level, frame = 1, sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "juggler":
+        level, frame = level + 1, frame.f_back
+    for message in messages:
+        warnings.warn(message.removeprefix("warning: "), SceneWarning, stacklevel=level)

@@ -1,0 +1,39 @@
+//! The module `juggler._native`, on which the Python package `juggler` is built. It takes scenes as
+//! JSON text and settings as keywords, and returns pixels as bytes, so it needs no library of arrays.
+
+mod budget;
+mod comparison;
+mod errors;
+mod files;
+mod image;
+mod partial_render;
+mod progressive;
+mod renderer;
+mod scene;
+mod settings;
+mod state;
+mod task;
+mod threads;
+
+/// Classes and functions for the package `juggler`, which wraps all of them.
+#[pyo3::pymodule(gil_used = false)]
+mod _native {
+    #[pymodule_export]
+    use crate::comparison::compare;
+    #[pymodule_export]
+    use crate::files::{configuration, examples, main};
+    #[pymodule_export]
+    use crate::image::Image;
+    #[pymodule_export]
+    use crate::partial_render::{PartialRender, merge};
+    #[pymodule_export]
+    use crate::progressive::Progressive;
+    #[pymodule_export]
+    use crate::renderer::Renderer;
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::settings::{check_settings, setting_names};
+    #[pymodule_export]
+    use crate::task::{Canceller, panic_on_a_thread};
+}

@@ -1,0 +1,271 @@
+//! Renderer: a scene that is built once, edited and rendered again.
+
+use crate::budget;
+use crate::errors::{convert, key_error, line, settings_error};
+use crate::image::Image;
+use crate::partial_render::PartialRender;
+use crate::progressive::Progressive;
+use crate::scene::{self, Scene};
+use crate::settings::RenderSettings;
+use crate::state::{self, Built};
+use crate::task::{self, Canceller, Fault, Monitor, Watch};
+use juggler::memory::Effort;
+use juggler::probe::{Detail, Prober};
+use juggler::scene::camera_json;
+use juggler::scene::path::Path;
+use juggler::{RenderOrigin, scene as scenes};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// Scene with settings, whose world is kept between renders.
+#[pyclass(frozen, module = "juggler._native")]
+pub struct Renderer {
+    /// Held only for moments, while the interpreter is attached.
+    state: Mutex<State>,
+    settings: RenderSettings,
+    name: String,
+    /// Name that partial renders store.
+    title: String,
+}
+
+/// A scene, its frame, a known world of which parts may still hold, and the effort of a render.
+struct Start {
+    scene: scenes::Scene,
+    frame: f64,
+    before: Option<Arc<Built>>,
+    effort: Effort,
+}
+
+/// What edits and renders change. Renders under way keep the scene with which they began.
+struct State {
+    scene: scenes::Scene,
+    frame: f64,
+    built: Option<Arc<Built>>,
+    /// Scene of the last render.
+    rendered: Option<scenes::Scene>,
+    /// Kinds of changes between the last two renders.
+    changed: Vec<&'static str>,
+    /// Warnings of builds that were not taken yet.
+    warnings: Vec<String>,
+}
+
+#[pymethods]
+impl Renderer {
+    #[new]
+    fn new(scene: &Scene, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let settings = RenderSettings::new(keywords)?;
+        let mut own = scene.scene.clone();
+        if let Some(setting) = settings.model_setting() {
+            let [variant, animation, model_scene] = settings.model.clone();
+            if !own.choose_model(variant, animation, model_scene) {
+                return Err(scene::no_model(setting, &scene.name));
+            }
+        }
+        settings.settings.apply(&own).map_err(convert)?;
+        let frame = state::frame(&own, &settings);
+        let (changed, warnings) = (Vec::new(), Vec::new());
+        let state = State { scene: own, frame, built: None, rendered: None, changed, warnings };
+        Ok(Self { state: Mutex::new(state), settings, name: scene.name.clone(), title: scene.title() })
+    }
+
+    /// The current scene.
+    fn scene(&self) -> Scene {
+        Scene { scene: self.lock().scene.clone(), name: self.name.clone() }
+    }
+
+    /// Value at a path, as JSON.
+    fn value(&self, path: &str) -> PyResult<String> {
+        let (path, scene) = (scene::path(path)?, self.lock().scene.clone());
+        let value = scene.value_at(&path).map_err(|unknown| key_error(&unknown.to_string()))?;
+        Ok(value.to_string())
+    }
+
+    /// Sets the value at a path, given as JSON; `null` removes it.
+    fn set_value(&self, path: &str, json: &str) -> PyResult<()> {
+        let value: Value = serde_json::from_str(json).map_err(|error| settings_error(error.to_string()))?;
+        let mut state = self.lock();
+        state.scene = scene::with_value(&state.scene, path, value)?;
+        Ok(())
+    }
+
+    /// Path of the camera of the image.
+    fn camera_path(&self) -> String {
+        let scene = &self.lock().scene;
+        let cameras = &scene.description.cameras;
+        let settings = self.settings.settings.camera.as_ref();
+        let chosen = scene.description.render.camera.as_ref().map(|camera| &camera.0);
+        let name = settings.or(chosen).filter(|name| cameras.contains_key(*name)).or_else(|| cameras.keys().next());
+        name.map_or_else(|| "camera".to_owned(), |name| Path::root().key("cameras").key(name).to_string())
+    }
+
+    /// The camera of the image, as JSON.
+    fn camera(&self, py: Python<'_>) -> PyResult<String> {
+        let built = self.built(py)?;
+        Ok(camera_json(&built.picture.view().camera).to_string())
+    }
+
+    /// Frame, which may lie between two.
+    fn frame(&self) -> f64 {
+        self.lock().frame
+    }
+
+    /// Selects another frame.
+    fn set_frame(&self, frame: f64) -> PyResult<()> {
+        if !frame.is_finite() {
+            return Err(settings_error(format!("a frame must be a finite number, not {frame}")));
+        }
+        self.lock().frame = frame;
+        Ok(())
+    }
+
+    /// Kinds of changes between the last two renders.
+    fn changed(&self) -> Vec<&'static str> {
+        self.lock().changed.clone()
+    }
+
+    /// Removes and returns the warnings of builds.
+    fn take_warnings(&self) -> Vec<String> {
+        std::mem::take(&mut self.lock().warnings)
+    }
+
+    /// Fingerprint of everything that determines the pixels.
+    fn fingerprint(&self, py: Python<'_>) -> PyResult<String> {
+        let built = self.built(py)?;
+        task::call(py, move || Ok(built.picture.fingerprint().hash()))
+    }
+
+    /// Renders the image.
+    #[pyo3(signature = (callback=None, canceller=None))]
+    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceller: Option<Py<Canceller>>) -> PyResult<Image> {
+        let (built, image) = self.with_world(py, &Watch { callback, canceller }, state::render)?;
+        self.store(&built);
+        Ok(Image::new(image, built.frame))
+    }
+
+    /// Renders better and better images.
+    fn progressive(&self, py: Python<'_>, every: f64) -> PyResult<Progressive> {
+        let (Start { scene, frame, before, effort }, settings) = (self.start()?, self.settings.clone());
+        let build = move || state::build(&scene, frame, &settings.settings, before);
+        Progressive::start(py, effort.threads, every, build)
+    }
+
+    /// Keeps the world of a progressive render.
+    fn keep(&self, progressive: &Progressive) {
+        if let Some(built) = progressive.built() {
+            self.store(&built);
+        }
+    }
+
+    /// Renders one of `count` shards.
+    #[pyo3(signature = (index, count, callback=None))]
+    fn render_shard(
+        &self,
+        py: Python<'_>,
+        index: u32,
+        count: u32,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<PartialRender> {
+        let name = self.title.clone();
+        let (built, bytes) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+            let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
+            Ok(built.picture.render_shard([index, count], &origin, &monitor.control)?)
+        })?;
+        self.keep_world(&mut self.lock(), &built);
+        PartialRender::new(bytes)
+    }
+
+    /// Continues a partial render up to the samples of the settings.
+    #[pyo3(signature = (partial_render, callback=None))]
+    fn extend(&self, py: Python<'_>, partial_render: &PartialRender, callback: Option<Py<PyAny>>) -> PyResult<Image> {
+        let (name, partial_render) = (self.title.clone(), partial_render.partial_render.clone());
+        let (built, image) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+            let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
+            let film = Arc::new(built.picture.resume_film(&partial_render, &origin)?);
+            state::finish(&built.picture, &film, Instant::now(), monitor)
+        })?;
+        self.store(&built);
+        Ok(Image::new(image, built.frame))
+    }
+
+    /// Explains a pixel: the report as text and as JSON.
+    fn probe(
+        &self,
+        py: Python<'_>,
+        pixel: [u32; 2],
+        depth: u32,
+        branches: usize,
+        brightest: usize,
+    ) -> PyResult<(String, String)> {
+        let (built, report) = self.with_world(py, &Watch::default(), move |built, _, monitor| {
+            let prober = Prober::new(&built.scene, built.picture.clone());
+            let probe = prober.probe_pixel(pixel, &Detail { depth, branches, brightest }, &monitor.control)?;
+            Ok((probe.to_string(), serde_json::to_string(&probe).unwrap_or_default()))
+        })?;
+        self.keep_world(&mut self.lock(), &built);
+        Ok(report)
+    }
+}
+
+impl Renderer {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins a render.
+    fn start(&self) -> PyResult<Start> {
+        let mut state = self.lock();
+        let (scene, frame) = (state.scene.clone(), state.frame);
+        // Of another frame's world little holds, so memory does not keep both.
+        let before = match &state.built {
+            Some(built) if built.frame != frame => state.built.take(),
+            built => built.clone(),
+        };
+        drop(state);
+        let effort = budget::effort(&scene, &self.settings)?;
+        Ok(Start { scene, frame, before, effort })
+    }
+
+    /// Does work with the world of the current scene, which is built if it is not known.
+    fn with_world<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        watch: &Watch,
+        work: impl FnOnce(&Built, &Effort, &Monitor) -> Result<T, Fault> + Send + 'static,
+    ) -> PyResult<(Arc<Built>, T)> {
+        let (Start { scene, frame, before, effort }, settings) = (self.start()?, self.settings.clone());
+        task::run(py, effort.threads, watch, move |monitor| {
+            let built = state::build(&scene, frame, &settings.settings, before)?;
+            let result = work(&built, &effort, monitor)?;
+            Ok((built, result))
+        })
+    }
+
+    /// World of the current scene.
+    fn built(&self, py: Python<'_>) -> PyResult<Arc<Built>> {
+        let (built, ()) = self.with_world(py, &Watch::default(), |_, _, _| Ok(()))?;
+        self.keep_world(&mut self.lock(), &built);
+        Ok(built)
+    }
+
+    fn keep_world(&self, state: &mut State, built: &Arc<Built>) {
+        if state.built.as_ref().is_some_and(|known| Arc::ptr_eq(known, built)) {
+            return;
+        }
+        let warnings = built.picture.compiled().warnings.list().iter().map(line);
+        state.warnings.extend(warnings);
+        state.built = Some(Arc::clone(built));
+    }
+
+    /// Keeps the world of a finished render, and notes what changed since the one before.
+    fn store(&self, built: &Arc<Built>) {
+        let mut state = self.lock();
+        self.keep_world(&mut state, built);
+        let before = state.rendered.replace(built.scene.clone());
+        if let Some(before) = before {
+            state.changed = built.scene.change_since(&before).kinds().map(scenes::Changed::name).collect();
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Scenes.
+
+use crate::errors::{key_error, of_problems, of_scene, settings_error};
+use crate::task::{self, Fault};
+use juggler::scene::model::{ModelSummary, SceneModel};
+use juggler::scene::path::{Path, Step};
+use juggler::scene::{self, Loader, UnknownPath};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+/// Name of the text of a scene that is no file. Messages do not show it.
+pub const UNNAMED: &str = "<scene>";
+
+/// Scene, which never changes.
+#[pyclass(frozen, module = "juggler._native")]
+pub struct Scene {
+    /// The scene at frame 0.
+    pub scene: scene::Scene,
+    /// File, built-in scene, or [`UNNAMED`].
+    pub name: String,
+}
+
+impl Scene {
+    /// Name that partial renders store.
+    pub fn title(&self) -> String {
+        if self.name == UNNAMED { "scene".to_owned() } else { self.name.clone() }
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// Loads a file, or the built-in scene of this name.
+    #[staticmethod]
+    fn named(py: Python<'_>, name: String, lenient: bool) -> PyResult<Self> {
+        let file = name.clone();
+        let scene = task::call(py, move || loader(lenient).named(&file).map_err(Fault::from))?;
+        Ok(Self { scene, name })
+    }
+
+    /// Reads the text of a scene. File names in it are relative to the folder of `name`, or to the
+    /// current one.
+    #[staticmethod]
+    #[pyo3(signature = (text, lenient, name=None))]
+    fn from_json(py: Python<'_>, text: String, lenient: bool, name: Option<String>) -> PyResult<Self> {
+        let name = name.unwrap_or_else(|| UNNAMED.to_owned());
+        let file = name.clone();
+        let scene = task::call(py, move || loader(lenient).from_json(text, &file).map_err(Fault::from))?;
+        Ok(Self { scene, name })
+    }
+
+    /// File or built-in scene.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Raises an exception with all mistakes, and returns the warnings.
+    fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let scene = self.scene.clone();
+        let problems = task::call(py, move || Ok(scene.check()))?;
+        if problems.errors() > 0 {
+            return Err(of_problems(&problems));
+        }
+        Ok(problems.list().iter().map(crate::errors::line).collect())
+    }
+
+    /// Text of the scene file.
+    fn to_json(&self) -> String {
+        self.scene.to_json()
+    }
+
+    /// Writes the scene file with its assets.
+    fn save(&self, py: Python<'_>, path: String) -> PyResult<()> {
+        let scene = self.scene.clone();
+        task::call(py, move || scene.save(&path).map_err(Fault::from))
+    }
+
+    /// Descriptions of the models of the scene, as JSON.
+    fn models(&self, py: Python<'_>) -> PyResult<String> {
+        let scene = self.scene.clone();
+        let models = task::call(py, move || Ok(scene.model_summaries()))?;
+        Ok(Value::from_iter(models.iter().map(model)).to_string())
+    }
+
+    /// Number of frames and frames per second of the animation.
+    fn animation(&self) -> (u32, f64) {
+        let animation = self.scene.description.animation;
+        (animation.frames, animation.frames_per_second)
+    }
+}
+
+fn loader(lenient: bool) -> Loader {
+    if lenient { juggler::loader().lenient() } else { juggler::loader() }
+}
+
+fn model(SceneModel { path, summary, .. }: &SceneModel) -> Value {
+    let ModelSummary { format, generator, scenes, variants, clips, materials, cameras, lights, warnings, .. } = summary;
+    let clips: Vec<Value> = clips.iter().map(|clip| json!({"name": clip.name, "seconds": clip.seconds})).collect();
+    let cameras: Vec<&String> = cameras.iter().map(|(name, _)| name).collect();
+    let extensions: Vec<&String> = summary.extensions.iter().map(|extension| &extension.name).collect();
+    json!({
+        "path": path.to_string(), "format": format, "generator": generator, "scenes": scenes, "variants": variants,
+        "clips": clips, "materials": materials, "cameras": cameras, "lights": lights, "nodes": summary.nodes,
+        "triangles": summary.drawn_triangles, "extensions": extensions, "warnings": warnings,
+    })
+}
+
+/// Path of a value of a scene, as messages print it or as a JSON pointer.
+pub fn path(text: &str) -> PyResult<Path> {
+    Path::parse(text).ok_or_else(|| {
+        key_error(&format!("`{text}` is no path, such as `materials.gold.conductor.roughness` or `objects[0].shape`"))
+    })
+}
+
+/// The scene with another value at a path; `Null` removes the value.
+pub fn with_value(scene: &scene::Scene, text: &str, value: Value) -> PyResult<scene::Scene> {
+    let path = path(text)?;
+    let known = scene.value_at(&path);
+    let unknown = known.as_ref().err();
+    // A new key may have a default, and the index after the last one appends.
+    let is_new = |unknown: &UnknownPath| unknown.is_last && (unknown.count.is_none() || appends(unknown));
+    if let Some(unknown) = unknown.filter(|unknown| value.is_null() || !is_new(unknown)) {
+        return Err(key_error(&unknown.to_string()));
+    }
+    // Panics become exceptions, although the caller may hold a lock.
+    let edited = task::guarded(|| scene.with_value(&path.pointer(), value))?;
+    edited.map_err(|error| match &error {
+        scene::SceneError::Problems(problems) if unknown.is_some() => match problems.list() {
+            [problem] if problem.path == path.to_string() && problem.message.starts_with("unknown key") => {
+                key_error(&crate::errors::line(problem))
+            }
+            _ => of_scene(error),
+        },
+        _ => of_scene(error),
+    })
+}
+
+fn appends(unknown: &UnknownPath) -> bool {
+    matches!(&unknown.step, Step::Index(index) if unknown.count == Some(*index))
+}
+
+/// Error of a setting for models, of a scene around none.
+pub fn no_model(setting: &str, name: &str) -> PyErr {
+    settings_error(format!("`{setting}` is for model files; `{name}` is another scene"))
+}

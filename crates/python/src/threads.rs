@@ -1,0 +1,68 @@
+//! Thread pools, one for each process and number of threads.
+
+use crate::errors::settings_error;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, Once, PoisonError};
+
+/// Name of the threads, whose panics become exceptions.
+const NAME: &str = "juggler-python";
+/// Environment variable with the number of threads.
+const VARIABLE: &str = "JUGGLER_THREADS";
+/// Maximum number of threads.
+const MAX_THREADS: usize = 1024;
+
+/// Pools by process and number of threads. A process that is forked makes its own, since only the
+/// thread that forks lives on in it. The lock is held only while the interpreter is attached, and
+/// therefore by no other thread when `os.fork` is called.
+static POOLS: Mutex<BTreeMap<(u32, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
+
+/// Number of threads to use: `requested`, that of the environment, or one per core that the process
+/// may use.
+pub fn thread_count(requested: Option<usize>) -> PyResult<usize> {
+    let check = |count: usize, what: &str| {
+        if (1..=MAX_THREADS).contains(&count) {
+            return Ok(count);
+        }
+        Err(settings_error(format!("{what} is {count}, which is out of range: 1 to {MAX_THREADS}")))
+    };
+    if let Some(count) = requested {
+        return check(count, "`threads`");
+    }
+    match std::env::var(VARIABLE) {
+        Ok(text) if !text.is_empty() => {
+            let count = text.parse().map_err(|_| settings_error(format!("{VARIABLE} is `{text}`, not a number")))?;
+            check(count, VARIABLE)
+        }
+        _ => Ok(std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
+    }
+}
+
+/// Pool of this many threads. It is kept for the next call.
+pub fn pool(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
+    silence_panics();
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let key = (std::process::id(), threads);
+    if let Some(pool) = pools.get(&key) {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("{NAME}-{number}")).build();
+    let pool = Arc::new(pool.map_err(|error| settings_error(format!("cannot start {threads} threads: {error}")))?);
+    pools.insert(key, Arc::clone(&pool));
+    Ok(pool)
+}
+
+/// Prints no message for panics of these threads, which become exceptions.
+fn silence_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let previous = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            let is_own = std::thread::current().name().is_some_and(|name| name.starts_with(NAME));
+            if !is_own {
+                previous(panic);
+            }
+        }));
+    });
+}

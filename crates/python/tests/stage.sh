@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Builds the module without optimization and assembles the package in a folder, for tests:
+#   PYTHONPATH=$(crates/python/tests/stage.sh) python3 -m unittest discover crates/python/tests
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+cargo build --quiet --locked -p juggler-python >&2
+folder=target/python
+rm -rf "$folder"
+mkdir -p "$folder"
+cp -r crates/python/python/juggler "$folder/"
+cp target/debug/lib_native.so "$folder/juggler/_native.abi3.so"
+echo "$PWD/$folder"

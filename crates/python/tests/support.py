@@ -1,0 +1,79 @@
+"""What the tests share."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import juggler as jg
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+# The program, built with the same source.
+PROGRAM = os.environ.get("JUGGLER_PROGRAM", str(ROOT / "target/debug/juggler"))
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+needs_numpy = unittest.skipUnless(numpy, "NumPy is not installed")
+needs_program = unittest.skipUnless(os.path.exists(PROGRAM), "the program is not built")
+
+SMALL = {"size": (32, 18), "samples": 2}
+
+
+def small_scene(**more):
+    """Two spheres over a plane, as a dict."""
+    return {
+        "version": 1,
+        "render": {"size": [32, 18], "samples": 4},
+        "camera": {"perspective": {"eye": [0, 1, 5], "look_at": [0, 0.5, 0], "vertical_fov_degrees": 40}},
+        "materials": {
+            "floor": {"diffuse": {"reflectance": 0.5}},
+            "gold": {"conductor": {"metal": "gold", "roughness": 0.2}},
+        },
+        "lights": [{"point": {"position": [-3, 5, 4], "intensity": 60}}],
+        "objects": [
+            {"name": "ground", "shape": "plane", "material": "floor"},
+            {"name": "ball", "shape": {"sphere": {"radius": 1}}, "material": "gold",
+             "transform": [{"translate": [0, 1, 0]}]},
+        ],
+        **more,
+    }
+
+
+def program(*words):
+    """Runs the program, and returns its standard output."""
+    done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise AssertionError(done.stderr)
+    return done.stdout
+
+
+def program_hash(scene, *flags):
+    """Hash of the pixels that the program renders."""
+    with tempfile.TemporaryDirectory() as folder:
+        image = os.path.join(folder, "image.pfm")
+        stats = os.path.join(folder, "stats.json")
+        program("render", scene, "-q", "-o", image, "--stats", stats, *flags)
+        with open(stats, encoding="utf-8") as file:
+            return json.load(file)["film"]["hash"]
+
+
+def python(code, *words, **arguments):
+    """Runs code in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, timeout=120,
+                          env=environment, check=False, **arguments)
+
+
+class Folder(unittest.TestCase):
+    """Test with a folder for its files."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
