@@ -77,6 +77,17 @@ mod tests {
         assert_eq!((found.triangles, found.resident_bytes), (3, 4 * 12 + 3 * (FACE + BUILT)));
         let text = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 9\n3 0 1 2 9\n";
         assert!((3..9).contains(&of("a.ply", &ply("ascii", text.as_bytes())).triangles));
+        // Attributes of vertices and faces.
+        let attributes = |text: &str| {
+            let text =
+                text.replace("z\nelement", "z\nproperty ushort attribute.a.0\nproperty ushort attribute.a.1\nelement");
+            text.replace("uchar red", "double attribute.b")
+        };
+        let body = vec![0; 4 * 16 + (1 + 4 * 4 + 8) + (1 + 3 * 4 + 8)];
+        let bytes = ply("binary_little_endian", &body);
+        let head = String::from_utf8(bytes[..bytes.len() - body.len()].to_vec()).unwrap();
+        let found = of("a.ply", &[attributes(&head).as_bytes(), &body].concat());
+        assert_eq!((found.triangles, found.resident_bytes), (3, 4 * 16 + 3 * (FACE + 4 + BUILT)));
         let lies = ply("binary_little_endian", &[]);
         let lies = String::from_utf8(lies).unwrap().replace("face 2", "face 2000000000");
         assert_eq!(
