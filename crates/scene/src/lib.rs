@@ -27,6 +27,7 @@ mod integrator;
 mod item;
 pub mod kind;
 mod loader;
+mod mesh_digest;
 mod mesh_scene;
 pub mod model;
 mod motion;

@@ -6,7 +6,6 @@ use crate::description::{Object, Objects};
 use crate::item::Item;
 use crate::report::Finding;
 use crate::{Scene, SceneError};
-use juggler_mesh::ply_bytes;
 use juggler_shape::{Mesh, MeshData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,8 +17,8 @@ const MAX_NAME: usize = 80;
 
 impl Scene {
     /// The scene at its frame, with the objects, materials and lights of its models in their place.
-    /// Meshes that are arrays become assets, PLY files; the pictures of models are assets, too.
-    /// [`Scene::save`] writes all of them.
+    /// Meshes that are arrays become assets, which [`Scene::save`] writes as PLY files; the pictures of
+    /// models are assets, too.
     ///
     /// # Errors
     ///
@@ -87,7 +86,7 @@ impl Unpacker<'_> {
             return Some(known.clone());
         }
         let file = self.unique(name);
-        self.asset_cache.insert_asset(file.clone(), Asset::from_bytes(ply_bytes(arrays)));
+        self.asset_cache.insert_asset(file.clone(), Asset::from_mesh(Arc::clone(arrays)));
         self.files.insert(address, (Arc::clone(arrays), file.clone()));
         Some(file)
     }
