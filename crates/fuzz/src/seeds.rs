@@ -23,6 +23,10 @@ const WEDGES: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\
 const PLY: &str = "ply\nformat ascii 1.0\ncomment c\nelement face 2\nproperty list uchar int vertex_indices\nproperty uchar red\n\
                    element vertex 4\nproperty float x\nproperty double y\nproperty short z\nproperty float nx\nproperty float ny\n\
                    property float nz\nend_header\n4 0 1 2 3 9\n3 2 1 0 9\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n";
+const ATTRIBUTES: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    property float attribute.a.1\nproperty float attribute.a.0\nproperty uchar attribute.b%20c\nelement face 1\n\
+    property list uchar int vertex_indices\nproperty ushort attribute.d\nend_header\n\
+    0 0 0 .5 2 0\n1 0 0 1e3 -2 255\n0 1 0 7 8 9\n3 0 1 2 65535\n";
 
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
                    facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1e0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
@@ -69,7 +73,7 @@ pub fn for_target(target: &str) -> Vec<Vec<u8>> {
         "expression" => texts(&EXPRESSIONS),
         "obj" => texts(&[OBJ]),
         "mtl" => texts(&obj::LIBRARIES),
-        "ply" => [texts(&[PLY, STRIPS, WEDGES]), vec![binary_ply()]].concat(),
+        "ply" => [texts(&[PLY, STRIPS, WEDGES, ATTRIBUTES]), vec![binary_ply()]].concat(),
         "stl" => [texts(&[STL]), vec![binary_stl()]].concat(),
         "ies" => texts(&[IES]),
         "message" => texts(&MESSAGES),

@@ -108,6 +108,9 @@ impl Memory {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the picture `{name}`"), estimate.resident_bytes));
         }
+        if needs.meshes > 0 {
+            world.push(part("meshes in memory", needs.meshes));
+        }
         if needs.images > 0 {
             world.push(part("images in memory", needs.images));
         }

@@ -1,11 +1,14 @@
 //! Assembly of a mesh from the data of a reader: triangulates polygons and removes invalid normals.
 
-use crate::error::MeshErrorKind;
+use crate::error::{MeshErrorKind, quote};
 use crate::faces::Faces;
 use crate::mesh_file::MeshFile;
+use crate::ply::NamedAttributes;
 use juggler_math::{Vec2, Vec3};
 use juggler_shape::MeshData;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Data of a mesh as a reader collects them. Indices of `faces` are in range.
 #[derive(Default)]
@@ -24,6 +27,10 @@ pub(crate) struct MeshParts {
     pub vertex_colors: Colors,
     /// Colors of the triangles.
     pub face_colors: Colors,
+    /// Attributes of the positions, in addition to colors.
+    pub vertex_attributes: NamedAttributes,
+    /// Attributes of the triangles, in addition to colors.
+    pub face_attributes: NamedAttributes,
     /// The faces.
     pub faces: Faces,
     /// Warnings about ignored content.
@@ -63,13 +70,9 @@ impl MeshParts {
         }
         let normals = clean_normals(self.normals, &mut warnings);
         let tangents = clean_tangents(self.tangents, &mut warnings);
-        let vertex_colors = self.vertex_colors.into_attribute(AttributeDomain::Vertex);
-        let face_colors = self.face_colors.into_attribute(AttributeDomain::Face);
-        // A mesh that has both keeps the colors of its faces under another name.
-        let face_name = if vertex_colors.is_some() { "face_color" } else { "color" };
-        let attributes = vertex_colors.map(|colors| ("color", colors));
-        let attributes = attributes.into_iter().chain(face_colors.map(|colors| (face_name, colors)));
-        let attributes = attributes.map(|(name, colors)| (name.to_owned(), colors)).collect();
+        let colors = attributes_of_colors(self.vertex_colors, self.face_colors);
+        let all = colors.into_iter().chain(self.vertex_attributes).chain(self.face_attributes);
+        let attributes = distinct(all, &mut warnings);
         let mesh = MeshData {
             positions: self.positions,
             triangles,
@@ -81,6 +84,32 @@ impl MeshParts {
         };
         Ok(MeshFile { mesh, solids: Vec::new(), warnings })
     }
+}
+
+/// Colors as attributes. A mesh that has colors of vertices and of faces keeps those of its faces
+/// under another name.
+fn attributes_of_colors(vertices: Colors, faces: Colors) -> NamedAttributes {
+    let vertices = vertices.into_attribute(AttributeDomain::Vertex);
+    let face_name = if vertices.is_some() { "face_color" } else { "color" };
+    let faces = faces.into_attribute(AttributeDomain::Face).map(|colors| (face_name.to_owned(), colors));
+    vertices.map(|colors| ("color".to_owned(), colors)).into_iter().chain(faces).collect()
+}
+
+/// The first attribute of each name; a warning names all others.
+fn distinct(
+    attributes: impl Iterator<Item = (String, MeshAttribute)>,
+    warnings: &mut Vec<String>,
+) -> BTreeMap<String, MeshAttribute> {
+    let mut kept = BTreeMap::new();
+    for (name, attribute) in attributes {
+        match kept.entry(name) {
+            Entry::Vacant(entry) => drop(entry.insert(attribute)),
+            Entry::Occupied(entry) => {
+                warnings.push(format!("ignored a second attribute {}", quote(entry.key().as_bytes())));
+            }
+        }
+    }
+    kept
 }
 
 /// Sets normals that are not finite to zero, which means no normal. Returns no normals if all are

@@ -5,6 +5,7 @@ use crate::error::MeshError;
 use crate::formats;
 use crate::limits::MeshLimits;
 use crate::sampling::{Counts, FACE, FileSampler};
+use juggler_shape::MeshData;
 use std::io;
 use std::path::Path;
 
@@ -33,6 +34,13 @@ impl MeshEstimate {
         let building = mesh.saturating_add(product(counts.triangles, BUILDING));
         let resident_bytes = mesh.saturating_add(product(counts.triangles, BUILT));
         Self { triangles: counts.triangles, resident_bytes, peak_bytes: reading.max(building) }
+    }
+
+    /// Estimates the memory of a mesh whose arrays are in memory already, these included.
+    pub fn from_arrays(mesh: &MeshData) -> Self {
+        let (triangles, arrays) = (mesh.triangles.len() as u64, mesh.bytes() as u64);
+        let with = |hierarchy: u64| arrays.saturating_add(triangles.saturating_mul(hierarchy));
+        Self { triangles, resident_bytes: with(BUILT), peak_bytes: with(BUILDING) }
     }
 }
 
@@ -77,6 +85,20 @@ mod tests {
         assert_eq!((found.triangles, found.resident_bytes), (3, 4 * 12 + 3 * (FACE + BUILT)));
         let text = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 9\n3 0 1 2 9\n";
         assert!((3..9).contains(&of("a.ply", &ply("ascii", text.as_bytes())).triangles));
+        // Attributes of vertices and faces.
+        let attributes = |text: &str| {
+            let text =
+                text.replace("z\nelement", "z\nproperty ushort attribute.a.0\nproperty ushort attribute.a.1\nelement");
+            text.replace("uchar red", "double attribute.b")
+        };
+        let body = vec![0; 4 * 16 + (1 + 4 * 4 + 8) + (1 + 3 * 4 + 8)];
+        let bytes = ply("binary_little_endian", &body);
+        let head = String::from_utf8(bytes[..bytes.len() - body.len()].to_vec()).unwrap();
+        let found = of("a.ply", &[attributes(&head).as_bytes(), &body].concat());
+        assert_eq!((found.triangles, found.resident_bytes), (3, 4 * 16 + 3 * (FACE + 4 + BUILT)));
+        let read =
+            crate::parse(Path::new("a.ply"), &[attributes(&head).as_bytes(), &body].concat(), &MeshLimits::default());
+        assert!(MeshEstimate::from_arrays(&read.unwrap().mesh).resident_bytes <= found.resident_bytes);
         let lies = ply("binary_little_endian", &[]);
         let lies = String::from_utf8(lies).unwrap().replace("face 2", "face 2000000000");
         assert_eq!(

@@ -1,6 +1,8 @@
 //! Assets: files that a scene holds in memory, by name.
 
+use crate::mesh_digest;
 use juggler_math::Image;
+use juggler_shape::MeshData;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,6 +22,8 @@ enum Content {
     File(Arc<[u8]>),
     /// Pixels of a picture, linear light.
     Image(Arc<Image>),
+    /// Arrays of a mesh.
+    Mesh(Arc<MeshData>),
 }
 
 /// Assets are equal when their contents have the same hash.
@@ -52,6 +56,27 @@ impl Asset {
         Self { digest: hasher.finalize().into(), content: Content::Image(image) }
     }
 
+    /// Creates an asset of the arrays of a mesh, in place of a mesh file. The arrays are neither copied
+    /// nor converted. The picture is that of a PLY file of the same arrays; the fingerprint is another,
+    /// since it has the hash of the arrays in place of the file's.
+    ///
+    /// ```
+    /// use juggler_scene::{Asset, Loader};
+    /// use juggler_shape::Mesh;
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = Mesh::from_triangles(corners.map(Into::into), [[0, 1, 2]]);
+    /// let asset = Asset::from_mesh(mesh.arrays().clone());
+    /// let text = r#"{"version": 1, "objects": [{"shape": {"mesh": {"file": "part"}}}]}"#;
+    /// let scene = Loader::default().from_json_with(text, "scene.json", [("part".into(), asset)])?;
+    /// assert!(scene.compile().is_ok());
+    /// # Ok::<(), juggler_scene::SceneError>(())
+    /// ```
+    pub fn from_mesh(mesh: impl Into<Arc<MeshData>>) -> Self {
+        let mesh = mesh.into();
+        Self { digest: mesh_digest::digest(&mesh), content: Content::Mesh(mesh) }
+    }
+
     /// BLAKE3 hash of the content.
     pub fn digest(&self) -> [u8; 32] {
         self.digest
@@ -61,15 +86,32 @@ impl Asset {
     pub fn bytes(&self) -> Option<&[u8]> {
         match &self.content {
             Content::File(bytes) => Some(bytes),
-            Content::Image(_) => None,
+            Content::Image(_) | Content::Mesh(_) => None,
         }
     }
 
     /// Pixels in linear light, if the asset is an image.
     pub fn image(&self) -> Option<&Image> {
         match &self.content {
-            Content::File(_) => None,
             Content::Image(image) => Some(image),
+            Content::File(_) | Content::Mesh(_) => None,
+        }
+    }
+
+    /// Arrays of a mesh, if the asset is one.
+    pub fn mesh(&self) -> Option<&Arc<MeshData>> {
+        match &self.content {
+            Content::Mesh(mesh) => Some(mesh),
+            Content::File(_) | Content::Image(_) => None,
+        }
+    }
+
+    /// Content in words, for messages.
+    pub(crate) fn content_name(&self) -> &'static str {
+        match &self.content {
+            Content::File(_) => "the bytes of a file",
+            Content::Image(_) => "pixels",
+            Content::Mesh(_) => "a mesh",
         }
     }
 }

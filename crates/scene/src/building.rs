@@ -56,11 +56,16 @@ impl Scene {
 
     /// Adds an asset under a name. Meshes, textures, environments and light profiles whose `file`
     /// has that name use the asset instead of a file. A program that reads the scene's JSON again
-    /// must add the same assets.
+    /// gives the same assets to [`Loader::from_json_with`](crate::Loader::from_json_with).
     #[must_use]
     pub fn asset(mut self, name: impl Into<String>, asset: Asset) -> Self {
         self.asset_cache.insert_asset(name.into(), asset);
         self
+    }
+
+    /// The scene's assets with their names.
+    pub fn assets(&self) -> impl Iterator<Item = (&str, &Asset)> {
+        self.asset_cache.store().assets.iter()
     }
 
     /// Adds a group of objects under a name, for placement by [`Object::group`].

@@ -28,6 +28,7 @@ mod integrator;
 mod item;
 pub mod kind;
 mod loader;
+mod mesh_digest;
 mod mesh_scene;
 pub mod model;
 mod motion;

@@ -1,5 +1,6 @@
 //! Loading of scenes by programs that know formats of models.
 
+use crate::asset::Asset;
 use crate::compile::AssetCache;
 use crate::model::{ModelCache, ModelFormat};
 use crate::store::{Bundle, MAX_FILE_BYTES, Store};
@@ -43,6 +44,19 @@ impl Loader {
     /// Parses a scene as [`Scene::from_json`] does.
     pub fn from_json(self, text: impl Into<String>, name: &str) -> Result<Scene, SceneError> {
         Scene::parse(text.into(), name, self.cache(Store::default()))
+    }
+
+    /// Parses a scene as [`Scene::from_json`] does, with assets by the names under which the scene
+    /// refers to them ([`Scene::asset`]). The assets are there before the text is checked.
+    pub fn from_json_with(
+        self,
+        text: impl Into<String>,
+        name: &str,
+        assets: impl IntoIterator<Item = (String, Asset)>,
+    ) -> Result<Scene, SceneError> {
+        let mut cache = self.cache(Store::default());
+        assets.into_iter().for_each(|(name, asset)| cache.insert_asset(name, asset));
+        Scene::parse(text.into(), name, cache)
     }
 
     /// Whether a file is a model in a format that the loader knows, by its first bytes or its name. A

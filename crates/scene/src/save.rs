@@ -3,12 +3,13 @@
 use crate::asset::Asset;
 use crate::{Scene, SceneError};
 use juggler_imaging::{Header, ImageFormat, atomic, create, write_image};
+use juggler_mesh::ply_bytes;
 use std::path::{Component, Path, PathBuf};
 
 impl Scene {
     /// Saves the scene with its animation as a scene file, and its assets as files in the same
-    /// folder, under the names that the scene uses: bytes as they are, images as PFM. Reading the
-    /// scene file gives the same pictures. Files that the scene refers to stay where they are. Each
+    /// folder, under the names that the scene uses: bytes as they are, images as PFM, meshes as PLY.
+    /// Reading the scene file gives the same pictures. Files that the scene refers to stay where they are. Each
     /// file replaces an existing one once it is complete. Fails for an asset whose name is no
     /// relative path or leads out of the folder, and for a file that cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SceneError> {
@@ -33,15 +34,17 @@ fn save_asset(asset: &Asset, path: &Path) -> Result<(), SceneError> {
         let failed = |source| SceneError::Write { path: parent.to_owned(), source };
         std::fs::create_dir_all(parent).map_err(failed)?;
     }
-    match (asset.bytes(), asset.image()) {
-        (Some(bytes), _) => write(path, bytes),
-        (None, Some(image)) => {
-            let header = Header::new(image.width(), image.height());
-            let writer = create(path, ImageFormat::Pfm, &header)?;
-            Ok(write_image(writer, image)?)
-        }
-        (None, None) => Ok(()),
+    if let Some(bytes) = asset.bytes() {
+        write(path, bytes)?;
     }
+    if let Some(mesh) = asset.mesh() {
+        write(path, &ply_bytes(mesh))?;
+    }
+    if let Some(image) = asset.image() {
+        let header = Header::new(image.width(), image.height());
+        write_image(create(path, ImageFormat::Pfm, &header)?, image)?;
+    }
+    Ok(())
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {

@@ -101,7 +101,10 @@ impl Store {
     /// Reads the bytes of a file or asset. Files are limited to `limit` bytes.
     pub(crate) fn read_bytes(&self, path: &Path, limit: u64) -> Result<Cow<'_, [u8]>, ReadError> {
         if let Some(asset) = self.assets.at(path) {
-            let wrong = || std::io::Error::other("the asset of this name contains pixels, not the bytes of a file");
+            let wrong = || {
+                let content = asset.content_name();
+                std::io::Error::other(format!("the asset of this name contains {content}, not the bytes of a file"))
+            };
             let bytes = asset.bytes().map(Cow::Borrowed);
             return bytes.ok_or_else(|| wrong().into());
         }

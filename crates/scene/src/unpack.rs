@@ -6,7 +6,6 @@ use crate::description::{Object, Objects};
 use crate::item::Item;
 use crate::report::Finding;
 use crate::{Scene, SceneError};
-use juggler_mesh::ply_bytes;
 use juggler_shape::{Mesh, MeshData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,8 +17,8 @@ const MAX_NAME: usize = 80;
 
 impl Scene {
     /// The scene at its frame, with the objects, materials and lights of its models in their place.
-    /// Meshes that are arrays become assets, PLY files, if a PLY file can hold them; the pictures of
-    /// models are assets, too. [`Scene::save`] writes all of them.
+    /// Meshes that are arrays become assets, which [`Scene::save`] writes as PLY files; the pictures of
+    /// models are assets, too.
     ///
     /// # Errors
     ///
@@ -53,8 +52,8 @@ impl Scene {
 struct Unpacker<'s> {
     asset_cache: &'s mut AssetCache,
     /// Names of the files by the addresses of the arrays that they contain, which the assets' meshes
-    /// keep alive; `None` for arrays that stay in the scene.
-    files: BTreeMap<usize, (Arc<MeshData>, Option<String>)>,
+    /// keep alive.
+    files: BTreeMap<usize, (Arc<MeshData>, String)>,
     /// Names in lower case, as file systems may compare them.
     names: BTreeSet<String>,
 }
@@ -84,15 +83,12 @@ impl Unpacker<'_> {
         let arrays = mesh.arrays();
         let address = Arc::as_ptr(arrays) as usize;
         if let Some((_, known)) = self.files.get(&address) {
-            return known.clone();
+            return Some(known.clone());
         }
-        let file = ply_bytes(arrays).map(|bytes| {
-            let file = self.unique(name);
-            self.asset_cache.insert_asset(file.clone(), Asset::from_bytes(bytes));
-            file
-        });
+        let file = self.unique(name);
+        self.asset_cache.insert_asset(file.clone(), Asset::from_mesh(Arc::clone(arrays)));
         self.files.insert(address, (Arc::clone(arrays), file.clone()));
-        file
+        Some(file)
     }
 
     /// Name of a new file after the last part of a name such as `car/Root/Wheel`.

@@ -146,8 +146,9 @@ impl MeshAttribute {
         }
     }
 
-    /// Attribute of a mesh whose positions are these of the original mesh; values of triangles stay.
-    pub(crate) fn with_positions(&self, originals: impl Iterator<Item = usize>) -> Self {
+    /// Attribute of a mesh whose positions are those of the original mesh at these indices; values of
+    /// triangles stay. Indices beyond the end are left out.
+    pub fn with_positions(&self, originals: impl Iterator<Item = usize>) -> Self {
         match self.domain {
             AttributeDomain::Vertex => {
                 Self { data: self.data.selected(self.channels.max(1) as usize, originals), ..self.clone() }

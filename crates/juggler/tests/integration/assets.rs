@@ -66,3 +66,45 @@ fn mesh_assets_are_loaded_and_missing_assets_are_errors() {
     let error = juggler::render(&mesh.image("part.obj", pixels()), &Settings::default()).unwrap_err();
     assert!(error.to_string().contains("pixels, not the bytes of a file"), "{error}");
 }
+
+/// A square with every array and attributes of both domains, shown by its attributes.
+fn colored_square() -> MeshData {
+    let attribute = |domain, channels, data| MeshAttribute { domain, channels, data };
+    let heat = AttributeData::U16(vec![0, 65535, 30000, 12345]);
+    let tint = AttributeData::F32(vec![0.9, 0.2, 0.1, 0.1, 0.8, 0.3]);
+    MeshData {
+        positions: [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.1], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.1]].map(Vec3::from).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        normals: [[0.0, 0.1, 1.0], [0.2, 0.0, 1.0], [0.0, -0.3, 1.0], [0.1, 0.1, 1.0]].map(Vec3::from).to_vec(),
+        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
+        uvs1: vec![Vec2::Y, Vec2::ZERO, Vec2::X, Vec2::ONE],
+        tangents: vec![[1.0, 0.0, 0.0, 1.0]; 4],
+        attributes: [
+            ("heat of it".to_owned(), attribute(AttributeDomain::Vertex, 1, heat)),
+            ("tint".to_owned(), attribute(AttributeDomain::Face, 3, tint)),
+        ]
+        .into(),
+    }
+}
+
+#[test]
+fn meshes_in_memory_give_the_pictures_of_their_files() {
+    let text = r#"{"version": 1, "render": {"size": [24, 16], "samples": 4}, "camera": {"perspective": {"eye": [0, 0, 4]}},
+        "textures": {"heat": {"attribute": {"name": "heat of it"}}, "tint": {"attribute": {"name": "tint"}}},
+        "materials": {"m": {"mix": {"a": {"diffuse": {"reflectance": "tint"}}, "b": "plain", "amount": "heat"}},
+            "plain": {"diffuse": {"reflectance": "heat"}}},
+        "lights": [{"point": {"position": [1, 2, 3], "intensity": 30}}],
+        "objects": [{"shape": {"mesh": {"file": "part", "morphs": [{"file": "part", "weight": 0.25}]}}, "material": "m",
+            "transform": {"translate": [1, 0, 0]}}, {"shape": {"mesh": {"file": "part"}}, "material": "m"}]}"#;
+    let load = |asset| juggler::loader().from_json_with(text, "scene.json", [("part".to_owned(), asset)]).unwrap();
+    let scene = load(Asset::from_mesh(colored_square()));
+    let of_memory = rendered(&scene);
+    assert!(of_memory.pixels().iter().any(|pixel| *pixel != Rgb::BLACK));
+    let other = MeshData { attributes: Default::default(), ..colored_square() };
+    assert_ne!(of_memory, rendered(&load(Asset::from_mesh(other))), "the attributes are seen");
+    assert_eq!(of_memory, rendered(&load(Asset::from_bytes(juggler::mesh::ply_bytes(&colored_square())))));
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("scene.json");
+    scene.save(&place).unwrap();
+    assert_eq!(of_memory, rendered(&Scene::load(&place).unwrap()));
+}

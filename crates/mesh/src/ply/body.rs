@@ -1,5 +1,6 @@
 //! The rows after the header of a PLY, in any encoding.
 
+use super::attributes::{self, AttributeColumns, NamedAttributes};
 use super::colors::ColorColumns;
 use super::corners::{self, CornerVertices};
 use super::header::{Element, Header, Property, Scalar};
@@ -14,6 +15,7 @@ use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
 use crate::text::finite;
 use crate::weld::WeldedPiece;
+use juggler_shape::attribute::{AttributeDomain, MeshAttribute};
 
 /// Reader of the elements that the header declares.
 pub(super) struct Body<'h> {
@@ -44,11 +46,7 @@ impl<'h> Body<'h> {
         }
         values.end()?;
         corners.map_or(Ok(()), |corners| corners.replace(&mut parts, self.reader.limits))?;
-        let colors = &parts.face_colors;
-        if colors.values.len() != colors.channels.saturating_mul(parts.faces.len()) {
-            parts.warnings.push("colors of faces are ignored: triangle strips have none".to_owned());
-            parts.face_colors = Colors::default();
-        }
+        drop_short_arrays(&mut parts);
         parts.assemble()
     }
 
@@ -61,18 +59,21 @@ impl<'h> Body<'h> {
     ) -> Result<(), MeshErrorKind> {
         let columns = FaceColumns::of(element)?;
         note_ignored(element, |index| columns.has(index), &mut parts.warnings);
+        parts.warnings.extend(columns.attributes.warning.clone());
         let vertices = self.vertices()?;
         // All rows are known to fit into the file, and most faces are one triangle.
         let most = element.count.min(u64::from(self.reader.limits.triangles));
         if corners.is_none() && parts.faces.len() == 0 {
             parts.faces = Faces::with_capacity(usize::try_from(most).unwrap_or(0));
         }
+        parts.face_attributes = columns.attributes.empty(AttributeDomain::Face, usize::try_from(most).unwrap_or(0));
         self.reader.read(
             element,
             values,
             |rows| read_piece(element, &columns, rows, vertices, self.reader.limits),
-            |FacePiece { welded, colors, missing }| {
+            |FacePiece { welded, colors, attributes, missing }| {
                 parts.face_colors.extend(colors);
+                attributes::append(&mut parts.face_attributes, attributes);
                 match corners {
                     Some(corners) => {
                         corners.missing += missing;
@@ -116,6 +117,22 @@ impl<'h> Body<'h> {
     }
 }
 
+/// Drops colors and attributes of faces if strips added triangles without them.
+fn drop_short_arrays(parts: &mut MeshParts) {
+    let triangles = parts.faces.len();
+    let colors = &parts.face_colors;
+    if colors.values.len() != colors.channels.saturating_mul(triangles) {
+        parts.warnings.push("colors of faces are ignored: triangle strips have none".to_owned());
+        parts.face_colors = Colors::default();
+    }
+    let fits =
+        |attribute: &MeshAttribute| attribute.data.len() == (attribute.channels as usize).saturating_mul(triangles);
+    if !parts.face_attributes.iter().all(|(_, attribute)| fits(attribute)) {
+        parts.warnings.push("attributes of faces are ignored: triangle strips have none".to_owned());
+        parts.face_attributes.clear();
+    }
+}
+
 /// Rejects row counts for which the file is too short, before memory is allocated for them.
 fn check_counts(header: &Header, values: &impl Values) -> Result<(), MeshErrorKind> {
     let mut left = values.remaining();
@@ -144,6 +161,7 @@ struct FaceColumns {
     color: Option<ColorColumns>,
     /// List of the surface coordinates of corners.
     coordinates: Option<usize>,
+    attributes: AttributeColumns,
 }
 
 /// Column of the list of vertex indices.
@@ -162,12 +180,14 @@ fn index_column(element: &Element) -> Result<usize, MeshErrorKind> {
 impl FaceColumns {
     fn of(element: &Element) -> Result<Self, MeshErrorKind> {
         let (indices, color) = (index_column(element)?, ColorColumns::of(element));
-        Ok(Self { indices, color, coordinates: corners::column(element) })
+        let (coordinates, attributes) = (corners::column(element), AttributeColumns::of(element));
+        Ok(Self { indices, color, coordinates, attributes })
     }
 
     /// Whether a column is read.
     fn has(&self, column: usize) -> bool {
-        column == self.indices || self.coordinates == Some(column) || self.channel(column).is_some()
+        let is_list = column == self.indices || self.coordinates == Some(column);
+        is_list || self.channel(column).is_some() || self.attributes.slot(column).is_some()
     }
 
     /// Color columns, and the channel of a column.
@@ -184,8 +204,53 @@ struct FacePiece {
     welded: WeldedPiece,
     /// Colors of the triangles.
     colors: Colors,
+    /// Attributes of the triangles.
+    attributes: NamedAttributes,
     /// Number of faces whose surface coordinates do not fit their corners.
     missing: u64,
+}
+
+/// Values of a row, whose memory the next row uses again.
+#[derive(Default)]
+struct FaceRow {
+    corners: Vec<u32>,
+    coordinates: Vec<f32>,
+    color: [f32; 4],
+    /// Numbers of the attributes.
+    numbers: Vec<f32>,
+}
+
+impl FaceRow {
+    fn read(
+        &mut self,
+        element: &Element,
+        columns: &FaceColumns,
+        values: &mut impl Values,
+        vertices: u64,
+    ) -> Result<(), MeshErrorKind> {
+        values.begin_row()?;
+        for (index, property) in element.properties.iter().enumerate() {
+            match (property.length, columns.channel(index)) {
+                (Some(length), _) if index == columns.indices => {
+                    read_corners(values, length, property.item, vertices, &mut self.corners)?;
+                }
+                (Some(length), _) if columns.coordinates == Some(index) => {
+                    corners::read_coordinates(values, (length, property.item), &mut self.coordinates)?;
+                }
+                (None, Some((color, channel))) => {
+                    let number = finite_number(values, property)?;
+                    if let Some(entry) = self.color.get_mut(channel) {
+                        *entry = color.linear(channel, number);
+                    }
+                }
+                _ => match columns.attributes.slot(index).and_then(|slot| self.numbers.get_mut(slot)) {
+                    Some(number) => *number = attributes::read_number(values, property)?,
+                    None => skip(property, values)?,
+                },
+            }
+        }
+        values.end_row()
+    }
 }
 
 /// Reads rows as faces.
@@ -196,41 +261,25 @@ fn read_piece(
     vertices: u64,
     limits: &MeshLimits,
 ) -> Result<FacePiece, MeshErrorKind> {
-    let values = &mut rows.values;
     let channels = columns.color.as_ref().map_or(0, ColorColumns::channels);
+    let count = usize::try_from(rows.count).unwrap_or(0);
     let mut piece = FacePiece { colors: Colors { channels, values: Vec::new() }, ..FacePiece::default() };
-    piece.welded.faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
-    let (mut face_color, mut corners, mut coordinates) = ([0.0; 4], Vec::new(), Vec::new());
+    piece.welded.faces = Faces::with_capacity(count);
+    piece.attributes = columns.attributes.empty(AttributeDomain::Face, count);
+    let mut row = FaceRow { numbers: vec![0.0; columns.attributes.slots()], ..FaceRow::default() };
     for _ in 0..rows.count {
-        values.begin_row()?;
-        for (index, property) in element.properties.iter().enumerate() {
-            match (property.length, columns.channel(index)) {
-                (Some(length), _) if index == columns.indices => {
-                    read_corners(values, length, property.item, vertices, &mut corners)?;
-                }
-                (Some(length), _) if columns.coordinates == Some(index) => {
-                    corners::read_coordinates(values, (length, property.item), &mut coordinates)?;
-                }
-                (None, Some((color, channel))) => {
-                    let number = finite_number(values, property)?;
-                    if let Some(entry) = face_color.get_mut(channel) {
-                        *entry = color.linear(channel, number);
-                    }
-                }
-                _ => skip(property, values)?,
-            }
-        }
-        values.end_row()?;
+        row.read(element, columns, &mut rows.values, vertices)?;
         match columns.coordinates {
             Some(_) => {
-                let fits = corners::push(&mut piece.welded, &mut corners, &coordinates, limits)?;
+                let fits = corners::push(&mut piece.welded, &mut row.corners, &row.coordinates, limits)?;
                 piece.missing += u64::from(!fits);
             }
-            None => piece.welded.faces.push(&corners, limits)?,
+            None => piece.welded.faces.push(&row.corners, limits)?,
         }
-        // A polygon of n corners becomes n - 2 triangles, all of its color.
-        for _ in 2..corners.len() {
-            piece.colors.values.extend(face_color.iter().take(channels));
+        // A polygon of n corners becomes n - 2 triangles, all of its color and attributes.
+        for _ in 2..row.corners.len() {
+            piece.colors.values.extend(row.color.iter().take(channels));
+            attributes::push_row(&mut piece.attributes, &row.numbers);
         }
     }
     Ok(piece)

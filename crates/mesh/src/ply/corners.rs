@@ -75,6 +75,9 @@ impl CornerVertices {
         let channels = parts.vertex_colors.channels.max(1);
         let colors: Vec<&[f32]> = parts.vertex_colors.values.chunks(channels).collect();
         parts.vertex_colors.values = gather(&keys, &colors).concat();
+        for (_, attribute) in &mut parts.vertex_attributes {
+            *attribute = attribute.with_positions(keys.iter().map(|[vertex, ..]| *vertex as usize));
+        }
         parts.uvs = keys.iter().map(|[_, u, v]| coordinates(*u, *v)).collect();
         parts.faces = faces;
         Ok(())

@@ -1,5 +1,6 @@
 //! Counts that the header of a PLY declares, for estimates made without reading the rest.
 
+use super::attributes::AttributeColumns;
 use super::colors::ColorColumns;
 use super::corners;
 use super::header::{Element, Encoding, Header};
@@ -13,7 +14,7 @@ pub(crate) struct DeclaredCounts {
     pub vertices: u64,
     /// Bytes of a vertex in the mesh.
     pub vertex_bytes: u64,
-    /// Bytes of the color of a triangle in the mesh.
+    /// Bytes of the color and the attributes of a triangle in the mesh.
     pub face_bytes: u64,
     /// Number of rows of the element `face`.
     pub faces: u64,
@@ -46,7 +47,7 @@ pub(crate) fn declared(head: &[u8], size: u64) -> Option<DeclaredCounts> {
             Some(size.saturating_sub(rows) / index)
         }
     };
-    let face_bytes = ColorColumns::of(face).map_or(0, |color| color.bytes());
+    let face_bytes = ColorColumns::of(face).map_or(0, |color| color.bytes()) + AttributeColumns::of(face).bytes();
     let vertex_bytes = bytes_of_vertex(vertex);
     // Corners with surface coordinates may all become vertices of their own.
     let (mut vertices, mut vertex_bytes) = (vertex.count, vertex_bytes);

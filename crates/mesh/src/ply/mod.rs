@@ -7,13 +7,15 @@
 //! list `texcoord` of faces has u and v of each corner. Colors `red green blue` of vertices or
 //! faces, perhaps with `alpha`, become the attribute `color`: integers are decoded as sRGB, floats
 //! are linear. The columns `u1 v1` are the second set of surface coordinates, and `tx ty tz tw` the
-//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. The comment `TextureFile`
-//! names a picture for a scene around the file ([`texture_file`]). The reader ignores everything
-//! else with a warning that names it, including lines of the header that are neither declarations
-//! nor comments, such as `Created by Blender3D`. In a text, each line is one row of an element, as
-//! the header describes it.
+//! tangents with the sign of the bitangent, as [`ply_bytes`] writes them. Columns `attribute.NAME`, or
+//! `attribute.NAME.0` to `attribute.NAME.3`, of vertices or faces are the attribute NAME. The comment
+//! `TextureFile` names a picture for a scene around the file ([`texture_file`]). The reader ignores
+//! everything else with a warning that names it, including lines of the header that are neither
+//! declarations nor comments, such as `Created by Blender3D`. In a text, each line is one row of an
+//! element, as the header describes it.
 
 mod ascii;
+mod attributes;
 mod binary;
 mod body;
 mod colors;
@@ -28,6 +30,7 @@ mod values;
 mod vertices;
 mod write;
 
+pub(crate) use attributes::NamedAttributes;
 use declared::{DeclaredCounts, declared};
 pub use write::ply_bytes;
 

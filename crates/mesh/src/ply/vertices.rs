@@ -1,5 +1,6 @@
 //! Reading the element `vertex` of a PLY: roles of its columns, and its rows.
 
+use super::attributes::{self, AttributeColumns};
 use super::colors::ColorColumns;
 use super::header::Element;
 use super::rows::{RowReader, Rows, note_ignored};
@@ -8,6 +9,7 @@ use crate::assemble::MeshParts;
 use crate::error::MeshErrorKind;
 use crate::text::finite;
 use juggler_math::{vec2, vec3};
+use juggler_shape::attribute::AttributeDomain;
 use std::ops::Range;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
@@ -22,7 +24,8 @@ const TANGENT_SLOTS: Range<usize> = 10..14;
 /// First value of the color.
 const COLOR: usize = 14;
 
-/// Slot of each column's value in a row; `None` if the column is ignored.
+/// Slot of each column's value in a row; `None` if the column is ignored. Slots from [`SLOTS`] on
+/// belong to attributes.
 struct Columns {
     slots: Vec<Option<usize>>,
     normals: bool,
@@ -30,6 +33,7 @@ struct Columns {
     uvs1: bool,
     tangents: bool,
     color: Option<ColorColumns>,
+    attributes: AttributeColumns,
 }
 
 impl Columns {
@@ -43,10 +47,13 @@ impl Columns {
         let uvs1 = assign(&mut slots, element, &SECOND_SURFACE, 8);
         let tangents = assign(&mut slots, element, &TANGENT, TANGENT_SLOTS.start);
         let color = ColorColumns::of(element);
+        let attributes = AttributeColumns::of(element);
         for (column, slot) in slots.iter_mut().enumerate().filter(|(_, slot)| slot.is_none()) {
-            *slot = color.as_ref().and_then(|color| color.channel(column)).map(|channel| COLOR + channel);
+            let channel = color.as_ref().and_then(|color| color.channel(column));
+            let attribute = attributes.slot(column).map(|slot| SLOTS + slot);
+            *slot = channel.map(|channel| COLOR + channel).or(attribute);
         }
-        Ok(Self { slots, normals, uvs, uvs1, tangents, color })
+        Ok(Self { slots, normals, uvs, uvs1, tangents, color, attributes })
     }
 }
 
@@ -72,7 +79,7 @@ pub(super) fn bytes_of_vertex(element: &Element) -> u64 {
         let color = columns.color.map_or(0, |color| color.bytes());
         let bytes = |exists: bool, bytes: u64| if exists { bytes } else { 0 };
         let surface = bytes(columns.uvs, 8) + bytes(columns.uvs1, 8);
-        12 + bytes(columns.normals, 12) + surface + bytes(columns.tangents, 16) + color
+        12 + bytes(columns.normals, 12) + surface + bytes(columns.tangents, 16) + color + columns.attributes.bytes()
     })
 }
 
@@ -85,6 +92,7 @@ pub(super) fn read_vertices(
 ) -> Result<(), MeshErrorKind> {
     let columns = Columns::of(element)?;
     note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
+    parts.warnings.extend(columns.attributes.warning.clone());
     reader.limits.check_vertices(element.count)?;
     reserve(parts, &columns, element.count);
     reader.read(
@@ -98,6 +106,7 @@ pub(super) fn read_vertices(
             parts.uvs1.extend(piece.uvs1);
             parts.tangents.extend(piece.tangents);
             parts.vertex_colors.extend(piece.vertex_colors);
+            attributes::append(&mut parts.vertex_attributes, piece.vertex_attributes);
             Ok(())
         },
     )
@@ -113,14 +122,16 @@ fn reserve(parts: &mut MeshParts, columns: &Columns, count: u64) {
     let channels = columns.color.as_ref().map_or(0, ColorColumns::channels);
     parts.vertex_colors.channels = channels;
     parts.vertex_colors.values.reserve_exact(count.saturating_mul(channels));
+    parts.vertex_attributes = columns.attributes.empty(AttributeDomain::Vertex, count);
 }
 
 fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<MeshParts, MeshErrorKind> {
     let mut parts = MeshParts::default();
     reserve(&mut parts, columns, rows.count);
+    let mut numbers = vec![0.0; columns.attributes.slots()];
     for _ in 0..rows.count {
         let [x, y, z, nx, ny, nz, u, v, u1, v1, tx, ty, tz, tw, color @ ..] =
-            read_row(element, columns, &mut rows.values)?;
+            read_row(element, columns, &mut rows.values, &mut numbers)?;
         parts.positions.push(vec3(x, y, z));
         if columns.normals {
             parts.normals.push(vec3(nx, ny, nz));
@@ -138,16 +149,26 @@ fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>)
             let color = color.into_iter().take(columns.channels()).enumerate();
             parts.vertex_colors.values.extend(color.map(|(channel, number)| columns.linear(channel, number)));
         }
+        attributes::push_row(&mut parts.vertex_attributes, &numbers);
     }
     Ok(parts)
 }
 
-fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> Result<[f32; SLOTS], MeshErrorKind> {
+/// Reads a row; the numbers of its attributes go to `numbers`.
+fn read_row(
+    element: &Element,
+    columns: &Columns,
+    values: &mut impl Values,
+    numbers: &mut [f32],
+) -> Result<[f32; SLOTS], MeshErrorKind> {
     let mut row = [0.0; SLOTS];
     values.begin_row()?;
     for (property, slot) in element.properties.iter().zip(&columns.slots) {
         let Some(entry) = slot.and_then(|slot| row.get_mut(slot)) else {
-            skip(property, values)?;
+            match slot.and_then(|slot| numbers.get_mut(slot - SLOTS)) {
+                Some(number) => *number = attributes::read_number(values, property)?,
+                None => skip(property, values)?,
+            }
             continue;
         };
         let place = values.place();

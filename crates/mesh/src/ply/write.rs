@@ -1,62 +1,127 @@
 //! Meshes as PLY files.
 
+use super::attributes::column_names;
 use juggler_shape::MeshData;
-use juggler_shape::attribute::{AttributeDomain, MeshAttribute};
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 
 /// Names of the columns of a color, of which a color has the first 3 or 4.
 const COLOR: [&str; 4] = ["red", "green", "blue", "alpha"];
+/// Maximum number of channels of an attribute.
+const CHANNELS: usize = 4;
 
-/// A mesh as a binary PLY file, which the reader reads to the same numbers. `None` if the mesh has
-/// attributes other than colors of its vertices, which PLY files do not hold.
-pub fn ply_bytes(mesh: &MeshData) -> Option<Vec<u8>> {
-    let color = mesh.attributes.get("color").filter(|color| is_color(color));
-    if mesh.attributes.len() > usize::from(color.is_some()) {
-        return None;
-    }
-    let mut file = header(mesh, color).into_bytes();
-    file.reserve_exact(mesh.positions.len() * 72 + mesh.triangles.len() * 13);
-    let mut put = |numbers: &[f32]| file.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+/// A mesh as a binary PLY file, which the reader reads to the same numbers. The attribute `color` of
+/// vertices has the columns `red green blue` and perhaps `alpha`, as other programs read them, if
+/// its numbers are floats; any other attribute has columns `attribute.NAME` of its own type.
+pub fn ply_bytes(mesh: &MeshData) -> Vec<u8> {
+    let vertex = AttributeWriter::new(mesh, AttributeDomain::Vertex);
+    let face = AttributeWriter::new(mesh, AttributeDomain::Face);
+    let mut file = header(mesh, &vertex, &face).into_bytes();
+    let bytes = mesh.positions.len().saturating_mul(64 + vertex.bytes());
+    file.reserve(bytes.saturating_add(mesh.triangles.len().saturating_mul(13 + face.bytes())));
     for (i, position) in mesh.positions.iter().enumerate() {
+        let mut put = |numbers: &[f32]| file.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
         put(&position.to_array());
         mesh.normals.get(i).into_iter().for_each(|normal| put(&normal.to_array()));
         mesh.uvs.get(i).into_iter().for_each(|uv| put(&uv.to_array()));
         mesh.uvs1.get(i).into_iter().for_each(|uv| put(&uv.to_array()));
         mesh.tangents.get(i).into_iter().for_each(|tangent| put(tangent));
-        if let Some(color) = color {
-            color.numbers(i).for_each(|number| put(&[number]));
-        }
+        vertex.put(i, &mut file);
     }
-    for triangle in &mesh.triangles {
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
         file.push(3);
         file.extend(triangle.iter().flat_map(|index| index.to_le_bytes()));
+        face.put(i, &mut file);
     }
-    Some(file)
+    file
 }
 
-/// Whether an attribute is a color with or without alpha of each vertex.
+/// Writer of the attributes of vertices or faces.
+struct AttributeWriter<'m> {
+    /// Attributes with the names of their columns.
+    attributes: Vec<(Vec<String>, &'m MeshAttribute)>,
+}
+
+impl<'m> AttributeWriter<'m> {
+    fn new(mesh: &'m MeshData, domain: AttributeDomain) -> Self {
+        let all = mesh.attributes.iter().filter(|(_, attribute)| attribute.domain == domain);
+        let attributes = all.map(|(name, attribute)| {
+            let channels = (attribute.channels as usize).min(CHANNELS);
+            let names = match COLOR.get(..channels).filter(|_| name == "color" && is_color(attribute)) {
+                Some(names) => names.iter().map(|name| (*name).to_owned()).collect(),
+                None => column_names(name, channels),
+            };
+            (names, attribute)
+        });
+        Self { attributes: attributes.collect() }
+    }
+
+    /// Bytes of a row.
+    fn bytes(&self) -> usize {
+        self.attributes.iter().map(|(names, attribute)| names.len() * kind(&attribute.data).1).sum()
+    }
+
+    /// Declarations of the columns.
+    fn header(&self) -> String {
+        let columns = |(names, attribute): &(Vec<String>, &MeshAttribute)| {
+            let kind = kind(&attribute.data).0;
+            names.iter().map(|name| format!("property {kind} {name}\n")).collect::<String>()
+        };
+        self.attributes.iter().map(columns).collect()
+    }
+
+    /// Writes the values of a vertex or triangle; numbers that are missing are 0.
+    fn put(&self, index: usize, file: &mut Vec<u8>) {
+        for (names, attribute) in &self.attributes {
+            let first = index.saturating_mul(attribute.channels as usize);
+            for at in (0..names.len()).map(|channel| first.saturating_add(channel)) {
+                match &attribute.data {
+                    AttributeData::U8(values) => file.push(values.get(at).copied().unwrap_or_default()),
+                    AttributeData::U16(values) => {
+                        file.extend(values.get(at).copied().unwrap_or_default().to_le_bytes());
+                    }
+                    AttributeData::F32(values) => {
+                        file.extend(values.get(at).copied().unwrap_or_default().to_le_bytes());
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Name and size in bytes of the type of a column.
+fn kind(data: &AttributeData) -> (&'static str, usize) {
+    match data {
+        AttributeData::U8(_) => ("uchar", 1),
+        AttributeData::U16(_) => ("ushort", 2),
+        AttributeData::F32(_) => ("float", 4),
+    }
+}
+
+/// Whether an attribute is a color with or without alpha of each vertex, in floats.
 fn is_color(attribute: &MeshAttribute) -> bool {
-    attribute.domain == AttributeDomain::Vertex && matches!(attribute.channels, 3 | 4)
+    let is_float = matches!(attribute.data, AttributeData::F32(_));
+    attribute.domain == AttributeDomain::Vertex && matches!(attribute.channels, 3 | 4) && is_float
 }
 
-fn header(mesh: &MeshData, color: Option<&MeshAttribute>) -> String {
+fn header(mesh: &MeshData, vertex: &AttributeWriter<'_>, face: &AttributeWriter<'_>) -> String {
     let columns = |exists: bool, names: &[&str]| {
         let names = names.iter().filter(|_| exists);
         names.map(|name| format!("property float {name}\n")).collect::<String>()
     };
-    let channels = color.map_or(0, |color| color.channels as usize);
-    let vertex = [
+    let arrays = [
         columns(true, &["x", "y", "z"]),
         columns(!mesh.normals.is_empty(), &["nx", "ny", "nz"]),
         columns(!mesh.uvs.is_empty(), &["u", "v"]),
         columns(!mesh.uvs1.is_empty(), &["u1", "v1"]),
         columns(!mesh.tangents.is_empty(), &["tx", "ty", "tz", "tw"]),
-        columns(true, COLOR.get(..channels).unwrap_or_default()),
     ];
     format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{}element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{}{}element face {}\nproperty list uchar uint vertex_indices\n{}end_header\n",
         mesh.positions.len(),
-        vertex.concat(),
-        mesh.triangles.len()
+        arrays.concat(),
+        vertex.header(),
+        mesh.triangles.len(),
+        face.header()
     )
 }
 

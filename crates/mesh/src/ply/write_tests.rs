@@ -7,7 +7,7 @@ use juggler_shape::attribute::AttributeData;
 use std::path::Path;
 
 fn read(mesh: &MeshData) -> MeshData {
-    let bytes = ply_bytes(mesh).unwrap();
+    let bytes = ply_bytes(mesh);
     let file = parse(Path::new("a.ply"), &bytes, &MeshLimits::default()).unwrap();
     assert!(file.warnings.is_empty(), "{:?}", file.warnings);
     file.mesh
@@ -33,13 +33,43 @@ fn meshes_are_read_as_they_were_written() {
         ..plain.clone()
     };
     assert_eq!(read(&full), full);
-    let bytes = AttributeData::U8((0..15).collect());
-    let colors = MeshAttribute { channels: 3, data: bytes, ..MeshAttribute::default() };
-    let from_bytes = read(&MeshData { attributes: [("color".to_owned(), colors.clone())].into(), ..plain.clone() });
-    let numbers = |attribute: &MeshAttribute| (0..5).flat_map(|i| attribute.numbers(i)).collect::<Vec<_>>();
-    assert_eq!(numbers(&from_bytes.attributes["color"]), numbers(&colors));
-    for (name, domain) in [("heat", AttributeDomain::Vertex), ("color", AttributeDomain::Face)] {
-        let other = MeshAttribute { domain, ..color.clone() };
-        assert!(ply_bytes(&MeshData { attributes: [(name.to_owned(), other)].into(), ..plain.clone() }).is_none());
+}
+
+#[test]
+fn attributes_of_every_type_and_domain_are_read_as_they_were_written() {
+    let count = |domain| if domain == AttributeDomain::Vertex { 4 } else { 2 };
+    let mut mesh = MeshData {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
+        triangles: vec![[0, 1, 2], [2, 1, 3]],
+        ..MeshData::default()
+    };
+    for (domain, channels) in
+        [AttributeDomain::Vertex, AttributeDomain::Face].into_iter().flat_map(|d| [1, 2, 3, 4].map(|c| (d, c)))
+    {
+        let numbers = 0..count(domain) * channels;
+        let name = |kind: &str| format!("{kind} {channels} {domain:?}");
+        let data = [
+            (name("bytes"), AttributeData::U8(numbers.clone().map(|i| 255 - 16 * i as u8).collect())),
+            (name("words"), AttributeData::U16(numbers.clone().map(|i| 65535 - 4001 * i as u16).collect())),
+            (name("floats"), AttributeData::F32(numbers.map(|i| 1e-3 - i as f32 / 7.0).collect())),
+        ];
+        let all = data.map(|(name, data)| (name, MeshAttribute { domain, channels, data }));
+        mesh.attributes.extend(all);
     }
+    assert_eq!(mesh.attributes.len(), 24);
+    // Colors of every type and domain, beside the others.
+    let bytes = AttributeData::U8((0..12).collect());
+    let faces = AttributeData::F32((0..6).map(|i| i as f32).collect());
+    for (domain, channels, data) in [
+        (AttributeDomain::Vertex, 3, bytes),
+        (AttributeDomain::Face, 3, faces.clone()),
+        (AttributeDomain::Face, 3, AttributeData::U16((0..6).collect())),
+        (AttributeDomain::Vertex, 1, AttributeData::F32(vec![0.5; 4])),
+        (AttributeDomain::Vertex, 3, AttributeData::F32(vec![0.5; 12])),
+    ] {
+        mesh.attributes.insert("color".to_owned(), MeshAttribute { domain, channels, data });
+        assert_eq!(read(&mesh), mesh);
+    }
+    // Other programs find colors of floats.
+    assert!(String::from_utf8_lossy(&ply_bytes(&mesh)).contains("property float red\nproperty float green\n"));
 }

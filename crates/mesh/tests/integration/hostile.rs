@@ -4,6 +4,7 @@
 
 use juggler_math::hash::{combine, mix};
 use juggler_mesh::{MeshFile, MeshLimits, parse};
+use juggler_shape::attribute::{AttributeData, AttributeDomain};
 use std::path::Path;
 
 /// Replacements for numbers.
@@ -29,6 +30,11 @@ const PLY: &str = "ply\nformat ascii 1.0\ncomment c\nelement face 2\nproperty li
                    element junk 1\nproperty list int float j\nelement vertex 4\nproperty float x\nproperty double y\nproperty short z\n\
                    property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nend_header\n\
                    4 0 1 2 3 9\n3 2 1 0 9\n2 7 8\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n1 1 0 0 0 1 1 1\n0 1 0 0 0 1 0 1\n";
+
+const ATTRIBUTES: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                          property float attribute.a.1\nproperty float attribute.a.0\nproperty uchar attribute.b%20c\n\
+                          element face 2\nproperty list uchar int vertex_indices\nproperty ushort attribute.d\nend_header\n\
+                          0 0 0 .5 2 0\n1 0 0 1e3 -2 1\n1 1 0 0 0 255\n0 1 0 7 8 9\n4 0 1 2 3 65535\n3 2 1 0 7\n";
 
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
                    facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1e0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
@@ -66,6 +72,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("a.obj", OBJ.into()),
         ("a.ply", PLY.into()),
+        ("attributes.ply", ATTRIBUTES.into()),
         ("little.ply", binary_ply("little", <[u8]>::to_vec)),
         ("big.ply", binary_ply("big", |bytes| bytes.iter().rev().copied().collect())),
         ("a.stl", STL.into()),
@@ -86,6 +93,14 @@ fn assert_sound(found: &MeshFile, bytes: &[u8], what: &str) {
     assert!(mesh.normals.iter().all(|normal| normal.is_finite()), "{what}");
     assert!(mesh.uvs.is_empty() || mesh.uvs.len() == count, "{what}");
     assert!(mesh.uvs.iter().all(|uv| uv.is_finite()), "{what}");
+    for attribute in mesh.attributes.values() {
+        let is_vertex = attribute.domain == AttributeDomain::Vertex;
+        let values = if is_vertex { count } else { mesh.triangles.len() };
+        assert!((1..=4).contains(&attribute.channels), "{what}");
+        assert_eq!(attribute.data.len(), values * attribute.channels as usize, "{what}");
+        let AttributeData::F32(numbers) = &attribute.data else { continue };
+        assert!(numbers.iter().all(|number| number.is_finite()), "{what}");
+    }
     let held = mesh.positions.capacity() + mesh.triangles.capacity() + mesh.normals.capacity() + mesh.uvs.capacity();
     assert!(held <= 4 * bytes.len(), "{what}: {held} entries for {} bytes", bytes.len());
     assert!(found.warnings.iter().map(String::len).sum::<usize>() <= 2000, "{what}");

@@ -153,6 +153,12 @@ impl AssetCache {
 
 impl Entry {
     fn load(path: &std::path::Path, store: &Store) -> Self {
+        if let Some(asset) = store.assets.at(path)
+            && let Some(arrays) = asset.mesh()
+        {
+            let mesh = prepared(Arc::clone(arrays).into(), Vec::new(), path);
+            return Self { digest: asset.digest(), mesh, texture_file: None, stamp: None };
+        }
         let (limits, stamp) = (MeshLimits::default(), file_stamp(path));
         let bytes = match store.read_bytes(path, limits.file_bytes) {
             Ok(bytes) => bytes,
@@ -167,16 +173,16 @@ impl Entry {
         // Free memory before the hierarchy is built.
         drop(bytes);
         let cannot_read = |error: MeshError| format!("cannot read `{}`: {}", display_name(path), error.kind);
-        let mesh = imported.map_err(cannot_read).and_then(|found| {
-            let mut shape = Mesh::from(found.mesh);
-            let invalid = |invalid| format!("`{}` contains an invalid mesh: {invalid}", path.display());
-            shape.prepare().map_err(invalid)?;
-            let mut warnings = found.warnings;
-            warnings.extend(shape.warnings());
-            Ok((shape, warnings))
-        });
+        let mesh = imported.map_err(cannot_read).and_then(|found| prepared(found.mesh.into(), found.warnings, path));
         Self { digest, mesh, texture_file, stamp }
     }
+}
+
+/// The mesh of a file or asset with its hierarchy and its warnings, or an error message.
+fn prepared(mut mesh: Mesh, mut warnings: Vec<String>, path: &std::path::Path) -> Result<(Mesh, Vec<String>), String> {
+    mesh.prepare().map_err(|invalid| format!("`{}` contains an invalid mesh: {invalid}", display_name(path)))?;
+    warnings.extend(mesh.warnings());
+    Ok((mesh, warnings))
 }
 
 /// Message about a file or asset that cannot be read.

@@ -6,11 +6,13 @@ use super::emitter_count::emitters;
 use super::images::image_files;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
+use crate::asset::Asset;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::PathRef;
 use juggler_light::background::Panorama;
 use juggler_material::{AnyMaterial, MaterialRef};
+use juggler_mesh::MeshEstimate;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -27,6 +29,9 @@ pub struct Needs {
     pub panoramas: BTreeSet<PathBuf>,
     /// Memory in bytes of textures and environment maps from images in memory.
     pub images: u64,
+    /// Memory in bytes of meshes in memory that files stand for, each once, with their hierarchies
+    /// while these are built.
+    pub meshes: u64,
     /// Triangles of inline meshes.
     pub triangles: u64,
     /// Stored objects, without instances from lists; objects of a shared group count once.
@@ -68,7 +73,21 @@ impl Needs {
         let groups = PathRef::Root.key("groups");
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));
         needs.add(&scene.objects, files, &PathRef::Root.key("objects"));
+        needs.separate_assets(files);
         needs
+    }
+
+    /// Separates existing mesh files from assets.
+    fn separate_assets(&mut self, files: Files<'_>) {
+        for file in std::mem::take(&mut self.files) {
+            match files.asset_cache.store().assets.at(&file).map(Asset::mesh) {
+                Some(mesh) => {
+                    let bytes = mesh.map_or(0, |mesh| MeshEstimate::from_arrays(mesh).peak_bytes);
+                    self.meshes = self.meshes.saturating_add(bytes);
+                }
+                None => self.files.extend(std::fs::canonicalize(file)),
+            }
+        }
     }
 
     fn add(&mut self, objects: &[Item<Object>], files: Files<'_>, path: &PathRef<'_>) {
@@ -79,9 +98,12 @@ impl Needs {
             }
             if let Some(mesh) = object.mesh() {
                 self.triangles = self.triangles.saturating_add(mesh.arrays().triangles.len() as u64);
-                let path = path.key("shape").key("mesh").join("file");
-                let file = mesh.file.as_ref().map(|file| files.locate(&path, file));
-                self.files.extend(file.and_then(|file| std::fs::canonicalize(file).ok()));
+                let shape = path.key("shape");
+                let path = shape.key("mesh");
+                self.files.extend(mesh.file.iter().map(|file| files.locate(&path.join("file"), file)));
+                let morphs = mesh.morphs.iter().enumerate();
+                let file = |i, file: &String| files.locate(&path.key("morphs").index(i).join("file"), file);
+                self.files.extend(morphs.filter_map(|(i, morph)| Some(file(i, morph.file.as_ref()?))));
             }
             self.add(object.inner(), files, &path.key("objects"));
         }

@@ -11,6 +11,7 @@
 
 mod animation;
 mod around;
+mod assets;
 mod built_in;
 mod defaults;
 mod flat_objects;

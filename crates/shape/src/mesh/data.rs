@@ -41,7 +41,7 @@ impl MeshData {
     }
 
     /// Bytes on the heap.
-    pub(super) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         let Self { positions, triangles, normals, uvs, uvs1, tangents, attributes } = self;
         let arrays = size_of_val(positions.as_slice()) + size_of_val(triangles.as_slice());
         let arrays = arrays + size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice());

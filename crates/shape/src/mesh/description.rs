@@ -18,7 +18,10 @@ use std::sync::Arc;
 #[serde(default)]
 #[schemars(rename = "Mesh")]
 pub struct MeshDescription {
-    /// Model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below.
+    /// Model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below. A PLY
+    /// file may have all of these arrays: attributes of its elements `vertex` and `face` are columns
+    /// `attribute.NAME`, or `attribute.NAME.0` to `attribute.NAME.3` of several numbers per value, of
+    /// type `uchar`, `ushort` or `float`.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     /// Corner positions in scene units.

@@ -1,0 +1,120 @@
+//! Hash of the arrays of a mesh, without a copy of them.
+
+use juggler_shape::MeshData;
+use juggler_shape::attribute::{AttributeData, AttributeDomain};
+
+/// Number of values that are converted to bytes at once.
+const CHUNK: usize = 1 << 12;
+
+/// BLAKE3 hash of all arrays of a mesh.
+pub fn digest(mesh: &MeshData) -> [u8; 32] {
+    let MeshData { positions, triangles, normals, uvs, uvs1, tangents, attributes } = mesh;
+    let mut hasher = ArrayHasher::default();
+    // No file begins like this, so a file and a mesh never have the same hash.
+    hasher.0.update(b"mesh in memory\0");
+    hasher.array(positions, |position| position.to_array().map(f32::to_le_bytes));
+    hasher.array(triangles, |triangle| triangle.map(u32::to_le_bytes));
+    hasher.array(normals, |normal| normal.to_array().map(f32::to_le_bytes));
+    hasher.array(uvs, |uv| uv.to_array().map(f32::to_le_bytes));
+    hasher.array(uvs1, |uv| uv.to_array().map(f32::to_le_bytes));
+    hasher.array(tangents, |tangent| tangent.map(f32::to_le_bytes));
+    for (name, attribute) in attributes {
+        hasher.bytes(name.as_bytes());
+        let domain = match attribute.domain {
+            AttributeDomain::Vertex => 0,
+            AttributeDomain::Face => 1,
+        };
+        hasher.0.update(&[domain]).update(&attribute.channels.to_le_bytes());
+        match &attribute.data {
+            AttributeData::U8(values) => hasher.kind(1).bytes(values),
+            AttributeData::U16(values) => hasher.kind(2).array(values, |value| [value.to_le_bytes()]),
+            AttributeData::F32(values) => hasher.kind(4).array(values, |value| [value.to_le_bytes()]),
+        }
+    }
+    hasher.0.finalize().into()
+}
+
+/// Hasher of arrays, each after its length.
+#[derive(Default)]
+struct ArrayHasher(blake3::Hasher);
+
+impl ArrayHasher {
+    fn kind(&mut self, kind: u8) -> &mut Self {
+        self.0.update(&[kind]);
+        self
+    }
+
+    fn length(&mut self, length: usize) {
+        self.0.update(&(length as u64).to_le_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.length(bytes.len());
+        self.0.update(bytes);
+    }
+
+    fn array<T: Copy, const N: usize, const BYTES: usize>(
+        &mut self,
+        values: &[T],
+        bytes: impl Fn(T) -> [[u8; BYTES]; N],
+    ) {
+        self.length(values.len());
+        let mut chunk = Vec::with_capacity(CHUNK.min(values.len()) * N * BYTES);
+        for values in values.chunks(CHUNK) {
+            chunk.clear();
+            values.iter().for_each(|value| chunk.extend_from_slice(bytes(*value).as_flattened()));
+            self.0.update(&chunk);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::{Vec2, Vec3};
+    use juggler_shape::attribute::MeshAttribute;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_array_and_every_number_counts() {
+        let attribute = |channels, data| MeshAttribute { channels, data, domain: AttributeDomain::Vertex };
+        let plain = MeshData { positions: vec![Vec3::ZERO, Vec3::X], ..MeshData::default() };
+        let with = |name: &str, attribute: MeshAttribute| MeshData {
+            attributes: [(name.to_owned(), attribute)].into(),
+            ..plain.clone()
+        };
+        let bytes = attribute(1, AttributeData::U8(vec![1, 0]));
+        let face = MeshAttribute { domain: AttributeDomain::Face, ..bytes.clone() };
+        let meshes = [
+            MeshData::default(),
+            plain.clone(),
+            MeshData { positions: vec![Vec3::ZERO, Vec3::new(1.0, -0.0, 0.0)], ..MeshData::default() },
+            MeshData { normals: plain.positions.clone(), ..MeshData::default() },
+            MeshData { positions: plain.positions[..1].to_vec(), normals: vec![Vec3::X], ..MeshData::default() },
+            MeshData { triangles: vec![[0, 1, 1]], ..plain.clone() },
+            MeshData { uvs: vec![Vec2::ZERO, Vec2::X], ..plain.clone() },
+            MeshData { uvs1: vec![Vec2::ZERO, Vec2::X], ..plain.clone() },
+            MeshData { tangents: vec![[0.0, 0.0, 1.0, 1.0]], ..plain.clone() },
+            with("a", bytes.clone()),
+            with("b", bytes.clone()),
+            with("a", face),
+            with("a", attribute(2, bytes.data)),
+            with("a", attribute(1, AttributeData::U16(vec![1]))),
+            with("a", attribute(1, AttributeData::U16(vec![256]))),
+            with("a", attribute(1, AttributeData::F32(vec![1.0]))),
+        ];
+        let digests: BTreeSet<[u8; 32]> = meshes.iter().map(digest).collect();
+        assert_eq!(digests.len(), meshes.len());
+    }
+
+    #[test]
+    fn long_arrays_have_one_hash() {
+        let mesh =
+            MeshData { positions: (0..3 * CHUNK + 5).map(|i| Vec3::splat(i as f32)).collect(), ..MeshData::default() };
+        let mut whole = b"mesh in memory\0".to_vec();
+        whole.extend((mesh.positions.len() as u64).to_le_bytes());
+        whole.extend(mesh.positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+        whole.extend([0; 5 * 8]);
+        assert_eq!(digest(&mesh), *blake3::hash(&whole).as_bytes());
+    }
+}
