@@ -18,7 +18,7 @@ check_all() {
   finish_windows
   finish_background "features"
   finish_background "golden: optimized programs"
-  run_steps golden
+  run_steps python golden
 }
 
 run_steps() {
@@ -117,6 +117,19 @@ END
     echo "error: WebAssembly has no system that these packages could call" >&2
     return 1
   fi
+}
+
+# Tests the Python package with an unoptimized module.
+step_python() {
+  heading "python: the package"
+  if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+    skip "Python: there is no Python of version 3.11 or newer"
+    return
+  fi
+  if ! python3 -c 'import numpy' 2>/dev/null; then skip "Python: NumPy is not installed (pip install numpy)"; fi
+  local folder
+  folder=$(crates/python/tests/stage.sh)
+  PYTHONPATH=$folder python3 -m unittest discover -s crates/python/tests
 }
 
 # Compares hashes of pictures in every kind of build; they must be equal to the bit. Statistics of
