@@ -11,7 +11,7 @@ heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
 
 # Runs all steps of CI. Since driving windows leaves the machine mostly idle, builds run meanwhile.
 check_all() {
-  run_steps lint unit
+  run_steps lint unit python
   in_background "golden: optimized programs" at_leisure build_golden
   start_windows
   in_background "features" at_leisure step_features
@@ -88,6 +88,20 @@ step_lint() {
 step_unit() {
   heading "unit: tests of each package, and of its documentation"
   cargo test --workspace --locked --exclude juggler-golden
+}
+
+# Tests the Python package with each Python that is installed. The module is built with the whole
+# workspace, since a build of its own would select other features of its dependencies.
+step_python() {
+  local folder python
+  heading "python: the package"
+  if ! command -v python3 >/dev/null; then skip "python: python3 is not installed (apt-get install python3)"; return; fi
+  folder=$(crates/python/tests/stage.sh --workspace)
+  for python in python3 python3.13; do
+    command -v "$python" >/dev/null || continue
+    "$python" --version
+    PYTHONPATH=$folder JUGGLER_PROGRAM=$programs/debug/juggler "$python" -m unittest discover crates/python/tests
+  done
 }
 
 # Checks each feature alone and no features, since the workspace builds only all of them together.
