@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs all checks that a change must pass, as CI does. Steps that are cheap or likely to fail come
 # first.
-#   ./check.sh                  runs lint, unit, features, windows, python and golden
-#   ./check.sh STEP...          runs single steps: lint unit features golden windows python web
+#   ./check.sh                  runs lint, unit, python, features, windows and golden
+#   ./check.sh STEP...          runs single steps: lint unit python features golden windows web
 #   ./check.sh changed [BASE]   runs lint and the tests of every package that the changes since BASE
 #                               can break; the default BASE is the merge base with main, or the
 #                               previous commit if nothing has changed since the merge base
@@ -44,7 +44,7 @@ case "${1:-all}" in
   deep) shift; check_deep "$@" ;;
   *)
     for name in "$@"; do
-      case "$name" in lint | unit | features | golden | windows | python | web) ;; *) usage ;; esac
+      case "$name" in lint | unit | python | features | golden | windows | web) ;; *) usage ;; esac
     done
     run_steps "$@"
     ;;

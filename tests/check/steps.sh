@@ -11,14 +11,14 @@ heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
 
 # Runs all steps of CI. Since driving windows leaves the machine mostly idle, builds run meanwhile.
 check_all() {
-  run_steps lint unit
+  run_steps lint unit python
   in_background "golden: optimized programs" at_leisure build_golden
   start_windows
   in_background "features" at_leisure step_features
   finish_windows
   finish_background "features"
   finish_background "golden: optimized programs"
-  run_steps python golden
+  run_steps golden
 }
 
 run_steps() {
@@ -90,6 +90,24 @@ step_unit() {
   cargo test --workspace --locked --exclude juggler-golden
 }
 
+# Tests the Python package with each Python that is installed. The module is built with the whole
+# workspace, since a build of its own would select other features of its dependencies.
+step_python() {
+  local folder python
+  heading "python: the package"
+  if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+    skip "python: python3 is missing or older than 3.11 (apt-get install python3)"
+    return
+  fi
+  if ! python3 -c 'import numpy' 2>/dev/null; then skip "python: NumPy is not installed (pip install numpy)"; fi
+  folder=$(crates/python/tests/stage.sh --workspace)
+  for python in python3 python3.13; do
+    command -v "$python" >/dev/null || continue
+    "$python" --version
+    PYTHONPATH=$folder JUGGLER_PROGRAM=$programs/debug/juggler "$python" -m unittest discover crates/python/tests
+  done
+}
+
 # Checks each feature alone and no features, since the workspace builds only all of them together.
 # The program without features uses the libraries without features; `juggler-web` uses the session
 # without threads and clocks.
@@ -117,19 +135,6 @@ END
     echo "error: WebAssembly has no system that these packages could call" >&2
     return 1
   fi
-}
-
-# Tests the Python package with an unoptimized module.
-step_python() {
-  heading "python: the package"
-  if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-    skip "Python: there is no Python of version 3.11 or newer"
-    return
-  fi
-  if ! python3 -c 'import numpy' 2>/dev/null; then skip "Python: NumPy is not installed (pip install numpy)"; fi
-  local folder
-  folder=$(crates/python/tests/stage.sh)
-  PYTHONPATH=$folder python3 -m unittest discover -s crates/python/tests
 }
 
 # Compares hashes of pictures in every kind of build; they must be equal to the bit. Statistics of

@@ -97,8 +97,8 @@ impl Picture {
         }
     }
 
-    /// Renders one of `count` shards and returns the bytes of its partial render. Fails for an index
-    /// beyond the last shard, and if `control` cancels the render.
+    /// Renders one of `count` shards and returns the bytes of its partial render. Fails for an
+    /// index beyond the last shard, and if `control` cancels the render.
     pub fn render_shard(
         &self,
         [index, count]: [u32; 2],

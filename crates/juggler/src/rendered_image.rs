@@ -41,7 +41,8 @@ pub struct RenderedImage {
 
 impl RenderedImage {
     /// Makes an image of its parts, such as those of an image of another process; `None` if their
-    /// numbers of pixels and channels do not fit. `channels` are those of [`RenderedImage::layers`].
+    /// numbers of pixels and channels do not fit. `channels` are those of
+    /// [`RenderedImage::layers`].
     pub fn from_parts(
         header: Header,
         pixels: Vec<Rgb>,
@@ -243,7 +244,7 @@ impl Picture {
         control: &Control,
     ) -> Result<RenderedImage, Error> {
         let start = Instant::now();
-        let parts = self.film_parts(film);
+        let parts = self.collect(film);
         let denoised = denoise_pixels(self.aovs(), parts.denoiser_input.as_ref(), library, control)?;
         let pixels = denoised.unwrap_or(parts.pixels);
         Ok(self.image_of_film(film, pixels, parts.channels, [render, start.elapsed()], control))
@@ -252,12 +253,12 @@ impl Picture {
     /// The image that a film holds so far, without denoising; other threads may add samples
     /// meanwhile. `render` is the time that its samples took.
     pub fn snapshot(&self, film: &Film, render: Duration, control: &Control) -> RenderedImage {
-        let Parts { pixels, channels, .. } = self.film_parts(film);
+        let Parts { pixels, channels, .. } = self.collect(film);
         self.image_of_film(film, pixels, channels, [render, Duration::ZERO], control)
     }
 
     /// Collects pixels, channels and the denoiser's input from a film.
-    fn film_parts(&self, film: &Film) -> Parts {
+    fn collect(&self, film: &Film) -> Parts {
         let (aovs, tiling) = (self.aovs(), film.tiling());
         let mut parts = Parts::new(aovs, self.region());
         for (row, band) in (0..).zip(tiling.bands()) {

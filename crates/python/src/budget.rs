@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 /// Bytes per pixel of the image in memory.
 const PIXEL: u64 = 12;
 
-/// Number of threads of a render, and of the pixels in memory at once. Fails if the render needs more
-/// memory than the limit.
+/// Number of threads of a render, and of the pixels in memory at once. Fails if the render needs
+/// more memory than the limit.
 pub fn effort(scene: &Scene, settings: &RenderSettings) -> PyResult<Effort> {
     let threads = threads::thread_count(settings.threads)?;
     let Some(most) = settings.max_memory else { return Ok(Effort { threads, band_pixels: BAND_PIXELS }) };

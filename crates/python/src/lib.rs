@@ -1,5 +1,6 @@
 //! The module `juggler._native`, on which the Python package `juggler` is built. It takes scenes as
-//! JSON text and settings as keywords, and returns pixels as bytes, so it needs no library of arrays.
+//! JSON text and settings as keywords, and returns pixels as bytes, so it needs no library of
+//! arrays.
 
 mod budget;
 mod comparison;

@@ -3,10 +3,11 @@
 use crate::errors::{key_error, of_problems, of_scene, settings_error};
 use crate::task::{self, Fault};
 use juggler::scene::model::{ModelSummary, SceneModel};
-use juggler::scene::path::{Path, Step};
+use juggler::scene::path::{Path as ScenePath, Step};
 use juggler::scene::{self, Loader, UnknownPath};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Name of the text of a scene that is no file. Messages do not show it.
 pub const UNNAMED: &str = "<scene>";
@@ -69,6 +70,11 @@ impl Scene {
         self.scene.to_json()
     }
 
+    /// Text of the scene file, in which names of files are relative to the folder of `name`.
+    fn to_json_at_name(&self) -> String {
+        self.scene.to_json_in(Path::new(&self.name).parent().unwrap_or(Path::new("")))
+    }
+
     /// Writes the scene file with its assets.
     fn save(&self, py: Python<'_>, path: String) -> PyResult<()> {
         let scene = self.scene.clone();
@@ -106,8 +112,8 @@ fn model(SceneModel { path, summary, .. }: &SceneModel) -> Value {
 }
 
 /// Path of a value of a scene, as messages print it or as a JSON pointer.
-pub fn path(text: &str) -> PyResult<Path> {
-    Path::parse(text).ok_or_else(|| {
+pub fn path(text: &str) -> PyResult<ScenePath> {
+    ScenePath::parse(text).ok_or_else(|| {
         key_error(&format!("`{text}` is no path, such as `materials.gold.conductor.roughness` or `objects[0].shape`"))
     })
 }

@@ -39,7 +39,7 @@ const NAMES: &[&str] = &[
     "progress",
 ];
 
-/// Settings of a render, with all that is no part of the picture.
+/// Settings of a render.
 #[derive(Clone, Debug, Default)]
 pub struct RenderSettings {
     /// Settings that override the scene's.

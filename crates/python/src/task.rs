@@ -2,13 +2,14 @@
 //! Python threads run, handles signals and calls back; the pool's threads never touch Python.
 
 use crate::errors;
-use crate::threads;
+use crate::threads::{self, Use};
 use juggler::Error;
 use juggler::film::{MergeError, PartialRenderError};
 use juggler::imaging::ImageError;
 use juggler::render::{Cancelled, Control};
 use juggler::scene::SceneError;
 use pyo3::prelude::*;
+use rayon::ThreadPool;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -140,13 +141,16 @@ pub struct Task<T> {
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Starts work on a pool of this many threads.
+    /// Starts a render on a pool of this many threads.
     pub fn start(
         py: Python<'_>,
         threads: usize,
         work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static,
     ) -> PyResult<Self> {
-        let pool = threads::pool(py, threads)?;
+        Ok(Self::start_on(&threads::pool(py, threads, Use::Render)?, work))
+    }
+
+    fn start_on(pool: &ThreadPool, work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static) -> Self {
         let (monitor, (sender, receiver)) = (Arc::new(Monitor::default()), mpsc::channel());
         let shared = Arc::clone(&monitor);
         pool.spawn(move || {
@@ -154,7 +158,7 @@ impl<T: Send + 'static> Task<T> {
             // The task may have been abandoned.
             drop(sender.send(result.unwrap_or_else(|panic| Err(Fault::Panic(panic_message(panic.as_ref()))))));
         });
-        Ok(Self { monitor, results: Mutex::new(receiver), process: std::process::id(), start: Instant::now() })
+        Self { monitor, results: Mutex::new(receiver), process: std::process::id(), start: Instant::now() }
     }
 
     /// Waits for the result, at most this long; `None` if the work takes longer. An exception of a
@@ -207,7 +211,7 @@ impl<T> Drop for Task<T> {
     }
 }
 
-/// Runs work on a pool of this many threads and returns its result.
+/// Renders on a pool of this many threads and returns the result.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     threads: usize,
@@ -215,8 +219,7 @@ pub fn run<T: Send + 'static>(
     work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static,
 ) -> PyResult<T> {
     let task = Task::start(py, threads, work)?;
-    let result = task.wait(py, watch, Duration::MAX)?;
-    result.ok_or_else(|| errors::convert(Error::Cancelled(Cancelled)))
+    task.wait(py, watch, Duration::MAX)?.ok_or_else(errors::cancelled)
 }
 
 /// Does work on this very thread. A panic becomes an exception.
@@ -224,12 +227,14 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> PyResult<T> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Fault::Panic(panic_message(panic.as_ref())).into_exception())
 }
 
-/// Runs work that reports no progress on the default number of threads.
+/// Does short work, which reports no progress and waits for no render.
 pub fn call<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, Fault> + Send + 'static,
 ) -> PyResult<T> {
-    run(py, threads::thread_count(None)?, &Watch::default(), |_| work())
+    let pool = threads::pool(py, threads::thread_count(None)?, Use::Short)?;
+    let task = Task::start_on(&pool, |_| work());
+    task.wait(py, &Watch::default(), Duration::MAX)?.ok_or_else(errors::cancelled)
 }
 
 fn panic_message(panic: &(dyn Any + Send)) -> String {

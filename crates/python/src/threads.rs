@@ -13,10 +13,19 @@ const VARIABLE: &str = "JUGGLER_THREADS";
 /// Maximum number of threads.
 const MAX_THREADS: usize = 1024;
 
-/// Pools by process and number of threads. A process that is forked makes its own, since only the
-/// thread that forks lives on in it. The lock is held only while the interpreter is attached, and
+/// What a pool is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Use {
+    /// Builds and renders.
+    Render,
+    /// Short work, which must not wait for a render.
+    Short,
+}
+
+/// Pools by process, use and number of threads. A process that is forked makes its own, since only
+/// the thread that forks lives on in it. The lock is held only while the interpreter is attached, and
 /// therefore by no other thread when `os.fork` is called.
-static POOLS: Mutex<BTreeMap<(u32, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
+static POOLS: Mutex<BTreeMap<(u32, Use, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
 
 /// Number of threads to use: `requested`, that of the environment, or one per core that the process
 /// may use.
@@ -40,10 +49,10 @@ pub fn thread_count(requested: Option<usize>) -> PyResult<usize> {
 }
 
 /// Pool of this many threads. It is kept for the next call.
-pub fn pool(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
+pub fn pool(_: Python<'_>, threads: usize, purpose: Use) -> PyResult<Arc<ThreadPool>> {
     silence_panics();
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    let key = (std::process::id(), threads);
+    let key = (std::process::id(), purpose, threads);
     if let Some(pool) = pools.get(&key) {
         return Ok(Arc::clone(pool));
     }

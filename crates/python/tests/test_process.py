@@ -73,7 +73,7 @@ class Renderers(unittest.TestCase):
         future = jg.Renderer("juggler", **LONG).submit()
         time.sleep(0.2)
         self.assertTrue(future.running() and future.cancel() and future.cancelled())
-        future._thread.join(10)
+        future._thread.join(60)
         self.assertFalse(future._thread.is_alive())
 
     def test_async_renders_are_cancelled(self):
@@ -176,7 +176,8 @@ class Processes(unittest.TestCase):
                 "'/dev/null', '--format', 'pfm', '--samples', '100000']))")
         _, status, _, errors = self.interrupted(code)
         self.assertNotIn("Traceback", errors)
-        self.assertEqual(status, 130)
+        # A program that has not begun to render ends by the signal.
+        self.assertIn(status, (130, -signal.SIGINT))
 
     def test_the_module_is_the_program(self):
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}

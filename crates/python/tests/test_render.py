@@ -6,7 +6,7 @@ import unittest
 import warnings
 import zlib
 
-from support import SMALL, Folder, jg, needs_numpy, needs_program, numpy, program, program_hash, small_scene
+from support import ROOT, SMALL, Folder, jg, needs_numpy, needs_program, numpy, program, program_hash, small_scene
 
 SCENES = ["juggler", "cornell-box", "material-balls", "many-lights-room", "glass-caustics"]
 
@@ -238,6 +238,20 @@ class Scenes(Folder):
         with self.assertRaises(MemoryError):
             jg.render(small_scene(), max_memory="1M")
         jg.render(small_scene(), max_memory="4G")
+
+    @needs_program
+    def test_models_are_chosen(self):
+        models = ROOT / "scenes/models"
+        (robot,) = jg.models(models / "robot.glb")
+        clips = [clip["name"] for clip in robot["clips"]]
+        self.assertTrue(clips and robot["format"].startswith("glTF"))
+        renderer = jg.Renderer(models / "robot.glb", animation=clips[-1], frame=3, **SMALL)
+        flags = ["--animation", clips[-1], "--frame", "3", "--size", "32x18", "--samples", "2"]
+        image = renderer.render()
+        self.assertEqual(image.hash, program_hash(str(models / "robot.glb"), *flags))
+        self.assertEqual(pickle.loads(pickle.dumps(renderer)).render().hash, image.hash)
+        with self.assertRaisesRegex(jg.SettingsError, "`variant` is for model files"):
+            jg.Renderer("juggler", variant="red")
 
     def test_frames_are_those_of_fresh_renders(self):
         images = list(jg.frames("juggler", range(3, 6), **SMALL))

@@ -7,8 +7,8 @@ use juggler_imaging::{Header, ImageFormat, Tone, to_memory};
 use juggler_math::Rgb;
 
 impl RenderedImage {
-    /// Returns the bytes of an image file without AOVs. An image that is wider than `most` pixels is
-    /// reduced by a whole factor first. Fails for a size or primaries that the format cannot hold.
+    /// Returns the bytes of an image file without AOVs. An image that is wider than `most` pixels
+    /// is reduced by a whole factor first. Fails for a size or primaries that the format cannot hold.
     pub fn encode(&self, format: ImageFormat, most: u32) -> Result<Vec<u8>, Error> {
         let factor = self.header.width.div_ceil(most.max(1)).max(1);
         if factor == 1 {

@@ -43,7 +43,7 @@ class Renderer:
         scene = self._native.scene()
         of_models = ("variant", "animation", "model_scene")
         settings = {name: value for name, value in self._settings.items() if name not in of_models}
-        return _restore, (scene.to_json(), scene.name, settings, self.frame)
+        return _restore, (scene.to_json_at_name(), scene.name, settings, self.frame)
 
     def __getitem__(self, path):
         """Value at a path, as messages print it, or at a JSON pointer."""
