@@ -19,6 +19,7 @@ pub struct Extension {
 
 /// All additions.
 const EXTENSIONS: &[Extension] = &[
+    Extension { base: ("_scene_methods", "SceneMethods"), ..positional("scene_types", "Scene", &[]) },
     Extension { base: ("_placement", "Placement"), ..positional("scene_types", "Object", &["shape"]) },
     positional("shapes", "Mesh", &["file"]),
     positional("backgrounds", "Solid", &["color"]),

@@ -75,6 +75,11 @@ impl Scene {
         self.scene.to_json_in(Path::new(&self.name).parent().unwrap_or(Path::new("")))
     }
 
+    /// Text of the scene file, in which names of files are relative to the current folder.
+    fn to_json_here(&self) -> String {
+        self.scene.to_json_in(Path::new(""))
+    }
+
     /// Writes the scene file with its assets.
     fn save(&self, py: Python<'_>, path: String) -> PyResult<()> {
         let scene = self.scene.clone();

@@ -1,0 +1,44 @@
+"""Methods of scenes that need the renderer."""
+
+import os
+
+from ._node import Node
+
+
+class SceneMethods(Node):
+    """Base class of `Scene`."""
+
+    __slots__ = ()
+
+    @classmethod
+    def load(cls, path, lenient=False):
+        """Loads a scene file, a model or a mesh, or the built-in scene of this name.
+
+        The sections of the scene are lists and dictionaries, in which names of files are relative to
+        the current folder. `lenient` shows missing pictures of models gray.
+        """
+        import json
+
+        from ._scene import native_scene
+
+        scene = native_scene(os.fspath(path), lenient)
+        sections = json.loads(scene.to_json_here())
+        return cls(**{name: value for name, value in sections.items() if name in cls.__match_args__})
+
+    def check(self):
+        """Returns the warnings of the scene as texts. Raises a `SceneError` with all its mistakes."""
+        from ._scene import native_scene
+
+        return [message.removeprefix("warning: ") for message in native_scene(self).check()]
+
+    def save(self, path):
+        """Saves the scene with its animation as a scene file, and its assets beside it."""
+        from ._scene import native_scene
+
+        native_scene(self).save(os.fspath(path))
+
+    def models(self):
+        """Returns a description of each model of the scene, as `juggler.models` does."""
+        from ._api import models
+
+        return models(self)

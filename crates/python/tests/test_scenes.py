@@ -1,0 +1,75 @@
+"""Scenes of typed classes: checked, saved, loaded and rendered."""
+
+import os
+import pickle
+import unittest
+
+from support import SMALL, Folder, jg, small_scene
+from juggler import Object, Scene, cameras, lights, materials, shapes, textures
+
+
+def typed_scene():
+    """Two objects over a tiled floor, as in the documentation."""
+    return Scene(
+        render=jg.RenderSettings(size=(64, 36), samples=4),
+        camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
+        textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
+        materials={
+            "floor": materials.Phong(diffuse="tiles"),
+            "gold": materials.Conductor(metal="gold", roughness=0.2),
+        },
+        lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
+        objects=[
+            Object(shapes.Plane(), material="floor"),
+            Object(shapes.Sphere(), material="gold").translate(0, 1, 0),
+        ],
+    )
+
+
+class TypedScenes(Folder):
+    def test_a_typed_scene_is_the_scene_of_its_dict(self):
+        scene = typed_scene()
+        image = jg.render(scene)
+        self.assertEqual(image.hash, jg.render(scene.to_dict()).hash)
+        self.assertEqual(image.hash, jg.render(pickle.loads(pickle.dumps(scene))).hash)
+        bigger = scene.replace(render=scene.render.replace(samples=8))
+        self.assertNotEqual(jg.render(bigger).hash, image.hash)
+        self.assertEqual(jg.render(bigger).hash, jg.render(scene, samples=8).hash)
+
+    def test_mistakes_are_all_found(self):
+        scene = typed_scene()
+        self.assertEqual(scene.check(), [])
+        scene = scene.replace(
+            lights=[lights.Point(intensity=-1)], objects=[Object(shapes.Sphere(radius="wide"), material="gld")]
+        )
+        with self.assertRaises(jg.SceneError) as caught:
+            scene.check()
+        self.assertEqual(len(caught.exception.problems), 3)
+        self.assertIn("did you mean `gold`", str(caught.exception))
+        with self.assertRaisesRegex(TypeError, "did you mean `roughness`"):
+            materials.Conductor(roughnes=0.2)
+
+    def test_a_saved_scene_is_loaded(self):
+        scene = typed_scene()
+        path = os.path.join(self.folder, "scene.json")
+        scene.save(path)
+        loaded = Scene.load(path)
+        self.assertEqual(jg.render(path).hash, jg.render(scene).hash)
+        self.assertEqual(jg.render(loaded).hash, jg.render(scene).hash)
+        self.assertEqual(loaded.render["samples"], 4)
+        self.assertEqual(jg.render(Scene.load("juggler"), **SMALL).hash, jg.render("juggler", **SMALL).hash)
+        with self.assertRaises(jg.FileError):
+            Scene.load(os.path.join(self.folder, "none.json"))
+
+    def test_dicts_and_classes_mix(self):
+        mixed = small_scene()
+        mixed["objects"].append(Object(shapes.Sphere(radius=0.3), material="gold").translate(1, 0.3, 1))
+        plain = small_scene()
+        plain["objects"].append(
+            {"shape": {"sphere": {"radius": 0.3}}, "material": "gold", "transform": [{"translate": [1, 0.3, 1]}]}
+        )
+        self.assertEqual(jg.render(mixed, **SMALL).hash, jg.render(plain, **SMALL).hash)
+
+
+if __name__ == "__main__":
+    unittest.main()
