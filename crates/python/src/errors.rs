@@ -1,5 +1,6 @@
 //! Exceptions, which the Python module `juggler._errors` defines.
 
+use crate::scene::UNNAMED;
 use juggler::Error;
 use juggler::film::{PartialRenderError, ResumeError};
 use juggler::imaging::ImageError;
@@ -165,7 +166,7 @@ pub fn line(problem: &Problem) -> String {
 fn place<'p>(problems: &'p Problems, problem: &Problem) -> Option<(&'p str, usize, usize)> {
     let file = problems.sources().get(problem.place?.file)?.name.as_str();
     let (line, column) = problem.line_and_column(problems.sources())?;
-    (file != crate::scene::UNNAMED).then_some((file, line, column))
+    (!file.ends_with(UNNAMED)).then_some((file, line, column))
 }
 
 /// The problems as a list of `juggler.Problem`.

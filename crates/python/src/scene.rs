@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Name of the text of a scene that is no file. Messages do not show it.
+/// File name of the text of a scene that is no file. Messages do not show it. A folder before it is
+/// that of the files that the scene names.
 pub const UNNAMED: &str = "<scene>";
 
 /// Scene, which never changes.
@@ -17,14 +18,14 @@ pub const UNNAMED: &str = "<scene>";
 pub struct Scene {
     /// The scene at frame 0.
     pub scene: scene::Scene,
-    /// File, built-in scene, or [`UNNAMED`].
+    /// File, built-in scene, or [`UNNAMED`], which may follow a folder.
     pub name: String,
 }
 
 impl Scene {
     /// Name that partial renders store.
     pub fn title(&self) -> String {
-        if self.name == UNNAMED { "scene".to_owned() } else { self.name.clone() }
+        if self.name.ends_with(UNNAMED) { "scene".to_owned() } else { self.name.clone() }
     }
 }
 

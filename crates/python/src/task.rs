@@ -147,7 +147,8 @@ impl<T: Send + 'static> Task<T> {
         threads: usize,
         work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static,
     ) -> PyResult<Self> {
-        Ok(Self::start_on(&threads::pool(py, threads, Use::Render)?, work))
+        let pool = threads::pool(py, threads, Use::Render)?;
+        Ok(Self::start_on(&pool, work))
     }
 
     fn start_on(pool: &ThreadPool, work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static) -> Self {

@@ -5,6 +5,9 @@ import sys
 
 from juggler import _native
 
+# File name of a scene that is no file.
+_UNNAMED = "<scene>"
+
 
 def native_scene(scene, lenient=False):
     """Returns the scene of a file, a built-in name, a dict, or an object with `to_dict`."""
@@ -15,7 +18,10 @@ def native_scene(scene, lenient=False):
     if not isinstance(scene, dict) and not hasattr(scene, "to_dict"):
         kind = type(scene).__name__
         raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
-    return _native.Scene.from_json(to_json(scene), lenient)
+    # A scene that was loaded from a file names its files relative to the folder of that file.
+    folder = getattr(scene, "_folder", None)
+    name = None if folder is None else os.path.join(folder, _UNNAMED)
+    return _native.Scene.from_json(to_json(scene), lenient, name)
 
 
 def to_json(value):
