@@ -13,6 +13,7 @@
 //! - [`regular`]: opens regular files and rejects devices and pipes;
 //! - [`input`]: reads files as linear images;
 //! - [`raster`]: reads files as stored samples, for textures;
+//! - [`raster_file`]: writes stored samples;
 //! - [`mod@compare`]: error metrics between two images;
 //! - [`mod@flip`]: perceived difference between two images;
 //! - [`mod@significance`]: statistical test of whether two noisy images have the same mean.
@@ -32,6 +33,7 @@ pub mod look;
 mod orientation;
 pub mod output;
 pub mod raster;
+pub mod raster_file;
 pub mod regular;
 pub mod significance;
 pub mod tone;
@@ -49,5 +51,6 @@ pub use input::{Limits, decode, inspect, read, read_within};
 pub use look::DisplayLook;
 pub use output::{Destination, create, to_memory, to_standard_output, write_image};
 pub use raster::{Raster, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster};
+pub use raster_file::raster_bytes;
 pub use tone::{AnyCurve, Matrix, Primaries, Tone, ToneCurveKind, WhiteBalance};
 pub use viewpoint::{Matrix4, Viewpoint};

@@ -25,7 +25,7 @@ pub struct Raster {
 
 impl Raster {
     /// Linear RGB pixels with sRGB primaries. Gray becomes equal channels; alpha is ignored.
-    pub(crate) fn to_pixels(&self) -> Vec<Rgb> {
+    pub fn to_pixels(&self) -> Vec<Rgb> {
         let RasterLayout { channels, to_srgb, .. } = self.layout;
         let channels = usize::from(channels).max(1);
         let table = |count: u32| -> Vec<f32> {

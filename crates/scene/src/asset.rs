@@ -1,6 +1,7 @@
 //! Assets: files that a scene holds in memory, by name.
 
 use crate::mesh_digest;
+use crate::texel_array::TexelArray;
 use juggler_math::Image;
 use juggler_shape::MeshData;
 use std::collections::BTreeMap;
@@ -24,6 +25,8 @@ enum Content {
     Image(Arc<Image>),
     /// Arrays of a mesh.
     Mesh(Arc<MeshData>),
+    /// Texels as given.
+    Texels(Arc<TexelArray>),
 }
 
 /// Assets are equal when their contents have the same hash.
@@ -77,6 +80,24 @@ impl Asset {
         Self { digest: mesh_digest::digest(&mesh), content: Content::Mesh(mesh) }
     }
 
+    /// Creates an asset of texels, in place of an image file. They are kept as they are until a texture
+    /// or background is prepared from them, as from a PNG file of 8 or 16 bits or an EXR file.
+    ///
+    /// ```
+    /// use juggler_scene::{Asset, Scene, TexelArray, TexelSamples};
+    /// use juggler_texture::{ColorSpace, Image};
+    ///
+    /// let samples = TexelSamples::U8(vec![255, 0, 0, 0, 128, 255]);
+    /// let texels = TexelArray::new([2, 1], 3, samples, ColorSpace::Auto)?;
+    /// let scene = Scene::new().asset("pixels", Asset::from_texels(texels));
+    /// let scene = scene.texture("wall", Image::new("pixels"));
+    /// # Ok::<(), juggler_scene::InvalidTexels>(())
+    /// ```
+    pub fn from_texels(texels: impl Into<Arc<TexelArray>>) -> Self {
+        let texels = texels.into();
+        Self { digest: texels.digest(), content: Content::Texels(texels) }
+    }
+
     /// BLAKE3 hash of the content.
     pub fn digest(&self) -> [u8; 32] {
         self.digest
@@ -86,7 +107,7 @@ impl Asset {
     pub fn bytes(&self) -> Option<&[u8]> {
         match &self.content {
             Content::File(bytes) => Some(bytes),
-            Content::Image(_) | Content::Mesh(_) => None,
+            _ => None,
         }
     }
 
@@ -94,7 +115,7 @@ impl Asset {
     pub fn image(&self) -> Option<&Image> {
         match &self.content {
             Content::Image(image) => Some(image),
-            Content::File(_) | Content::Mesh(_) => None,
+            _ => None,
         }
     }
 
@@ -102,7 +123,15 @@ impl Asset {
     pub fn mesh(&self) -> Option<&Arc<MeshData>> {
         match &self.content {
             Content::Mesh(mesh) => Some(mesh),
-            Content::File(_) | Content::Image(_) => None,
+            _ => None,
+        }
+    }
+
+    /// Texels, if the asset consists of them.
+    pub fn texels(&self) -> Option<&Arc<TexelArray>> {
+        match &self.content {
+            Content::Texels(texels) => Some(texels),
+            _ => None,
         }
     }
 
@@ -112,6 +141,7 @@ impl Asset {
             Content::File(_) => "the bytes of a file",
             Content::Image(_) => "pixels",
             Content::Mesh(_) => "a mesh",
+            Content::Texels(_) => "texels",
         }
     }
 }
@@ -148,6 +178,12 @@ impl Assets {
     pub fn at(&self, path: &Path) -> Option<&Asset> {
         let (_, name) = path.to_str()?.strip_prefix("asset ")?.split_once('/')?;
         self.0.get(name).filter(|_| self.path_of(name).is_some_and(|own| own == path))
+    }
+
+    /// Texels of a path that [`path_of`](Self::path_of) has given, and their hash.
+    pub fn texels_at(&self, path: &Path) -> Option<(&TexelArray, [u8; 32])> {
+        let asset = self.at(path)?;
+        Some((asset.texels()?, asset.digest))
     }
 
     /// Pixels of the image of a path that [`path_of`](Self::path_of) has given, and their hash.

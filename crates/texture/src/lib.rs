@@ -55,7 +55,7 @@ pub use mapping::{Mapping, Scale};
 pub use mix::MixMode;
 pub use noise_blend::NoiseBlend;
 pub use octaves::Octaves;
-pub use pixels::{Filter, MipMap, Texel, Wrap};
+pub use pixels::{Filter, MipMap, Texel, Wrap, half};
 pub use product::CompiledProduct;
 pub use ramp::Steps;
 pub use table::{InputError, Slot, TextureId, TextureTable, UnknownTexture};

@@ -2,7 +2,8 @@
 
 use juggler::material::Diffuse;
 use juggler::prelude::*;
-use juggler::scene::Asset;
+use juggler::scene::{Asset, TexelArray, TexelSamples};
+use juggler::texture::{ColorSpace, half};
 
 /// An image with a different color in each pixel, one of them brighter than white.
 fn pixels() -> Image {
@@ -107,4 +108,46 @@ fn meshes_in_memory_give_the_pictures_of_their_files() {
     let place = folder.path().join("scene.json");
     scene.save(&place).unwrap();
     assert_eq!(of_memory, rendered(&Scene::load(&place).unwrap()));
+}
+
+/// Texels of 4 by 3 in every type, with these channels.
+fn texels(channels: u8) -> Vec<TexelArray> {
+    let numbers = 0..12 * u32::from(channels);
+    let array = |samples, space| TexelArray::new([4, 3], channels, samples, space).unwrap();
+    let bytes = TexelSamples::U8(numbers.clone().map(|i| (i * 53) as u8).collect());
+    let words = TexelSamples::U16(numbers.clone().map(|i| (i * 9973) as u16).collect());
+    let halves = TexelSamples::F16(numbers.clone().map(|i| half::from_f32(i as f32 / 32.0)).collect());
+    let floats = TexelSamples::F32(numbers.map(|i| i as f32 / 37.0).collect());
+    vec![
+        array(bytes.clone(), ColorSpace::Auto),
+        array(bytes, ColorSpace::Linear),
+        array(words.clone(), ColorSpace::Srgb),
+        array(words, ColorSpace::Linear),
+        array(halves, ColorSpace::Auto),
+        array(floats, ColorSpace::Linear),
+    ]
+}
+
+#[test]
+fn texels_in_memory_give_the_pictures_of_their_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("scene.json");
+    let mut pictures: Vec<Image> = Vec::new();
+    for (channels, texels) in (1..=4).flat_map(|channels| texels(channels).into_iter().map(move |t| (channels, t))) {
+        let asset = Asset::from_texels(texels);
+        let scene = scene("wood", "heaven").asset("wood", asset.clone()).asset("heaven", asset);
+        let picture = rendered(&scene);
+        scene.save(&place).unwrap();
+        assert_eq!(picture, rendered(&Scene::load(&place).unwrap()), "{channels} channels");
+        assert!(!pictures.contains(&picture), "{channels} channels: type and color space are seen");
+        pictures.push(picture);
+        // The texture's color space decides, as for files.
+        let own = |space| {
+            scene.clone().texture("floor", texture::Image { color_space: space, ..texture::Image::new("wood") })
+        };
+        for space in [ColorSpace::Srgb, ColorSpace::Linear] {
+            own(space).save(&place).unwrap();
+            assert_eq!(rendered(&own(space)), rendered(&Scene::load(&place).unwrap()), "{channels} channels");
+        }
+    }
 }

@@ -8,6 +8,7 @@ use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use crate::store::{MAX_FILE_BYTES, Store};
+use crate::texel_array::TexelArray;
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
 use juggler_math::Rgb;
@@ -97,6 +98,9 @@ impl ImageFile {
         if let Some((image, digest)) = store.assets.image_at(path) {
             return Self::from_image(image, digest, path);
         }
+        if let Some((texels, digest)) = store.assets.texels_at(path) {
+            return Self::from_raster(Ok(texels.raster()), digest, path, space);
+        }
         let stamp = file_stamp(path);
         let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes,
@@ -107,12 +111,21 @@ impl ImageFile {
         let digest = blake3::hash(&bytes).into();
         let raster = decode_raster(&display_name(path), Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
+        Self { stamp, ..Self::from_raster(raster, digest, path, space) }
+    }
+
+    fn from_raster(
+        raster: Result<Raster, ImageError>,
+        digest: [u8; 32],
+        path: &std::path::Path,
+        space: ColorSpace,
+    ) -> Self {
         let infinite = raster.as_ref().map_or(0, infinite_pixels);
         let is_first_of_several = raster.as_ref().is_ok_and(|raster| raster.is_first_of_several);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
             mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", display_name(path)))
         });
-        Self { stamp, infinite, is_first_of_several, ..Self::new(digest, pixels) }
+        Self { infinite, is_first_of_several, ..Self::new(digest, pixels) }
     }
 
     fn new(digest: [u8; 32], pixels: Result<Arc<MipMap>, String>) -> Self {
@@ -239,6 +252,12 @@ impl Files<'_> {
         let assets = &self.asset_cache.store().assets;
         let images = files.iter().filter_map(|file| assets.image_at(file));
         images.map(|(image, _)| bytes(image.pixels().len()) as u64).fold(0, u64::saturating_add)
+    }
+
+    /// Memory of those files that are texels in memory.
+    pub(super) fn texel_bytes(&self, files: &[PathBuf], bytes: impl Fn(&TexelArray) -> u64) -> u64 {
+        let assets = &self.asset_cache.store().assets;
+        files.iter().filter_map(|file| assets.texels_at(file)).map(|(texels, _)| bytes(texels)).sum()
     }
 
     /// File of an image texture.

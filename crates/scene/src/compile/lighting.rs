@@ -72,6 +72,13 @@ impl AssetCache {
         if let Some((image, digest)) = self.store().assets.image_at(path) {
             return self.light_files().panoramas.insert_asset(path, digest, || panorama(image.clone()));
         }
+        if let Some((texels, digest)) = self.store().assets.texels_at(path) {
+            let ([width, height], raster) = (texels.size(), texels.raster());
+            let image = || juggler_math::Image::from_pixels(width, height, raster.to_pixels());
+            let empty = || format!("`{shown}`: contains no image");
+            let make = || panorama(image().ok_or_else(empty)?);
+            return self.light_files().panoramas.insert_asset(path, digest, make);
+        }
         self.light_files().panoramas.load(path, self.store(), MAX_FILE_BYTES, |bytes| {
             let image = juggler_imaging::decode(&shown, Cursor::new(bytes), &IMAGE_LIMITS);
             panorama(image.map_err(|error| error.to_string())?)

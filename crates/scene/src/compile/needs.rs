@@ -10,6 +10,7 @@ use crate::asset::Asset;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::PathRef;
+use crate::texel_array::TexelArray;
 use juggler_light::background::Panorama;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_mesh::MeshEstimate;
@@ -46,6 +47,14 @@ pub struct Needs {
     pub shadows: u64,
 }
 
+/// Upper bound of the memory of an environment map of texels: the samples and a copy, pixels, and
+/// the map with its table.
+fn panorama_bytes(texels: &TexelArray) -> u64 {
+    let (count, samples) = (texels.count(), texels.count() * u64::from(texels.channels()));
+    let map = Panorama::bytes(usize::try_from(count).unwrap_or(usize::MAX)) as u64;
+    map.saturating_add(texels.bytes() + 4 * samples + 12 * count)
+}
+
 impl Needs {
     /// Determines the needs of a scene with these files.
     pub fn from_scene(scene: &Description, files: Files<'_>) -> Self {
@@ -66,7 +75,9 @@ impl Needs {
         // An image in memory becomes a pyramid of floats, or an environment map with its table.
         needs.images = files
             .image_bytes(&images, |pixels| 16 * pixels)
-            .saturating_add(files.image_bytes(&panoramas, Panorama::bytes));
+            .saturating_add(files.image_bytes(&panoramas, Panorama::bytes))
+            .saturating_add(files.texel_bytes(&images, TexelArray::texture_bytes))
+            .saturating_add(files.texel_bytes(&panoramas, panorama_bytes));
         needs.pictures = images.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         needs.panoramas = panoramas.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         scene.materials.values().for_each(|material| needs.material(material));

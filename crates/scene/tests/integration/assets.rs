@@ -2,9 +2,10 @@
 
 use juggler_math::Vec3;
 use juggler_mesh::ply_bytes;
-use juggler_scene::{Asset, Loader, Scene, SceneError};
+use juggler_scene::{Asset, Loader, Scene, SceneError, TexelArray, TexelSamples};
 use juggler_shape::MeshData;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
+use juggler_texture::{ColorSpace, Image};
 
 /// A square of two triangles with an attribute.
 fn square() -> MeshData {
@@ -102,4 +103,39 @@ fn meshes_of_arrays_unpack_to_assets_without_a_copy() {
     let (name, asset) = unpacked.assets().next().unwrap();
     assert_eq!(name, "meshes/mesh.ply");
     assert!(std::sync::Arc::ptr_eq(asset.mesh().unwrap(), inline.description.objects[0].mesh().unwrap().arrays()));
+}
+
+#[test]
+fn samples_that_are_no_texels_are_refused_with_the_reason() {
+    let refused =
+        |size, channels, samples, space| TexelArray::new(size, channels, samples, space).unwrap_err().to_string();
+    let bytes = |count: usize| TexelSamples::U8(vec![0; count]);
+    let auto = ColorSpace::Auto;
+    assert_eq!(refused([2, 3], 3, bytes(17), auto), "2 × 3 texels of 3 channels need 18 samples, there are 17");
+    assert_eq!(refused([2, 3], 5, bytes(30), auto), "texels must have 1 to 4 channels, not 5");
+    assert!(refused([0, 3], 1, bytes(0), auto).starts_with("0 × 3 texels: each side must be 1 to 65536"));
+    assert!(refused([u32::MAX; 2], 1, bytes(0), auto).contains("at most 268435456 texels"));
+    assert!(refused([1, 1], 1, TexelSamples::F32(vec![0.0]), ColorSpace::Srgb).contains("floats are linear"));
+}
+
+#[test]
+fn texels_are_told_apart_by_size_type_and_color_space() {
+    let asset = |size, samples, space| Asset::from_texels(TexelArray::new(size, 1, samples, space).unwrap());
+    let words = || TexelSamples::U16(vec![0, 15360]);
+    let assets = [
+        asset([2, 1], words(), ColorSpace::Auto),
+        asset([1, 2], words(), ColorSpace::Auto),
+        asset([2, 1], words(), ColorSpace::Linear),
+        asset([2, 1], TexelSamples::F16(vec![0, 15360]), ColorSpace::Auto),
+        asset([2, 1], TexelSamples::F32(vec![0.0, 1.0]), ColorSpace::Auto),
+        asset([2, 1], TexelSamples::U8(vec![0, 255]), ColorSpace::Auto),
+    ];
+    for (i, one) in assets.iter().enumerate() {
+        assert!(assets.iter().skip(i + 1).all(|other| other != one), "{i}");
+    }
+    assert_eq!(assets[0], asset([2, 1], words(), ColorSpace::Srgb));
+    let scene = Scene::new().texture("wall", Image::new("pixels")).asset("pixels", assets[5].clone());
+    assert_eq!(scene.needs().images, 2 + 2 * 4 / 3 + 2 * 4 + 64);
+    let mesh = load(r#"{"file": "part"}"#, [("part", assets[0].clone())]).unwrap().compile().err().unwrap();
+    assert!(mesh.to_string().contains("contains texels, not the bytes of a file"), "{mesh}");
 }

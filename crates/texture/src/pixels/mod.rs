@@ -1,6 +1,6 @@
 //! Images in memory, for textures and backgrounds.
 
-mod half;
+pub mod half;
 mod mip_map;
 mod sample;
 mod texels;
