@@ -18,9 +18,9 @@ fn main() -> Result<(), Error> {
     // `Scene::load("name.json")` reads a file.
     let scene = Scene::from_json(SCENE, "lesson.json")?;
     let picture = Picture::new(&scene, &Settings::default())?;
-    picture.render_image(&Control::default())?.save("lesson.png")?;
+    picture.render_in_memory(None, &Control::default())?.save("lesson.png")?;
     let above = Perspective::new([0.0, 8.0, 2.0], [0.0; 3]);
     let from_above = picture.with_view(View { camera: above.into(), ..picture.view() })?;
-    from_above.render_image(&Control::default())?.save("from_above.png")?;
+    from_above.render_in_memory(None, &Control::default())?.save("from_above.png")?;
     Ok(())
 }

@@ -77,7 +77,7 @@ fn main() -> Result<(), Error> {
     let mut scene = scene.add_animated(Animated::new(ball).moved(circle))?;
     scene.description.render.shutter = [0.0, 0.5];
     let picture = Picture::new(&scene, &Settings::default())?;
-    picture.render_image(&Control::default())?.save("wave.png")?;
+    picture.render_in_memory(None, &Control::default())?.save("wave.png")?;
     juggler::render_to_file(&scene.at_frame(12.0)?, &Settings::default(), "wave_later.png")?;
 
     // Replace the material by editing its value. The new picture shares meshes and hierarchies with
@@ -85,6 +85,6 @@ fn main() -> Result<(), Error> {
     let mut polished = scene.clone();
     polished.description.materials.insert("paint".into(), AnyMaterial::from(Conductor::default()).into());
     let picture = picture.rebuild(&scene, &polished, &Settings::default())?;
-    picture.render_image(&Control::default())?.save("wave_polished.png")?;
+    picture.render_in_memory(None, &Control::default())?.save("wave_polished.png")?;
     Ok(())
 }

@@ -22,7 +22,8 @@ use std::path::Path;
 /// ```
 pub trait ImageExt {
     /// Writes the image to a file, whose extension (`png`, `jpg`, `exr`, `hdr`, `webp`, `pfm`)
-    /// selects the format. Integer formats are encoded as sRGB. The file replaces an existing one
+    /// selects the format. Integer formats are encoded as sRGB without a scene's tone, which a
+    /// [`RenderedImage`](crate::RenderedImage) knows. The file replaces an existing one
     /// once it is complete. Fails for an extension that is unknown or belongs to a format that is
     /// only read, a size that the format cannot hold, and a file that cannot be written.
     fn save(&self, path: impl AsRef<Path>) -> Result<(), Error>;

@@ -1,7 +1,7 @@
 //! Rendering of a scene in one call.
 
 use crate::{Error, Picture, RenderStats, Settings};
-use juggler_imaging::{ImageFormat, Options};
+use juggler_imaging::{ImageError, ImageFormat, Options};
 use juggler_math::Image;
 use juggler_render::Control;
 use juggler_scene::Scene;
@@ -19,7 +19,8 @@ use std::time::Instant;
 /// # Ok::<(), juggler::Error>(())
 /// ```
 pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
-    Ok(Picture::new(scene, settings)?.render_image(&Control::default())?)
+    let image = Picture::new(scene, settings)?.render_in_memory(None, &Control::default())?;
+    Ok(image.into_image())
 }
 
 /// Renders a scene to a file; the extension selects the format. The file replaces an existing one
@@ -30,6 +31,7 @@ pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>
     let format = ImageFormat::from_path(path)?;
     let picture = Picture::new(scene, settings)?;
     if picture.needs_film() {
+        check_file(path)?;
         let image = picture.render_in_memory(None, &Control::default())?;
         let start = Instant::now();
         image.save(path)?;
@@ -37,4 +39,13 @@ pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>
     }
     let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
     picture.write(writer, &Control::default())
+}
+
+/// Checks before a render that a file can be written in the folder of `path`.
+fn check_file(path: &Path) -> Result<(), Error> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match std::fs::metadata(folder) {
+        Ok(_) => Ok(()),
+        Err(source) => Err(ImageError::Write { file: path.display().to_string(), source }.into()),
+    }
 }

@@ -330,7 +330,8 @@ impl Picture {
         Ok(RenderStats { film, samples, rays: control.rays(), render, denoise, write })
     }
 
-    /// Renders into memory.
+    /// Renders the samples of each pixel into memory. A noise or time limit, a denoiser and AOVs do
+    /// not act here, but in [`Picture::render_in_memory`].
     pub fn render_image(&self, control: &Control) -> Result<Image, Cancelled> {
         let [width, height] = self.size();
         let mut image = Image::filled(width, height, Rgb::BLACK);

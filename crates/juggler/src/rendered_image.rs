@@ -9,7 +9,7 @@ use juggler_film::counts::SampleCountStats;
 use juggler_film::{Merge, RenderDescription, Stop, counts};
 use juggler_imaging::layered::{LayerHeader, LayeredWriter};
 use juggler_imaging::{Header, ImageFormat, Options, Tone};
-use juggler_math::Rgb;
+use juggler_math::{Image, Rgb};
 use juggler_render::{Cancelled, Control, RayCounts};
 use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -59,6 +59,13 @@ impl RenderedImage {
     /// Linear pixels, row by row from the top: an array of shape (height, width).
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
+    }
+
+    /// Converts to the linear pixels alone.
+    pub fn into_image(self) -> Image {
+        let [width, height] = self.size();
+        // A rendered image has a pixel for each place.
+        Image::from_pixels(width, height, self.pixels).unwrap_or_else(|| Image::filled(width, height, Rgb::BLACK))
     }
 
     /// Width and height in pixels.

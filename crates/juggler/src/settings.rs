@@ -44,6 +44,21 @@ impl Limit {
         }
     }
 
+    /// Fails for a relative error that is not a finite number above 0, and for a duration that is
+    /// negative or not finite.
+    fn check(&self) -> Result<(), Error> {
+        let message = match *self {
+            Self::Noise(level) if !(level > 0.0 && level.is_finite()) => {
+                format!("the noise limit must be a finite number above 0, not {level}")
+            }
+            Self::Time { seconds } if !(seconds >= 0.0 && seconds.is_finite()) => {
+                format!("the time limit must be a finite number of seconds, not {seconds}")
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::Settings(message))
+    }
+
     /// Returns the default maximum number of samples per pixel.
     fn max_samples(&self, of_scene: u32) -> u32 {
         match self {
@@ -136,6 +151,7 @@ impl Settings {
     /// Applies the settings other than the camera to render settings and tone. `max_depth` needs
     /// `render.integrator`.
     pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
+        self.limit.check()?;
         render.size = self.size.unwrap_or(render.size);
         render.samples = self.samples.unwrap_or(self.limit.max_samples(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);

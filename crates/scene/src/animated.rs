@@ -45,7 +45,8 @@ impl<T: Clone> Animated<T> {
         Self { value, fields: Vec::new() }
     }
 
-    /// Sets the source of the field that `field` selects. The field's own content is not used.
+    /// Sets the source of the field that `field` selects, whose own content is not used then. It must
+    /// be valid if other fields have sources, too. Of two sources of a field, the last counts.
     #[must_use]
     pub fn field<V: FieldValue>(mut self, field: impl Fn(&mut T) -> &mut V, source: impl Into<ValueSource>) -> Self {
         let mut changed = self.value.clone();
@@ -68,9 +69,9 @@ impl<T: Clone> Animated<T> {
         &self.value
     }
 
-    /// Sources of the fields with their paths in the JSON that `json` makes of a value. The path is
-    /// `None` for a field that the JSON does not contain.
-    pub(crate) fn sources(self, json: impl Fn(&T) -> Value) -> Vec<(Option<Path>, ValueSource)> {
+    /// Sources of the fields with their paths in the JSON that `json` makes of a value. For a field
+    /// without one place in the JSON, the path is the reason.
+    pub(crate) fn sources(self, json: impl Fn(&T) -> Value) -> Vec<(Result<Path, &'static str>, ValueSource)> {
         let value = json(&self.value);
         let place = |field: AnimatedField<T>| (difference(&value, &json(&field.changed)), field.source);
         self.fields.into_iter().map(place).collect()
@@ -78,6 +79,9 @@ impl<T: Clone> Animated<T> {
 }
 
 /// Animated transforms. Each step is appended to the object's transform.
+///
+/// Keys and other value forms read the object again at each time of an open shutter. A large mesh of
+/// arrays is best placed by a group of the scene ([`Object::group`]), which is read once.
 impl Animated<Object> {
     /// Appends a translation whose vector, three numbers, comes from a source.
     #[must_use]
@@ -115,28 +119,30 @@ impl Animated<Object> {
     }
 }
 
-/// Path of the innermost value that contains all differences; `None` for equal values.
-fn difference(a: &Value, b: &Value) -> Option<Path> {
+/// Path of the innermost value that contains all differences: a number, a text, or an array of
+/// these. Fails if there is no difference, or if it is in several values.
+fn difference(a: &Value, b: &Value) -> Result<Path, &'static str> {
     let steps: Vec<(Step, &Value, &Value)> = match (a, b) {
         (Value::Object(a), Value::Object(b)) => {
             let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
-            let pair = |key: &String| {
-                (Step::Key(key.clone()), a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null))
-            };
-            keys.map(pair).collect()
+            let value = |of: &serde_json::Map<String, Value>, key: &String| of.get(key).unwrap_or(&Value::Null);
+            keys.map(|key| (Step::Key(key.clone()), value(a, key), value(b, key))).collect()
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             a.iter().zip(b).enumerate().map(|(i, (a, b))| (Step::Index(i), a, b)).collect()
         }
-        _ => return (a != b).then(Path::root),
+        _ if a == b => return Err("is not part of the scene format"),
+        _ => return Ok(Path::root()),
     };
-    let mut different = steps.into_iter().filter(|(_, a, b)| a != b);
-    match (different.next(), different.next()) {
-        (None, _) => None,
-        (Some((step, a, b)), None) => {
+    let different: Vec<_> = steps.into_iter().filter(|(_, a, b)| a != b).collect();
+    let is_plain = |value: &Value| !value.is_object() && !value.is_array();
+    match different.as_slice() {
+        [] => Err("is not part of the scene format"),
+        [(step, a, b)] => {
             let inner = difference(a, b)?;
-            Some(Path::from_steps(std::iter::once(&step).chain(inner.steps())))
+            Ok(Path::from_steps(std::iter::once(step).chain(inner.steps())))
         }
-        (Some(_), Some(_)) => Some(Path::root()),
+        several if a.is_array() && several.iter().all(|(_, a, b)| is_plain(a) && is_plain(b)) => Ok(Path::root()),
+        _ => Err("determines several values of the scene format"),
     }
 }

@@ -70,13 +70,21 @@ impl Animate {
     }
 }
 
-/// Animating a scene. Errors are those of [`Scene::with_value`]; variables and paths that a source
-/// refers to are added before.
+/// Animating a scene. Errors are those of [`Scene::with_value`]. Variables, paths, materials, textures
+/// and groups that an animated item names are added before it.
 impl Scene {
-    /// Sets the number of frames and the frames per second.
+    /// Sets the number of frames and the frames per second. What moves is evaluated again.
     #[must_use]
     pub fn frames(mut self, frames: u32, frames_per_second: f64) -> Self {
-        self.description.animation = Animation { frames, frames_per_second };
+        let animation = Animation { frames, frames_per_second };
+        if !self.description.templates(|_| true).is_empty() {
+            let value = serde_json::to_value(animation).unwrap_or_default();
+            // Compilation reports invalid numbers.
+            if let Ok(scene) = self.with_value(&Path::root().key("animation").pointer(), value) {
+                return scene;
+            }
+        }
+        self.description.animation = animation;
         self
     }
 
@@ -84,7 +92,7 @@ impl Scene {
     pub fn add_animated(mut self, object: Animated<Object>) -> Result<Self, SceneError> {
         let path = Path::root().key("objects").index(self.description.objects.len());
         self.description.objects.push(Item::from(object.value().clone()));
-        self.animate_fields(&path, object)
+        self.animate(&path, object.sources(|object| json_with_children(object.clone())))
     }
 
     /// Adds a light with animated fields.
@@ -146,17 +154,24 @@ impl Scene {
 
     /// Sets the sources of the fields of the item at `path`.
     fn animate_fields<T: ItemContent>(self, path: &Path, animated: Animated<T>) -> Result<Self, SceneError> {
-        let mut scene = self;
-        for (inner, source) in animated.sources(ItemContent::json_without_arrays) {
-            let Some(inner) = inner else {
-                let message = "a source is given to a field that is not part of the scene format";
-                let finding = Finding::error(message).at(path);
-                return Err(SceneError::Problems(Problems::new(vec![finding], scene.sources().clone(), &|_| None)));
-            };
+        self.animate(path, animated.sources(ItemContent::json_without_arrays))
+    }
+
+    /// Sets sources at paths within the item at `path`.
+    fn animate(
+        mut self,
+        path: &Path,
+        sources: Vec<(Result<Path, &'static str>, ValueSource)>,
+    ) -> Result<Self, SceneError> {
+        for (inner, source) in sources {
+            let inner = inner.map_err(|reason| {
+                let finding = Finding::error(format!("a field with a source {reason}")).at(path);
+                SceneError::Problems(Problems::new(vec![finding], self.sources().clone(), &|_| None))
+            })?;
             let field = Path::from_steps(path.steps().iter().chain(inner.steps()));
-            scene = scene.with_value(&field.pointer(), source.into())?;
+            self = self.with_value(&field.pointer(), source.into())?;
         }
-        Ok(scene)
+        Ok(self)
     }
 
     /// Adds a variable for expressions, or replaces the variable of that name. A variable may use
@@ -170,6 +185,20 @@ impl Scene {
         let value = serde_json::to_value(path).unwrap_or_default();
         self.with_value(&Path::root().key("paths").key(name).pointer(), value)
     }
+}
+
+/// JSON of an object and its child objects, without the arrays of their meshes.
+fn json_with_children(object: Object) -> serde_json::Value {
+    serde_json::to_value(without_arrays(object)).unwrap_or_default()
+}
+
+fn without_arrays(mut object: Object) -> Object {
+    if let Some(mesh) = object.shape.as_mut().and_then(|shape| shape.mesh_mut()) {
+        mesh.clear_arrays();
+    }
+    let children = object.objects.take();
+    object.objects = children.map(|all| all.iter().map(|child| without_arrays((**child).clone()).into()).collect());
+    object
 }
 
 #[cfg(test)]

@@ -108,16 +108,37 @@ impl From<f64> for Input<Rgb> {
 }
 
 /// Name of a texture of the scene.
-impl<T> From<&str> for Input<T> {
+impl From<&str> for Input<f32> {
     fn from(texture: &str) -> Self {
         Self::Texture(texture.to_owned())
     }
 }
 
 /// Name of a texture of the scene.
-impl<T> From<String> for Input<T> {
+impl From<String> for Input<f32> {
     fn from(texture: String) -> Self {
         Self::Texture(texture)
+    }
+}
+
+/// Color `"#rrggbb"` or `"#rgb"` as in scene files, or the name of a texture of the scene.
+impl From<&str> for Input<Rgb> {
+    fn from(text: &str) -> Self {
+        Rgb::from_hex(text).map_or_else(|| Self::Texture(text.to_owned()), Self::Value)
+    }
+}
+
+/// Color `"#rrggbb"` or `"#rgb"` as in scene files, or the name of a texture of the scene.
+impl From<String> for Input<Rgb> {
+    fn from(text: String) -> Self {
+        text.as_str().into()
+    }
+}
+
+/// Zero in every channel.
+impl<T: InputValue> Default for Input<T> {
+    fn default() -> Self {
+        Self::Value(T::ZERO)
     }
 }
 
@@ -206,6 +227,16 @@ mod tests {
         let grays: [Input<Rgb>; 4] = [0.6.into(), 0.6_f32.into(), [0.6; 3].into(), Rgb::splat(0.6).into()];
         assert_eq!(grays, std::array::from_fn(|_| gray.clone()));
         assert_eq!(Input::<Rgb>::from("wood"), Input::Texture("wood".into()));
+    }
+
+    #[test]
+    fn texts_are_colors_or_names() {
+        for text in ["#ff0000", "#f00", "wood", "#wood"] {
+            assert_eq!(Input::<Rgb>::from(text), read(&format!("\"{text}\"")).unwrap_or(Input::Texture(text.into())));
+        }
+        assert_eq!(Input::<Rgb>::from("#f00".to_owned()), Input::Value(Rgb::new(1.0, 0.0, 0.0)));
+        assert_eq!(Input::<Rgb>::from("wood"), Input::Texture("wood".into()));
+        assert_eq!(Input::<f32>::from("#f00"), Input::Texture("#f00".into()));
     }
 
     #[test]

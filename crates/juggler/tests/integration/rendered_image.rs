@@ -127,3 +127,21 @@ fn a_cancelled_render_gives_no_image() {
         assert!(matches!(result, Err(Error::Cancelled(_))));
     }
 }
+
+/// A call that renders at once heeds limits and denoiser, and refuses what cannot end.
+#[test]
+fn one_call_heeds_all_settings() {
+    let noise = Settings { limit: Limit::Noise(0.05), samples: Some(256), ..Settings::default() };
+    for settings in [noise, Settings { denoiser: Some(Denoiser::Own), ..Settings::default() }] {
+        let image = juggler::render(&scene(), &settings).unwrap();
+        assert_eq!(image.pixels(), rendered(&settings).pixels());
+        assert_ne!(image.pixels(), rendered(&Settings::default()).pixels());
+    }
+    let limits = [-1.0, f64::NAN, f64::INFINITY].map(|seconds| Limit::Time { seconds });
+    for limit in limits.into_iter().chain([0.0, -1.0, f32::NAN].map(Limit::Noise)) {
+        let result = juggler::render(&scene(), &Settings { limit, ..Settings::default() });
+        assert!(matches!(result, Err(Error::Settings(_))), "{limit:?}");
+    }
+    let nowhere = juggler::render_to_file(&scene(), &with_aovs(), "no such folder/a.exr");
+    assert!(matches!(nowhere, Err(Error::Image(_))));
+}

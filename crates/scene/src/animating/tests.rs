@@ -164,6 +164,33 @@ fn the_content_of_an_animated_field_does_not_matter() {
     }
 }
 
+#[test]
+fn fields_of_child_objects_are_animated() {
+    let pair = Object::several([Object::new(Sphere::default()), Object::new(Sphere::default()).at(1.0, 0.0, 0.0)]);
+    let pair = Animated::new(pair).field(
+        |object| match object.objects.as_mut().unwrap()[1].transform.first_mut() {
+            Some(TransformStep::Translate(by)) => by,
+            other => panic!("{other:?}"),
+        },
+        color(),
+    );
+    let scene = scene().add_animated(pair.moved(color())).unwrap().at_frame(10.0).unwrap();
+    let object = &scene.description.objects[0];
+    let by = [TransformStep::Translate(vec3(1.0, 0.5, 0.0))];
+    assert_eq!((&object.transform[..], &object.inner()[1].transform[..]), (&by[..], &by[..]));
+}
+
+/// The number of frames and the rate may come after what moves.
+#[test]
+fn frames_evaluate_what_moves_again() {
+    let keys = || Animate::from_keys([(Seconds(0.0), [0.0; 3]), (Seconds(1.0), [8.0, 0.0, 0.0])]);
+    let late = moved(Scene::new(), keys()).unwrap().at_frame(5.0).unwrap().frames(20, 10.0);
+    let early = moved(scene(), keys()).unwrap().at_frame(5.0).unwrap();
+    assert!(late == early && center(&late, 5.0).x == 4.0);
+    let invalid = moved(scene(), keys()).unwrap().frames(20, 0.0);
+    assert!(invalid.compile().is_err());
+}
+
 /// A scene that a program animates is the scene that its JSON describes.
 #[test]
 fn built_motion_is_written_and_read() {
@@ -190,15 +217,9 @@ fn wrong_sources_are_refused() {
         scene().add_animated(sphere().scaled(ValueSource::expression("2"))).unwrap().description.objects[0].transform[..],
         [TransformStep::Scale(ScaleFactors::All(2.0))]
     ));
-    let mut private = 1.0;
-    let nowhere = Animated::new(Tone::default()).field(
-        |tone| {
-            tone.exposure_stops = 0.0;
-            Box::leak(Box::new(private))
-        },
-        ValueSource::expression("frame"),
-    );
-    private += 1.0;
-    assert_eq!(private, 2.0);
+    let nowhere = Animated::new(Tone::default()).field(|_| Box::leak(Box::new(1.0)), tenth());
     refused(scene().animated_tone(nowhere), "not part of the scene format");
+    let twice = Animated::new(1.0_f32).field(|radius| radius, tenth());
+    let twice = twice.map(|radius| Object::new(Sphere { radius }).at(0.0, radius, 0.0));
+    refused(scene().add_animated(twice), "several values");
 }

@@ -87,7 +87,7 @@ pub struct ScenePath {
 
 impl ScenePath {
     /// Creates an open path through points.
-    pub fn new(points: impl Into<Vec<[f32; 3]>>) -> Self {
-        Self { points: points.into(), closed: false }
+    pub fn new(points: impl IntoIterator<Item = impl Into<[f32; 3]>>) -> Self {
+        Self { points: points.into_iter().map(Into::into).collect(), closed: false }
     }
 }
