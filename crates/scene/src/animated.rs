@@ -5,7 +5,7 @@ use crate::description::{Object, Rotate, ScaleFactors, TransformStep};
 use crate::field_value::FieldValue;
 use crate::path::{Path, Step};
 use juggler_math::Vec3;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// Value of which sources give some fields at each frame: an object, light, material, texture,
 /// camera, background, tone or render settings, or a part of one.
@@ -125,8 +125,7 @@ fn difference(a: &Value, b: &Value) -> Result<Path, &'static str> {
     let steps: Vec<(Step, &Value, &Value)> = match (a, b) {
         (Value::Object(a), Value::Object(b)) => {
             let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
-            let value = |of: &serde_json::Map<String, Value>, key: &String| of.get(key).unwrap_or(&Value::Null);
-            keys.map(|key| (Step::Key(key.clone()), value(a, key), value(b, key))).collect()
+            keys.map(|key| (Step::Key(key.clone()), member(a, key), member(b, key))).collect()
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             a.iter().zip(b).enumerate().map(|(i, (a, b))| (Step::Index(i), a, b)).collect()
@@ -145,4 +144,9 @@ fn difference(a: &Value, b: &Value) -> Result<Path, &'static str> {
         several if a.is_array() && several.iter().all(|(_, a, b)| is_plain(a) && is_plain(b)) => Ok(Path::root()),
         _ => Err("determines several values of the scene format"),
     }
+}
+
+/// Value of a member; null if there is none.
+fn member<'v>(of: &'v Map<String, Value>, key: &str) -> &'v Value {
+    of.get(key).unwrap_or(&Value::Null)
 }
