@@ -23,8 +23,8 @@ pub enum Use {
 }
 
 /// Pools by process, use and number of threads. A process that is forked makes its own, since only
-/// the thread that forks lives on in it. The lock is held only while the interpreter is attached, and
-/// therefore by no other thread when `os.fork` is called.
+/// the thread that forks lives on in it. The lock is held only while the interpreter is attached,
+/// and therefore by no other thread when `os.fork` is called.
 static POOLS: Mutex<BTreeMap<(u32, Use, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
 
 /// Number of threads to use: `requested`, that of the environment, or one per core that the process

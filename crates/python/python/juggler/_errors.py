@@ -8,7 +8,7 @@ class Problem:
     "warning", and `file`, `line` and `column` are `None` unless the scene was read from a file.
     """
 
-    __slots__ = ("path", "message", "help", "severity", "file", "line", "column")
+    __slots__ = ("column", "file", "help", "line", "message", "path", "severity")
 
     def __init__(self, path, message, help=None, severity="error", file=None, line=None, column=None):
         self.path = path
@@ -85,7 +85,16 @@ class SceneWarning(UserWarning):
     """A scene can be rendered, but the result may not be the intended one."""
 
 
-for _name in ("Problem", "SceneError", "SettingsError", "MergeError", "FileError", "MemoryBudgetError",
-              "Cancelled", "InternalError", "SceneWarning"):
+for _name in (
+    "Problem",
+    "SceneError",
+    "SettingsError",
+    "MergeError",
+    "FileError",
+    "MemoryBudgetError",
+    "Cancelled",
+    "InternalError",
+    "SceneWarning",
+):
     globals()[_name].__module__ = "juggler"
 del _name

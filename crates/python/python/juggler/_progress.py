@@ -13,7 +13,7 @@ class Progress:
     `seconds_left` (`None` if unknown), and `samples` of all pixels so far.
     """
 
-    __slots__ = ("stage", "share", "seconds", "seconds_left", "samples")
+    __slots__ = ("samples", "seconds", "seconds_left", "share", "stage")
 
     def __init__(self, stage, share, seconds, seconds_left, samples):
         self.stage = stage
