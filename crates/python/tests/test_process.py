@@ -10,7 +10,8 @@ import sys
 import time
 import unittest
 
-from support import jg, python, small_scene
+import juggler as jg
+from support import python, small_scene
 
 LONG = {"size": (640, 360), "samples": 100_000}
 
