@@ -1,6 +1,5 @@
 """Renderer of a scene that is edited and rendered again."""
 
-
 from juggler import _native
 from juggler._image import Image
 from juggler._scene import bytes_of, native_scene, to_json, warn
