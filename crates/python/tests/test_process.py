@@ -2,13 +2,16 @@
 
 import asyncio
 import concurrent.futures
+import io
 import os
 import pickle
 import signal
 import subprocess
 import sys
 import time
+import types
 import unittest
+import unittest.mock
 
 import juggler as jg
 from support import python, small_scene
@@ -104,6 +107,38 @@ class Renderers(unittest.TestCase):
         with self.assertRaisesRegex(LookupError, "stop"):
             jg.render("juggler", **LONG, progress=fail)
         self.assertLess(time.monotonic() - start, 5)
+
+    def test_notebooks_show_a_growing_image(self):
+        shown = []
+
+        class Handle:
+            def update(self, shown_html):
+                shown.append(shown_html)
+
+        def display(shown_html, display_id):
+            shown.append(shown_html)
+            return Handle()
+
+        kernel = types.SimpleNamespace(kernel=object())
+        display_module = types.SimpleNamespace(HTML=str, display=display)
+        modules = {
+            "IPython": types.SimpleNamespace(get_ipython=lambda: kernel, display=display_module),
+            "IPython.display": display_module,
+        }
+        with unittest.mock.patch.dict(sys.modules, modules):
+            image = jg.render("juggler", size=(320, 180), samples=4096, time=1.5)
+            jg.render(small_scene())
+        self.assertGreaterEqual(len(shown), 2)
+        self.assertIn("samples,", shown[0])
+        self.assertEqual(shown[-1].count("<img"), 1)
+        self.assertEqual(image.size, (320, 180))
+
+    def test_a_bar_appears_on_a_terminal_after_a_second(self):
+        stream = io.StringIO()
+        with unittest.mock.patch("sys.stderr", stream):
+            jg.render("juggler", size=(320, 180), samples=4096, time=1.5, progress=True)
+        self.assertTrue("━" in stream.getvalue() and " left" in stream.getvalue())
+        self.assertTrue(stream.getvalue().endswith("\r\x1b[K"))
 
     def test_panics_become_exceptions(self):
         done = python(

@@ -61,12 +61,13 @@ def render_movie(scene, path, frames, settings):
     plain = {name: value for name, value in settings.items() if name != "max_memory"}
     _native.check_settings(plain)
     words = [sys.executable, "-m", "juggler", "render"]
+    # The exceptions of a wrong scene are better than the program's messages.
+    native = native_scene(scene, bool(settings.get("lenient")))
     text = None
     if isinstance(scene, (str, os.PathLike)):
         words.append(os.fspath(scene))
     else:
-        text = scene.to_json() if isinstance(scene, _native.Scene) else to_json(scene)
-        native_scene(scene)
+        text = native.to_json() if native is scene else to_json(scene)
         words.append("-")
     words += [f"--output={os.fspath(path)}", *_flags(settings)]
     if frames is not None:
