@@ -5,7 +5,7 @@ use crate::errors::{convert, key_error, line, settings_error};
 use crate::image::Image;
 use crate::partial_render::PartialRender;
 use crate::progressive::Progressive;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Refusal, Scene};
 use crate::settings::RenderSettings;
 use crate::state::{self, Built};
 use crate::task::{self, Canceller, Fault, Monitor, Watch};
@@ -23,7 +23,8 @@ use std::time::Instant;
 /// Scene with settings, whose world is kept between renders.
 #[pyclass(frozen, module = "juggler._native")]
 pub struct Renderer {
-    /// Held only for moments, while the interpreter is attached.
+    /// Held only while the interpreter is attached, and never while Python code runs: otherwise a
+    /// thread that waits for the lock could keep the one that holds it from running.
     state: Mutex<State>,
     settings: RenderSettings,
     name: String,
@@ -86,9 +87,14 @@ impl Renderer {
     /// Sets the value at a path, given as JSON; `null` removes it.
     fn set_value(&self, path: &str, json: &str) -> PyResult<()> {
         let value: Value = serde_json::from_str(json).map_err(|error| settings_error(error.to_string()))?;
-        let mut state = self.lock();
-        state.scene = scene::with_value(&state.scene, path, value)?;
-        Ok(())
+        let path = scene::path(path)?;
+        // Edits of several threads follow each other. The lock is released before an exception is
+        // made, which may let other threads run.
+        let edited = {
+            let mut state = self.lock();
+            scene::with_value(&state.scene, &path, value).map(|scene| state.scene = scene)
+        };
+        edited.map_err(Refusal::into_exception)
     }
 
     /// Path of the camera of the image.

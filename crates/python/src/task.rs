@@ -44,7 +44,8 @@ macro_rules! from_errors {
 from_errors!(Error, SceneError, ImageError, Cancelled, MergeError, PartialRenderError);
 
 impl Fault {
-    fn into_exception(self) -> PyErr {
+    /// The exception.
+    pub fn into_exception(self) -> PyErr {
         match self {
             Self::Renderer(error) => errors::convert(error),
             Self::Panic(message) => errors::internal(&format!(
@@ -223,9 +224,9 @@ pub fn run<T: Send + 'static>(
     task.wait(py, watch, Duration::MAX)?.ok_or_else(errors::cancelled)
 }
 
-/// Does work on this very thread. A panic becomes an exception.
-pub fn guarded<T>(work: impl FnOnce() -> T) -> PyResult<T> {
-    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Fault::Panic(panic_message(panic.as_ref())).into_exception())
+/// Does work on this very thread. A panic becomes a fault.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Fault::Panic(panic_message(panic.as_ref())))
 }
 
 /// Does short work, which reports no progress and waits for no render.

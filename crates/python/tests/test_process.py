@@ -74,6 +74,23 @@ class Renderers(unittest.TestCase):
             hashes = set(pool.map(lambda _: renderer.render().hash, range(6)))
         self.assertEqual(hashes, {renderer.render().hash})
 
+    def test_threads_edit_a_renderer(self):
+        renderer = jg.Renderer(small_scene(), samples=1)
+
+        def work(number):
+            for step in range(20):
+                renderer["materials.gold.conductor.roughness"] = (number + step) / 100
+                with self.assertRaises(jg.SceneError):
+                    renderer["materials.gold.conductor.roughness"] = "rough"
+                with self.assertRaises(KeyError):
+                    renderer["materials.gld.conductor"] = 1
+                renderer.render()
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            list(pool.map(work, range(4)))
+        renderer["materials.gold.conductor.roughness"] = 0.2
+        self.assertEqual(renderer.render().hash, jg.render(small_scene(), samples=1).hash)
+
     def test_futures_are_awaited_and_cancelled(self):
         renderer = jg.Renderer(small_scene())
         self.assertEqual(renderer.submit().result(60).hash, renderer.render().hash)
