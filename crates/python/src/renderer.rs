@@ -8,7 +8,7 @@ use crate::progressive::Progressive;
 use crate::scene::{self, Refusal, Scene};
 use crate::settings::RenderSettings;
 use crate::state::{self, Built};
-use crate::task::{self, Canceller, Fault, Monitor, Watch};
+use crate::task::{self, Canceler, Fault, Monitor, Watch};
 use juggler::memory::Effort;
 use juggler::probe::{Detail, Prober};
 use juggler::scene::camera_json;
@@ -144,9 +144,9 @@ impl Renderer {
     }
 
     /// Renders the image.
-    #[pyo3(signature = (callback=None, canceller=None))]
-    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceller: Option<Py<Canceller>>) -> PyResult<Image> {
-        let (built, image) = self.with_world(py, &Watch { callback, canceller }, state::render)?;
+    #[pyo3(signature = (callback=None, canceler=None))]
+    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceler: Option<Py<Canceler>>) -> PyResult<Image> {
+        let (built, image) = self.with_world(py, &Watch { callback, canceler }, state::render)?;
         self.store(&built);
         Ok(Image::new(image, built.frame))
     }
@@ -175,7 +175,7 @@ impl Renderer {
         callback: Option<Py<PyAny>>,
     ) -> PyResult<PartialRender> {
         let name = self.title.clone();
-        let (built, bytes) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+        let (built, bytes) = self.with_world(py, &Watch { callback, canceler: None }, move |built, _, monitor| {
             let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
             Ok(built.picture.render_shard([index, count], &origin, &monitor.control)?)
         })?;
@@ -187,7 +187,7 @@ impl Renderer {
     #[pyo3(signature = (partial_render, callback=None))]
     fn extend(&self, py: Python<'_>, partial_render: &PartialRender, callback: Option<Py<PyAny>>) -> PyResult<Image> {
         let (name, partial_render) = (self.title.clone(), partial_render.partial_render.clone());
-        let (built, image) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+        let (built, image) = self.with_world(py, &Watch { callback, canceler: None }, move |built, _, monitor| {
             let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
             let film = Arc::new(built.picture.resume_film(&partial_render, &origin)?);
             state::finish(&built.picture, &film, Instant::now(), monitor)

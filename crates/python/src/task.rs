@@ -87,12 +87,12 @@ impl Monitor {
 /// Request of another thread to cancel work.
 #[pyclass(frozen, module = "juggler._native")]
 #[derive(Default)]
-pub struct Canceller {
+pub struct Canceler {
     is_cancelled: AtomicBool,
 }
 
 #[pymethods]
-impl Canceller {
+impl Canceler {
     #[new]
     fn new() -> Self {
         Self::default()
@@ -110,14 +110,14 @@ pub struct Watch {
     /// Function that takes the stage, its share, the seconds so far and left, and the samples.
     pub callback: Option<Py<PyAny>>,
     /// Request to cancel.
-    pub canceller: Option<Py<Canceller>>,
+    pub canceler: Option<Py<Canceler>>,
 }
 
 impl Watch {
     fn check(&self, py: Python<'_>) -> PyResult<()> {
         py.check_signals()?;
-        match &self.canceller {
-            Some(canceller) if canceller.get().is_cancelled.load(Relaxed) => Err(errors::cancelled()),
+        match &self.canceler {
+            Some(canceler) if canceler.get().is_cancelled.load(Relaxed) => Err(errors::cancelled()),
             _ => Ok(()),
         }
     }

@@ -177,6 +177,8 @@ class Images(unittest.TestCase):
         self.assertIs(jg.compare(one, brighter).same_but_for_noise, False)
         self.assertIsNone(jg.compare(one, jg.render(small_scene())).p)
         self.assertTrue(jg.compare(one, one).same_bits)
+        again = jg.render(small_scene(), seed=1, denoise=True, **settings)
+        self.assertIn("another `seed`", jg.compare(one, again).reason)
 
 
 class Scenes(Folder):

@@ -163,7 +163,12 @@ const PHRASES: &[Retired] = &[
     retired("worth little|of|more|less", "weight, throughput"),
     retired("what * is worth", "weight"),
     // A key of `juggler probe --json`, and the verb.
-    retired("stretches", "segments").except(&["probe/shares.rs", "juggler/_probe.py", "texture/src/triplanar.rs", "docs/benchmarks.md"]),
+    retired("stretches", "segments").except(&[
+        "probe/shares.rs",
+        "juggler/_probe.py",
+        "texture/src/triplanar.rs",
+        "docs/benchmarks.md",
+    ]),
     retired("stretch of a|the path|light", "segment"),
     retired("by way of", "through, by"),
     retired("way|ways of the|a light|path", "path"),
