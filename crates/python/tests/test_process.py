@@ -14,7 +14,7 @@ import unittest
 import unittest.mock
 
 import juggler as jg
-from support import python, small_scene
+from support import ROOT, python, small_scene
 
 LONG = {"size": (640, 360), "samples": 100_000}
 
@@ -281,7 +281,9 @@ class Processes(unittest.TestCase):
         for name in jg.__all__:
             getattr(jg, name)
         with self.assertRaises(AttributeError):
-            jg.rendr
+            getattr(jg, "rendr")
+        stub = (ROOT / "crates/python/python/juggler/__init__.pyi").read_text()
+        self.assertTrue(all(f"{name} as {name}" in stub for name in jg.__all__))
 
 
 if __name__ == "__main__":
