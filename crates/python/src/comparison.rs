@@ -61,7 +61,8 @@ pub fn compare<'py>(
     let (is_same, p, reason) = match noise {
         _ if same_bits => (Some(true), None, Some("the images are equal to the bit".to_owned())),
         None => (None, None, Some(NO_VARIANCES.to_owned())),
-        Some(NoiseTest::Untested(reason)) => (None, None, Some(reason)),
+        // The program's flag is a setting here.
+        Some(NoiseTest::Untested(reason)) => (None, None, Some(reason.replace("--seed", "`seed`"))),
         Some(test) => {
             let note = if let NoiseTest::Tested { note, .. } = &test { note.map(str::to_owned) } else { None };
             (test.is_same(), test.p(), note)

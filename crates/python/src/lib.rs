@@ -36,5 +36,5 @@ mod _native {
     #[pymodule_export]
     use crate::settings::{check_settings, setting_names};
     #[pymodule_export]
-    use crate::task::{Canceller, panic_on_a_thread};
+    use crate::task::{Canceler, panic_on_a_thread};
 }

@@ -42,8 +42,8 @@ impl PartialRender {
 
     /// Reads a `.jfilm` file.
     #[staticmethod]
-    fn open(py: Python<'_>, path: String) -> PyResult<Self> {
-        let file = PathBuf::from(&path);
+    fn open(py: Python<'_>, path: &str) -> PyResult<Self> {
+        let file = PathBuf::from(path);
         let bytes = task::call(py, move || Ok(film::PartialRender::open(&file)?.to_bytes()?))?;
         Self::new(bytes)
     }
@@ -58,10 +58,10 @@ impl PartialRender {
     }
 
     /// Writes the bytes to a file.
-    fn save(&self, py: Python<'_>, path: String) -> PyResult<()> {
+    fn save(&self, py: Python<'_>, path: &str) -> PyResult<()> {
         let bytes = Arc::clone(&self.bytes);
-        let written = py.detach(|| imaging::atomic::write(Path::new(&path), &bytes));
-        written.map_err(|error| of_file("write", &path, &error))
+        let written = py.detach(|| imaging::atomic::write(Path::new(path), &bytes));
+        written.map_err(|error| of_file("write", path, &error))
     }
 
     /// Description of the render and of the share, as JSON.
@@ -77,7 +77,7 @@ pub fn merge(py: Python<'_>, partial_renders: Vec<Py<PartialRender>>) -> PyResul
         return Err(settings_error("there are no partial renders to merge"));
     }
     let frame = partial_renders.first().map_or(0.0, |first| first.get().partial_render.description().frame);
-    let named = partial_renders.iter().enumerate().map(|(number, one)| {
+    let named = partial_renders.into_iter().enumerate().map(|(number, one)| {
         let name = format!("partial render {number}");
         film::PartialRender::from_bytes(&name, Arc::clone(&one.get().bytes)).map_err(|error| of_partial_render(&error))
     });

@@ -2,7 +2,7 @@
 
 use crate::image::Image;
 use crate::state::{self, Built};
-use crate::task::{self, Monitor, Task, Watch};
+use crate::task::{self, Fault, Monitor, Task, Watch};
 use juggler::camera::film::Film;
 use juggler::{Error, RenderedImage};
 use pyo3::prelude::*;
@@ -76,7 +76,7 @@ impl Progressive {
             if let Some((built, film, start)) = self.begin() {
                 let control = &self.task.monitor().control;
                 let snapshot = || built.picture.snapshot(&film, start.elapsed(), control);
-                let image = task::guarded(|| py.detach(snapshot))?;
+                let image = task::guarded(|| py.detach(snapshot)).map_err(Fault::into_exception)?;
                 return Ok(Some(Image::new(image, frame)));
             }
         }

@@ -5,10 +5,10 @@ use crate::errors::{convert, key_error, line, settings_error};
 use crate::image::Image;
 use crate::partial_render::PartialRender;
 use crate::progressive::Progressive;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Refusal, Scene};
 use crate::settings::RenderSettings;
 use crate::state::{self, Built};
-use crate::task::{self, Canceller, Fault, Monitor, Watch};
+use crate::task::{self, Canceler, Fault, Monitor, Watch};
 use juggler::memory::Effort;
 use juggler::probe::{Detail, Prober};
 use juggler::scene::camera_json;
@@ -23,7 +23,8 @@ use std::time::Instant;
 /// Scene with settings, whose world is kept between renders.
 #[pyclass(frozen, module = "juggler._native")]
 pub struct Renderer {
-    /// Held only for moments, while the interpreter is attached.
+    /// Held only while the interpreter is attached, and never while Python code runs: otherwise a
+    /// thread that waits for the lock could keep the one that holds it from running.
     state: Mutex<State>,
     settings: RenderSettings,
     name: String,
@@ -86,9 +87,14 @@ impl Renderer {
     /// Sets the value at a path, given as JSON; `null` removes it.
     fn set_value(&self, path: &str, json: &str) -> PyResult<()> {
         let value: Value = serde_json::from_str(json).map_err(|error| settings_error(error.to_string()))?;
-        let mut state = self.lock();
-        state.scene = scene::with_value(&state.scene, path, value)?;
-        Ok(())
+        let path = scene::path(path)?;
+        // Edits of several threads follow each other. The lock is released before an exception is
+        // made, which may let other threads run.
+        let edited = {
+            let mut state = self.lock();
+            scene::with_value(&state.scene, &path, value).map(|scene| state.scene = scene)
+        };
+        edited.map_err(Refusal::into_exception)
     }
 
     /// Path of the camera of the image.
@@ -138,9 +144,9 @@ impl Renderer {
     }
 
     /// Renders the image.
-    #[pyo3(signature = (callback=None, canceller=None))]
-    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceller: Option<Py<Canceller>>) -> PyResult<Image> {
-        let (built, image) = self.with_world(py, &Watch { callback, canceller }, state::render)?;
+    #[pyo3(signature = (callback=None, canceler=None))]
+    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceler: Option<Py<Canceler>>) -> PyResult<Image> {
+        let (built, image) = self.with_world(py, &Watch { callback, canceler }, state::render)?;
         self.store(&built);
         Ok(Image::new(image, built.frame))
     }
@@ -169,7 +175,7 @@ impl Renderer {
         callback: Option<Py<PyAny>>,
     ) -> PyResult<PartialRender> {
         let name = self.title.clone();
-        let (built, bytes) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+        let (built, bytes) = self.with_world(py, &Watch { callback, canceler: None }, move |built, _, monitor| {
             let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
             Ok(built.picture.render_shard([index, count], &origin, &monitor.control)?)
         })?;
@@ -181,7 +187,7 @@ impl Renderer {
     #[pyo3(signature = (partial_render, callback=None))]
     fn extend(&self, py: Python<'_>, partial_render: &PartialRender, callback: Option<Py<PyAny>>) -> PyResult<Image> {
         let (name, partial_render) = (self.title.clone(), partial_render.partial_render.clone());
-        let (built, image) = self.with_world(py, &Watch { callback, canceller: None }, move |built, _, monitor| {
+        let (built, image) = self.with_world(py, &Watch { callback, canceler: None }, move |built, _, monitor| {
             let origin = RenderOrigin { scene: name, frame: built.frame, command: String::new() };
             let film = Arc::new(built.picture.resume_film(&partial_render, &origin)?);
             state::finish(&built.picture, &film, Instant::now(), monitor)

@@ -124,26 +124,45 @@ pub fn path(text: &str) -> PyResult<ScenePath> {
     })
 }
 
+/// Why a value cannot be set.
+pub enum Refusal {
+    /// The scene has no such path.
+    Path(String),
+    /// The scene would be wrong.
+    Scene(scene::SceneError),
+    /// The renderer failed.
+    Fault(Fault),
+}
+
+impl Refusal {
+    /// The exception. Making it runs Python code, during which other threads may run.
+    pub fn into_exception(self) -> PyErr {
+        match self {
+            Self::Path(message) => key_error(&message),
+            Self::Scene(error) => of_scene(error),
+            Self::Fault(fault) => fault.into_exception(),
+        }
+    }
+}
+
 /// The scene with another value at a path; `Null` removes the value.
-pub fn with_value(scene: &scene::Scene, text: &str, value: Value) -> PyResult<scene::Scene> {
-    let path = path(text)?;
-    let known = scene.value_at(&path);
+pub fn with_value(scene: &scene::Scene, path: &ScenePath, value: Value) -> Result<scene::Scene, Refusal> {
+    let known = scene.value_at(path);
     let unknown = known.as_ref().err();
     // A new key may have a default, and the index after the last one appends.
     let is_new = |unknown: &UnknownPath| unknown.is_last && (unknown.count.is_none() || appends(unknown));
     if let Some(unknown) = unknown.filter(|unknown| value.is_null() || !is_new(unknown)) {
-        return Err(key_error(&unknown.to_string()));
+        return Err(Refusal::Path(unknown.to_string()));
     }
-    // Panics become exceptions, although the caller may hold a lock.
-    let edited = task::guarded(|| scene.with_value(&path.pointer(), value))?;
+    let edited = task::guarded(|| scene.with_value(&path.pointer(), value)).map_err(Refusal::Fault)?;
     edited.map_err(|error| match &error {
         scene::SceneError::Problems(problems) if unknown.is_some() => match problems.list() {
             [problem] if problem.path == path.to_string() && problem.message.starts_with("unknown key") => {
-                key_error(&crate::errors::line(problem))
+                Refusal::Path(crate::errors::line(problem))
             }
-            _ => of_scene(error),
+            _ => Refusal::Scene(error),
         },
-        _ => of_scene(error),
+        _ => Refusal::Scene(error),
     })
 }
 

@@ -95,8 +95,6 @@ impl RenderSettings {
             "variant" => self.set_model(0, name, value),
             "animation" => self.set_model(1, name, value),
             "model_scene" => self.set_model(2, name, value),
-            "threads" => Ok(self.threads = Some(read(name, value, "a number of threads")?)),
-            "max_memory" => Ok(self.max_memory = Some(read(name, value, "a number of bytes")?)),
             "tone" | "exposure" | "white_balance" | "primaries" | "dither" => self.set_tone(name, value),
             _ => self.set_view(name, value),
         }
@@ -105,6 +103,8 @@ impl RenderSettings {
     fn set_view(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let settings = &mut self.settings;
         match name {
+            "threads" => self.threads = Some(read(name, value, "a number of threads")?),
+            "max_memory" => self.max_memory = Some(read(name, value, "a number of bytes")?),
             "size" => settings.size = Some(read(name, value, "a pair of width and height, such as (640, 360)")?),
             "samples" => settings.samples = Some(read(name, value, "a number of samples, such as 64")?),
             "integrator" => settings.integrator = Some(by_name(name, &text(name, value)?).map_err(convert)?),
@@ -160,10 +160,9 @@ impl RenderSettings {
         if !number.is_finite() {
             return Err(settings_error(format!("`{name}` must be a finite number")));
         }
-        if name == "at" {
-            self.at = Some(number)
-        } else {
-            self.frame = number
+        match name {
+            "at" => self.at = Some(number),
+            _ => self.frame = number,
         }
         Ok(())
     }

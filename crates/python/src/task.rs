@@ -44,7 +44,8 @@ macro_rules! from_errors {
 from_errors!(Error, SceneError, ImageError, Cancelled, MergeError, PartialRenderError);
 
 impl Fault {
-    fn into_exception(self) -> PyErr {
+    /// The exception.
+    pub fn into_exception(self) -> PyErr {
         match self {
             Self::Renderer(error) => errors::convert(error),
             Self::Panic(message) => errors::internal(&format!(
@@ -86,12 +87,12 @@ impl Monitor {
 /// Request of another thread to cancel work.
 #[pyclass(frozen, module = "juggler._native")]
 #[derive(Default)]
-pub struct Canceller {
+pub struct Canceler {
     is_cancelled: AtomicBool,
 }
 
 #[pymethods]
-impl Canceller {
+impl Canceler {
     #[new]
     fn new() -> Self {
         Self::default()
@@ -109,14 +110,14 @@ pub struct Watch {
     /// Function that takes the stage, its share, the seconds so far and left, and the samples.
     pub callback: Option<Py<PyAny>>,
     /// Request to cancel.
-    pub canceller: Option<Py<Canceller>>,
+    pub canceler: Option<Py<Canceler>>,
 }
 
 impl Watch {
     fn check(&self, py: Python<'_>) -> PyResult<()> {
         py.check_signals()?;
-        match &self.canceller {
-            Some(canceller) if canceller.get().is_cancelled.load(Relaxed) => Err(errors::cancelled()),
+        match &self.canceler {
+            Some(canceler) if canceler.get().is_cancelled.load(Relaxed) => Err(errors::cancelled()),
             _ => Ok(()),
         }
     }
@@ -223,9 +224,9 @@ pub fn run<T: Send + 'static>(
     task.wait(py, watch, Duration::MAX)?.ok_or_else(errors::cancelled)
 }
 
-/// Does work on this very thread. A panic becomes an exception.
-pub fn guarded<T>(work: impl FnOnce() -> T) -> PyResult<T> {
-    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Fault::Panic(panic_message(panic.as_ref())).into_exception())
+/// Does work on this very thread. A panic becomes a fault.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| Fault::Panic(panic_message(panic.as_ref())))
 }
 
 /// Does short work, which reports no progress and waits for no render.

@@ -2,7 +2,7 @@
 
 use crate::errors::settings_error;
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, Once, PoisonError};
 
@@ -23,8 +23,8 @@ pub enum Use {
 }
 
 /// Pools by process, use and number of threads. A process that is forked makes its own, since only
-/// the thread that forks lives on in it. The lock is held only while the interpreter is attached, and
-/// therefore by no other thread when `os.fork` is called.
+/// the thread that forks lives on in it. The lock is held only while the interpreter is attached,
+/// and therefore by no other thread when `os.fork` is called.
 static POOLS: Mutex<BTreeMap<(u32, Use, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
 
 /// Number of threads to use: `requested`, that of the environment, or one per core that the process
@@ -51,15 +51,20 @@ pub fn thread_count(requested: Option<usize>) -> PyResult<usize> {
 /// Pool of this many threads. It is kept for the next call.
 pub fn pool(_: Python<'_>, threads: usize, purpose: Use) -> PyResult<Arc<ThreadPool>> {
     silence_panics();
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (std::process::id(), purpose, threads);
-    if let Some(pool) = pools.get(&key) {
-        return Ok(Arc::clone(pool));
-    }
-    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("{NAME}-{number}")).build();
-    let pool = Arc::new(pool.map_err(|error| settings_error(format!("cannot start {threads} threads: {error}")))?);
-    pools.insert(key, Arc::clone(&pool));
-    Ok(pool)
+    // No Python code runs while the lock is held.
+    let found = {
+        let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+        match pools.get(&key) {
+            Some(pool) => Ok(Arc::clone(pool)),
+            None => new_pool(threads).map(|pool| Arc::clone(pools.entry(key).or_insert(Arc::new(pool)))),
+        }
+    };
+    found.map_err(|error| settings_error(format!("cannot start {threads} threads: {error}")))
+}
+
+fn new_pool(threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
+    ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("{NAME}-{number}")).build()
 }
 
 /// Prints no message for panics of these threads, which become exceptions.

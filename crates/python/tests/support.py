@@ -8,8 +8,6 @@ import sys
 import tempfile
 import unittest
 
-import juggler as jg
-
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # The program, built with the same source.
 PROGRAM = os.environ.get("JUGGLER_PROGRAM", str(ROOT / "target/debug/juggler"))
@@ -38,8 +36,12 @@ def small_scene(**more):
         "lights": [{"point": {"position": [-3, 5, 4], "intensity": 60}}],
         "objects": [
             {"name": "ground", "shape": "plane", "material": "floor"},
-            {"name": "ball", "shape": {"sphere": {"radius": 1}}, "material": "gold",
-             "transform": [{"translate": [0, 1, 0]}]},
+            {
+                "name": "ball",
+                "shape": {"sphere": {"radius": 1}},
+                "material": "gold",
+                "transform": [{"translate": [0, 1, 0]}],
+            },
         ],
         **more,
     }
@@ -66,8 +68,15 @@ def program_hash(scene, *flags):
 def python(code, *words, **arguments):
     """Runs code in a process of its own."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, timeout=120,
-                          env=environment, check=False, **arguments)
+    return subprocess.run(
+        [sys.executable, "-c", code, *words],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=environment,
+        check=False,
+        **arguments,
+    )
 
 
 class Folder(unittest.TestCase):

@@ -2,16 +2,19 @@
 
 import asyncio
 import concurrent.futures
+import io
 import os
 import pickle
 import signal
 import subprocess
 import sys
-import threading
 import time
+import types
 import unittest
+import unittest.mock
 
-from support import SMALL, jg, python, small_scene
+import juggler as jg
+from support import ROOT, python, small_scene
 
 LONG = {"size": (640, 360), "samples": 100_000}
 
@@ -24,7 +27,12 @@ class Renderers(unittest.TestCase):
         self.assertIn("materials.gold", renderer)
         del renderer["objects[0].name"]
         self.assertNotIn("objects[0].name", renderer)
-        for path in ("materials.gld.conductor", "materials.gold.conductor.roughnes", "objects[9]", "objects["):
+        for path in (
+            "materials.gld.conductor",
+            "materials.gold.conductor.roughnes",
+            "objects[9]",
+            "objects[",
+        ):
             with self.assertRaises(KeyError, msg=path):
                 renderer[path] = 1
         with self.assertRaisesRegex(KeyError, "did you mean `gold`"):
@@ -66,6 +74,23 @@ class Renderers(unittest.TestCase):
             hashes = set(pool.map(lambda _: renderer.render().hash, range(6)))
         self.assertEqual(hashes, {renderer.render().hash})
 
+    def test_threads_edit_a_renderer(self):
+        renderer = jg.Renderer(small_scene(), samples=1)
+
+        def work(number):
+            for step in range(20):
+                renderer["materials.gold.conductor.roughness"] = (number + step) / 100
+                with self.assertRaises(jg.SceneError):
+                    renderer["materials.gold.conductor.roughness"] = "rough"
+                with self.assertRaises(KeyError):
+                    renderer["materials.gld.conductor"] = 1
+                renderer.render()
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            list(pool.map(work, range(4)))
+        renderer["materials.gold.conductor.roughness"] = 0.2
+        self.assertEqual(renderer.render().hash, jg.render(small_scene(), samples=1).hash)
+
     def test_futures_are_awaited_and_cancelled(self):
         renderer = jg.Renderer(small_scene())
         self.assertEqual(renderer.submit().result(60).hash, renderer.render().hash)
@@ -100,19 +125,66 @@ class Renderers(unittest.TestCase):
             jg.render("juggler", **LONG, progress=fail)
         self.assertLess(time.monotonic() - start, 5)
 
+    def test_notebooks_show_a_growing_image(self):
+        shown = []
+
+        class Handle:
+            def update(self, shown_html):
+                shown.append(shown_html)
+
+        def display(shown_html, display_id):
+            shown.append(shown_html)
+            return Handle()
+
+        kernel = types.SimpleNamespace(kernel=object())
+        display_module = types.SimpleNamespace(HTML=str, display=display)
+        modules = {
+            "IPython": types.SimpleNamespace(get_ipython=lambda: kernel, display=display_module),
+            "IPython.display": display_module,
+        }
+        with unittest.mock.patch.dict(sys.modules, modules):
+            image = jg.render("juggler", size=(320, 180), samples=4096, time=1.5)
+            jg.render(small_scene())
+        self.assertGreaterEqual(len(shown), 2)
+        self.assertIn("samples,", shown[0])
+        self.assertEqual(shown[-1].count("<img"), 1)
+        self.assertEqual(image.size, (320, 180))
+
+    def test_a_bar_appears_on_a_terminal_after_a_second(self):
+        stream = io.StringIO()
+        with unittest.mock.patch("sys.stderr", stream):
+            jg.render("juggler", size=(320, 180), samples=4096, time=1.5, progress=True)
+        self.assertTrue("━" in stream.getvalue() and " left" in stream.getvalue())
+        self.assertTrue(stream.getvalue().endswith("\r\x1b[K"))
+
     def test_panics_become_exceptions(self):
-        done = python("import juggler._native\ntry: juggler._native.panic_on_a_thread()\n"
-                      "except juggler.InternalError as error: print(error)")
+        done = python(
+            "import juggler._native\ntry: juggler._native.panic_on_a_thread()\n"
+            "except juggler.InternalError as error: print(error)"
+        )
         self.assertIn("a panic for tests", done.stdout)
         self.assertEqual(done.stderr, "")
 
 
 class Processes(unittest.TestCase):
     def test_import_is_light(self):
-        code = ("import sys\nbefore = set(sys.modules)\nimport juggler\nnative = juggler.render\n"
-                "print(*sorted(set(sys.modules) - before))")
+        code = (
+            "import sys\nbefore = set(sys.modules)\nimport juggler\nnative = juggler.render\n"
+            "print(*sorted(set(sys.modules) - before))"
+        )
         loaded = python(code).stdout.split()
-        heavy = {"numpy", "typing", "json", "dataclasses", "IPython", "asyncio", "concurrent", "ray", "inspect", "re"}
+        heavy = {
+            "numpy",
+            "typing",
+            "json",
+            "dataclasses",
+            "IPython",
+            "asyncio",
+            "concurrent",
+            "ray",
+            "inspect",
+            "re",
+        }
         self.assertFalse(heavy & set(loaded), loaded)
         self.assertIn("juggler._native", loaded)
 
@@ -128,14 +200,16 @@ class Processes(unittest.TestCase):
 
     @unittest.skipUnless(hasattr(os, "fork"), "the system has no fork")
     def test_a_fork_during_a_render_answers_with_an_error(self):
-        code = ("import juggler, os, sys, time\n"
-                "parent, forked = os.getpid(), []\n"
-                "def fork(progress):\n"
-                "    if not forked: forked.append(os.fork())\n"
-                "try: juggler.render('juggler', size=(320, 180), time=0.5, samples=100000, progress=fork)\n"
-                "except RuntimeError as error:\n"
-                "    os._exit(7 if os.getpid() != parent and 'forked' in str(error) else 8)\n"
-                "sys.exit(0 if os.waitstatus_to_exitcode(os.waitpid(forked[0], 0)[1]) == 7 else 9)")
+        code = (
+            "import juggler, os, sys, time\n"
+            "parent, forked = os.getpid(), []\n"
+            "def fork(progress):\n"
+            "    if not forked: forked.append(os.fork())\n"
+            "try: juggler.render('juggler', size=(320, 180), time=0.5, samples=100000, progress=fork)\n"
+            "except RuntimeError as error:\n"
+            "    os._exit(7 if os.getpid() != parent and 'forked' in str(error) else 8)\n"
+            "sys.exit(0 if os.waitstatus_to_exitcode(os.waitpid(forked[0], 0)[1]) == 7 else 9)"
+        )
         self.assertEqual(python(code).returncode, 0)
 
     def test_spawned_processes_render(self):
@@ -150,8 +224,13 @@ class Processes(unittest.TestCase):
     def interrupted(self, code):
         """Seconds from an interrupt to the end, and the output."""
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   text=True, env=environment)
+        process = subprocess.Popen(
+            [sys.executable, "-c", code],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
         self.assertEqual(process.stdout.readline(), "ready\n")
         time.sleep(0.5)
         start = time.monotonic()
@@ -161,9 +240,11 @@ class Processes(unittest.TestCase):
 
     @unittest.skipIf(os.name == "nt", "signals of Unix")
     def test_an_interrupt_ends_a_render(self):
-        code = (f"import juggler, sys\nprint('ready', flush=True)\n"
-                f"try: juggler.render('juggler', size=(1920, 1080), samples=100_000)\n"
-                f"except KeyboardInterrupt: print('interrupted')")
+        code = (
+            "import juggler, sys\nprint('ready', flush=True)\n"
+            "try: juggler.render('juggler', size=(1920, 1080), samples=100_000)\n"
+            "except KeyboardInterrupt: print('interrupted')"
+        )
         seconds, status, output, errors = self.interrupted(code)
         self.assertEqual((status, output, errors), (0, "interrupted\n", ""))
         # The limit is generous: other processes may be busy.
@@ -171,9 +252,11 @@ class Processes(unittest.TestCase):
 
     @unittest.skipIf(os.name == "nt", "signals of Unix")
     def test_an_interrupt_ends_the_program(self):
-        code = ("import juggler._native, sys\nprint('ready', flush=True)\n"
-                "sys.exit(juggler._native.main(['juggler', 'render', 'juggler', '--size', '1920x1080', '-o', "
-                "'/dev/null', '--format', 'pfm', '--samples', '100000']))")
+        code = (
+            "import juggler._native, sys\nprint('ready', flush=True)\n"
+            "sys.exit(juggler._native.main(['juggler', 'render', 'juggler', '--size', '1920x1080', '-o', "
+            "'/dev/null', '--format', 'pfm', '--samples', '100000']))"
+        )
         _, status, _, errors = self.interrupted(code)
         self.assertNotIn("Traceback", errors)
         # A program that has not begun to render ends by the signal.
@@ -181,8 +264,13 @@ class Processes(unittest.TestCase):
 
     def test_the_module_is_the_program(self):
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        done = subprocess.run([sys.executable, "-m", "juggler", "scenes"], capture_output=True, text=True,
-                              env=environment, check=False)
+        done = subprocess.run(
+            [sys.executable, "-m", "juggler", "scenes"],
+            capture_output=True,
+            text=True,
+            env=environment,
+            check=False,
+        )
         self.assertEqual(done.returncode, 0)
         self.assertTrue(all(name in done.stdout for name in jg.examples()))
 
@@ -193,7 +281,9 @@ class Processes(unittest.TestCase):
         for name in jg.__all__:
             getattr(jg, name)
         with self.assertRaises(AttributeError):
-            jg.rendr
+            getattr(jg, "rendr")
+        stub = (ROOT / "crates/python/python/juggler/__init__.pyi").read_text()
+        self.assertTrue(all(f"{name} as {name}" in stub for name in jg.__all__))
 
 
 if __name__ == "__main__":

@@ -66,8 +66,8 @@ impl Path {
         path
     }
 
-    /// Parses a path as messages print it, such as `objects[3].shape["my sphere"].radius`, or a JSON
-    /// pointer. `None` for a text that is neither.
+    /// Parses a path as messages print it, such as `objects[3].shape["my sphere"].radius`, or a
+    /// JSON pointer. `None` for a text that is neither.
     pub fn parse(text: &str) -> Option<Self> {
         if text.starts_with('/') {
             return Some(Self::from_pointer(text));

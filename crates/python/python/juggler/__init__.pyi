@@ -1,3 +1,5 @@
+"""Names of the package, for editors and type checkers; `__init__.py` loads them when they are first used."""
+
 from . import animate as animate
 from . import backgrounds as backgrounds
 from . import cameras as cameras
@@ -11,3 +13,30 @@ from . import scene_types as scene_types
 from . import shapes as shapes
 from . import textures as textures
 from .scene_types import *
+from juggler._api import (
+    __version__ as __version__,
+    examples as examples,
+    frames as frames,
+    models as models,
+    render as render,
+    render_movie as render_movie,
+    show_config as show_config,
+)
+from juggler._camera import Camera as Camera
+from juggler._comparison import Comparison as Comparison, compare as compare
+from juggler._errors import (
+    Cancelled as Cancelled,
+    FileError as FileError,
+    InternalError as InternalError,
+    MemoryBudgetError as MemoryBudgetError,
+    MergeError as MergeError,
+    Problem as Problem,
+    SceneError as SceneError,
+    SceneWarning as SceneWarning,
+    SettingsError as SettingsError,
+)
+from juggler._image import Image as Image
+from juggler._partial_render import PartialRender as PartialRender, merge as merge
+from juggler._probe import Probe as Probe
+from juggler._progress import Progress as Progress
+from juggler._renderer import Renderer as Renderer

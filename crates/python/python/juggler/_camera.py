@@ -51,7 +51,7 @@ class OpenCV:
 class Camera:
     """Matrices of the camera of an image, at the middle of the shutter interval."""
 
-    __slots__ = ("_to_camera", "_to_image", "_frame", "_corner")
+    __slots__ = ("_corner", "_frame", "_to_camera", "_to_image")
 
     def __init__(self, viewpoint, window):
         self._to_camera, self._to_image = viewpoint

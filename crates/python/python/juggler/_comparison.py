@@ -14,8 +14,18 @@ class Comparison:
     `reason`.
     """
 
-    __slots__ = ("same_bits", "rmse", "relative_mse", "largest", "flip", "same_but_for_noise", "p",
-                 "reason", "_size", "_flip_map")
+    __slots__ = (
+        "_flip_map",
+        "_size",
+        "flip",
+        "largest",
+        "p",
+        "reason",
+        "relative_mse",
+        "rmse",
+        "same_bits",
+        "same_but_for_noise",
+    )
 
     def __init__(self, results):
         self._size, self._flip_map = results.pop("size"), results.pop("flip_map")

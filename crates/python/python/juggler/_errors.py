@@ -8,7 +8,8 @@ class Problem:
     "warning", and `file`, `line` and `column` are `None` unless the scene was read from a file.
     """
 
-    __slots__ = ("path", "message", "help", "severity", "file", "line", "column")
+    _fields = ("path", "message", "help", "severity", "file", "line", "column")
+    __slots__ = _fields
 
     def __init__(self, path, message, help=None, severity="error", file=None, line=None, column=None):
         self.path = path
@@ -20,7 +21,7 @@ class Problem:
         self.column = column
 
     def _values(self):
-        return tuple(getattr(self, name) for name in self.__slots__)
+        return tuple(getattr(self, name) for name in self._fields)
 
     def __eq__(self, other):
         return self._values() == other._values() if isinstance(other, Problem) else NotImplemented
@@ -32,7 +33,7 @@ class Problem:
         return Problem, self._values()
 
     def __repr__(self):
-        values = zip(self.__slots__, self._values())
+        values = zip(self._fields, self._values())
         return f"Problem({', '.join(f'{name}={value!r}' for name, value in values)})"
 
     def __str__(self):
@@ -85,7 +86,16 @@ class SceneWarning(UserWarning):
     """A scene can be rendered, but the result may not be the intended one."""
 
 
-for _name in ("Problem", "SceneError", "SettingsError", "MergeError", "FileError", "MemoryBudgetError",
-              "Cancelled", "InternalError", "SceneWarning"):
+for _name in (
+    "Problem",
+    "SceneError",
+    "SettingsError",
+    "MergeError",
+    "FileError",
+    "MemoryBudgetError",
+    "Cancelled",
+    "InternalError",
+    "SceneWarning",
+):
     globals()[_name].__module__ = "juggler"
 del _name

@@ -12,14 +12,14 @@ class RenderFuture(Future):
 
     def __init__(self):
         super().__init__()
-        self._canceller = _native.Canceller()
+        self._canceler = _native.Canceler()
         self._thread = None
 
     def cancel(self):
         """Ends the render. Returns whether it was not done yet."""
         is_cancelled = super().cancel()
         if is_cancelled:
-            self._canceller.cancel()
+            self._canceler.cancel()
         return is_cancelled
 
     def running(self):
@@ -33,7 +33,7 @@ def submit(renderer):
 
     def work():
         try:
-            image, error = Image(renderer.render(None, future._canceller)), None
+            image, error = Image(renderer.render(None, future._canceler)), None
         except BaseException as caught:
             image, error = None, caught
         # The future waits in the state "pending", in which it can be cancelled.

@@ -25,7 +25,7 @@ class Image:
     of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
     """
 
-    __slots__ = ("_native", "_arrays", "__weakref__")
+    __slots__ = ("__weakref__", "_arrays", "_native")
 
     def __init__(self, native):
         if not isinstance(native, _native.Image):

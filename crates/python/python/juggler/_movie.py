@@ -10,10 +10,20 @@ from juggler._scene import native_scene, to_json
 
 # Flags of the program for the settings whose values need no conversion.
 _FLAGS = {
-    "samples": "--samples", "noise": "--noise", "integrator": "--integrator",
-    "max_depth": "--max-depth", "camera": "--camera", "seed": "--seed", "tone": "--tone",
-    "exposure": "--exposure", "primaries": "--primaries", "variant": "--variant", "animation": "--animation",
-    "model_scene": "--model-scene", "threads": "--threads", "max_memory": "--max-memory",
+    "samples": "--samples",
+    "noise": "--noise",
+    "integrator": "--integrator",
+    "max_depth": "--max-depth",
+    "camera": "--camera",
+    "seed": "--seed",
+    "tone": "--tone",
+    "exposure": "--exposure",
+    "primaries": "--primaries",
+    "variant": "--variant",
+    "animation": "--animation",
+    "model_scene": "--model-scene",
+    "threads": "--threads",
+    "max_memory": "--max-memory",
 }
 
 
@@ -36,7 +46,9 @@ def _flags(settings):
         elif name == "denoise":
             words += [f"--denoise={'own' if value is True else value}"] if value else []
         elif name == "white_balance":
-            words.append(f"--white-balance={','.join(map(str, value)) if isinstance(value, (tuple, list)) else value}")
+            words.append(
+                f"--white-balance={','.join(map(str, value)) if isinstance(value, (tuple, list)) else value}"
+            )
         elif name == "lenient":
             words += ["--lenient"] if value else []
         else:
@@ -49,12 +61,13 @@ def render_movie(scene, path, frames, settings):
     plain = {name: value for name, value in settings.items() if name != "max_memory"}
     _native.check_settings(plain)
     words = [sys.executable, "-m", "juggler", "render"]
+    # The exceptions of a wrong scene are better than the program's messages.
+    native = native_scene(scene, bool(settings.get("lenient")))
     text = None
     if isinstance(scene, (str, os.PathLike)):
         words.append(os.fspath(scene))
     else:
-        text = scene.to_json() if isinstance(scene, _native.Scene) else to_json(scene)
-        native_scene(scene)
+        text = native.to_json() if native is scene else to_json(scene)
         words.append("-")
     words += [f"--output={os.fspath(path)}", *_flags(settings)]
     if frames is not None:
@@ -65,7 +78,7 @@ def render_movie(scene, path, frames, settings):
     words.append("--quiet" if not settings.get("progress") else "--progress=bar")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     errors = None if settings.get("progress") else subprocess.PIPE
-    done = subprocess.run(words, input=text, text=True, stderr=errors, env=environment)
+    done = subprocess.run(words, input=text, text=True, stderr=errors, env=environment, check=False)
     message = (done.stderr or "").strip().removeprefix("error: ")
     if done.returncode == 2:
         raise SettingsError(message)

@@ -24,7 +24,8 @@ def html(image):
     for name in image.aovs:
         picture = png(image._native.thumbnail(name, _THUMBNAIL_WIDTH), _THUMBNAIL_WIDTH)
         name = escapes.escape(name)
-        thumbnails.append(f'<figure style="display:inline-block;margin:4px">{picture}<figcaption>{name}</figcaption></figure>')
+        figure = f"{picture}<figcaption>{name}</figcaption>"
+        thumbnails.append(f'<figure style="display:inline-block;margin:4px">{figure}</figure>')
     width, height = image.size
     caption = f"{width} × {height}, {image.stats['samples']:g} samples, hash {image.hash[:12]}"
     return f"<div>{png(image._repr_png_())}<div><small>{caption}</small></div>{''.join(thumbnails)}</div>"
@@ -54,5 +55,7 @@ class LiveImage(Display):
 
     def _html(self, image, seconds):
         samples = image.stats["samples"]
-        return (f"{png(image._native.encode('png', _PREVIEW_WIDTH))}"
-                f"<div><small>{samples:.1f} samples, {duration(seconds)}</small></div>")
+        return (
+            f"{png(image._native.encode('png', _PREVIEW_WIDTH))}"
+            f"<div><small>{samples:.1f} samples, {duration(seconds)}</small></div>"
+        )

@@ -9,7 +9,7 @@ class Probe:
     it, and `brightest` lists its brightest samples.
     """
 
-    __slots__ = ("_text", "_json")
+    __slots__ = ("_json", "_text")
 
     def __init__(self, text, json):
         self._text = text

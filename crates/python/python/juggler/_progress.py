@@ -13,7 +13,8 @@ class Progress:
     `seconds_left` (`None` if unknown), and `samples` of all pixels so far.
     """
 
-    __slots__ = ("stage", "share", "seconds", "seconds_left", "samples")
+    _fields = ("stage", "share", "seconds", "seconds_left", "samples")
+    __slots__ = _fields
 
     def __init__(self, stage, share, seconds, seconds_left, samples):
         self.stage = stage
@@ -23,7 +24,7 @@ class Progress:
         self.samples = samples
 
     def __repr__(self):
-        return f"Progress({', '.join(f'{name}={getattr(self, name)!r}' for name in self.__slots__)})"
+        return f"Progress({', '.join(f'{name}={getattr(self, name)!r}' for name in self._fields)})"
 
 
 def duration(seconds):

@@ -1,7 +1,5 @@
 """Renderer of a scene that is edited and rendered again."""
 
-import os
-
 from juggler import _native
 from juggler._image import Image
 from juggler._scene import bytes_of, native_scene, to_json, warn
@@ -19,7 +17,7 @@ class Renderer:
     that begin after it.
     """
 
-    __slots__ = ("_native", "_settings", "_progress", "__weakref__")
+    __slots__ = ("__weakref__", "_native", "_progress", "_settings")
 
     def __init__(self, scene, **settings):
         self._progress = settings.pop("progress", None)

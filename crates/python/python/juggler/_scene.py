@@ -61,7 +61,7 @@ def bytes_of(size):
         pass
     from juggler._errors import SettingsError
 
-    raise SettingsError(f"`max_memory` must be a number of bytes or a size such as \"4G\", not {size!r}")
+    raise SettingsError(f'`max_memory` must be a number of bytes or a size such as "4G", not {size!r}')
 
 
 def warn(messages):

@@ -82,8 +82,8 @@ impl Scene {
             && matches!(self.description.objects.as_slice(), [object] if object.model.is_some())
     }
 
-    /// Selects what the model of a scene around a model file shows; `None` keeps a choice of the file.
-    /// Returns `false`, without an effect, for other scenes.
+    /// Selects what the model of a scene around a model file shows; `None` keeps a choice of the
+    /// file. Returns `false`, without an effect, for other scenes.
     pub fn choose_model(
         &mut self,
         variant: Option<NameOrIndex>,
