@@ -91,7 +91,11 @@ mod tests {
                 text.replace("z\nelement", "z\nproperty ushort attribute.a.0\nproperty ushort attribute.a.1\nelement");
             text.replace("uchar red", "double attribute.b")
         };
-        let body = vec![0; 4 * 16 + (1 + 4 * 4 + 8) + (1 + 3 * 4 + 8)];
+        let face = |corners: &[u32]| {
+            let corners: Vec<u8> = corners.iter().flat_map(|corner| corner.to_le_bytes()).collect();
+            [&[(corners.len() / 4) as u8], corners.as_slice(), &[0; 8]].concat()
+        };
+        let body = [vec![0; 4 * 16], face(&[0, 1, 2, 3]), face(&[0, 1, 2])].concat();
         let bytes = ply("binary_little_endian", &body);
         let head = String::from_utf8(bytes[..bytes.len() - body.len()].to_vec()).unwrap();
         let found = of("a.ply", &[attributes(&head).as_bytes(), &body].concat());
