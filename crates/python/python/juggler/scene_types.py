@@ -3,6 +3,7 @@
 
 from ._node import Node
 from ._placement import Placement
+from ._scene_methods import SceneMethods
 
 __all__ = [
     "Scene",
@@ -31,7 +32,7 @@ __all__ = [
 ]
 
 
-class Scene(Node):
+class Scene(SceneMethods):
     """Scene: everything that determines the rendered image.
 
     Args:

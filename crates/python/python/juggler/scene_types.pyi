@@ -7,6 +7,7 @@ from typing import Any, Literal, Self
 from . import typing as t
 from ._node import Node
 from ._placement import Placement
+from ._scene_methods import SceneMethods
 
 __all__ = [
     "Scene",
@@ -34,7 +35,7 @@ __all__ = [
     "Animation",
 ]
 
-class Scene(Node):
+class Scene(SceneMethods):
     """Scene: everything that determines the rendered image.
 
     Args:

@@ -282,7 +282,9 @@ class Mesh(Node):
 
     Args:
         file (string): Model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays
-            below.
+            below. A PLY file may have all of these arrays: attributes of its elements `vertex` and
+            `face` are columns `attribute.NAME`, or `attribute.NAME.0` to `attribute.NAME.3` of
+            several numbers per value, of type `uchar`, `ushort` or `float`.
         positions (list of groups of 3 numbers): Corner positions in scene units.
         triangles (list of groups of 3 whole numbers from 0): Three indices into `positions` for
             each triangle, counted from 0.
