@@ -11,7 +11,7 @@ heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
 
 # Runs all steps of CI. Since driving windows leaves the machine mostly idle, builds run meanwhile.
 check_all() {
-  run_steps lint unit python
+  run_steps lint unit
   in_background "golden: optimized programs" at_leisure build_golden
   start_windows
   in_background "features" at_leisure step_features
@@ -124,7 +124,6 @@ step_features() {
 -p juggler-cli --no-default-features --features serve
 -p juggler-cli --no-default-features --features view
 -p juggler-import --no-default-features
--p juggler-python --no-default-features
 -p juggler-web
 END
   # Check only the list of packages: building the page needs a compiler that few machines have (see
