@@ -1,10 +1,15 @@
 //! Texels in memory, as a program has them, in place of an image file.
 
 use crate::array_hasher::ArrayHasher;
-use crate::compile::{MAX_SIDE, MAX_TEXELS};
 use juggler_imaging::raster::RasterLayout;
 use juggler_imaging::{ImageFormat, Raster, RasterSamples, TransferFunction};
 use juggler_texture::{ColorSpace, half};
+
+/// Maximum width and height of an image, in pixels.
+pub const MAX_SIDE: u32 = 65_536;
+
+/// Maximum number of pixels of an image: 16,384 × 16,384.
+pub const MAX_TEXELS: u64 = 1 << 28;
 
 /// Samples of texels: rows from the top, channels interleaved.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,6 +9,7 @@ use crate::path::Path;
 use crate::report::Finding;
 use crate::store::{MAX_FILE_BYTES, Store};
 use crate::texel_array::TexelArray;
+pub use crate::texel_array::{MAX_SIDE, MAX_TEXELS};
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
 use juggler_math::Rgb;
@@ -18,12 +19,6 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
-
-/// Maximum width and height of an image, in pixels.
-pub const MAX_SIDE: u32 = 65_536;
-
-/// Maximum number of pixels of an image: 16,384 × 16,384.
-pub const MAX_TEXELS: u64 = 1 << 28;
 
 /// Limits that are checked before an image is decoded.
 pub(super) const IMAGE_LIMITS: juggler_imaging::Limits =

@@ -119,7 +119,7 @@ fn samples_that_are_no_texels_are_refused_with_the_reason() {
 }
 
 #[test]
-fn texels_are_told_apart_by_size_type_and_color_space() {
+fn texels_differ_by_size_type_and_color_space() {
     let asset = |size, samples, space| Asset::from_texels(TexelArray::new(size, 1, samples, space).unwrap());
     let words = || TexelSamples::U16(vec![0, 15360]);
     let assets = [
