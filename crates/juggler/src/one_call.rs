@@ -24,8 +24,8 @@ pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
 }
 
 /// Renders a scene to a file; the extension selects the format. The file replaces an existing one
-/// once it is complete. Rows are written as they are rendered, unless the settings ask for AOVs, which
-/// an EXR file contains, for a denoiser or for a noise limit.
+/// once it is complete. Rows are written as they are rendered, unless the settings ask for AOVs (which
+/// an EXR file contains), for a denoiser, or for a limit of noise or time.
 pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<RenderStats, Error> {
     let path = path.as_ref();
     let format = ImageFormat::from_path(path)?;

@@ -23,8 +23,8 @@ pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 /// Metadata key of the tone settings, unless all have their defaults.
 pub const TONE: &str = "Tone";
 
-/// Rendered image in memory. Its hash and its files are those of a render to a file with the same
-/// settings.
+/// Rendered image in memory. The image has the same hash and gives the same files as a render to a
+/// file with the same settings.
 #[derive(Clone, Debug)]
 pub struct RenderedImage {
     /// Header of an image file; tone and options may be changed before it is saved.
@@ -40,9 +40,9 @@ pub struct RenderedImage {
 }
 
 impl RenderedImage {
-    /// Makes an image of its parts, such as those of an image of another process; `None` if their
-    /// numbers of pixels and channels do not fit. `channels` are those of
-    /// [`RenderedImage::layers`].
+    /// Creates an image from its parts, for example after another process has sent them; `None` if
+    /// the numbers of pixels and channels do not fit the size. The method
+    /// [`RenderedImage::layers`] returns `channels`.
     pub fn from_parts(
         header: Header,
         pixels: Vec<Rgb>,
@@ -204,8 +204,8 @@ impl Picture {
         !self.aovs().is_empty() || *self.limit() != Limit::Samples
     }
 
-    /// Renders into memory, with AOVs and denoiser as the settings say. Fails if `control` cancels the render, or if
-    /// Open Image Denoise, whose path `library` may be, cannot be loaded.
+    /// Renders into memory, with AOVs and denoiser as the settings say. Fails if `control` cancels the
+    /// render, or if Open Image Denoise, whose path `library` may be, cannot be loaded.
     pub fn render_in_memory(&self, library: Option<&Path>, control: &Control) -> Result<RenderedImage, Error> {
         if self.needs_film() {
             let (film, start) = (self.film(), Instant::now());

@@ -9,9 +9,8 @@ use std::path::{Component, Path, PathBuf};
 impl Scene {
     /// Saves the scene with its animation as a scene file, and its assets as files in the same
     /// folder, under the names that the scene uses: bytes as they are, images as PFM, meshes as PLY,
-    /// texels as PNG, or EXR if they are floats.
-    /// Reading the scene file gives the same pictures. Files that the scene refers to stay where they are. Each
-    /// file replaces an existing one once it is complete. Fails for an asset whose name is no
+    /// texels as PNG, or EXR if they are floats. Reading the scene file gives the same pictures. Files
+    /// that the scene refers to stay where they are. Each file replaces an existing one once it is complete. Fails for an asset whose name is no
     /// relative path or leads out of the folder, and for a file that cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SceneError> {
         let path = path.as_ref();

@@ -35,9 +35,9 @@ pub(super) fn open<P: AsRef<Path>>(files: &[P]) -> (Vec<PartialRender>, Vec<Merg
     (partial_renders, problems)
 }
 
-/// Verifies all partial renders. Returns the compatible ones and the description of the merged
-/// result, or every problem at once, after those of opening them. `names` are the names of all
-/// partial renders, also of those that could not be opened.
+/// Verifies all partial renders. Returns the compatible partial renders and the description of the
+/// merged result, or every problem at once. `problems` are those of opening the files, and `names` has
+/// the name of every partial render, also of one that could not be opened.
 pub(super) fn check(
     names: Vec<String>,
     partial_renders: Vec<PartialRender>,

@@ -1,8 +1,8 @@
 //! Merges partial renders into an image or a larger one, bit-identical to a single render.
 //!
-//! [`Merge::open`] and [`Merge::new`] first validate everything: all partial renders belong to one image, every byte
-//! matches its hash, no sample is missing or present twice. It reports all problems at once. The
-//! image is then streamed in bands of tile rows with one file open at a time, so memory depends on
+//! [`Merge::open`] and [`Merge::new`] first validate everything: all partial renders belong to one
+//! image, every byte matches its hash, no sample is missing or present twice. They report all
+//! problems at once. The image is then streamed in bands of tile rows with one file open at a time, so memory depends on
 //! neither the number of partial renders nor the image height, except for a few dozen bytes per
 //! tile of each partial render.
 
