@@ -34,6 +34,7 @@ mod outliers;
 mod prepare;
 mod regression;
 mod speckles;
+mod split;
 mod strips;
 mod tile;
 mod upper_bound;
@@ -44,6 +45,7 @@ mod window;
 mod tests;
 
 pub use fearless_simd::Level as SimdLevel;
+pub use split::split;
 
 use juggler_math::{Rgb, Vec3};
 use std::ops::Range;

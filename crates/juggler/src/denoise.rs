@@ -4,7 +4,7 @@ use crate::{AovSet, Error, check_name};
 use juggler_camera::aov::{DenoisingFeature, FilmAov, is_in_second_half};
 use juggler_camera::film::{Rect, Tile};
 pub use juggler_denoise::Denoised;
-use juggler_denoise::{Features, Noisy, denoise_unless};
+use juggler_denoise::{Features, Noisy, denoise_unless, split};
 use juggler_math::{Rgb, Vec3};
 use juggler_oidn::Oidn;
 use juggler_render::Control;
@@ -116,7 +116,7 @@ impl DenoiserInput {
         library: Option<&Path>,
         control: &Control,
     ) -> Result<Option<Denoised>, Error> {
-        let (width, height) = (self.region.width as usize, self.region.height as usize);
+        let size = [self.region.width, self.region.height];
         match with {
             Denoiser::Own => {
                 let features = Features {
@@ -124,24 +124,104 @@ impl DenoiserInput {
                     normal: Some(self.normal.each_ref().map(Vec::as_slice)),
                     depth: Some(self.depth.each_ref().map(Vec::as_slice)),
                 };
-                let noisy = Noisy::new(width, height, self.color.each_ref().map(Vec::as_slice), features);
-                let noisy = noisy.map_err(|error| Error::Settings(error.to_string()))?;
-                Ok(denoise_unless(&noisy, &<_>::default(), &|| control.is_cancelled()))
+                own(size, self.color.each_ref().map(Vec::as_slice), features, control)
             }
             Denoiser::Oidn => {
-                let failed = |error: juggler_oidn::Error| Error::Settings(error.to_string());
-                let library = Oidn::open(library).map_err(failed)?;
                 let both = |halves: &[Vec<Rgb>; 2]| -> Vec<Rgb> {
                     halves[0].iter().zip(&halves[1]).map(|(a, b)| (*a + *b) * 0.5).collect()
                 };
                 let normal: Vec<Vec3> =
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
-                let pixels = library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map_err(failed)?;
-                Ok(Some(Denoised { pixels, moved_energy: 0.0 }))
+                let features = PixelFeatures { albedo: Some(&albedo), normal: Some(&normal), depth: None };
+                open_image_denoise(size, &color, &features, library).map(Some)
             }
         }
     }
+}
+
+/// Noisy pixels in linear light, row by row from the top.
+#[derive(Clone, Copy, Debug)]
+pub enum NoisyPixels<'a> {
+    /// Means of all samples. The own filter estimates the noise from neighboring pixels, so that its
+    /// result is softer than that of halves.
+    Whole(&'a [Rgb]),
+    /// Means of two disjoint halves of the samples, whose difference is the noise.
+    Halves([&'a [Rgb]; 2]),
+}
+
+/// Features of the pixels of a picture, row by row from the top; all optional.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PixelFeatures<'a> {
+    /// Albedo, 0 to 1 in each channel; black where there is no surface.
+    pub albedo: Option<&'a [Rgb]>,
+    /// Shading normal, in world space; zero where there is no surface.
+    pub normal: Option<&'a [Vec3]>,
+    /// Distance along the ray, in scene units; zero or infinite where there is no surface.
+    pub depth: Option<&'a [f32]>,
+}
+
+/// Denoises pixels of any origin: an image that was rendered without a denoiser, or by another
+/// program. Returns `None` if `control` was cancelled.
+///
+/// # Errors
+///
+/// A buffer does not have a value for each of the width × height pixels, or Open Image Denoise
+/// cannot be loaded or rejects the image.
+pub fn denoise_pixels(
+    size: [u32; 2],
+    noisy: NoisyPixels,
+    features: &PixelFeatures,
+    with: Denoiser,
+    library: Option<&Path>,
+    control: &Control,
+) -> Result<Option<Denoised>, Error> {
+    match (with, noisy) {
+        (Denoiser::Own, NoisyPixels::Whole(pixels)) => {
+            let [a, b] = split((size[0] as usize).max(1), pixels, features.albedo);
+            denoise_pixels(size, NoisyPixels::Halves([&a, &b]), features, with, library, control)
+        }
+        (Denoiser::Own, NoisyPixels::Halves(halves)) => {
+            let PixelFeatures { albedo, normal, depth } = *features;
+            let features = Features {
+                albedo: albedo.map(|pixels| [pixels; 2]),
+                normal: normal.map(|pixels| [pixels; 2]),
+                depth: depth.map(|pixels| [pixels; 2]),
+            };
+            own(size, halves, features, control)
+        }
+        (Denoiser::Oidn, NoisyPixels::Whole(pixels)) => open_image_denoise(size, pixels, features, library).map(Some),
+        (Denoiser::Oidn, NoisyPixels::Halves([a, b])) => {
+            let pixels: Vec<Rgb> = a.iter().zip(b).map(|(a, b)| (*a + *b) * 0.5).collect();
+            open_image_denoise(size, &pixels, features, library).map(Some)
+        }
+    }
+}
+
+/// Runs the own filter; `None` if `control` was cancelled.
+fn own(
+    [width, height]: [u32; 2],
+    halves: [&[Rgb]; 2],
+    features: Features,
+    control: &Control,
+) -> Result<Option<Denoised>, Error> {
+    let noisy = Noisy::new(width as usize, height as usize, halves, features);
+    let noisy = noisy.map_err(|error| Error::Settings(error.to_string()))?;
+    Ok(denoise_unless(&noisy, &<_>::default(), &|| control.is_cancelled()))
+}
+
+/// Runs Open Image Denoise, which does not read the depth.
+fn open_image_denoise(
+    [width, height]: [u32; 2],
+    color: &[Rgb],
+    features: &PixelFeatures,
+    library: Option<&Path>,
+) -> Result<Denoised, Error> {
+    let failed = |error: juggler_oidn::Error| Error::Settings(error.to_string());
+    let library = Oidn::open(library).map_err(failed)?;
+    let (width, height) = (width as usize, height as usize);
+    let pixels = library.denoise(width, height, color, features.albedo, features.normal).map_err(failed)?;
+    Ok(Denoised { pixels, moved_energy: 0.0 })
 }
 
 impl Halves {

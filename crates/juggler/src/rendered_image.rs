@@ -1,5 +1,6 @@
 //! Rendered images in memory, with their AOVs and all that a file of them contains.
 
+mod denoised;
 mod encode;
 
 use crate::denoise::DenoiserInput;
@@ -128,12 +129,12 @@ impl RenderedImage {
         let Parts { pixels, channels, denoiser_input } = parts;
         let denoise = Instant::now();
         let denoised = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?;
+        let (render, denoise) = (denoise - start, denoised.as_ref().map_or(Duration::ZERO, |_| denoise.elapsed()));
         let pixels = denoised.unwrap_or(pixels);
         if denoiser_input.is_some() {
             let FilmSummary { hash, mean, .. } = digest(&pixels, description.region);
             summary = FilmSummary { hash, mean, ..summary };
         }
-        let (render, denoise) = (denoise - start, denoise.elapsed());
         let (rays, write) = (RayCounts::default(), Duration::ZERO);
         let stats = RenderStats { film: summary, samples, rays, render, denoise, write };
         Ok(Self { header, pixels, aovs, channels, stats })
@@ -252,9 +253,11 @@ impl Picture {
     ) -> Result<RenderedImage, Error> {
         let start = Instant::now();
         let parts = self.collect(film);
+        let (render, start) = (render + start.elapsed(), Instant::now());
         let denoised = denoise_pixels(self.aovs(), parts.denoiser_input.as_ref(), library, control)?;
+        let denoise = denoised.as_ref().map_or(Duration::ZERO, |_| start.elapsed());
         let pixels = denoised.unwrap_or(parts.pixels);
-        Ok(self.image_of_film(film, pixels, parts.channels, [render, start.elapsed()], control))
+        Ok(self.image_of_film(film, pixels, parts.channels, [render, denoise], control))
     }
 
     /// The image that a film holds so far, without denoising; other threads may add samples

@@ -1,11 +1,13 @@
 //! Rendered images: pixels and AOVs as bytes, which arrays wrap.
 
+use crate::denoise::library;
 use crate::errors::settings_error;
+use crate::settings::denoiser_by_name;
 use crate::task;
 use juggler::film::counts::SampleCountStats;
 use juggler::imaging::{CropFrame, Header, ImageFormat, Tone, Viewpoint};
 use juggler::math::Rgb;
-use juggler::render::RayCounts;
+use juggler::render::{Control, RayCounts};
 use juggler::{Aov, AovSet, Error, RenderStats, RenderedImage, by_name};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -137,6 +139,13 @@ impl Image {
             }
             _ => None,
         }
+    }
+
+    /// The image without noise, by a denoiser of this name.
+    fn denoised(&self, py: Python<'_>, with: &str) -> PyResult<Self> {
+        let (image, with) = (Arc::clone(&self.image), denoiser_by_name(with)?);
+        let denoised = task::call(py, move || Ok(image.denoised(with, library().as_deref(), &Control::default())?))?;
+        Ok(Self::new(denoised, self.frame))
     }
 
     /// Saves the image; the extension selects the format.
@@ -280,13 +289,14 @@ fn is_index(layer: &str) -> bool {
 }
 
 /// Bytes of `count` words.
-fn words(py: Python<'_>, count: usize, words: impl Iterator<Item = [u8; 4]>) -> PyResult<Bound<'_, PyBytes>> {
+pub fn words(py: Python<'_>, count: usize, words: impl Iterator<Item = [u8; 4]>) -> PyResult<Bound<'_, PyBytes>> {
     PyBytes::new_with(py, count * 4, |bytes| {
         bytes.as_chunks_mut::<4>().0.iter_mut().zip(words).for_each(|(place, word)| *place = word);
         Ok(())
     })
 }
 
-fn floats(bytes: &[u8]) -> Vec<f32> {
+/// Floats of their bytes.
+pub fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks::<4>().0.iter().map(|word| f32::from_ne_bytes(*word)).collect()
 }

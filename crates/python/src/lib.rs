@@ -4,6 +4,7 @@
 
 mod budget;
 mod comparison;
+mod denoise;
 mod errors;
 mod files;
 mod image;
@@ -21,6 +22,8 @@ mod threads;
 mod _native {
     #[pymodule_export]
     use crate::comparison::compare;
+    #[pymodule_export]
+    use crate::denoise::denoise;
     #[pymodule_export]
     use crate::files::{configuration, examples, main};
     #[pymodule_export]

@@ -1,5 +1,6 @@
 //! Partial renders: the bytes of `.jfilm` files.
 
+use crate::denoise::library;
 use crate::errors::{of_file, of_partial_render, settings_error};
 use crate::image::Image;
 use crate::task::{self, Fault};
@@ -10,9 +11,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Environment variable with the path of Open Image Denoise.
-const LIBRARY: &str = "JUGGLER_OIDN";
 
 /// Samples of some pixels of an image, which other partial renders complete.
 #[pyclass(frozen, module = "juggler._native")]
@@ -84,7 +82,7 @@ pub fn merge(py: Python<'_>, partial_renders: Vec<Py<PartialRender>>) -> PyResul
     let opened = named.collect::<PyResult<Vec<_>>>()?;
     let image = task::call(py, move || {
         let merge = Merge::new(opened, MergeGoal::Whole)?;
-        let library = std::env::var_os(LIBRARY).map(PathBuf::from);
+        let library = library();
         RenderedImage::from_partial_renders(&merge, library.as_deref(), &Control::default()).map_err(Fault::from)
     })?;
     Ok(Image::new(image, frame))

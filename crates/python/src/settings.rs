@@ -217,10 +217,15 @@ fn aovs(value: &Bound<'_, PyAny>) -> PyResult<Vec<Aov>> {
 fn denoiser(value: &Bound<'_, PyAny>) -> PyResult<Option<Denoiser>> {
     match value.cast::<PyBool>() {
         Ok(switch) => Ok(switch.is_true().then_some(Denoiser::Own)),
-        Err(_) => Denoiser::by_name(&read::<String>("denoise", value, "True, False or the name of a denoiser")?)
-            .map(Some)
-            .map_err(convert),
+        Err(_) => {
+            denoiser_by_name(&read::<String>("denoise", value, "True, False or the name of a denoiser")?).map(Some)
+        }
     }
+}
+
+/// Denoiser of a name.
+pub fn denoiser_by_name(name: &str) -> PyResult<Denoiser> {
+    Denoiser::by_name(name).map_err(convert)
 }
 
 /// Color temperature in kelvin, alone or with a tint.

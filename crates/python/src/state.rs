@@ -1,5 +1,6 @@
 //! Scenes that are built, and renders of them.
 
+use crate::denoise::library;
 use crate::settings::RenderSettings;
 use crate::task::{Fault, Monitor};
 use juggler::camera::film::Film;
@@ -7,12 +8,8 @@ use juggler::memory::Effort;
 use juggler::render::{Control, estimate_noise};
 use juggler::scene::Scene;
 use juggler::{Error, Limit, Picture, RenderedImage, Settings};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// Environment variable with the path of Open Image Denoise.
-const LIBRARY: &str = "JUGGLER_OIDN";
 
 /// Scene with its world, at one frame and with all settings.
 pub struct Built {
@@ -76,7 +73,7 @@ pub fn finish(picture: &Picture, film: &Arc<Film>, start: Instant, monitor: &Mon
         }
     }
     picture.render_to_limit(film, &monitor.control)?;
-    let library = std::env::var_os(LIBRARY).map(PathBuf::from);
+    let library = library();
     Ok(picture.develop_in_memory(film, start.elapsed(), library.as_deref(), &monitor.control)?)
 }
 

@@ -24,6 +24,7 @@ from juggler._api import (
 )
 from juggler._camera import Camera as Camera
 from juggler._comparison import Comparison as Comparison, compare as compare
+from juggler._denoise import denoise as denoise
 from juggler._errors import (
     Cancelled as Cancelled,
     FileError as FileError,
@@ -40,3 +41,4 @@ from juggler._partial_render import PartialRender as PartialRender, merge as mer
 from juggler._probe import Probe as Probe
 from juggler._progress import Progress as Progress
 from juggler._renderer import Renderer as Renderer
+from juggler._view import View as View, view as view

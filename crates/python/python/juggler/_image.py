@@ -116,6 +116,15 @@ class Image:
         viewpoint = self._native.viewpoint
         return None if viewpoint is None else Camera(viewpoint, self._native.window)
 
+    def denoised(self, denoiser="own"):
+        """Returns the image without noise, by the denoiser "own" or "oidn" (Open Image Denoise).
+
+        The denoiser uses the AOVs `albedo`, `normal` and `depth` if the image has them, and should have
+        them: they keep edges and textures sharp. A render with `denoise=` knows more of the noise and
+        gives a sharper image; such an image stays as it is.
+        """
+        return Image(self._native.denoised(denoiser))
+
     def save(self, path):
         """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
         self._native.save(os.fspath(path))

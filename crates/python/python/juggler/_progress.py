@@ -88,7 +88,7 @@ def display(progress, live=True):
     if callable(progress):
         return Callback(progress)
     if progress is None or progress is True:
-        shell = _notebook_shell()
+        shell = notebook_shell()
         if shell is not None and live:
             from juggler._notebook import LiveImage
 
@@ -98,7 +98,7 @@ def display(progress, live=True):
     return Display()
 
 
-def _notebook_shell():
+def notebook_shell():
     """Returns the shell of a notebook, if the code runs in one."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
