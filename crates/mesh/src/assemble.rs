@@ -96,7 +96,7 @@ fn attributes_of_colors(vertices: Colors, faces: Colors) -> NamedAttributes {
 }
 
 /// The first attribute of each name; a warning names all others.
-fn distinct(
+pub(crate) fn distinct(
     attributes: impl Iterator<Item = (String, MeshAttribute)>,
     warnings: &mut Vec<String>,
 ) -> BTreeMap<String, MeshAttribute> {

@@ -4,6 +4,7 @@
 use crate::error::MeshError;
 use crate::formats;
 use crate::limits::MeshLimits;
+use crate::ply::declared_points;
 use crate::sampling::{Counts, FACE, FileSampler};
 use juggler_shape::MeshData;
 use std::io;
@@ -56,6 +57,35 @@ pub fn estimate(path: &Path) -> Result<MeshEstimate, MeshError> {
     let Some(format) = format.filter(|_| size <= limit) else { return Ok(MeshEstimate::default()) };
     let counts = format.counts(&mut file).map_err(failed)?;
     Ok(MeshEstimate::new(&counts, size))
+}
+
+/// Estimated memory of the points of a PLY file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PointEstimate {
+    /// Number of points.
+    pub count: u64,
+    /// Size of their arrays, in bytes.
+    pub resident_bytes: u64,
+    /// Peak memory while they are read, in bytes.
+    pub peak_bytes: u64,
+}
+
+/// Estimates the memory to read the points of a PLY file, from its header. Zero for a file that is no
+/// PLY of points or exceeds the default limit of bytes.
+pub fn estimate_points(path: &Path) -> Result<PointEstimate, MeshError> {
+    let failed = |error: io::Error| MeshError { path: path.to_owned(), kind: error.into() };
+    let limit = MeshLimits::default().file_bytes;
+    let file = FileSampler::open(path, limit).map_err(failed)?;
+    if file.size > limit { Ok(PointEstimate::default()) } else { Ok(points_of_head(&file.head, file.size)) }
+}
+
+/// Estimates the memory of the points of a PLY file of `size` bytes from its first bytes, as
+/// [`estimate_points`] does.
+pub fn points_of_head(head: &[u8], size: u64) -> PointEstimate {
+    let Some((count, bytes)) = declared_points(head, size) else { return PointEstimate::default() };
+    let resident_bytes = count.saturating_mul(bytes);
+    // Arrays are copied to their final place one after the other.
+    PointEstimate { count, resident_bytes, peak_bytes: resident_bytes.saturating_mul(2).saturating_add(size) }
 }
 
 #[cfg(test)]

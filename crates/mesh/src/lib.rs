@@ -2,6 +2,7 @@
 //!
 //! [`load`] reads a file of any of these formats as one mesh, with the solids of an STL, and
 //! [`parse_obj`] an OBJ with what its statements say about the faces. [`ply_bytes`] writes a PLY.
+//! [`parse_points`] and [`points_bytes`] read and write the vertices of a PLY alone, for instances.
 //!
 //! The readers are written here because the available crates do not say where a file is wrong (tobj
 //! 4.0.5 has an enum without a position, stl_io 0.11.0 an `io::Error` without an offset, ply-rs-bw
@@ -35,12 +36,12 @@ mod weld;
 
 pub use detect::FileContent;
 pub use error::{FilePosition, MeshError, MeshErrorKind};
-pub use estimate::{MeshEstimate, estimate};
+pub use estimate::{MeshEstimate, PointEstimate, estimate, estimate_points, points_of_head};
 pub use format::MeshFormatInfo;
 pub use limits::MeshLimits;
 pub use load::{load, parse};
 pub use mesh_file::{MAX_SOLIDS, MeshFile, StlSolid};
 pub use obj::{OBJ, ObjModel, ObjSection, is_plain_obj, parse_obj};
-pub use ply::{PLY, ply_bytes, texture_file};
+pub use ply::{PLY, PointFile, parse_points, ply_bytes, points_bytes, texture_file};
 pub use stl::{STL, has_several_solids};
 pub use unsupported::UnsupportedFormat;

@@ -179,6 +179,11 @@ fn stored_bytes(item: Scalar) -> u64 {
     }
 }
 
+/// Whether a column belongs to an attribute, faulty or not.
+pub(super) fn is_attribute(column: &str) -> bool {
+    column.starts_with(PREFIX)
+}
+
 /// Name and channel of an attribute's column; `None` for other columns.
 fn parse(column: &str) -> Option<(String, Option<usize>)> {
     let rest = column.strip_prefix(PREFIX)?;

@@ -134,7 +134,7 @@ fn drop_short_arrays(parts: &mut MeshParts) {
 }
 
 /// Rejects row counts for which the file is too short, before memory is allocated for them.
-fn check_counts(header: &Header, values: &impl Values) -> Result<(), MeshErrorKind> {
+pub(super) fn check_counts(header: &Header, values: &impl Values) -> Result<(), MeshErrorKind> {
     let mut left = values.remaining();
     for element in &header.elements {
         let needed = element.count.saturating_mul(row_size(element, values));
@@ -310,7 +310,12 @@ fn read_corners(
     })
 }
 
-fn skip_element(element: &Element, values: &mut impl Values, warnings: &mut Vec<String>) -> Result<(), MeshErrorKind> {
+/// Skips the rows of an element, with a warning.
+pub(super) fn skip_element(
+    element: &Element,
+    values: &mut impl Values,
+    warnings: &mut Vec<String>,
+) -> Result<(), MeshErrorKind> {
     warnings.push(format!("ignored: {} elements {}", element.count, quote(element.name.as_bytes())));
     if element.properties.is_empty() {
         return Ok(());

@@ -12,7 +12,7 @@
 //! `TextureFile` names a picture for a scene around the file ([`texture_file`]). The reader ignores
 //! everything else with a warning that names it, including lines of the header that are neither
 //! declarations nor comments, such as `Created by Blender3D`. In a text, each line is one row of an
-//! element, as the header describes it.
+//! element, as the header describes it. [`parse_points`] reads the rows of `vertex` alone, as points.
 
 mod ascii;
 mod attributes;
@@ -22,6 +22,7 @@ mod colors;
 mod corners;
 mod declared;
 mod header;
+mod points;
 mod rows;
 mod strips;
 #[cfg(test)]
@@ -32,7 +33,9 @@ mod write;
 
 pub(crate) use attributes::NamedAttributes;
 use declared::{DeclaredCounts, declared};
-pub use write::ply_bytes;
+pub(crate) use points::declared_points;
+pub use points::{PointFile, parse_points};
+pub use write::{ply_bytes, points_bytes};
 
 use crate::error::MeshErrorKind;
 use crate::format::{MeshFormat, MeshFormatInfo};
@@ -66,7 +69,9 @@ impl MeshFormat for Ply {
         let header = Header::read(&mut scanner)?;
         let body = Body::new(&header, limits, piece);
         match header.encoding {
-            Encoding::Ascii => read_text(&body, &ascii::AsciiValues::new(scanner)),
+            Encoding::Ascii => {
+                read_text(&ascii::AsciiValues::new(scanner), |values| body.read(values), |mesh| &mut mesh.warnings)
+            }
             Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
         }
     }
@@ -76,15 +81,20 @@ impl MeshFormat for Ply {
     }
 }
 
-/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers;
-/// the error is that of the lines unless the sequence fits the header exactly.
-fn read_text(body: &Body<'_>, values: &ascii::AsciiValues<'_>) -> Result<MeshFile, MeshErrorKind> {
-    let strict = body.read(values.clone());
+/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers,
+/// with one of the `warnings`; the error is that of the lines unless the sequence fits the header
+/// exactly.
+fn read_text<'t, T>(
+    values: &ascii::AsciiValues<'t>,
+    read: impl Fn(ascii::AsciiValues<'t>) -> Result<T, MeshErrorKind>,
+    warnings: impl Fn(&mut T) -> &mut Vec<String>,
+) -> Result<T, MeshErrorKind> {
+    let strict = read(values.clone());
     if !matches!(strict, Err(MeshErrorKind::Malformed { .. })) {
         return strict;
     }
-    let Ok(mut found) = body.read(values.clone().without_lines()) else { return strict };
-    found.warnings.push("lines do not hold one element each: read as a sequence of numbers".to_owned());
+    let Ok(mut found) = read(values.clone().without_lines()) else { return strict };
+    warnings(&mut found).push("lines do not hold one element each: read as a sequence of numbers".to_owned());
     Ok(found)
 }
 

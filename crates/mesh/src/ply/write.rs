@@ -1,11 +1,10 @@
 //! Meshes as PLY files.
 
 use super::attributes::column_names;
+use super::points::{COLOR, END_COLOR, MATRIX, POSITION, PointFile, ROTATION, SCALE, SCALES};
 use juggler_shape::MeshData;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 
-/// Names of the columns of a color, of which a color has the first 3 or 4.
-const COLOR: [&str; 4] = ["red", "green", "blue", "alpha"];
 /// Maximum number of channels of an attribute.
 const CHANNELS: usize = 4;
 
@@ -33,6 +32,53 @@ pub fn ply_bytes(mesh: &MeshData) -> Vec<u8> {
         face.put(i, &mut file);
     }
     file
+}
+
+/// Points as a binary PLY file, which [`parse_points`](super::parse_points) reads to the same numbers.
+/// Positions are written in any case, for other programs: those of matrices, or else 0 if there are
+/// none.
+pub fn points_bytes(points: &PointFile) -> Vec<u8> {
+    let PointFile { count, positions, rotations, uniform_scales, scales, matrices, colors, end_colors, .. } = points;
+    let groups: [(&[&str], &[f32]); 6] = [
+        (&ROTATION, rotations),
+        (&SCALE, uniform_scales),
+        (&SCALES, scales),
+        (&MATRIX, matrices),
+        (&COLOR, colors),
+        (&END_COLOR, end_colors),
+    ];
+    let groups: Vec<_> = groups.into_iter().filter(|(_, numbers)| !numbers.is_empty()).collect();
+    let attributes = AttributeWriter { attributes: points.attributes.iter().map(attribute_columns).collect() };
+    let columns: String = POSITION
+        .iter()
+        .chain(groups.iter().flat_map(|(names, _)| *names))
+        .map(|name| format!("property float {name}\n"))
+        .collect();
+    let head = "ply\nformat binary_little_endian 1.0\nelement vertex";
+    let mut file = format!("{head} {count}\n{columns}{}end_header\n", attributes.header()).into_bytes();
+    let width: usize = groups.iter().map(|(names, _)| names.len()).sum();
+    file.reserve(count.saturating_mul(4 * (POSITION.len() + width) + attributes.bytes()));
+    for point in 0..*count {
+        let numbers = |numbers: &'_ [f32], channels: usize| -> [f32; 12] {
+            let first = point.saturating_mul(channels);
+            std::array::from_fn(|channel| numbers.get(first.saturating_add(channel)).copied().unwrap_or_default())
+        };
+        let [x, y, z, ..] = numbers(positions, 3);
+        let [_, _, _, from_x, _, _, _, from_y, _, _, _, from_z] = numbers(matrices, MATRIX.len());
+        let position = if matrices.is_empty() { [x, y, z] } else { [from_x, from_y, from_z] };
+        file.extend(position.iter().flat_map(|number| number.to_le_bytes()));
+        for (names, values) in &groups {
+            let numbers = numbers(values, names.len());
+            file.extend(numbers.iter().take(names.len()).flat_map(|number| number.to_le_bytes()));
+        }
+        attributes.put(point, &mut file);
+    }
+    file
+}
+
+/// An attribute of points with the names of its columns.
+fn attribute_columns<'m>((name, attribute): (&String, &'m MeshAttribute)) -> (Vec<String>, &'m MeshAttribute) {
+    (column_names(name, (attribute.channels as usize).min(CHANNELS)), attribute)
 }
 
 /// Writer of the attributes of vertices or faces.
