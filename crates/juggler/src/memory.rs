@@ -111,6 +111,15 @@ impl Memory {
         if needs.meshes > 0 {
             world.push(part("meshes in memory", needs.meshes));
         }
+        for file in &needs.instance_files {
+            let estimate = juggler_mesh::estimate_points(file).unwrap_or_default();
+            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            world.push(part(format!("the instances `{name}`"), estimate.resident_bytes));
+        }
+        if needs.instance_arrays > 0 {
+            world.push(part("arrays of instances", needs.instance_arrays));
+        }
         if needs.images > 0 {
             world.push(part("images in memory", needs.images));
         }

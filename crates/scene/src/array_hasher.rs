@@ -1,5 +1,7 @@
 //! Hash of arrays, without a copy of them.
 
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
+
 /// Number of values that are converted to bytes at once.
 const CHUNK: usize = 1 << 12;
 
@@ -42,6 +44,21 @@ impl ArrayHasher {
             chunk.clear();
             values.iter().for_each(|value| chunk.extend_from_slice(bytes(*value).as_flattened()));
             self.0.update(&chunk);
+        }
+    }
+
+    /// Adds an attribute with its name.
+    pub fn attribute(&mut self, name: &str, attribute: &MeshAttribute) {
+        self.bytes(name.as_bytes());
+        let domain = match attribute.domain {
+            AttributeDomain::Vertex => 0,
+            AttributeDomain::Face => 1,
+        };
+        self.numbers(&[domain]).numbers(&attribute.channels.to_le_bytes());
+        match &attribute.data {
+            AttributeData::U8(values) => self.numbers(&[1]).bytes(values),
+            AttributeData::U16(values) => self.numbers(&[2]).array(values, |value| [value.to_le_bytes()]),
+            AttributeData::F32(values) => self.numbers(&[4]).array(values, |value| [value.to_le_bytes()]),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Assets: files that a scene holds in memory, by name.
 
-use crate::mesh_digest;
+use crate::description::Instances;
 use crate::texel_array::TexelArray;
+use crate::{instance_digest, mesh_digest};
 use juggler_math::Image;
 use juggler_shape::MeshData;
 use std::collections::BTreeMap;
@@ -27,6 +28,8 @@ enum Content {
     Mesh(Arc<MeshData>),
     /// Texels as given.
     Texels(Arc<TexelArray>),
+    /// Arrays of instances, which clones share.
+    Instances(Instances),
 }
 
 /// Assets are equal when their contents have the same hash.
@@ -98,6 +101,24 @@ impl Asset {
         Self { digest: texels.digest(), content: Content::Texels(texels) }
     }
 
+    /// Creates an asset of the arrays of instances, in place of a PLY file of points: the `file` of an
+    /// object's `instances` may name it. The arrays are neither copied nor converted. A scene whose
+    /// objects name an asset that names a file itself does not compile.
+    ///
+    /// ```
+    /// use juggler_math::Vec3;
+    /// use juggler_scene::{Asset, Instances, Loader};
+    ///
+    /// let asset = Asset::from_instances(Instances::at((0..1000).map(|i| Vec3::X * i as f32)));
+    /// let text = r#"{"version": 1, "objects": [{"shape": "sphere", "instances": {"file": "row"}}]}"#;
+    /// let scene = Loader::default().from_json_with(text, "scene.json", [("row".into(), asset)])?;
+    /// assert_eq!(scene.compile()?.world.geometry_stats().shapes, 1000);
+    /// # Ok::<(), juggler_scene::SceneError>(())
+    /// ```
+    pub fn from_instances(instances: Instances) -> Self {
+        Self { digest: instance_digest::digest(&instances), content: Content::Instances(instances) }
+    }
+
     /// BLAKE3 hash of the content.
     pub fn digest(&self) -> [u8; 32] {
         self.digest
@@ -135,6 +156,14 @@ impl Asset {
         }
     }
 
+    /// Arrays of instances, if the asset consists of them.
+    pub fn instances(&self) -> Option<&Instances> {
+        match &self.content {
+            Content::Instances(instances) => Some(instances),
+            _ => None,
+        }
+    }
+
     /// Content in words, for messages.
     pub(crate) fn content_name(&self) -> &'static str {
         match &self.content {
@@ -142,6 +171,7 @@ impl Asset {
             Content::Image(_) => "pixels",
             Content::Mesh(_) => "a mesh",
             Content::Texels(_) => "texels",
+            Content::Instances(_) => "instances",
         }
     }
 }

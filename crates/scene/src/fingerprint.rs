@@ -6,7 +6,7 @@
 //! are linear) and the number of samples, since a render continued with more samples is still of
 //! the same scene.
 
-use crate::compile::{Files, image_files, light_files};
+use crate::compile::{Files, image_files, instance_files, light_files};
 use crate::description::{Description, Object, Render};
 use crate::item::Item;
 use crate::motion::Tracks;
@@ -175,14 +175,17 @@ fn hex(hash: blake3::Hash) -> String {
     hash.to_hex()[..32].to_owned()
 }
 
-/// The mesh, image and photometric files that a scene refers to, with the hashes of their contents.
+/// The files of meshes, images, lights and instances that a scene refers to, with the hashes of their
+/// contents.
 pub(crate) fn digests(scene: &Description, files: &Files<'_>) -> Vec<(PathBuf, [u8; 32])> {
     let meshes = mesh_files(scene, files).into_iter().map(|file| (files.asset_cache.digest(&file), file));
     let images = image_files(scene, files).into_iter();
     let images = images.map(|(file, space)| (files.asset_cache.image_digest(&file, space), file));
     let lights = light_files(scene, files).into_iter();
     let lights = lights.map(|(file, purpose)| (files.asset_cache.light_digest(&file, purpose), file));
-    meshes.chain(images).chain(lights).map(|(hash, file)| (file, hash)).collect()
+    let instances = instance_files(scene, files).into_iter();
+    let instances = instances.map(|file| (files.asset_cache.instance_digest(&file), file));
+    meshes.chain(images).chain(lights).chain(instances).map(|(hash, file)| (file, hash)).collect()
 }
 
 /// The mesh files that a scene refers to, without duplicates.

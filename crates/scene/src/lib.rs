@@ -25,6 +25,7 @@ mod equality;
 mod error;
 mod field_value;
 mod fingerprint;
+mod instance_digest;
 mod integrator;
 mod item;
 pub mod kind;
@@ -56,7 +57,8 @@ pub use camera_text::{camera_json, with_camera};
 pub use change::{Change, Changed};
 pub use compile::{Compiled, Illuminance, Names};
 pub use description::{
-    Chain, ControlSphere, Description, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, TransformStep,
+    Chain, ControlSphere, Description, InstanceArray, InstanceAttribute, InstanceFile, Instances, Limb, Model,
+    NamedAttributes, Object, ScaleFactors, TransformStep,
 };
 pub use error::SceneError;
 pub use field_value::FieldValue;

@@ -2,7 +2,6 @@
 
 use crate::array_hasher::ArrayHasher;
 use juggler_shape::MeshData;
-use juggler_shape::attribute::{AttributeData, AttributeDomain};
 
 /// BLAKE3 hash of all arrays of a mesh.
 pub fn digest(mesh: &MeshData) -> [u8; 32] {
@@ -16,17 +15,7 @@ pub fn digest(mesh: &MeshData) -> [u8; 32] {
     hasher.array(uvs1, |uv| uv.to_array().map(f32::to_le_bytes));
     hasher.array(tangents, |tangent| tangent.map(f32::to_le_bytes));
     for (name, attribute) in attributes {
-        hasher.bytes(name.as_bytes());
-        let domain = match attribute.domain {
-            AttributeDomain::Vertex => 0,
-            AttributeDomain::Face => 1,
-        };
-        hasher.numbers(&[domain]).numbers(&attribute.channels.to_le_bytes());
-        match &attribute.data {
-            AttributeData::U8(values) => hasher.numbers(&[1]).bytes(values),
-            AttributeData::U16(values) => hasher.numbers(&[2]).array(values, |value| [value.to_le_bytes()]),
-            AttributeData::F32(values) => hasher.numbers(&[4]).array(values, |value| [value.to_le_bytes()]),
-        }
+        hasher.attribute(name, attribute);
     }
     hasher.finish()
 }
@@ -35,7 +24,7 @@ pub fn digest(mesh: &MeshData) -> [u8; 32] {
 mod tests {
     use super::*;
     use juggler_math::{Vec2, Vec3};
-    use juggler_shape::attribute::MeshAttribute;
+    use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
     use std::collections::BTreeSet;
 
     #[test]

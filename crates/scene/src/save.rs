@@ -3,15 +3,16 @@
 use crate::asset::Asset;
 use crate::{Scene, SceneError};
 use juggler_imaging::{Header, ImageFormat, atomic, create, raster_bytes, write_image};
-use juggler_mesh::ply_bytes;
+use juggler_mesh::{ply_bytes, points_bytes};
 use std::path::{Component, Path, PathBuf};
 
 impl Scene {
     /// Saves the scene with its animation as a scene file, and its assets as files in the same
-    /// folder, under the names that the scene uses: bytes as they are, images as PFM, meshes as PLY,
-    /// texels as PNG, or EXR if they are floats. Reading the scene file gives the same pictures. Files
-    /// that the scene refers to stay where they are. Each file replaces an existing one once it is complete. Fails for an asset whose name is no
-    /// relative path or leads out of the folder, and for a file that cannot be written.
+    /// folder, under the names that the scene uses: bytes as they are, images as PFM, meshes and
+    /// instances as PLY, texels as PNG, or EXR if they are floats. Reading the scene file gives the same
+    /// pictures. Files that the scene refers to stay where they are. Each file replaces an existing one
+    /// once it is complete. Fails for an asset whose name is no relative path or leads out of the
+    /// folder, and for a file that cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SceneError> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -39,6 +40,9 @@ fn save_asset(asset: &Asset, path: &Path) -> Result<(), SceneError> {
     }
     if let Some(mesh) = asset.mesh() {
         write(path, &ply_bytes(mesh))?;
+    }
+    if let Some(instances) = asset.instances() {
+        write(path, &points_bytes(&instances.to_points()))?;
     }
     if let Some(texels) = asset.texels() {
         write(path, &raster_bytes(&path.display().to_string(), &texels.raster())?)?;

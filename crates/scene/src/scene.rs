@@ -2,7 +2,8 @@
 
 use crate::SceneError;
 use crate::animate::SceneSources;
-use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files, light_files};
+use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files};
+use crate::compile::{instance_files, light_files};
 use crate::description::{Description, deserialize_scene};
 use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, mesh_files};
@@ -46,7 +47,7 @@ pub struct Scene {
     pub(crate) asset_cache: AssetCache,
     /// Motion while the shutter is open, computed on first use.
     tracks: Arc<Mutex<Option<CachedTracks>>>,
-    /// The scene with its models expanded, computed on first use.
+    /// The scene with its models and files of instances expanded, computed on first use.
     pub(crate) expansion: ExpansionMemo,
 }
 
@@ -256,20 +257,23 @@ impl Scene {
         self.asset_cache.store().is_in_memory()
     }
 
-    /// Names of the scene's files: those it was read from, meshes, images and photometric files.
+    /// Names of the scene's files: those it was read from, meshes, images, photometric files, and files of
+    /// instances.
     pub fn paths(&self) -> Vec<PathBuf> {
         let texts = self.origin.iter().flat_map(|origin| origin.document.sources.names());
         let (scene, files) = (&self.description, self.files());
         let images = image_files(scene, &files).into_iter().map(|(file, _)| file);
         let lights = light_files(scene, &files).into_iter().map(|(file, _)| file);
-        let files: BTreeSet<PathBuf> = mesh_files(scene, &files).into_iter().chain(images).chain(lights).collect();
+        let instances = instance_files(scene, &files);
+        let meshes = mesh_files(scene, &files).into_iter();
+        let files: BTreeSet<PathBuf> = meshes.chain(images).chain(lights).chain(instances).collect();
         texts.map(PathBuf::from).chain(files).chain(self.model_paths()).collect()
     }
 
     /// The scene's integrator with the reason for it: the integrator that the scene names, or the
     /// one that supports its contents.
     pub fn integrator_choice(&self) -> IntegratorChoice {
-        match self.expanded() {
+        match self.expanded_heads() {
             None => IntegratorChoice::for_scene(&self.description),
             Some(expansion) => IntegratorChoice::for_scene(&expansion.description),
         }
@@ -277,7 +281,7 @@ impl Scene {
 
     /// Estimates what building the world needs memory for, without reading files.
     pub fn needs(&self) -> Needs {
-        match self.expanded() {
+        match self.expanded_heads() {
             None => Needs::from_scene(&self.description, self.files()),
             Some(expansion) => Needs::from_scene(&expansion.description, self.files_of(&expansion)),
         }

@@ -3,7 +3,7 @@
 use crate::asset::Assets;
 use crate::document::{self, Unreadable, text_of};
 use juggler_imaging::regular::{self, ReadError};
-use juggler_mesh::FileContent;
+use juggler_mesh::{FileContent, PointEstimate, estimate_points, points_of_head};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -95,6 +95,18 @@ impl Store {
                 let bytes = bundle.find(path).map(|(_, bytes)| bytes.as_slice()).unwrap_or_default();
                 bytes.get(..HEAD).unwrap_or(bytes).to_vec()
             }
+        }
+    }
+
+    /// Memory of the points of a PLY file, from its head; zero for a file that cannot be read.
+    pub(crate) fn points_of_head(&self, path: &Path) -> PointEstimate {
+        let of_bytes = |bytes: &[u8]| points_of_head(bytes, bytes.len() as u64);
+        if let Some(asset) = self.assets.at(path) {
+            return asset.bytes().map(of_bytes).unwrap_or_default();
+        }
+        match &self.backend {
+            Backend::Disk => estimate_points(path).unwrap_or_default(),
+            Backend::Memory(bundle) => bundle.find(path).map(|(_, bytes)| of_bytes(bytes)).unwrap_or_default(),
         }
     }
 

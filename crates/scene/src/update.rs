@@ -16,22 +16,23 @@ impl Scene {
         let (mut tracks, wrong) = self.tracks();
         let change = self.change_since(before);
         let expansion = self.expanded();
+        let (mut description, mut files) = (&self.description, self.files());
+        if let Some(expansion) = &expansion {
+            (description, tracks) = (&expansion.description, Arc::clone(&expansion.tracks));
+            files = self.files_of(expansion);
+        }
         let found = if self.has_world(before, &change) {
-            let mut description = &self.description;
-            if let Some(expansion) = &expansion {
-                (description, tracks) = (&expansion.description, Arc::clone(&expansion.tracks));
-            }
-            let (cameras, camera_keys, mut findings) = compile::cameras_of(description, &tracks, &earlier.bounds);
-            findings.extend(expansion.iter().flat_map(|expansion| expansion.findings.clone()));
+            let (cameras, camera_keys, findings) = compile::cameras_of(description, &tracks, &earlier.bounds);
             let settings = (*self.description.render).clone();
             let integrator = self.integrator_choice();
             Some((Compiled { cameras, camera_keys, settings, integrator, ..earlier.clone() }, findings))
-        } else if expansion.is_none() && before.expanded().is_none() && self.has_objects(before, &change) {
-            compile::with_shading(&self.description, &tracks, self.files(), earlier)
+        } else if !self.has_models() && !before.has_models() && self.has_objects(before, &change) {
+            compile::with_shading(description, &tracks, files, earlier)
         } else {
             None
         };
-        let Some((compiled, findings)) = found else { return self.compile() };
+        let Some((compiled, mut findings)) = found else { return self.compile() };
+        findings.extend(expansion.iter().flat_map(|expansion| expansion.findings.clone()));
         let warnings = self.warnings(wrong, findings)?;
         Ok(Compiled { warnings, ..compiled })
     }
@@ -60,15 +61,17 @@ impl Scene {
             && same_motion()
     }
 
-    /// Whether both scenes have the same objects and area lights, whatever their materials. Mesh
-    /// files are compared by content.
+    /// Whether both scenes have the same objects and area lights, whatever their materials. Files of
+    /// meshes and instances are compared by content.
     fn has_objects(&self, other: &Self, change: &Change) -> bool {
         fn area_lights(scene: &Scene) -> Vec<(usize, &Area)> {
             area_lights::iter(&scene.description.lights).collect()
         }
-        let meshes = |scene: &Self| {
-            let files = mesh_files(&scene.description, &scene.files()).into_iter();
-            files.map(|file| scene.asset_cache.digest(&file)).collect::<Vec<_>>()
+        let geometry = |scene: &Self| {
+            let (description, files) = (&scene.description, scene.files());
+            let meshes = mesh_files(description, &files).into_iter().map(|file| scene.asset_cache.digest(&file));
+            let instances = compile::instance_files(description, &files).into_iter();
+            meshes.chain(instances.map(|file| scene.asset_cache.instance_digest(&file))).collect::<Vec<_>>()
         };
         let (tracks, others) = (self.tracks().0, other.tracks().0);
         let lights = area_lights(self);
@@ -77,6 +80,6 @@ impl Scene {
             && (&tracks.objects, &tracks.groups) == (&others.objects, &others.groups)
             && lights == area_lights(other)
             && (lights.is_empty() || tracks.lights == others.lights)
-            && meshes(self) == meshes(other)
+            && geometry(self) == geometry(other)
     }
 }

@@ -85,6 +85,11 @@ impl AttributeData {
     }
 }
 
+/// Number at barycentrics of the second and third corner, between the numbers of three corners.
+pub fn interpolate([a, b, c]: [f32; 3], at: Vec2) -> f32 {
+    a * (1.0 - at.x - at.y) + b * at.x + c * at.y
+}
+
 /// Named attribute of a mesh, for the texture `attribute`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "MeshAttribute")]
@@ -116,20 +121,29 @@ impl MeshAttribute {
 
     /// Checks the number of values and that all are finite; the error names the field.
     pub(crate) fn check(&self, name: &str, positions: usize, triangles: usize) -> Result<(), InvalidShape> {
+        match self.domain {
+            AttributeDomain::Vertex => self.check_values(name, positions, "positions"),
+            AttributeDomain::Face => self.check_values(name, triangles, "triangles"),
+        }
+    }
+
+    /// Checks the number of channels, that there are as many `values` as `owners`, such as
+    /// `positions`, and that all numbers are finite.
+    ///
+    /// # Errors
+    ///
+    /// The error names the field of the attribute `name` in `attributes`.
+    pub fn check_values(&self, name: &str, values: usize, owners: &str) -> Result<(), InvalidShape> {
         let field = |part: &str| format!("attributes.{name}.{part}");
         if !(1..=4).contains(&self.channels) {
             let message =
                 format!("`channels` of the attribute `{name}` in `attributes` must be 1 to 4, it is {}", self.channels);
             return Err(invalid(field("channels"), message));
         }
-        let (values, what) = match self.domain {
-            AttributeDomain::Vertex => (positions, "positions"),
-            AttributeDomain::Face => (triangles, "triangles"),
-        };
         let (found, channels) = (self.data.len(), self.channels);
         if values.checked_mul(channels as usize) != Some(found) {
             let message = format!(
-                "the attribute `{name}` in `attributes` must have {channels} numbers for each of the {values} {what}, it has {found}"
+                "the attribute `{name}` in `attributes` must have {channels} numbers for each of the {values} {owners}, it has {found}"
             );
             return Err(invalid(field("data"), message));
         }
@@ -157,6 +171,12 @@ impl MeshAttribute {
         }
     }
 
+    /// Value of an instance, or of a triangle, as [`MeshPoint::attribute`](crate::MeshPoint::attribute)
+    /// returns it. The values of the attribute belong to faces.
+    pub fn constant_value(&self, index: usize) -> [f32; 4] {
+        self.value(index, [0; 3], Vec2::ZERO)
+    }
+
     /// Value on a triangle with these corners, at barycentrics of the second and third corner: red,
     /// green, blue and alpha. One channel is gray; missing alpha is 1, missing blue 0.
     pub(crate) fn value(&self, triangle: usize, corners: [u32; 3], at: Vec2) -> [f32; 4] {
@@ -165,10 +185,7 @@ impl MeshAttribute {
             |index: usize, channel: usize| self.data.number(index.saturating_mul(channels).saturating_add(channel));
         let channel = |channel: usize| match self.domain {
             AttributeDomain::Face => number(triangle, channel),
-            AttributeDomain::Vertex => {
-                let [a, b, c] = corners.map(|corner| number(corner as usize, channel));
-                a * (1.0 - at.x - at.y) + b * at.x + c * at.y
-            }
+            AttributeDomain::Vertex => interpolate(corners.map(|corner| number(corner as usize, channel)), at),
         };
         match channels {
             1 => {

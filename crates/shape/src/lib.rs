@@ -29,7 +29,7 @@ mod tube;
 
 pub use arithmetic::clamp_to_f32_range;
 pub use derivatives::SurfaceDerivatives;
-pub use mesh::{MeshData, MeshPoint, MorphArrays, MorphTarget};
+pub use mesh::{InstanceValues, MeshData, MeshPoint, MorphArrays, MorphTarget};
 pub use sphere::{intersect_sphere, longitude_latitude, sphere_interval, sphere_surface};
 
 /// Intersection of a ray with a shape: 16 bytes, all that traversal carries.

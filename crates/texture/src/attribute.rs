@@ -1,4 +1,4 @@
-//! Attribute of a mesh as a color, such as vertex colors.
+//! Attribute of a mesh or of instances as a color, such as vertex colors.
 //!
 //! ```json
 //! {"attribute": {"name": "color", "channel": "rgb"}}
@@ -16,13 +16,14 @@ use std::sync::Arc;
 /// Name of the attribute that is a color from 0 to 1.
 const COLOR: &str = "color";
 
-/// Attribute of a mesh, in linear light, interpolated over its triangles. Surfaces without an
-/// attribute of this name are white.
+/// Attribute of a mesh, in linear light, interpolated over its triangles, or else of the innermost
+/// [instances](#object-instances) that have one of this name. Surfaces without an attribute of this
+/// name are white.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Attribute {
-    /// Name of the attribute among the `attributes` of the mesh. `color`, the colors of vertices
-    /// or faces in a model file, is clamped to 0 to 1.
+    /// Name of the attribute among the `attributes` of the mesh or of its instances. `color`, the
+    /// colors of vertices or faces in a model file, is clamped to 0 to 1.
     pub name: String,
     /// Channels that the texture uses. A single channel gives gray. Alpha is 1 where the attribute
     /// has fewer than four channels.

@@ -124,8 +124,10 @@ impl EmissiveShape {
         let ray = transform.ray_to_local(&Ray { time: context.time, ..Ray::new(context.point, wi) });
         let hit = self.shape.intersect(&ray)?;
         let surface = self.shape.surface(&ray, &hit).to_world(transform);
-        let own = || Some(self.attributes.as_ref()?.point(&surface));
-        let mesh = self.shape.mesh_point(hit.primitive, &surface).or_else(own);
+        let mut mesh = self.shape.mesh_point(hit.primitive, &surface);
+        if let Some(attributes) = &self.attributes {
+            mesh = Some(mesh.unwrap_or_default().with_instances(attributes, self.shape_index, surface.uv.y));
+        }
         let point = TexturedPoint { surface: &surface, mesh: mesh.as_ref() };
         let view = ShadingView { wo: -wi, ..ShadingView::along_normal(point) };
         Some(materials.radiance(self.material, &view)).filter(|light| !light.is_black())

@@ -3,15 +3,15 @@
 
 use super::hierarchy_entries::HierarchyEntries;
 use super::instance::{Instance, LeafItem};
+use super::instance_attributes::ObjectAttributes;
 use super::large_mesh::{self, LargeMesh, RayCoherence};
 use super::merged_meshes::{self, MergedMeshes};
-use super::object::ObjectAttributes;
 use super::{Content, Object, Vertex, WorldHit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
-use juggler_math::{Aabb, Ray, Transform, Vec3};
+use juggler_math::{Aabb, Ray, Transform, Vec2, Vec3};
 use juggler_shape::surface::Surface;
-use juggler_shape::{Hit, MeshPoint, SurfaceDerivatives};
+use juggler_shape::{Hit, InstanceValues, MeshPoint, SurfaceDerivatives};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -49,6 +49,8 @@ pub struct Geometry {
     moves: bool,
     /// Whether any object or mesh has attributes or a second set of surface coordinates.
     pub(super) has_mesh_attributes: bool,
+    /// Whether any object, of a geometry below too, has attributes as an instance.
+    has_instance_attributes: bool,
     totals: GeometryTotals,
 }
 
@@ -118,7 +120,10 @@ impl Geometry {
         let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);
         let attributes = ObjectAttributes::new(&objects);
-        let has_mesh_attributes = !attributes.is_empty() || objects.iter().any(|o| o.content.has_mesh_attributes());
+        let has_instance_attributes =
+            !attributes.is_empty() || objects.iter().any(|object| object.content.has_instance_attributes());
+        let has_mesh_attributes =
+            has_instance_attributes || objects.iter().any(|object| object.content.has_mesh_attributes());
         // Free the descriptions of the objects before the hierarchy is built.
         let objects = Instance::from_objects(objects);
         let bvh = Bvh::build(std::mem::take(&mut entries.boxes), Quality::Balanced);
@@ -139,6 +144,7 @@ impl Geometry {
             bounds,
             moves,
             has_mesh_attributes,
+            has_instance_attributes,
             totals,
         }
     }
@@ -169,6 +175,11 @@ impl Geometry {
     /// Whether any content moves while the shutter is open.
     pub fn moves(&self) -> bool {
         self.moves
+    }
+
+    /// Whether any object, of a geometry below too, has attributes as an instance.
+    pub(super) fn has_instance_attributes(&self) -> bool {
+        self.has_instance_attributes
     }
 
     /// Whether all contents are bounded.
@@ -283,8 +294,8 @@ impl Geometry {
         Some(instance.motion.at(ray.time).vector(lift))
     }
 
-    /// Point of a mesh with attributes or a second set of surface coordinates, or else of an object with
-    /// attributes, at a surface of the shape `shape_index`.
+    /// Point of a mesh with attributes or a second set of surface coordinates, or of instances with
+    /// attributes, at a surface of the shape `shape_index`; `None` on all other surfaces.
     #[inline(never)]
     pub(super) fn mesh_point(&self, surface: &Surface, shape_index: u32, primitive: u32) -> Option<MeshPoint<'_>> {
         let (instance, inner_index) = self.find(shape_index);
@@ -292,7 +303,10 @@ impl Geometry {
             Content::Shape(shape) => shape.mesh_point(primitive, surface),
             Content::Geometry(geometry) => geometry.mesh_point(surface, inner_index, primitive),
         };
-        point.or_else(|| self.attributes.point(self.object_index(shape_index), surface))
+        if !self.has_instance_attributes {
+            return point;
+        }
+        Some(point.unwrap_or_default().with_instances(self, shape_index, surface.uv.y))
     }
 
     /// Index of the object that contains the shape `shape_index`.
@@ -320,6 +334,17 @@ impl Geometry {
     #[inline(never)]
     pub(super) fn closest(&self, ray: &mut Ray, first: u32, best: &mut WorldHit) {
         self.intersect_rays(std::slice::from_mut(ray), RayCoherence::Incoherent, first, std::slice::from_mut(best));
+    }
+}
+
+impl InstanceValues for Geometry {
+    fn value(&self, shape_index: u32, name: &str, at: Vec2) -> Option<[f32; 4]> {
+        let (instance, inner_index) = self.find(shape_index);
+        let inner = match &instance.content {
+            Content::Geometry(geometry) if geometry.has_instance_attributes => geometry.value(inner_index, name, at),
+            _ => None,
+        };
+        inner.or_else(|| self.attributes.value(self.object_index(shape_index), name, at))
     }
 }
 

@@ -1,11 +1,9 @@
 //! Contents of a [`Geometry`]: shapes and instances of other geometries, each with its transform.
 
-use super::Geometry;
+use super::{Geometry, InstanceAttributes};
 use juggler_material::MaterialId;
-use juggler_math::{Aabb, Motion, Vec2};
-use juggler_shape::surface::Surface;
-use juggler_shape::{AnyShape, Mesh, MeshData, MeshPoint};
-use std::ops::Range;
+use juggler_math::{Aabb, Motion};
+use juggler_shape::{AnyShape, Mesh};
 use std::sync::Arc;
 
 /// A shape or an instance of a geometry.
@@ -18,97 +16,8 @@ pub struct Object {
     /// Material; `None` inherits that of the enclosing instance, which is black if no instance has
     /// one.
     pub material: Option<MaterialId>,
-    /// Attributes of surfaces that have none of their own.
+    /// Attributes of the instance that the object is, or is inside of.
     pub attributes: Option<InstanceAttributes>,
-}
-
-/// Attributes of one instance: a triangle of arrays that all instances share. Its first and its
-/// third corner hold the values at the surface coordinate v = 0 and v = 1.
-#[derive(Clone, Debug)]
-pub struct InstanceAttributes {
-    /// Attributes of the vertices, and a triangle for each instance.
-    pub arrays: Arc<MeshData>,
-    /// Index of the triangle.
-    pub triangle: u32,
-}
-
-impl InstanceAttributes {
-    /// Point that has the instance's attributes at a surface.
-    pub(super) fn point(&self, surface: &Surface) -> MeshPoint<'_> {
-        attribute_point(&self.arrays, self.triangle, surface)
-    }
-}
-
-/// Attributes of the objects of a geometry: runs of successive objects with successive triangles of
-/// the same arrays.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ObjectAttributes(Vec<AttributeRun>);
-
-#[derive(Clone, Debug)]
-struct AttributeRun {
-    /// Indices of the objects.
-    objects: Range<u32>,
-    /// Attributes of the first object.
-    first: InstanceAttributes,
-}
-
-impl AttributeRun {
-    /// Index of an object's triangle.
-    fn triangle(&self, object_index: u32) -> u32 {
-        self.first.triangle.wrapping_add(object_index - self.objects.start)
-    }
-}
-
-impl ObjectAttributes {
-    pub fn new(objects: &[Object]) -> Self {
-        let mut runs: Vec<AttributeRun> = Vec::new();
-        for (object_index, object) in (0..).zip(objects) {
-            let Some(attributes) = &object.attributes else { continue };
-            let continues = |run: &&mut AttributeRun| {
-                run.objects.end == object_index
-                    && run.triangle(object_index) == attributes.triangle
-                    && Arc::ptr_eq(&run.first.arrays, &attributes.arrays)
-            };
-            match runs.last_mut().filter(continues) {
-                Some(run) => run.objects.end = object_index.saturating_add(1),
-                None => runs.push(AttributeRun {
-                    objects: object_index..object_index.saturating_add(1),
-                    first: attributes.clone(),
-                }),
-            }
-        }
-        Self(runs)
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Memory in bytes, without the arrays.
-    pub fn bytes(&self) -> usize {
-        size_of_val(self.0.as_slice())
-    }
-
-    fn run(&self, object_index: u32) -> Option<&AttributeRun> {
-        let after = self.0.partition_point(|run| run.objects.start <= object_index);
-        self.0.get(after.checked_sub(1)?).filter(|run| run.objects.contains(&object_index))
-    }
-
-    /// Attributes of an object.
-    pub fn of_object(&self, object_index: u32) -> Option<InstanceAttributes> {
-        let run = self.run(object_index)?;
-        Some(InstanceAttributes { triangle: run.triangle(object_index), ..run.first.clone() })
-    }
-
-    /// Point that has the attributes of an object at a surface.
-    pub fn point(&self, object_index: u32, surface: &Surface) -> Option<MeshPoint<'_>> {
-        let run = self.run(object_index)?;
-        Some(attribute_point(&run.first.arrays, run.triangle(object_index), surface))
-    }
-}
-
-fn attribute_point<'a>(arrays: &'a MeshData, triangle: u32, surface: &Surface) -> MeshPoint<'a> {
-    MeshPoint::new(arrays, triangle, Vec2::new(0.0, surface.uv.y.clamp(0.0, 1.0)))
 }
 
 /// Content of an object.
@@ -152,6 +61,16 @@ impl Content {
         match self {
             Self::Shape(shape) => shape.mesh().is_some_and(Mesh::has_attributes),
             Self::Geometry(geometry) => geometry.has_mesh_attributes,
+        }
+    }
+}
+
+impl Content {
+    /// Whether any object of a geometry has attributes as an instance.
+    pub(super) fn has_instance_attributes(&self) -> bool {
+        match self {
+            Self::Shape(_) => false,
+            Self::Geometry(geometry) => geometry.has_instance_attributes(),
         }
     }
 }

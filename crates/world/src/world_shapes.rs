@@ -18,7 +18,7 @@ pub struct WorldShape {
     /// Motion without rotation of a sphere that moves.
     pub sphere_motion: Option<Box<WorldMotion>>,
     pub material: MaterialId,
-    /// Attributes of the shape's instance, the innermost that has any.
+    /// Attributes of the shape's instances, the innermost first.
     pub attributes: Option<InstanceAttributes>,
 }
 
@@ -115,7 +115,10 @@ impl Search<'_> {
             }
             let shape_index = context.first + geometry.first_shape(object_index);
             let material = instance.material().or(context.inherited);
-            let attributes = || geometry.attributes.of_object(object_index).or_else(|| context.attributes.clone());
+            let attributes = || match (geometry.attributes.of_object(object_index), &context.attributes) {
+                (Some(own), Some(outer)) => Some(own.within(outer)),
+                (own, outer) => own.or_else(|| outer.clone()),
+            };
             match &instance.content {
                 Content::Shape(shape) => {
                     if let Some(material) = material.filter(|material| (self.predicate)(shape, *material)) {

@@ -3,7 +3,7 @@
 
 use super::labels::Names;
 use super::materials::Materials;
-use super::placing::new_object;
+use super::placer::new_object;
 use crate::description::Description;
 use crate::item::Item;
 use crate::motion::Tracks;

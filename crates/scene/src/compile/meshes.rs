@@ -3,6 +3,7 @@
 //! backgrounds [`super::lighting`].
 
 use super::images::ImageCache;
+use super::instance_files::InstanceCache;
 use super::lighting::LightFiles;
 use crate::asset::{Asset, display_name};
 use crate::description::Description;
@@ -27,6 +28,7 @@ pub struct AssetCache {
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
     images: ImageCache,
     light_files: LightFiles,
+    instances: InstanceCache,
     models: ModelCache,
 }
 
@@ -102,6 +104,10 @@ impl AssetCache {
         &self.light_files
     }
 
+    pub(super) fn instances(&self) -> &InstanceCache {
+        &self.instances
+    }
+
     /// Cache without the files that have changed, which are read again on use.
     pub fn without_changed_files(&self) -> Self {
         let same = |path: &PathBuf, entry: &Entry| entry.stamp.is_some() && entry.stamp == file_stamp(path);
@@ -109,8 +115,8 @@ impl AssetCache {
         let kept = entries.iter().filter(|(path, entry)| same(path, entry));
         let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
         let (images, light_files) = (self.images.without_changed_files(), self.light_files.without_changed_files());
-        let models = self.models.without_changed_files();
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), images, light_files, models }
+        let (instances, models) = (self.instances.without_changed_files(), self.models.without_changed_files());
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), images, light_files, instances, models }
     }
 
     /// Hash of a file's content; zeros for a file that cannot be read, which compilation reports.

@@ -7,7 +7,7 @@ use super::images::image_files;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
 use crate::asset::Asset;
-use crate::description::{Description, Object};
+use crate::description::{Description, InstanceFile, Object};
 use crate::item::Item;
 use crate::path::PathRef;
 use crate::texel_array::TexelArray;
@@ -33,6 +33,10 @@ pub struct Needs {
     /// Memory in bytes of meshes in memory that files stand for, each once, with their hierarchies
     /// while these are built.
     pub meshes: u64,
+    /// Existing files of instances, each once.
+    pub instance_files: BTreeSet<PathBuf>,
+    /// Memory in bytes of the arrays of instances in memory, each once for each object that has them.
+    pub instance_arrays: u64,
     /// Triangles of inline meshes.
     pub triangles: u64,
     /// Stored objects, without instances from lists; objects of a shared group count once.
@@ -85,6 +89,8 @@ impl Needs {
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));
         needs.add(&scene.objects, files, &PathRef::Root.key("objects"));
         needs.separate_assets(files);
+        let instance_files = std::mem::take(&mut needs.instance_files).into_iter();
+        needs.instance_files = instance_files.filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         needs
     }
 
@@ -115,6 +121,11 @@ impl Needs {
                 let morphs = mesh.morphs.iter().enumerate();
                 let file = |i, file: &String| files.locate(&path.key("morphs").index(i).join("file"), file);
                 self.files.extend(morphs.filter_map(|(i, morph)| Some(file(i, morph.file.as_ref()?))));
+            }
+            if let Some(instances) = &object.instances {
+                self.instance_arrays = self.instance_arrays.saturating_add(instances.bytes());
+                let file = |file: &InstanceFile| files.locate(&path.key("instances").join("file"), file.name());
+                self.instance_files.extend(instances.file.as_ref().map(file));
             }
             self.add(object.inner(), files, &path.key("objects"));
         }

@@ -1,8 +1,9 @@
-//! Places objects: expands or shares groups, composes transforms and inherits materials.
+//! Prepares objects, with their shapes, materials and motion, and places them.
 
 use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
+use super::placer::{Content, Placer, Prepared};
 use super::prepared_instances::PreparedInstances;
 use super::times::Times;
 use super::transform_motion;
@@ -11,11 +12,8 @@ use crate::item::Item;
 use crate::motion::{ListForm, ListTracks, Tracks};
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
-use juggler_material::MaterialId;
 use juggler_math::{Motion, Transform, Vec3};
 use juggler_shape::{AnyShape, Mesh, Sphere};
-use juggler_world::{Content as WorldContent, Geometry};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Places all objects of a scene whose groups are counted. Returns them with the index of the first
@@ -38,30 +36,7 @@ pub fn place(
     let groups = groups.collect();
     let top = preparer.objects(&scene.objects, Times::Tracks(&tracks.objects), &PathRef::Root.key("objects"));
     let default_material = preparer.materials.default_material();
-    let mut placer = Placer { groups, levels: BTreeMap::new() };
-    // Build inner groups first, which precede the groups that place them.
-    for (name, _) in counts.iter().filter(|(_, count)| count.is_shared) {
-        let objects = placer.objects(placer.groups.get(name).map(Vec::as_slice).unwrap_or_default(), None);
-        placer.levels.insert(name, Arc::new(Geometry::new(objects)));
-    }
-    placer.entries(&top, scene.objects.len(), default_material)
-}
-
-/// Object with prepared shapes and resolved names.
-struct Prepared<'s> {
-    /// Index in its list.
-    index: usize,
-    motion: Motion,
-    /// `None` for an object without instances.
-    instances: Option<PreparedInstances<'s>>,
-    material: Option<MaterialId>,
-    content: Content<'s>,
-}
-
-enum Content<'s> {
-    Shapes(Vec<(Motion, Arc<AnyShape>)>),
-    Group(&'s str),
-    Objects(Vec<Prepared<'s>>),
+    Placer::new(groups, counts).entries(&top, scene.objects.len(), default_material)
 }
 
 struct Preparer<'m> {
@@ -268,121 +243,4 @@ impl Preparer<'_> {
 fn collect_all<'o, T>(objects: &[&'o Object], part: impl Fn(&'o Object) -> Option<T>) -> Vec<T> {
     let parts: Option<Vec<T>> = objects.iter().map(|object| part(object)).collect();
     parts.unwrap_or_default()
-}
-
-/// Diameter of the bounding box after a motion; 1 for unbounded content.
-fn size(motion: &Motion, content: &WorldContent) -> f32 {
-    let bounds = match content {
-        WorldContent::Shape(shape) => shape.bounds(),
-        WorldContent::Geometry(geometry) => geometry.bounds(),
-    };
-    let size = motion.at(0.0).aabb(&bounds).extent().length();
-    if size.is_finite() { size } else { 1.0 }
-}
-
-/// Creates an object of the world. Resamples its motion so that rotations follow arcs.
-pub fn new_object(content: WorldContent, motion: Motion, material: Option<MaterialId>) -> juggler_world::Object {
-    let motion = if motion.moves() { motion.clone().smoothed(size(&motion, &content)) } else { motion };
-    juggler_world::Object { content, motion, material, attributes: None }
-}
-
-struct Placer<'s> {
-    groups: BTreeMap<&'s str, Vec<Prepared<'s>>>,
-    /// Levels of shared groups built so far.
-    levels: BTreeMap<&'s str, Arc<Geometry>>,
-}
-
-impl Placer<'_> {
-    /// Objects of the top level, and the index of the first shape of each of `count` scene entries.
-    fn entries(
-        &self,
-        objects: &[Prepared<'_>],
-        count: usize,
-        default_material: MaterialId,
-    ) -> (Vec<juggler_world::Object>, Vec<u32>) {
-        let (mut found, mut firsts, mut shapes) = (Vec::new(), Vec::with_capacity(count), 0u64);
-        let number = |shapes: u64| u32::try_from(shapes).unwrap_or(u32::MAX);
-        for object in objects {
-            firsts.resize(firsts.len().max(object.index + 1), number(shapes));
-            let before = found.len();
-            self.place(std::slice::from_ref(object), &Transform::IDENTITY.into(), Some(default_material), &mut found);
-            let new = found.get(before..).unwrap_or_default();
-            shapes = new.iter().map(juggler_world::Object::shapes).fold(shapes, u64::saturating_add);
-        }
-        firsts.resize(count.max(firsts.len()), number(shapes));
-        (found, firsts)
-    }
-
-    /// Objects of one level; objects without a material inherit `inherited`.
-    fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<juggler_world::Object> {
-        let mut found = Vec::new();
-        self.place(objects, &Transform::IDENTITY.into(), inherited, &mut found);
-        found
-    }
-
-    fn place(
-        &self,
-        objects: &[Prepared<'_>],
-        parent: &Motion,
-        inherited: Option<MaterialId>,
-        found: &mut Vec<juggler_world::Object>,
-    ) {
-        for object in objects {
-            let motion = object.motion.then(parent);
-            let material = object.material.or(inherited);
-            match &object.instances {
-                None => self.place_content(&object.content, motion, material, found),
-                Some(instances) => {
-                    found.reserve(instances.count());
-                    for index in 0..instances.count() {
-                        let (before, instance) = (found.len(), instances.motion(index));
-                        self.place_content(&object.content, instance.then(&motion), material, found);
-                        let attributes = instances.attributes(index);
-                        let without = found.iter_mut().skip(before).filter(|object| object.attributes.is_none());
-                        without.for_each(|object| object.attributes.clone_from(&attributes));
-                    }
-                }
-            }
-        }
-    }
-
-    fn place_content(
-        &self,
-        content: &Content<'_>,
-        motion: Motion,
-        material: Option<MaterialId>,
-        found: &mut Vec<juggler_world::Object>,
-    ) {
-        match content {
-            Content::Shapes(shapes) => objects_of(shapes, &motion, material, found),
-            Content::Objects(objects) => self.place(objects, &motion, material, found),
-            Content::Group(name) => match self.levels.get(name) {
-                Some(level) => add(new_object(WorldContent::Geometry(Arc::clone(level)), motion, material), found),
-                None => {
-                    let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
-                    self.place(objects, &motion, material, found);
-                }
-            },
-        }
-    }
-}
-
-fn objects_of(
-    shapes: &[(Motion, Arc<AnyShape>)],
-    motion: &Motion,
-    material: Option<MaterialId>,
-    found: &mut Vec<juggler_world::Object>,
-) {
-    for (place, shape) in shapes {
-        add(new_object(WorldContent::Shape(Arc::clone(shape)), place.then(motion), material), found);
-    }
-}
-
-/// Adds an object, which shares the linear part of its transform with the one before if they are equal.
-fn add(object: juggler_world::Object, found: &mut Vec<juggler_world::Object>) {
-    let motion = match found.last() {
-        Some(previous) => object.motion.sharing(&previous.motion),
-        None => object.motion,
-    };
-    found.push(juggler_world::Object { motion, ..object });
 }

@@ -3,8 +3,7 @@
 
 use crate::description::Instances;
 use juggler_math::{Motion, Transform};
-use juggler_shape::MeshData;
-use juggler_world::InstanceAttributes;
+use juggler_world::{AttributeList, InstanceAttributes};
 use std::sync::Arc;
 
 /// Instances of an object.
@@ -13,14 +12,15 @@ pub struct PreparedInstances<'s> {
     still: &'s Instances,
     /// Transforms at even times; empty if nothing moves.
     keys: Vec<Vec<Transform>>,
-    /// Colors, with a triangle for each instance.
-    colors: Option<Arc<MeshData>>,
+    /// Attributes of the instances; `None` if they have none.
+    attributes: Option<Arc<AttributeList>>,
 }
 
 impl<'s> PreparedInstances<'s> {
     /// Valid instances, with their transforms at even times if they move.
     pub fn new(still: &'s Instances, keys: Vec<Vec<Transform>>) -> Self {
-        Self { still, keys, colors: still.color_arrays().map(Arc::new) }
+        let list = |arrays| Arc::new(AttributeList { arrays, outer: None });
+        Self { still, keys, attributes: still.attribute_arrays().map(list) }
     }
 
     /// Number of instances.
@@ -35,9 +35,13 @@ impl<'s> PreparedInstances<'s> {
         Motion::from_keys(keys).unwrap_or_else(still)
     }
 
-    /// Attributes of an instance; `None` without colors.
-    pub fn attributes(&self, index: usize) -> Option<InstanceAttributes> {
-        let triangle = u32::try_from(index).ok()?;
-        self.colors.as_ref().map(|arrays| InstanceAttributes { arrays: Arc::clone(arrays), triangle })
+    /// Attributes of the instances inside of an instance with `outer` attributes; `None` if they have
+    /// none of their own.
+    pub fn attributes(&self, outer: Option<&InstanceAttributes>) -> Option<Arc<AttributeList>> {
+        let own = self.attributes.as_ref()?;
+        Some(match outer {
+            None => Arc::clone(own),
+            Some(outer) => Arc::new(AttributeList { arrays: own.arrays.clone(), outer: Some(outer.clone()) }),
+        })
     }
 }

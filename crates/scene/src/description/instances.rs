@@ -3,24 +3,35 @@
 //! ```json
 //! {"group": "tree", "instances": {
 //!   "positions": [[0, 0, 0], [3, 0, 1], [5, 0, -2]], "scales": [1, 0.8, [1, 1.3, 1]],
-//!   "colors": [[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1]]}}
+//!   "attributes": {"age": {"channels": 1, "data": {"f32": [12, 7, 31]}}}}}
+//! {"shape": {"sphere": {"radius": 0.01}}, "instances": {"file": "points.ply"}}
 //! ```
 
-use super::{PlacementError, ScaleFactors, transform};
+use super::{InstanceArray, InstanceFile, NamedAttributes, PlacementError, ScaleFactors, transform};
 use juggler_math::{Mat3, Transform, Vec3, quaternion};
-use juggler_shape::MeshData;
-use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
-use std::sync::Arc;
+use juggler_world::AttributeArrays;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Transforms of the instances of an object, each to the object's space. `matrices` give whole
-/// transforms; without them, each instance is scaled, then rotated, then translated. All arrays that
-/// are not empty have the same length.
+/// Name of the attribute that `colors` are.
+const COLOR: &str = "color";
+
+/// Transforms of the instances of an object, each to the object's space, and their attributes, from
+/// a file or from the arrays given here. `matrices` give whole transforms; without them, each
+/// instance is scaled, then rotated, then translated. All arrays that are not empty have the same
+/// length.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Instances {
+    /// PLY file of points, relative to the scene file: each of its vertices is an instance at `x y
+    /// z`. The columns `qx qy qz qw` are the rotations, `scale` or `scale_x scale_y scale_z` the
+    /// scale factors, and `m00` to `m23`, row by row, the matrices in place of all of these. `red
+    /// green blue` and perhaps `alpha` are the colors. Every other column of numbers is an attribute
+    /// of its name; columns `attribute.NAME.0` to `attribute.NAME.3` are one attribute NAME of
+    /// several numbers. The arrays below may add what the file does not have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
+    pub file: Option<InstanceFile>,
     /// Positions of the instances' origins.
     #[serde(skip_serializing_if = "InstanceArray::is_empty")]
     #[schemars(with = "Vec<[f32; 3]>")]
@@ -39,8 +50,8 @@ pub struct Instances {
     #[schemars(with = "Vec<[f32; 12]>")]
     pub matrices: InstanceArray<[f32; 12]>,
     /// Colors: red, green, blue and alpha of each instance, from 0 to 1 in linear light. They are
-    /// the attribute `color` of surfaces without attributes of their own; a material shows them by
-    /// the texture [`attribute`](#texture-attribute).
+    /// the attribute `color`; a material shows them by the texture
+    /// [`attribute`](#texture-attribute).
     #[serde(skip_serializing_if = "InstanceArray::is_empty")]
     #[schemars(with = "Vec<[f32; 4]>")]
     pub colors: InstanceArray<[f32; 4]>,
@@ -49,6 +60,11 @@ pub struct Instances {
     #[serde(skip_serializing_if = "InstanceArray::is_empty")]
     #[schemars(with = "Vec<[f32; 4]>")]
     pub end_colors: InstanceArray<[f32; 4]>,
+    /// Named attributes of the instances, for the texture [`attribute`](#texture-attribute). A mesh
+    /// that has an attribute of the same name shows its own. Of nested instances, the innermost
+    /// that have an attribute of the name count.
+    #[serde(skip_serializing_if = "NamedAttributes::is_empty")]
+    pub attributes: NamedAttributes,
 }
 
 impl Instances {
@@ -63,9 +79,18 @@ impl Instances {
         Self { matrices: matrices.into_iter().collect(), ..Self::default() }
     }
 
-    /// Number of instances: the length of the longest array.
+    /// Creates the instances of a PLY file or of an asset ([`Asset::from_instances`]).
+    ///
+    /// [`Asset::from_instances`]: crate::Asset::from_instances
+    pub fn from_file(file: impl Into<String>) -> Self {
+        Self { file: Some(InstanceFile::new(file)), ..Self::default() }
+    }
+
+    /// Number of instances: the length of the longest array. The number of instances of a file is
+    /// known once the scene is compiled.
     pub fn count(&self) -> usize {
-        self.lengths().into_iter().map(|(_, length)| length).fold(0, usize::max)
+        let declared = self.file.as_ref().map_or(0, InstanceFile::declared_count);
+        self.lengths().into_iter().map(|(_, length)| length).fold(declared, usize::max)
     }
 
     fn lengths(&self) -> [(&'static str, usize); 6] {
@@ -79,19 +104,57 @@ impl Instances {
         ]
     }
 
-    /// Colors as arrays with a triangle for each instance, whose first and third corner have the
-    /// colors at v = 0 and v = 1. `None` without colors.
-    pub(crate) fn color_arrays(&self) -> Option<MeshData> {
-        let count = u32::try_from(self.colors.len()).ok().filter(|count| *count > 0)?;
-        let end = if self.end_colors.is_empty() { 0 } else { count };
-        let numbers = self.colors.iter().chain(self.end_colors.iter()).flatten().copied();
-        let data = AttributeData::F32(numbers.collect());
-        let attribute = MeshAttribute { domain: AttributeDomain::Vertex, channels: 4, data };
-        let triangles = (0..count).map(|index| [index, index, index.saturating_add(end)]);
-        Some(MeshData {
-            triangles: triangles.collect(),
-            attributes: [("color".to_owned(), attribute)].into(),
-            ..MeshData::default()
+    /// Memory of the arrays in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let arrays = [
+            size_of_val(&*self.positions),
+            size_of_val(&*self.rotations),
+            size_of_val(&*self.scales),
+            size_of_val(&*self.matrices),
+            size_of_val(&*self.colors),
+            size_of_val(&*self.end_colors),
+        ];
+        arrays.into_iter().map(|bytes| bytes as u64).sum::<u64>().saturating_add(self.attributes.bytes())
+    }
+
+    /// Attributes of the instances, `colors` among them; `None` if there are none.
+    pub(crate) fn attribute_arrays(&self) -> Option<AttributeArrays> {
+        if self.colors.is_empty() && self.attributes.is_empty() {
+            return None;
+        }
+        let (attributes, colors) = (self.attributes.shared(), self.colors.shared());
+        Some(AttributeArrays { attributes, colors, end_colors: self.end_colors.shared() })
+    }
+
+    /// The instances of a file with the arrays that the scene adds to them.
+    ///
+    /// # Errors
+    ///
+    /// The file and the scene have the same array.
+    pub(crate) fn with_arrays(&self, added: &Self) -> Result<Self, PlacementError> {
+        fn joined<T: Clone>(
+            field: &'static str,
+            own: &InstanceArray<T>,
+            added: &InstanceArray<T>,
+        ) -> Result<InstanceArray<T>, PlacementError> {
+            match (own.is_empty(), added.is_empty()) {
+                (false, false) => Err(PlacementError::new(field, format!("the file has `{field}`, too"))),
+                (true, _) => Ok(added.clone()),
+                (_, true) => Ok(own.clone()),
+            }
+        }
+        let attributes = self.attributes.merged(&added.attributes);
+        Ok(Self {
+            file: None,
+            positions: joined("positions", &self.positions, &added.positions)?,
+            rotations: joined("rotations", &self.rotations, &added.rotations)?,
+            scales: joined("scales", &self.scales, &added.scales)?,
+            matrices: joined("matrices", &self.matrices, &added.matrices)?,
+            colors: joined("colors", &self.colors, &added.colors)?,
+            end_colors: joined("end_colors", &self.end_colors, &added.end_colors)?,
+            attributes: attributes.map_err(|name| {
+                PlacementError::new("attributes", format!("the file has the attribute `{name}`, too"))
+            })?,
         })
     }
 
@@ -100,7 +163,7 @@ impl Instances {
     /// # Errors
     ///
     /// Two arrays have different lengths, `matrices` are given with other transforms, `end_colors`
-    /// without `colors`, or a transform is degenerate.
+    /// without `colors`, attributes are invalid, or a transform is degenerate.
     pub fn transforms(&self) -> Result<Vec<Transform>, PlacementError> {
         self.check_lengths()?;
         (0..self.count()).map(|index| self.transform(index)).collect()
@@ -130,7 +193,10 @@ impl Instances {
         if self.colors.is_empty() && !self.end_colors.is_empty() {
             return Err(PlacementError::new("end_colors", "`end_colors` need `colors`"));
         }
-        Ok(())
+        if !self.colors.is_empty() && self.attributes.iter().any(|(name, _)| name == COLOR) {
+            return Err(PlacementError::new("attributes", "`colors` are the attribute `color` already"));
+        }
+        self.attributes.check(count)
     }
 
     /// Transform of an instance to the object's space.
@@ -154,68 +220,6 @@ impl Instances {
             let message = format!("the scale of instance {index} flattens the object, or its position is out of range");
             PlacementError::new(if self.scales.is_empty() { "positions" } else { "scales" }, message)
         })
-    }
-}
-
-/// Values of all instances, shared by clones. Clones compare without reading the values.
-#[derive(Clone, Debug)]
-pub struct InstanceArray<T>(Arc<[T]>);
-
-impl<T> Default for InstanceArray<T> {
-    fn default() -> Self {
-        Self(Arc::from([]))
-    }
-}
-
-impl<T: PartialEq> PartialEq for InstanceArray<T> {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
-    }
-}
-
-impl<T> FromIterator<T> for InstanceArray<T> {
-    fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
-        Self(values.into_iter().collect())
-    }
-}
-
-impl<T> std::ops::Deref for InstanceArray<T> {
-    type Target = [T];
-
-    fn deref(&self) -> &[T] {
-        &self.0
-    }
-}
-
-impl<T> InstanceArray<T> {
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-}
-
-impl<T: Serialize> Serialize for InstanceArray<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter())
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for InstanceArray<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Vec::deserialize(deserializer).map(|values| Self(values.into()))
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for InstanceArray<T> {
-    fn schema_name() -> Cow<'static, str> {
-        Vec::<T>::schema_name()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Vec::<T>::json_schema(generator)
-    }
-
-    fn inline_schema() -> bool {
-        true
     }
 }
 

@@ -1,4 +1,5 @@
-//! Expansion of a scene's models to objects, materials, textures, lights and cameras.
+//! Expansion of a scene's models to objects, materials, textures, lights and cameras, and of its files
+//! of instances to arrays.
 //!
 //! Each `model` of the scene becomes an object with child objects in its place, so that the indices
 //! of all other objects stay. Models that move while the shutter is open are expanded at each
@@ -6,8 +7,8 @@
 
 use super::instance::{ModelNames, Place};
 use super::{ModelChoice, find_camera};
-use crate::compile::{AssetCache, Files};
-use crate::description::{BackgroundInput, CameraName, Description, Object, Objects};
+use crate::compile::{self, AssetCache, Files};
+use crate::description::{BackgroundInput, CameraName, Description, Instances, Object, Objects};
 use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, PathRef};
@@ -22,7 +23,7 @@ use juggler_math::Transform;
 use juggler_math::range::format_number;
 use std::sync::Arc;
 
-/// A scene whose models are expanded.
+/// A scene whose models and files of instances are expanded.
 #[derive(Clone, Debug)]
 pub struct Expansion {
     /// The scene without models.
@@ -82,13 +83,42 @@ fn object_has_models(object: &Object) -> bool {
     object.model.is_some() || object.inner().iter().any(|inner| object_has_models(inner))
 }
 
-/// Expands the models of a scene.
+/// Whether a scene contains files of instances.
+pub fn has_instance_files(scene: &Description) -> bool {
+    compile::has_instance_files(&scene.objects) || scene.groups.values().any(|o| compile::has_instance_files(o))
+}
+
+/// Whether an object contains a model or a file of instances.
+fn needs_expansion(object: &Object) -> bool {
+    object_has_models(object) || compile::object_has_instance_files(object)
+}
+
+/// Expands the models and files of instances of a scene.
 pub fn expand(files: Files<'_>, tracks: &Tracks, time: SceneTime) -> Expansion {
+    expand_with(files, tracks, time, InstanceSource::Content)
+}
+
+/// Where the instances of files come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum InstanceSource {
+    /// The contents of the files.
+    Content,
+    /// Their heads, which declare how many there are.
+    Head,
+}
+
+/// Expands the models of a scene, and reads of its files of instances only how many there are.
+pub fn expand_heads(files: Files<'_>, tracks: &Tracks, time: SceneTime) -> Expansion {
+    expand_with(files, tracks, time, InstanceSource::Head)
+}
+
+fn expand_with(files: Files<'_>, tracks: &Tracks, time: SceneTime, instance_source: InstanceSource) -> Expansion {
     let scene = files.scene;
     let mut expander = Expander {
         files,
         description: scene.clone(),
         asset_cache: files.asset_cache.clone(),
+        instance_source,
         moments: time.moments(),
         seconds: time.seconds(),
         names: ModelNames::default(),
@@ -99,7 +129,7 @@ pub fn expand(files: Files<'_>, tracks: &Tracks, time: SceneTime) -> Expansion {
     };
     let mut all_tracks = tracks.clone();
     let groups = PathRef::Root.key("groups");
-    for (name, objects) in scene.groups.iter().filter(|(_, objects)| objects.iter().any(|o| object_has_models(o))) {
+    for (name, objects) in scene.groups.iter().filter(|(_, objects)| objects.iter().any(|o| needs_expansion(o))) {
         let own = all_tracks.groups.entry(name.clone()).or_default();
         let (objects, moved) = expander.list(objects, own, &groups.key(name), Place::default());
         *own = moved;
@@ -130,6 +160,7 @@ pub(super) struct Expander<'s> {
     pub files: Files<'s>,
     pub description: Description,
     pub asset_cache: AssetCache,
+    instance_source: InstanceSource,
     /// Sampled times while the shutter is open, in seconds.
     moments: Vec<f64>,
     /// Time of the frame in seconds.
@@ -194,7 +225,7 @@ impl Expander<'_> {
         place: Place<'p>,
     ) -> (Objects, ListTracks) {
         let (mut expanded, mut moved) = (objects.clone(), tracks.clone());
-        for (i, object) in objects.iter().enumerate().filter(|(_, object)| object_has_models(object)) {
+        for (i, object) in objects.iter().enumerate().filter(|(_, object)| needs_expansion(object)) {
             let path = path.index(i);
             let place = Place { light_group: object.light_group.as_deref(), ..place };
             let at_frame = self.object(object, self.seconds, &path, place);
@@ -230,8 +261,8 @@ impl Expander<'_> {
             && (own || object.inner().iter().enumerate().any(|(i, inner)| self.moves(inner, &path.index(i))))
     }
 
-    /// Expands the models of an object at a time in seconds. At the frame, adds their other parts
-    /// to the scene.
+    /// Expands the models and instances of an object at a time in seconds. At the frame, adds the other
+    /// parts of models to the scene.
     fn object(&mut self, object: &Object, seconds: f64, path: &PathRef<'_>, place: Place<'_>) -> Object {
         let mut expanded = object.clone();
         // Lights and cameras of a model with several instances have no single place.
@@ -239,17 +270,33 @@ impl Expander<'_> {
         let transform = outer.and_then(|outer| Some(composed(object)?.then(&outer)));
         let place = Place { transform, is_hidden: place.is_hidden || !object.is_visible(), ..place };
         if let Some(objects) = &object.objects {
-            let inner = objects.iter().enumerate().map(|(i, inner)| match object_has_models(inner) {
+            let inner = objects.iter().enumerate().map(|(i, inner)| match needs_expansion(inner) {
                 true => Item::from(self.object(inner, seconds, &path.key("objects").index(i), place)),
                 false => inner.clone(),
             });
             expanded.objects = Some(inner.collect());
+        }
+        if let Some(instances) = &object.instances {
+            expanded.instances = Some(self.instances(instances, &path.key("instances"), place));
         }
         if let Some(model) = &object.model {
             expanded.model = None;
             let replaced = object.material.is_some();
             let children = self.model(model, replaced, seconds, &path.key("model"), place);
             expanded.objects = Some(children.into_iter().map(Item::from).collect());
+        }
+        expanded
+    }
+
+    /// Instances with those of their file.
+    fn instances(&mut self, instances: &Instances, path: &PathRef<'_>, place: Place<'_>) -> Instances {
+        if self.instance_source == InstanceSource::Head {
+            return self.files.declared_instances(instances, path);
+        }
+        let mut findings = Vec::new();
+        let expanded = self.files.instances(instances, path, &mut findings);
+        if !place.is_moment {
+            self.findings.extend(findings);
         }
         expanded
     }

@@ -16,7 +16,7 @@ mod summary;
 pub(crate) use cache::{ModelCache, OpenedModel};
 pub use camera_names::find_camera;
 pub use choice::{AnimationChoice, ModelChoice, ModelRepeat, NameOrIndex};
-pub(crate) use expand::{Expansion, SceneTime, expand, has_models};
+pub(crate) use expand::{Expansion, SceneTime, expand, expand_heads, has_instance_files, has_models};
 pub use files::{FileError, Files};
 pub use format::{ModelError, ModelFile, ModelFormat};
 pub use model_light::illuminance;

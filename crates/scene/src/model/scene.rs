@@ -1,25 +1,35 @@
 //! Models of a scene: expansion on first use, and scenes around model files.
 
-use super::{Expansion, ModelSummary, NameOrIndex, SceneTime, describe_model_scene, expand, has_models};
+use super::{Expansion, ModelSummary, NameOrIndex, SceneTime, describe_model_scene};
+use super::{expand, expand_heads, has_instance_files, has_models};
 use crate::animate::posed_files;
+use crate::asset::Assets;
 use crate::compile::{AssetCache, Files};
 use crate::description::{Description, Model, Object};
 use crate::item::Item;
+use crate::motion::Tracks;
 use crate::path::{Path as ScenePath, PathRef};
 use crate::{Scene, SceneError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Expansion of a scene with the inputs that it was computed from.
+/// Expansions of a scene with the inputs that they were computed from.
 #[derive(Clone, Debug, Default)]
-pub struct ExpansionMemo(Arc<Mutex<Option<KnownExpansion>>>);
+pub struct ExpansionMemo {
+    whole: Memo,
+    /// With only the heads of files of instances.
+    heads: Memo,
+}
+
+type Memo = Arc<Mutex<Option<KnownExpansion>>>;
 
 /// A computed expansion.
 #[derive(Debug)]
 struct KnownExpansion {
     scene: Description,
     frame: f64,
+    assets: Assets,
     expansion: Arc<Expansion>,
 }
 
@@ -35,30 +45,46 @@ pub struct SceneModel {
 }
 
 impl Scene {
-    /// The scene with its models expanded; `None` without models.
+    /// The scene with its models and files of instances expanded; `None` without any.
     pub(crate) fn expanded(&self) -> Option<Arc<Expansion>> {
-        if !has_models(&self.description) {
+        if !(has_models(&self.description) || has_instance_files(&self.description)) {
             return None;
         }
-        let memo = || self.expansion.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = memo().as_ref().filter(|k| k.frame == self.frame && k.scene == self.description) {
-            return Some(Arc::clone(&known.expansion));
+        Some(self.memoized(&self.expansion.whole, expand))
+    }
+
+    /// The scene with its models expanded and, of its files of instances, how many instances their heads
+    /// declare; `None` without models and files of instances.
+    pub(crate) fn expanded_heads(&self) -> Option<Arc<Expansion>> {
+        if !has_instance_files(&self.description) {
+            return self.expanded();
+        }
+        Some(self.memoized(&self.expansion.heads, expand_heads))
+    }
+
+    fn memoized(&self, memo: &Memo, expand: fn(Files<'_>, &Tracks, SceneTime) -> Expansion) -> Arc<Expansion> {
+        let memo = || memo.lock().unwrap_or_else(PoisonError::into_inner);
+        let assets = &self.asset_cache.store().assets;
+        let is_current =
+            |k: &&KnownExpansion| k.frame == self.frame && k.assets == *assets && k.scene == self.description;
+        if let Some(known) = memo().as_ref().filter(is_current) {
+            return Arc::clone(&known.expansion);
         }
         // The lock is not held meanwhile: a thread that waits for parallel work may start other
         // work that needs it.
-        let (tracks, _) = self.tracks();
         let frames_per_second = self.description.animation.frames_per_second;
         let time = SceneTime { frame: self.frame, shutter: self.description.render.shutter, frames_per_second };
-        let expansion = Arc::new(expand(self.files(), &tracks, time));
+        let expansion = Arc::new(expand(self.files(), &self.tracks().0, time));
         *memo() = Some(KnownExpansion {
             scene: self.description.clone(),
             frame: self.frame,
+            assets: assets.clone(),
             expansion: Arc::clone(&expansion),
         });
-        Some(expansion)
+        expansion
     }
 
-    /// Files of the scene with its models expanded.
+    /// Files of the expanded scene.
     pub(crate) fn files_of<'s>(&'s self, expansion: &'s Expansion) -> Files<'s> {
         Files { scene: &expansion.description, sources: self.sources(), asset_cache: &expansion.asset_cache }
     }
@@ -161,7 +187,8 @@ impl Scene {
         self.models().into_iter().filter_map(summary).collect()
     }
 
-    /// The scene's description with its models expanded to objects, materials, textures and lights.
+    /// The scene's description with its models expanded to objects, materials, textures and lights, and
+    /// its files of instances to arrays.
     pub fn expanded_description(&self) -> Description {
         self.expanded().map_or_else(|| self.description.clone(), |expansion| expansion.description.clone())
     }

@@ -18,6 +18,7 @@ mod flat_objects;
 mod format;
 mod images;
 mod inline_textures;
+mod instance_files;
 mod juggler;
 mod lighting;
 mod limits;

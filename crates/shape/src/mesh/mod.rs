@@ -40,7 +40,7 @@ mod sampling;
 
 pub use data::MeshData;
 pub use morph::{MorphArrays, MorphTarget};
-pub use point::MeshPoint;
+pub use point::{InstanceValues, MeshPoint};
 
 /// A triangle mesh, from a file or from arrays. The corners of a triangle run counter-clockwise
 /// seen from the front.

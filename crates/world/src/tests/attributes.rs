@@ -3,7 +3,7 @@
 use super::*;
 use juggler_math::testing::{close, close3};
 use juggler_math::{Rgb, Vec2};
-use juggler_shape::attribute::{AttributeData, MeshAttribute};
+use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 use juggler_texture::AnyTexture;
 use std::collections::BTreeMap;
 
@@ -84,21 +84,32 @@ fn sphere_world(inner: Option<InstanceAttributes>, outer: Option<InstanceAttribu
 }
 
 /// The second of two instances, from red at v = 0 to this color at v = 1.
-fn attributes(end: [f32; 3]) -> Option<InstanceAttributes> {
-    let numbers = [[0.5; 3], [1.0, 0.0, 0.0], [0.5; 3], end];
-    let data = AttributeData::F32(numbers.as_flattened().to_vec());
-    let color = MeshAttribute { channels: 3, data, ..Default::default() };
-    let mut arrays = MeshData { triangles: vec![[0, 0, 2], [1, 1, 3]], ..MeshData::default() };
-    arrays.attributes.insert("color".to_owned(), color);
-    Some(InstanceAttributes { arrays: Arc::new(arrays), triangle: 1 })
+fn attributes([red, green, blue]: [f32; 3]) -> Option<InstanceAttributes> {
+    let gray = [0.5, 0.5, 0.5, 1.0];
+    let (colors, end_colors) = ([gray, [1.0, 0.0, 0.0, 1.0]].into(), [gray, [red, green, blue, 1.0]].into());
+    let arrays = AttributeArrays { colors, end_colors, ..AttributeArrays::default() };
+    Some(InstanceAttributes { list: Arc::new(AttributeList { arrays, outer: None }), index: 1 })
+}
+
+/// The second of two instances with an attribute of another name.
+fn heat() -> Option<InstanceAttributes> {
+    let heat = MeshAttribute { domain: AttributeDomain::Face, channels: 1, data: AttributeData::F32(vec![7.0; 2]) };
+    let arrays = AttributeArrays { attributes: Arc::new([("heat".to_owned(), heat)].into()), ..Default::default() };
+    Some(InstanceAttributes { list: Arc::new(AttributeList { arrays, outer: None }), index: 1 })
 }
 
 /// Instances give attributes to shapes without any: at a vertex, and to light samples of it. Those
-/// of the innermost instance count, and are interpolated along v.
+/// of the innermost instance that has the name count, and are interpolated along v.
 #[test]
 fn instances_give_attributes_to_shapes() {
     let (green, blue) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let cases = [(attributes(green), None), (None, attributes(green)), (attributes(green), attributes(blue))];
+    let cases = [
+        (attributes(green), None),
+        (None, attributes(green)),
+        (attributes(green), attributes(blue)),
+        (attributes(green), heat()),
+        (heat(), attributes(green)),
+    ];
     for (inner, outer) in cases {
         let world = sphere_world(inner, outer, r#"{"emissive": {"radiance": "t"}}"#);
         for y in [-0.9_f32, 0.0, 0.5] {

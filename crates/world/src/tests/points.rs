@@ -1,7 +1,7 @@
 //! Memory of many equal objects, such as the points of a cloud, and the attributes of each.
 
 use super::*;
-use crate::object::ObjectAttributes;
+use crate::instance_attributes::ObjectAttributes;
 use juggler_math::Motion;
 
 /// Objects of one shape, turned alike, as `instances` of a scene place them: successive motions share
@@ -34,9 +34,9 @@ fn points_take_eighty_bytes_each() {
         [prepared(Sphere { radius: 0.01 }), prepared(juggler_shape::Disk { radius: 0.01, ..Default::default() })]
     {
         let mut objects = points(&shape, count, &mut random);
-        let arrays = Arc::new(MeshData::default());
-        for (triangle, object) in (0..).zip(&mut objects) {
-            object.attributes = Some(InstanceAttributes { arrays: Arc::clone(&arrays), triangle });
+        let list = Arc::new(AttributeList::default());
+        for (index, object) in (0..).zip(&mut objects) {
+            object.attributes = Some(InstanceAttributes { list: Arc::clone(&list), index });
         }
         let stats = world_of(objects).geometry_stats();
         let each = [stats.geometry_bytes, stats.bvh_bytes].map(|bytes| bytes as f32 / count as f32);
@@ -58,19 +58,19 @@ fn turned_objects_have_transforms_of_their_own() {
 fn attributes_of_all_objects_are_found() {
     let mut random = Random::new(27);
     let mut objects = points(&prepared(Sphere { radius: 1.0 }), 500, &mut random);
-    let arrays = [Arc::new(MeshData::default()), Arc::new(MeshData::default())];
-    let mut triangle = 0;
+    let lists = [Arc::new(AttributeList::default()), Arc::new(AttributeList::default())];
+    let mut index = 0;
     for object in &mut objects {
-        // Runs begin and end by chance, and the triangles jump.
-        triangle += if random.below(8) == 0 { 3 } else { 1 };
-        let chosen = &arrays[usize::from(triangle / 40 % 2 == 0)];
-        let attributes = InstanceAttributes { arrays: Arc::clone(chosen), triangle };
+        // Runs begin and end by chance, and the instances jump.
+        index += if random.below(8) == 0 { 3 } else { 1 };
+        let chosen = &lists[usize::from(index / 40 % 2 == 0)];
+        let attributes = InstanceAttributes { list: Arc::clone(chosen), index };
         object.attributes = (random.below(10) > 0).then_some(attributes);
     }
     let found = ObjectAttributes::new(&objects);
     for (index, object) in (0..).zip(&objects) {
         let (found, expected) = (found.of_object(index), &object.attributes);
-        let key = |attributes: &InstanceAttributes| (Arc::as_ptr(&attributes.arrays), attributes.triangle);
+        let key = |attributes: &InstanceAttributes| (Arc::as_ptr(&attributes.list), attributes.index);
         assert_eq!(found.as_ref().map(key), expected.as_ref().map(key), "{index}");
     }
     assert!(found.of_object(500).is_none() && ObjectAttributes::new(&[]).of_object(0).is_none());
