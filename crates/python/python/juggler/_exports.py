@@ -36,6 +36,7 @@ SCENE_TYPES = (
     "Limb",
     "Model",
     "Instances",
+    "InstanceAttribute",
     "Attenuation",
     "Ies",
     "Animation",

@@ -30,6 +30,7 @@ __all__ = [
     "Limb",
     "Model",
     "Instances",
+    "InstanceAttribute",
     "Attenuation",
     "Ies",
     "Animation",
@@ -924,11 +925,19 @@ class Model(Node):
     ) -> Self: ...
 
 class Instances(Node):
-    """Transforms of the instances of an object, each to the object's space. `matrices` give whole
-    transforms; without them, each instance is scaled, then rotated, then translated. All arrays
-    that are not empty have the same length.
+    """Transforms of the instances of an object, each to the object's space, and their attributes,
+    from a file or from the arrays given here. `matrices` give whole transforms; without them, each
+    instance is scaled, then rotated, then translated. All arrays that are not empty have the same
+    length.
 
     Args:
+        file (string): PLY file of points, relative to the scene file: each of its vertices is an
+            instance at `x y z`. The columns `qx qy qz qw` are the rotations, `scale` or `scale_x
+            scale_y scale_z` the scale factors, and `m00` to `m23`, row by row, the matrices in
+            place of all of these. `red green blue` and perhaps `alpha` are the colors. Every other
+            column of numbers is an attribute of its name; columns `attribute.NAME.0` to
+            `attribute.NAME.3` are one attribute NAME of several numbers. The arrays below may add
+            what the file does not have.
         positions (list of groups of 3 numbers): Positions of the instances' origins.
         rotations (list of groups of 4 numbers): Rotations as quaternions `[x, y, z, w]` as in glTF.
             They are normalized and must not be zero.
@@ -938,42 +947,84 @@ class Instances(Node):
             scales: the 12 numbers of 3 rows of a matrix that multiplies column vectors. The
             matrices must be invertible.
         colors (list of groups of 4 numbers): Colors: red, green, blue and alpha of each instance,
-            from 0 to 1 in linear light. They are the attribute `color` of surfaces without
-            attributes of their own; a material shows them by the texture
-            [`attribute`](#texture-attribute).
+            from 0 to 1 in linear light. They are the attribute `color`; a material shows them by
+            the texture [`attribute`](#texture-attribute).
         end_colors (list of groups of 4 numbers): Colors at the surface coordinate v = 1, such as
             the upper end of a `cylinder`. `colors` are then those at v = 0, and the colors between
             are interpolated linearly. Needs `colors`.
+        attributes (dict from names to `InstanceAttribute` objects): Named attributes of the
+            instances, for the texture [`attribute`](#texture-attribute). A mesh that has an
+            attribute of the same name shows its own. Of nested instances, the innermost that have
+            an attribute of the name count.
 
     Example:
         Instances(positions=[(0, 0, 0), (2, 0, 0)], scales=[1, 0.5])
     """
-    __match_args__ = ("positions", "rotations", "scales", "matrices", "colors", "end_colors")
+    __match_args__ = (
+        "file",
+        "positions",
+        "rotations",
+        "scales",
+        "matrices",
+        "colors",
+        "end_colors",
+        "attributes",
+    )
+    file: str | Any
     positions: list[list[float | Any] | Any] | Any
     rotations: list[list[float | Any] | Any] | Any
     scales: list[float | list[float | Any] | Any] | Any
     matrices: list[list[float | Any] | Any] | Any
     colors: list[list[float | Any] | Any] | Any
     end_colors: list[list[float | Any] | Any] | Any
+    attributes: dict[str, InstanceAttribute | Any] | Any
     def __init__(
         self,
         *,
+        file: str | t.ValueForm | None = None,
         positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = None,
         rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
         scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = None,
         matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = None,
         colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
         end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
+        attributes: Mapping[str, t.InstanceAttributeLike] | t.ValueForm | None = None,
     ) -> None: ...
     def replace(
         self,
         *,
+        file: str | t.ValueForm | None = ...,
         positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = ...,
         matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = ...,
         colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
+        attributes: Mapping[str, t.InstanceAttributeLike] | t.ValueForm | None = ...,
+    ) -> Self: ...
+
+class InstanceAttribute(Node):
+    """Named attribute of instances, for the texture `attribute`.
+
+    Args:
+        channels (whole number from 1 to 4; required): Numbers per instance, 1 to 4: gray; red and
+            green; red, green and blue; red, green, blue and alpha.
+        data (attribute array; required): Numbers of all instances, in linear light: `channels` for
+            each of them.
+    """
+    __match_args__ = ("channels", "data")
+    channels: int | Any
+    data: Any
+    def __init__(
+        self,
+        channels: t.Integer,
+        data: t.AttributeArrayLike,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        channels: t.Integer = ...,
+        data: t.AttributeArrayLike = ...,
     ) -> Self: ...
 
 class Attenuation(Node):

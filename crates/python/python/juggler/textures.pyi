@@ -142,12 +142,14 @@ class Image(Node):
     ) -> Self: ...
 
 class Attribute(Node):
-    """Attribute of a mesh, in linear light, interpolated over its triangles. Surfaces without an
+    """Attribute of a mesh, in linear light, interpolated over its triangles, or else of the
+    innermost [instances](#object-instances) that have one of this name. Surfaces without an
     attribute of this name are white.
 
     Args:
-        name (string; default "color"): Name of the attribute among the `attributes` of the mesh.
-            `color`, the colors of vertices or faces in a model file, is clamped to 0 to 1.
+        name (string; default "color"): Name of the attribute among the `attributes` of the mesh or
+            of its instances. `color`, the colors of vertices or faces in a model file, is clamped
+            to 0 to 1.
         channel ("rgb", "r", "g", "b", "a" or "luminance"; default "rgb"): Channels that the texture
             uses. A single channel gives gray. Alpha is 1 where the attribute has fewer than four
             channels.

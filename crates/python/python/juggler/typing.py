@@ -1163,15 +1163,25 @@ ModelLike: TypeAlias = "scene_types.Model | ModelDict | ValueForm"
 
 
 class InstancesDict(TypedDict, total=False):
+    file: str | ValueForm
     positions: Sequence[Vec3Like] | ArrayLike | str | ValueForm
     rotations: Sequence[Vec4Like] | ArrayLike | str | ValueForm
     scales: Sequence[Number | Vec3Like] | ArrayLike | ValueForm
     matrices: Sequence[VectorLike] | ArrayLike | str | ValueForm
     colors: Sequence[Vec4Like] | ArrayLike | str | ValueForm
     end_colors: Sequence[Vec4Like] | ArrayLike | str | ValueForm
+    attributes: Mapping[str, InstanceAttributeLike] | ValueForm
 
 
 InstancesLike: TypeAlias = "scene_types.Instances | InstancesDict | ValueForm"
+
+
+class InstanceAttributeDict(TypedDict, total=False):
+    channels: Required[Integer]
+    data: Required[AttributeArrayLike]
+
+
+InstanceAttributeLike: TypeAlias = "scene_types.InstanceAttribute | InstanceAttributeDict | ValueForm"
 
 
 class AttenuationDict(TypedDict, total=False):

@@ -18,7 +18,7 @@ fn strip_and_points(count: usize) -> Builder {
 
 /// Bytes of the arrays of instances.
 fn bytes(instances: &Instances) -> usize {
-    let Instances { positions, rotations, scales, matrices, colors, end_colors } = instances;
+    let Instances { positions, rotations, scales, matrices, colors, end_colors, .. } = instances;
     let colors = size_of_val(&**colors) + size_of_val(&**end_colors);
     size_of_val(&**positions) + size_of_val(&**rotations) + size_of_val(&**scales) + size_of_val(&**matrices) + colors
 }
