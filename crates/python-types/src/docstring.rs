@@ -20,7 +20,8 @@ pub fn class(model: &Model<'_>, module: &Module<'_>, class: &Class<'_>) -> Strin
     if !class.fields.is_empty() || !class.extra().is_empty() {
         text.push_str("\n    Args:\n");
         for field in &class.fields {
-            text.push_str(&argument(model, field));
+            let is_required = class.required().any(|name| name == field.name);
+            text.push_str(&argument(model, field, is_required));
         }
         for (name, _, description) in class.extra() {
             text.push_str(&wrapped(&format!("{name}: {description}"), 8, 12));
@@ -41,12 +42,12 @@ pub fn example(module: &Module<'_>, class: &Class<'_>) -> Option<&'static str> {
     EXAMPLES.lines().find(|line| line.starts_with(&qualified))
 }
 
-fn argument(model: &Model<'_>, field: &Field<'_>) -> String {
+fn argument(model: &Model<'_>, field: &Field<'_>, is_required: bool) -> String {
     let schema = field.schema;
     let text = paragraphs(description(schema)).join(" ");
     let mut facts = vec![words::value(model, schema)];
     facts.extend(words::unit(schema).filter(|unit| !text.contains(unit)).map(str::to_owned));
-    if field.required {
+    if is_required {
         facts.push("required".into());
     } else if let Some(default) = words::default(schema) {
         facts.push(format!("default {default}"));

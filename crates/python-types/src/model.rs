@@ -176,6 +176,12 @@ impl<'s> Class<'s> {
         self.extension.map_or(&[], |extension| extension.extra)
     }
 
+    /// Annotation of a field that accepts more than the schema has.
+    pub fn accepts(&self, field: &str) -> Option<&'static str> {
+        let accepts = self.extension.map_or(&[][..], |extension| extension.accepts);
+        accepts.iter().find(|(name, _)| *name == field).map(|(_, annotation)| *annotation)
+    }
+
     /// Fields without which there is no object.
     pub fn required(&self) -> impl Iterator<Item = &str> {
         let optional = self.extension.map_or(&[][..], |extension| extension.optional);

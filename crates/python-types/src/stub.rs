@@ -9,6 +9,13 @@ use std::fmt::Write;
 const IMPORTS: [(&str, &[&str]); 2] =
     [("collections.abc", &["Mapping", "Sequence"]), ("typing", &["Any", "Literal", "Self"])];
 
+/// Statements that import what the classes use, and what they use.
+const MODULES: [(&str, &str); 3] = [
+    ("scene_types.", "from . import scene_types\n"),
+    ("t.", "from . import typing as t\n"),
+    ("PerFace", "from ._array_nodes import PerFace\n"),
+];
+
 /// The stub of a module.
 pub fn module(model: &Model<'_>, module: &Module<'_>) -> String {
     let classes: String = module.classes.iter().map(|one| class(model, module, one)).collect();
@@ -20,7 +27,7 @@ pub fn module(model: &Model<'_>, module: &Module<'_>) -> String {
         }
     }
     text.push('\n');
-    for (name, statement) in [("scene_types.", "from . import scene_types\n"), ("t.", "from . import typing as t\n")] {
+    for (name, statement) in MODULES {
         if classes.contains(name) {
             text.push_str(statement);
         }
@@ -49,7 +56,10 @@ fn class(model: &Model<'_>, module: &Module<'_>, class: &Class<'_>) -> String {
     let (positional, required): (Vec<&str>, Vec<&str>) = (class.positional(), class.required().collect());
     // Parameters of the constructor, and of `replace`, where each field may be left out.
     let (mut first, mut keywords, mut changes) = (String::new(), String::new(), String::new());
-    let fields = class.fields.iter().map(|field| (field.name.as_str(), annotations.accepts(field.schema)));
+    let fields = class.fields.iter().map(|field| {
+        let own = class.accepts(&field.name).map(str::to_owned);
+        (field.name.as_str(), own.unwrap_or_else(|| annotations.accepts(field.schema)))
+    });
     for (name, annotation) in fields.chain(class.extra().iter().map(|(name, one, _)| (*name, (*one).to_owned()))) {
         let place = if positional.contains(&name) { &mut first } else { &mut keywords };
         if required.contains(&name) {

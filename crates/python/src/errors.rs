@@ -27,6 +27,11 @@ pub fn settings_error(message: impl AsRef<str>) -> PyErr {
     with_message("SettingsError", message.as_ref())
 }
 
+/// Error of a scene, of which the message alone is known.
+pub fn scene_error(message: &str) -> PyErr {
+    with_message("SceneError", message)
+}
+
 /// Error of a render that needs more memory than it may use.
 pub fn memory_error(message: &str) -> PyErr {
     with_message("MemoryBudgetError", message)

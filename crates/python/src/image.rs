@@ -170,6 +170,14 @@ impl Image {
         Ok(PyBytes::new(py, &bytes))
     }
 
+    /// Name of the tone curve.
+    #[getter]
+    fn tone_curve(&self) -> String {
+        let curve = serde_json::to_value(&self.image.header.tone.curve).unwrap_or_default();
+        let kind = curve.as_object().and_then(|kinds| kinds.keys().next().cloned());
+        kind.or_else(|| curve.as_str().map(str::to_owned)).unwrap_or_default()
+    }
+
     /// 8-bit levels of all pixels, with another tone curve or exposure if given.
     fn to_rgb8<'py>(
         &self,

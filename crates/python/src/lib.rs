@@ -1,7 +1,8 @@
 //! The module `juggler._native`, on which the Python package `juggler` is built. It takes scenes as
-//! JSON text and settings as keywords, and returns pixels as bytes, so it needs no library of
-//! arrays.
+//! JSON text with assets for arrays, and settings as keywords; arrays come and go as bytes, so it
+//! needs no library of arrays.
 
+mod arrays;
 mod budget;
 mod comparison;
 mod denoise;
@@ -20,6 +21,8 @@ mod threads;
 /// Classes and functions for the package `juggler`, which wraps all of them.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use crate::arrays::Asset;
     #[pymodule_export]
     use crate::comparison::compare;
     #[pymodule_export]

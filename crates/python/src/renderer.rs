@@ -1,5 +1,6 @@
 //! Renderer: a scene that is built once, edited and rendered again.
 
+use crate::arrays::Asset;
 use crate::budget;
 use crate::errors::{convert, key_error, line, settings_error};
 use crate::image::Image;
@@ -84,15 +85,18 @@ impl Renderer {
         Ok(value.to_string())
     }
 
-    /// Sets the value at a path, given as JSON; `null` removes it.
-    fn set_value(&self, path: &str, json: &str) -> PyResult<()> {
+    /// Sets the value at a path, given as JSON with the assets that it names; `null` removes it.
+    #[pyo3(signature = (path, json, assets=Vec::new()))]
+    fn set_value(&self, path: &str, json: &str, assets: Vec<(String, Py<Asset>)>) -> PyResult<()> {
         let value: Value = serde_json::from_str(json).map_err(|error| settings_error(error.to_string()))?;
-        let path = scene::path(path)?;
+        let (path, assets) = (scene::path(path)?, scene::shared(assets));
         // Edits of several threads follow each other. The lock is released before an exception is
         // made, which may let other threads run.
         let edited = {
             let mut state = self.lock();
-            scene::with_value(&state.scene, &path, value).map(|scene| state.scene = scene)
+            let with_assets =
+                assets.into_iter().fold(state.scene.clone(), |scene, (name, asset)| scene.asset(name, asset));
+            scene::with_value(&with_assets, &path, value).map(|scene| state.scene = scene)
         };
         edited.map_err(Refusal::into_exception)
     }

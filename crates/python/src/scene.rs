@@ -1,6 +1,7 @@
 //! Scenes.
 
-use crate::errors::{key_error, of_problems, of_scene, settings_error};
+use crate::arrays::Asset;
+use crate::errors::{key_error, of_problems, of_scene, scene_error, settings_error};
 use crate::task::{self, Fault};
 use juggler::scene::model::{ModelSummary, SceneModel};
 use juggler::scene::path::{Path as ScenePath, Step};
@@ -39,15 +40,26 @@ impl Scene {
         Ok(Self { scene, name })
     }
 
-    /// Reads the text of a scene. File names in it are relative to the folder of `name`, or to the
-    /// current one.
+    /// Reads the text of a scene, which refers to assets by their names. All other names of files in
+    /// it are relative to the folder of `name`, or to the current one.
     #[staticmethod]
-    #[pyo3(signature = (text, lenient, name=None))]
-    fn from_json(py: Python<'_>, text: String, lenient: bool, name: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (text, lenient, name=None, assets=Vec::new()))]
+    fn from_json(
+        py: Python<'_>,
+        text: String,
+        lenient: bool,
+        name: Option<String>,
+        assets: Vec<(String, Py<Asset>)>,
+    ) -> PyResult<Self> {
         let name = name.unwrap_or_else(|| UNNAMED.to_owned());
-        let file = name.clone();
-        let scene = task::call(py, move || loader(lenient).from_json(text, &file).map_err(Fault::from))?;
-        Ok(Self { scene, name })
+        let (file, assets) = (name.clone(), shared(assets));
+        let read = move || loader(lenient).from_json_with(text, &file, assets).map_err(Fault::from);
+        Ok(Self { scene: task::call(py, read)?, name })
+    }
+
+    /// The assets with their names.
+    fn assets(&self) -> Vec<(String, Asset)> {
+        self.scene.assets().map(|(name, asset)| (name.to_owned(), Asset { asset: asset.clone() })).collect()
     }
 
     /// File or built-in scene.
@@ -64,6 +76,17 @@ impl Scene {
             return Err(of_problems(&problems));
         }
         Ok(problems.list().iter().map(crate::errors::line).collect())
+    }
+
+    /// Bounding box of all objects: least and greatest corner.
+    fn bounds(&self, py: Python<'_>) -> PyResult<([f32; 3], [f32; 3])> {
+        let scene = self.scene.clone();
+        let bounds = task::call(py, move || Ok(scene.compile()?.world.bounds()))?;
+        let is_finite = bounds.min.is_finite() && bounds.max.is_finite() && bounds.min.cmple(bounds.max).all();
+        if !is_finite {
+            return Err(scene_error("the objects have no bounds: they are infinite, or there are none"));
+        }
+        Ok((bounds.min.to_array(), bounds.max.to_array()))
     }
 
     /// Text of the scene file.
@@ -99,6 +122,11 @@ impl Scene {
         let animation = self.scene.description.animation;
         (animation.frames, animation.frames_per_second)
     }
+}
+
+/// Assets that share the content of these.
+pub fn shared(assets: Vec<(String, Py<Asset>)>) -> Vec<(String, scene::Asset)> {
+    assets.into_iter().map(|(name, asset)| (name, asset.get().asset.clone())).collect()
 }
 
 fn loader(lenient: bool) -> Loader {

@@ -4,7 +4,8 @@ import os
 import pickle
 import unittest
 
-from support import SMALL, Folder, jg, small_scene
+import juggler as jg
+from support import SMALL, Folder, small_scene
 from juggler import Object, Scene, cameras, lights, materials, shapes, textures
 
 

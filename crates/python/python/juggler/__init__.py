@@ -31,6 +31,7 @@ _NAMES = {
     "denoise": "_denoise",
     "Camera": "_camera",
     "Image": "_image",
+    "PerFace": "_array_nodes",
     "PartialRender": "_partial_render",
     "merge": "_partial_render",
     "Probe": "_probe",

@@ -13,6 +13,7 @@ from . import scene_types as scene_types
 from . import shapes as shapes
 from . import textures as textures
 from .scene_types import *
+from juggler._array_nodes import PerFace as PerFace
 from juggler._api import (
     __version__ as __version__,
     examples as examples,

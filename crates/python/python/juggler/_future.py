@@ -27,13 +27,13 @@ class RenderFuture(Future):
         return not self.done()
 
 
-def submit(renderer):
-    """Starts a render of a native renderer."""
+def submit(renderer, color_maps=()):
+    """Starts a render of a native renderer, whose images have these color maps."""
     future = RenderFuture()
 
     def work():
         try:
-            image, error = Image(renderer.render(None, future._canceler)), None
+            image, error = Image(renderer.render(None, future._canceler), color_maps), None
         except BaseException as caught:
             image, error = None, caught
         # The future waits in the state "pending", in which it can be cancelled.

@@ -25,16 +25,18 @@ class Image:
     of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
     """
 
-    __slots__ = ("__weakref__", "_arrays", "_native")
+    __slots__ = ("__weakref__", "_arrays", "_color_maps", "_native")
 
-    def __init__(self, native):
+    def __init__(self, native, color_maps=()):
         if not isinstance(native, _native.Image):
             raise TypeError("images are made by juggler.render")
         self._native = native
         self._arrays = {}
+        # Color maps of `juggler.sci` in the scene.
+        self._color_maps = color_maps
 
     def __reduce__(self):
-        return _restore, (self._native.state(),)
+        return _restore, (self._native.state(), self._color_maps)
 
     def __repr__(self):
         width, height = self.size
@@ -136,6 +138,17 @@ class Image:
         width, height = self.size
         return array(self._native.to_rgb8(tone, exposure), "uint8", (height, width, 3))
 
+    def plot(self, colorbar=False, scale_bar=None, *, title=None, label=None, ax=None):
+        """Draws the image by matplotlib, and returns the figure.
+
+        `colorbar=True` adds a bar for each color map of `juggler.sci` in the scene, with `label`
+        beside it; an object of `juggler.sci` may be given instead. `scale_bar` is a length in scene
+        units with its unit, such as "1 mm", for orthographic cameras. `ax` are axes of matplotlib.
+        """
+        from juggler._plot import plot
+
+        return plot(self, colorbar, scale_bar, title, label, ax)
+
     def __array__(self, dtype=None, copy=None):
         color = self.color if dtype is None else self.color.astype(dtype)
         return color.copy() if copy else color
@@ -195,9 +208,9 @@ def _unknown(name, known):
     return f"the image has no AOV {name!r}, {has}; render it with aovs=[{name!r}]"
 
 
-def _restore(state):
+def _restore(state, color_maps=()):
     """Makes the image of another process."""
-    return Image(_native.Image.from_state(state))
+    return Image(_native.Image.from_state(state), color_maps)
 
 
 Image.__module__ = "juggler"

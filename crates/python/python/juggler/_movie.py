@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import contextmanager
 
 from juggler import _native
 from juggler._errors import Cancelled, FileError, SettingsError
@@ -56,6 +57,23 @@ def _flags(settings):
     return words
 
 
+@contextmanager
+def _source(scene, native):
+    """The word that names the scene for the program, and its text if it is no file."""
+    if isinstance(scene, (str, os.PathLike)):
+        yield os.fspath(scene), None
+    elif native.assets():
+        # The program reads the arrays from files.
+        from tempfile import TemporaryDirectory
+
+        with TemporaryDirectory() as folder:
+            file = os.path.join(folder, "scene.json")
+            native.save(file)
+            yield file, None
+    else:
+        yield "-", native.to_json() if native is scene else to_json(scene)[0]
+
+
 def render_movie(scene, path, frames, settings):
     """Renders a movie, see `juggler.render_movie`."""
     plain = {name: value for name, value in settings.items() if name != "max_memory"}
@@ -63,12 +81,6 @@ def render_movie(scene, path, frames, settings):
     words = [sys.executable, "-m", "juggler", "render"]
     # The exceptions of a wrong scene are better than the program's messages.
     native = native_scene(scene, bool(settings.get("lenient")))
-    text = None
-    if isinstance(scene, (str, os.PathLike)):
-        words.append(os.fspath(scene))
-    else:
-        text = native.to_json() if native is scene else to_json(scene)
-        words.append("-")
     words += [f"--output={os.fspath(path)}", *_flags(settings)]
     if frames is not None:
         frames = range(frames.start, frames.stop, frames.step)
@@ -78,7 +90,10 @@ def render_movie(scene, path, frames, settings):
     words.append("--quiet" if not settings.get("progress") else "--progress=bar")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     errors = None if settings.get("progress") else subprocess.PIPE
-    done = subprocess.run(words, input=text, text=True, stderr=errors, env=environment, check=False)
+    with _source(scene, native) as (word, text):
+        done = subprocess.run(
+            [*words, word], input=text, text=True, stderr=errors, env=environment, check=False
+        )
     message = (done.stderr or "").strip().removeprefix("error: ")
     if done.returncode == 2:
         raise SettingsError(message)

@@ -10,7 +10,7 @@ _PLAIN = frozenset({bool, float, int, str, type(None)})
 _MAX_SHOWN = 64
 
 
-class _Unfit(TypeError):
+class Unfit(TypeError):
     """A value that the scene format has no form for, with the fields that lead to it."""
 
 
@@ -39,13 +39,15 @@ def plain(value, collect=None):
 def _key(key):
     if isinstance(key, str):
         return str.__str__(key)
-    raise _Unfit(f"the key {key!r} is not a string")
+    raise Unfit(f"the key {key!r} is not a string")
 
 
 def _other(value, collect):
     """Converts values of classes that only resemble those of JSON."""
     if isinstance(value, str):
         return str.__str__(value)
+    if hasattr(value, "to_json"):
+        return value.to_json(collect)
     if hasattr(value, "__fspath__"):
         return value.__fspath__()
     if hasattr(value, "__index__"):
@@ -53,20 +55,20 @@ def _other(value, collect):
     if hasattr(value, "__float__"):
         return float(value)
     if isinstance(value, (bytes, bytearray, set, frozenset)) or not hasattr(value, "__len__"):
-        raise _Unfit(f"a {type(value).__name__} cannot be part of a scene")
+        raise Unfit(f"a {type(value).__name__} cannot be part of a scene")
     if hasattr(value, "keys"):
         return {_key(key): plain(value[key], collect) for key in value.keys()}
     return [plain(item, collect) for item in value]
 
 
-def _shown(value):
+def shown(value):
     """Expression that gives a value again, except for large arrays."""
     if isinstance(value, list):
-        return f"[{', '.join(map(_shown, value))}]"
+        return f"[{', '.join(map(shown, value))}]"
     if isinstance(value, tuple):
-        return f"({', '.join(map(_shown, value))}{',' if len(value) == 1 else ''})"
+        return f"({', '.join(map(shown, value))}{',' if len(value) == 1 else ''})"
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key!r}: {_shown(item)}' for key, item in value.items())}}}"
+        return f"{{{', '.join(f'{key!r}: {shown(item)}' for key, item in value.items())}}}"
     if hasattr(value, "tolist"):
         shape = tuple(getattr(value, "shape", None) or ())
         count = 1
@@ -81,6 +83,26 @@ def _shown(value):
         return repr(plain(value))
     except TypeError:
         return repr(value)
+
+
+def same(mine, yours):
+    """Whether two values have the same JSON form. Arrays are compared without making lists."""
+    if mine is yours:
+        return True
+    if hasattr(type(mine), "__array__") and type(mine) is type(yours):
+        same_shape = getattr(mine, "shape", None) == getattr(yours, "shape", None)
+        return same_shape and bool((mine == yours).all())
+    return plain(mine, _compared) == plain(yours, _compared)
+
+
+def _compared(arrays):
+    """What stands for arrays without a JSON form in comparisons."""
+    array = getattr(arrays, "array", None)
+    return (
+        None
+        if array is None
+        else (getattr(array, "shape", None), str(getattr(array, "dtype", "")), array.tolist())
+    )
 
 
 class _Signature:
@@ -98,7 +120,7 @@ class _Signature:
         return Signature([parameter(name) for name in cls.__match_args__])
 
 
-def _suggestion(name, names):
+def suggestion(name, names):
     """End of a message about an unknown name: the most similar known name."""
     from difflib import get_close_matches
 
@@ -149,7 +171,7 @@ class Node:
         for name in self._fields:
             setattr(self, name, fields.pop(name, None))
         for name in fields:
-            raise TypeError(f"{self._label()} has no `{name}`{_suggestion(name, self._fields)}")
+            raise TypeError(f"{self._label()} has no `{name}`{suggestion(name, self._fields)}")
         missing = [f"`{name}`" for name in self._required if getattr(self, name) is None]
         if missing:
             raise TypeError(f"{self._label()} needs {' and '.join(missing)}")
@@ -175,17 +197,16 @@ class Node:
             value = getattr(self, name)
             by_position = by_position and name in self._positional and value is not None
             if by_position:
-                arguments.append(_shown(value))
+                arguments.append(shown(value))
             elif value is not None:
-                arguments.append(f"{name}={_shown(value)}")
+                arguments.append(f"{name}={shown(value)}")
         return f"{self._label()}({', '.join(arguments)})"
 
     def __eq__(self, other):
         """Whether both are of one class and have the same JSON form."""
         if type(self) is not type(other):
             return NotImplemented
-        pairs = ((getattr(self, name), getattr(other, name)) for name in self._fields)
-        return all(mine is yours or plain(mine) == plain(yours) for mine, yours in pairs)
+        return all(same(getattr(self, name), getattr(other, name)) for name in self._fields)
 
     # Nodes can change.
     __hash__ = None
@@ -218,6 +239,6 @@ class Node:
                 continue
             try:
                 members[self._keys.get(name, name)] = plain(value, collect)
-            except _Unfit as error:
-                raise _Unfit(f"`{name}` of {self._label()}: {error}") from None
+            except Unfit as error:
+                raise Unfit(f"`{name}` of {self._label()}: {error}") from None
         return members

@@ -17,7 +17,7 @@ class Renderer:
     that begin after it.
     """
 
-    __slots__ = ("__weakref__", "_native", "_progress", "_settings")
+    __slots__ = ("__weakref__", "_color_maps", "_native", "_progress", "_settings")
 
     def __init__(self, scene, **settings):
         self._progress = settings.pop("progress", None)
@@ -30,6 +30,7 @@ class Renderer:
         _native.check_settings(settings)
         self._native = _native.Renderer(native_scene(scene, bool(settings.get("lenient"))), settings)
         self._settings = settings
+        self._color_maps = _color_maps(scene)
         if own_camera:
             self.camera = camera
 
@@ -41,7 +42,8 @@ class Renderer:
         scene = self._native.scene()
         of_models = ("variant", "animation", "model_scene")
         settings = {name: value for name, value in self._settings.items() if name not in of_models}
-        return _restore, (scene.to_json_at_name(), scene.name, settings, self.frame)
+        state = (scene.to_json_at_name(), scene.name, settings, self.frame, scene.assets(), self._color_maps)
+        return _restore, state
 
     def __getitem__(self, path):
         """Value at a path, as messages print it, or at a JSON pointer."""
@@ -50,7 +52,7 @@ class Renderer:
         return json.loads(self._native.value(path))
 
     def __setitem__(self, path, value):
-        self._native.set_value(path, to_json(value))
+        self._native.set_value(path, *to_json(value))
 
     def __delitem__(self, path):
         self._native.set_value(path, "null")
@@ -73,7 +75,7 @@ class Renderer:
 
     @camera.setter
     def camera(self, camera):
-        self._native.set_value(self._native.camera_path(), to_json(camera))
+        self._native.set_value(self._native.camera_path(), *to_json(camera))
 
     @property
     def frame(self):
@@ -100,10 +102,11 @@ class Renderer:
         warn(self._native.scene().check())
 
     def to_dict(self):
-        """Returns the scene with all edits, in the scene format."""
-        import json
+        """Returns the scene with all edits, in the scene format. Arrays of meshes and instances are
+        lists."""
+        from juggler._scene import to_dict
 
-        return json.loads(self._native.scene().to_json())
+        return to_dict(self._native.scene())
 
     def models(self):
         """Returns a description of each model of the scene, as `juggler.models` does."""
@@ -119,7 +122,7 @@ class Renderer:
         with display(progress) as shown:
             if shown.is_live:
                 return self._warned(shown.follow(self.progressive(every=0.25)))
-            return self._warned(Image(self._native.render(shown.callback)))
+            return self._warned(self._image(self._native.render(shown.callback)))
 
     def progressive(self, every=0.5):
         """Renders better and better images: yields one each `every` seconds, at last the one that
@@ -128,7 +131,7 @@ class Renderer:
         steps = self._native.progressive(every)
         try:
             for image in steps:
-                image = Image(image)
+                image = self._image(image)
                 if steps.is_done():
                     self._native.keep(steps)
                     self._warned(image)
@@ -142,7 +145,7 @@ class Renderer:
         """
         from juggler._future import submit
 
-        return submit(self._native)
+        return submit(self._native, self._color_maps)
 
     async def render_async(self):
         """Renders the image while other tasks of `asyncio` run; the task can be cancelled."""
@@ -172,7 +175,7 @@ class Renderer:
             renderer.frame = self.frame
         with display(self._progress if progress is None else progress, live=False) as shown:
             image = renderer._native.extend(native(partial_render), shown.callback)
-        return renderer._warned(Image(image))
+        return renderer._warned(self._image(image))
 
     def probe(self, x, y, *, depth=5, branches=5, brightest=5):
         """Explains the pixel in column `x` and row `y`, counted from 0 at the top left."""
@@ -180,16 +183,32 @@ class Renderer:
 
         return self._warned(Probe(*self._native.probe((x, y), depth, branches, brightest)))
 
+    def _image(self, native):
+        return Image(native, self._color_maps)
+
     def _warned(self, result):
         warn(self._native.take_warnings())
         return result
 
 
-def _restore(text, name, settings, frame):
+def _color_maps(scene):
+    """Color maps of `juggler.sci` in a scene."""
+    import sys
+
+    if "juggler._sci" not in sys.modules:
+        return ()
+    from juggler._sci import maps_of
+
+    objects = scene.get("objects") if isinstance(scene, dict) else getattr(scene, "objects", None)
+    return tuple(maps_of(objects))
+
+
+def _restore(text, name, settings, frame, assets=(), color_maps=()):
     """Makes the renderer of another process."""
-    scene = _native.Scene.from_json(text, bool(settings.get("lenient")), name)
+    scene = _native.Scene.from_json(text, bool(settings.get("lenient")), name, list(assets))
     renderer = Renderer(scene, **settings)
     renderer.frame = frame
+    renderer._color_maps = color_maps
     return renderer
 
 

@@ -4,6 +4,7 @@ import os
 import sys
 
 from juggler import _native
+from juggler._node import Node
 
 # File name of a scene that is no file.
 _UNNAMED = "<scene>"
@@ -20,27 +21,53 @@ def native_scene(scene, lenient=False):
         raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
     # A scene that was loaded from a file names its files relative to the folder of that file.
     folder = getattr(scene, "_folder", None)
+    lenient = lenient or getattr(scene, "_lenient", False)
     name = None if folder is None else os.path.join(folder, _UNNAMED)
-    return _native.Scene.from_json(to_json(scene), lenient, name)
+    text, assets = to_json(scene)
+    return _native.Scene.from_json(text, lenient, name, assets)
 
 
 def to_json(value):
-    """Returns the JSON of a value of a scene."""
+    """Returns the JSON of a value of a scene, and the assets that it names, with their names."""
     import json
 
-    if hasattr(value, "to_dict"):
-        value = value.to_dict()
+    from ._assets import Collector
+
+    collect = Collector()
     try:
-        return json.dumps(value, default=_plain, allow_nan=False)
+        text = json.dumps(value, default=lambda value: _plain(value, collect), allow_nan=False)
+        return text, list(collect.assets.items())
     except (ValueError, RecursionError) as error:
         from juggler._errors import SceneError
 
+        if isinstance(error, SceneError):
+            raise
         reason = str(error).split(":")[0]
         raise SceneError(f"the scene cannot be written as JSON: {reason}") from None
 
 
-def _plain(value):
+def to_dict(native):
+    """Returns a scene in the scene format, in which arrays of meshes and instances are lists."""
+    import json
+
+    lists = {name: asset.members() for name, asset in native.assets()}
+
+    def in_place_of_assets(members):
+        name = members.get("file")
+        if not isinstance(name, str) or name not in lists:
+            return members
+        if lists[name] is None:
+            raise TypeError(f"the asset `{name}` has no form in text; `Scene.save` writes it as a file")
+        others = {key: value for key, value in members.items() if key != "file"}
+        return {**json.loads(lists[name]), **others}
+
+    return json.loads(native.to_json(), object_hook=in_place_of_assets)
+
+
+def _plain(value, collect):
     """Returns a value that JSON has, for one that it does not have."""
+    if isinstance(value, Node):
+        return value.to_json(collect)
     for method in ("to_dict", "tolist", "__fspath__"):
         if hasattr(value, method):
             return getattr(value, method)()

@@ -11,7 +11,7 @@ class SceneMethods(Node):
         """Loads a scene file, a model or a mesh, or the built-in scene of this name.
 
         The sections of the scene are lists and dictionaries, in which names of files are relative to
-        the current folder. `lenient` shows missing pictures of models gray.
+        the current folder. `lenient` shows missing pictures of models gray, in renders of the scene, too.
         """
     def check(self) -> list[str]:
         """Returns the warnings of the scene as texts. Raises a `SceneError` with all its mistakes."""

@@ -4,6 +4,7 @@
 from typing import Any, Literal, Self
 
 from . import typing as t
+from ._array_nodes import ArrayImage
 from ._node import Node
 
 __all__ = [
@@ -108,13 +109,13 @@ class Dome(Node):
         top: t.ColorLike | None = ...,
     ) -> Self: ...
 
-class Environment(Node):
+class Environment(ArrayImage):
     """Environment map: an equirectangular image of infinitely distant surroundings.
 
     Args:
-        file (string; required): Path of the image (OpenEXR, Radiance HDR, TIFF, PNG, JPEG or
-            another format of textures), relative to the scene file. The image is equirectangular,
-            twice as wide as high, with the first row up.
+        file (string): Path of the image (OpenEXR, Radiance HDR, TIFF, PNG, JPEG or another format
+            of textures), relative to the scene file. The image is equirectangular, twice as wide as
+            high, with the first row up.
         scale (number from 0 to 1e+30; default 1): Factor on the radiance of the image.
         rotation_degrees (number from -10000 to 10000; default 0): Rotation about the vertical axis
             in degrees, from -10,000 to 10,000, counterclockwise as seen from above.
@@ -123,33 +124,40 @@ class Environment(Node):
         visible_as (color; W/(scene unit² sr)): Radiance that camera rays see instead, also through
             masks and through clear or rough glass without reflection inside. All other rays see the
             image. By default camera rays see it, too.
+        array: Texels instead of `file`: an array of shape (height, width) or (height, width,
+            channels), rows from the top, with 1 to 4 channels: gray; gray and alpha; red, green and
+            blue; these and alpha. Numbers of the types uint8 and uint16 are encoded as in a PNG
+            file, float16 and float32 are linear; float64 is rounded to float32.
 
     Example:
         backgrounds.Environment("studio.hdr", rotation_degrees=90)
     """
-    __match_args__ = ("file", "scale", "rotation_degrees", "up", "visible_as")
+    __match_args__ = ("file", "array", "scale", "rotation_degrees", "up", "visible_as")
     file: str | Any
     scale: float | Any
     rotation_degrees: float | Any
     up: list[float | Any] | Any
     visible_as: Any
+    array: Any
     def __init__(
         self,
-        file: str | t.ValueForm,
+        file: str | t.ValueForm | None = None,
         *,
         scale: t.Number | None = None,
         rotation_degrees: t.Number | None = None,
         up: t.Vec3Like | None = None,
         visible_as: t.ColorLike | None = None,
+        array: t.ArrayLike | None = None,
     ) -> None: ...
     def replace(
         self,
         *,
-        file: str | t.ValueForm = ...,
+        file: str | t.ValueForm | None = ...,
         scale: t.Number | None = ...,
         rotation_degrees: t.Number | None = ...,
         up: t.Vec3Like | None = ...,
         visible_as: t.ColorLike | None = ...,
+        array: t.ArrayLike | None = ...,
     ) -> Self: ...
 
 class Sky(Node):

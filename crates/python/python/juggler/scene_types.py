@@ -1,6 +1,7 @@
 # Generated from schema/scene.schema.json by crates/python-types. Do not edit.
 """The scene and its parts that are no kinds of a family."""
 
+from ._array_nodes import ArrayInstances
 from ._node import Node
 from ._placement import Placement
 from ._scene_methods import SceneMethods
@@ -526,7 +527,7 @@ class Model(Node):
     _required = ("file",)
 
 
-class Instances(Node):
+class Instances(ArrayInstances):
     """Transforms of the instances of an object, each to the object's space, and their attributes,
     from a file or from the arrays given here. `matrices` give whole transforms; without them, each
     instance is scaled, then rotated, then translated. All arrays that are not empty have the same
@@ -583,6 +584,9 @@ class InstanceAttribute(Node):
             green; red, green and blue; red, green, blue and alpha.
         data (attribute array; required): Numbers of all instances, in linear light: `channels` for
             each of them.
+
+    Example:
+        InstanceAttribute(1, {"f32": [0, 0.5, 1]})
     """
 
     __slots__ = ("channels", "data")

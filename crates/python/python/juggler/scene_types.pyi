@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
 
 from . import typing as t
+from ._array_nodes import ArrayInstances
 from ._node import Node
 from ._placement import Placement
 from ._scene_methods import SceneMethods
@@ -924,7 +925,7 @@ class Model(Node):
         photometric: bool | t.ValueForm | None = ...,
     ) -> Self: ...
 
-class Instances(Node):
+class Instances(ArrayInstances):
     """Transforms of the instances of an object, each to the object's space, and their attributes,
     from a file or from the arrays given here. `matrices` give whole transforms; without them, each
     instance is scaled, then rotated, then translated. All arrays that are not empty have the same
@@ -985,10 +986,10 @@ class Instances(Node):
         positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = None,
         rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
         scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = None,
-        matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = None,
+        matrices: Sequence[t.VectorLike | Sequence[t.VectorLike]] | t.ArrayLike | str | t.ValueForm | None = None,
         colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
         end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
-        attributes: Mapping[str, t.InstanceAttributeLike] | t.ValueForm | None = None,
+        attributes: Mapping[str, t.InstanceAttributeLike | t.ArrayLike | Sequence[Any]] | t.ValueForm | None = None,
     ) -> None: ...
     def replace(
         self,
@@ -997,10 +998,10 @@ class Instances(Node):
         positions: Sequence[t.Vec3Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         rotations: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         scales: Sequence[t.Number | t.Vec3Like] | t.ArrayLike | t.ValueForm | None = ...,
-        matrices: Sequence[t.VectorLike] | t.ArrayLike | str | t.ValueForm | None = ...,
+        matrices: Sequence[t.VectorLike | Sequence[t.VectorLike]] | t.ArrayLike | str | t.ValueForm | None = ...,
         colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         end_colors: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
-        attributes: Mapping[str, t.InstanceAttributeLike] | t.ValueForm | None = ...,
+        attributes: Mapping[str, t.InstanceAttributeLike | t.ArrayLike | Sequence[Any]] | t.ValueForm | None = ...,
     ) -> Self: ...
 
 class InstanceAttribute(Node):
@@ -1011,6 +1012,9 @@ class InstanceAttribute(Node):
             green; red, green and blue; red, green, blue and alpha.
         data (attribute array; required): Numbers of all instances, in linear light: `channels` for
             each of them.
+
+    Example:
+        InstanceAttribute(1, {"f32": [0, 0.5, 1]})
     """
     __match_args__ = ("channels", "data")
     channels: int | Any

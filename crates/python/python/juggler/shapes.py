@@ -1,6 +1,7 @@
 # Generated from schema/scene.schema.json by crates/python-types. Do not edit.
 """Kinds of shapes."""
 
+from ._array_nodes import ArrayMesh
 from ._node import Node
 
 __all__ = [
@@ -186,7 +187,7 @@ class Tube(Node):
     _kind = "tube"
 
 
-class Mesh(Node):
+class Mesh(ArrayMesh):
     """A triangle mesh, from a file or from the arrays given here. The corners of a triangle run
     counter-clockwise seen from the front.
 

@@ -6,6 +6,8 @@ from typing import Any, Self
 
 from . import scene_types
 from . import typing as t
+from ._array_nodes import PerFace
+from ._array_nodes import ArrayMesh
 from ._node import Node
 
 __all__ = [
@@ -273,7 +275,7 @@ class Tube(Node):
         radius: t.Number | None = ...,
     ) -> Self: ...
 
-class Mesh(Node):
+class Mesh(ArrayMesh):
     """A triangle mesh, from a file or from the arrays given here. The corners of a triangle run
     counter-clockwise seen from the front.
 
@@ -343,7 +345,7 @@ class Mesh(Node):
         uvs: Sequence[t.Vec2Like] | t.ArrayLike | str | t.ValueForm | None = None,
         uvs1: Sequence[t.Vec2Like] | t.ArrayLike | str | t.ValueForm | None = None,
         tangents: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = None,
-        attributes: Mapping[str, t.MeshAttributeLike] | t.ValueForm | None = None,
+        attributes: Mapping[str, t.MeshAttributeLike | t.ArrayLike | Sequence[Any] | PerFace] | t.ValueForm | None = None,
         crease_angle_degrees: t.Number | None = None,
         morphs: Sequence[t.MorphLike] | t.ValueForm | None = None,
     ) -> None: ...
@@ -357,7 +359,7 @@ class Mesh(Node):
         uvs: Sequence[t.Vec2Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         uvs1: Sequence[t.Vec2Like] | t.ArrayLike | str | t.ValueForm | None = ...,
         tangents: Sequence[t.Vec4Like] | t.ArrayLike | str | t.ValueForm | None = ...,
-        attributes: Mapping[str, t.MeshAttributeLike] | t.ValueForm | None = ...,
+        attributes: Mapping[str, t.MeshAttributeLike | t.ArrayLike | Sequence[Any] | PerFace] | t.ValueForm | None = ...,
         crease_angle_degrees: t.Number | None = ...,
         morphs: Sequence[t.MorphLike] | t.ValueForm | None = ...,
     ) -> Self: ...

@@ -1,6 +1,7 @@
 # Generated from schema/scene.schema.json by crates/python-types. Do not edit.
 """Kinds of textures."""
 
+from ._array_nodes import ArrayImage
 from ._node import Node
 
 __all__ = [
@@ -26,7 +27,7 @@ __all__ = [
 ]
 
 
-class Image(Node):
+class Image(ArrayImage):
     """Image texture: PNG, JPEG, WebP, TIFF, TGA, BMP, GIF (the first frame), OpenEXR, Radiance HDR
     or PFM.
 
@@ -36,7 +37,7 @@ class Image(Node):
     the only channel.
 
     Args:
-        file (string; required): Path of the image file, relative to the scene file.
+        file (string): Path of the image file, relative to the scene file.
         color_space ("auto", "srgb" or "linear"; default "auto"): Encoding of the image's values.
             Set it to `linear` for data that is not color, such as roughness, heights and normals.
         channel ("rgb", "r", "g", "b", "a" or "luminance"; default "rgb"): Channels that the texture
@@ -66,6 +67,10 @@ class Image(Node):
             `rotate_degrees` and `offset`: with the six numbers [a, b, c, d, e, f], the point (u, v)
             shows the pattern at (a u + b v + c, d u + e v + f). Unlike the other settings, it can
             shear the pattern and rotate it after an uneven scale. `space` is then `uv`.
+        array: Texels instead of `file`: an array of shape (height, width) or (height, width,
+            channels), rows from the top, with 1 to 4 channels: gray; gray and alpha; red, green and
+            blue; these and alpha. Numbers of the types uint8 and uint16 are encoded as in a PNG
+            file, float16 and float32 are linear; float64 is rounded to float32.
 
     Example:
         textures.Image("wood.png", wrap="mirror", scale=2)
@@ -89,7 +94,6 @@ class Image(Node):
     )
     _kind = "image"
     _positional = ("file",)
-    _required = ("file",)
 
 
 class Attribute(Node):

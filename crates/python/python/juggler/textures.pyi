@@ -6,6 +6,7 @@ from typing import Any, Literal, Self
 
 from . import scene_types
 from . import typing as t
+from ._array_nodes import ArrayImage
 from ._node import Node
 
 __all__ = [
@@ -30,7 +31,7 @@ __all__ = [
     "Uv",
 ]
 
-class Image(Node):
+class Image(ArrayImage):
     """Image texture: PNG, JPEG, WebP, TIFF, TGA, BMP, GIF (the first frame), OpenEXR, Radiance HDR
     or PFM.
 
@@ -40,7 +41,7 @@ class Image(Node):
     the only channel.
 
     Args:
-        file (string; required): Path of the image file, relative to the scene file.
+        file (string): Path of the image file, relative to the scene file.
         color_space ("auto", "srgb" or "linear"; default "auto"): Encoding of the image's values.
             Set it to `linear` for data that is not color, such as roughness, heights and normals.
         channel ("rgb", "r", "g", "b", "a" or "luminance"; default "rgb"): Channels that the texture
@@ -70,12 +71,17 @@ class Image(Node):
             `rotate_degrees` and `offset`: with the six numbers [a, b, c, d, e, f], the point (u, v)
             shows the pattern at (a u + b v + c, d u + e v + f). Unlike the other settings, it can
             shear the pattern and rotate it after an uneven scale. `space` is then `uv`.
+        array: Texels instead of `file`: an array of shape (height, width) or (height, width,
+            channels), rows from the top, with 1 to 4 channels: gray; gray and alpha; red, green and
+            blue; these and alpha. Numbers of the types uint8 and uint16 are encoded as in a PNG
+            file, float16 and float32 are linear; float64 is rounded to float32.
 
     Example:
         textures.Image("wood.png", wrap="mirror", scale=2)
     """
     __match_args__ = (
         "file",
+        "array",
         "color_space",
         "channel",
         "invert",
@@ -104,9 +110,10 @@ class Image(Node):
     rotate_degrees: list[float | Any] | Any
     offset: list[float | Any] | Any
     matrix: list[float | Any] | Any
+    array: Any
     def __init__(
         self,
-        file: str | t.ValueForm,
+        file: str | t.ValueForm | None = None,
         *,
         color_space: Literal["auto", "srgb", "linear"] | t.ValueForm | None = None,
         channel: Literal["rgb", "r", "g", "b", "a", "luminance"] | t.ValueForm | None = None,
@@ -121,11 +128,12 @@ class Image(Node):
         rotate_degrees: t.Vec3Like | None = None,
         offset: t.Vec3Like | None = None,
         matrix: t.VectorLike | None = None,
+        array: t.ArrayLike | None = None,
     ) -> None: ...
     def replace(
         self,
         *,
-        file: str | t.ValueForm = ...,
+        file: str | t.ValueForm | None = ...,
         color_space: Literal["auto", "srgb", "linear"] | t.ValueForm | None = ...,
         channel: Literal["rgb", "r", "g", "b", "a", "luminance"] | t.ValueForm | None = ...,
         invert: bool | t.ValueForm | None = ...,
@@ -139,6 +147,7 @@ class Image(Node):
         rotate_degrees: t.Vec3Like | None = ...,
         offset: t.Vec3Like | None = ...,
         matrix: t.VectorLike | None = ...,
+        array: t.ArrayLike | None = ...,
     ) -> Self: ...
 
 class Attribute(Node):

@@ -1,0 +1,152 @@
+"""Assets: what the renderer keeps of the arrays of a scene."""
+
+from juggler import _native
+
+from . import _arrays
+from ._array_nodes import WIDTHS, PerFace
+from ._errors import SceneError
+from ._node import Node
+
+
+def restore(kind, *arguments):
+    """Makes the asset that `pickle` has taken apart."""
+    return getattr(_native.Asset, kind)(*arguments)
+
+
+class Collector:
+    """Makes the assets of a scene while its text is written; `assets` has them by name."""
+
+    def __init__(self):
+        self.assets = {}
+        # Names by the identity of the arrays, and the arrays, which keep their identity so.
+        self._names = {}
+
+    def __call__(self, arrays):
+        """Name of the asset; `None` for arrays that are no asset of their own."""
+        if not isinstance(arrays, (_Arrays, TexelArray)):
+            return None
+        key = arrays.key()
+        if key not in self._names:
+            asset = arrays.asset()
+            self.assets[asset.name] = asset
+            self._names[key] = asset.name, arrays
+        return self._names[key][0]
+
+
+class _Arrays:
+    """Arrays of one part of a scene: fields, and attributes by name."""
+
+    def __init__(self, label, fields, attributes):
+        self.label = label
+        self.fields = fields
+        self.attributes = attributes
+
+    def key(self):
+        """The identity of all arrays."""
+        fields = ((name, id(value)) for name, value in self.fields.items())
+        values = (
+            (name, isinstance(value, PerFace), id(_values(value))) for name, value in self.attributes.items()
+        )
+        return (type(self).__name__, *fields, None, *values)
+
+    def is_asset(self):
+        """Whether one of the arrays should not be text."""
+        values = [*self.fields.values(), *map(_values, self.attributes.values())]
+        if any(map(_arrays.is_array, values)):
+            return True
+        return any(map(_arrays.is_large, values)) and all(map(_arrays.has_numbers, self.fields.values()))
+
+    def _named(self, name):
+        return f"`{name}` of {self.label}"
+
+    def _attributes(self):
+        """Each attribute with its name: whether its values belong to faces, channels, type, bytes."""
+        return [(name, *self._attribute(name, value)) for name, value in self.attributes.items()]
+
+    def _attribute(self, name, value):
+        label = f"the attribute `{name}` of {self.label}"
+        face = isinstance(value, PerFace)
+        if isinstance(value, Node):
+            value = value.to_dict()
+        if hasattr(value, "keys"):
+            face = value.get("domain") == "face"
+            value = _described(label, value)
+        channels, kind, array = _arrays.values(_values(value), label)
+        return face, channels, kind, _arrays.as_bytes(array)
+
+
+def _described(label, attribute):
+    """Values of an attribute in the form of the scene format, whose arrays may be lists."""
+    data, channels = attribute.get("data"), attribute.get("channels")
+    kinds = {"u8": "uint8", "u16": "uint16", "f32": "float32"}
+    if (
+        not hasattr(data, "keys")
+        or len(data) != 1
+        or next(iter(data)) not in kinds
+        or channels not in (1, 2, 3, 4)
+    ):
+        raise SceneError(
+            f"{label} must be an array, or have `channels` from 1 to 4 and `data` of u8, u16 or f32"
+        )
+    ((kind, numbers),) = data.items()
+    array = _arrays.numpy().asarray(numbers, kinds[kind]).reshape(-1)
+    if len(array) % channels:
+        raise SceneError(f"{label} has {len(array)} numbers, not a multiple of its {channels} channels")
+    return array.reshape(-1, channels)
+
+
+class MeshArrays(_Arrays):
+    """Arrays of a mesh."""
+
+    def asset(self):
+        """The asset."""
+        arrays = {}
+        for name, value in self.fields.items():
+            convert = _arrays.indices if name == "triangles" else _arrays.floats
+            arrays[name] = _arrays.as_bytes(convert(value, self._named(name), WIDTHS[name]))
+        return _native.Asset.mesh(arrays, self._attributes())
+
+
+class InstanceArrays(_Arrays):
+    """Arrays of instances."""
+
+    def asset(self):
+        """The asset."""
+        arrays = {}
+        for name, value in self.fields.items():
+            label = self._named(name)
+            if name == "matrices":
+                array = _arrays.rows(value, label)
+            elif name == "scales":
+                name, array = _arrays.scales(value, label)
+            else:
+                array = _arrays.floats(value, label, WIDTHS[name])
+            arrays[name] = _arrays.as_bytes(array)
+        attributes = self._attributes()
+        faces = [name for name, face, *_ in attributes if face]
+        if faces:
+            raise SceneError(
+                f"the attribute `{faces[0]}` of {self.label} is PerFace, but instances have no faces"
+            )
+        return _native.Asset.instances(arrays, attributes)
+
+
+def _values(value):
+    return value.values if isinstance(value, PerFace) else value
+
+
+class TexelArray:
+    """Texels of an image."""
+
+    def __init__(self, label, array):
+        self.label = label
+        self.array = array
+
+    def key(self):
+        """The identity of the array."""
+        return id(self.array)
+
+    def asset(self):
+        """The asset."""
+        size, channels, kind, array = _arrays.texels(self.array, f"`array` of {self.label}")
+        return _native.Asset.texels(size, channels, kind, _arrays.as_bytes(array))

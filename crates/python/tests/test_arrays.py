@@ -1,0 +1,323 @@
+"""Arrays as meshes, pictures and instances."""
+
+import os
+import pickle
+import unittest
+
+import juggler as jg
+from juggler import Instances, Morph, Object, Scene, backgrounds, cameras, materials, shapes, textures
+from support import Folder, needs_numpy, numpy as np
+
+CORNERS = [(-1, -1, 0), (1, -1, 0.25), (1, 1, 0), (-1, 1, 0.25)]
+TRIANGLES = [(0, 1, 2), (0, 2, 3)]
+
+
+def shown(mesh, material=None, **sections):
+    """A scene that shows a mesh from the front."""
+    return Scene(
+        render=jg.RenderSettings(size=(24, 16), samples=4),
+        camera=cameras.Perspective(eye=(0, 0, 4), vertical_fov_degrees=40),
+        background="#c0c0c0",
+        objects=[Object(mesh, material=material)],
+        **sections,
+    )
+
+
+def color_of(name, **fields):
+    return materials.Diffuse(reflectance=textures.Attribute(name, **fields))
+
+
+@needs_numpy
+class Meshes(Folder):
+    def setUp(self):
+        super().setUp()
+        self.positions = np.array(CORNERS, dtype="f4")
+        self.triangles = np.array(TRIANGLES, dtype="u4")
+        self.normals = np.array([(0, 0.125, 1), (0.25, 0, 1), (0, -0.5, 1), (0.125, 0.125, 1)], dtype="f4")
+
+    def hash(self, mesh, **sections):
+        return jg.render(shown(mesh, **sections)).hash
+
+    def mesh(self, **fields):
+        return shapes.Mesh(**{"positions": self.positions, "triangles": self.triangles, **fields})
+
+    def test_arrays_give_the_picture_of_lists(self):
+        lists = self.hash(shapes.Mesh(positions=CORNERS, triangles=TRIANGLES, normals=self.normals.tolist()))
+        self.assertEqual(self.hash(self.mesh(normals=self.normals)), lists)
+        self.assertNotEqual(self.hash(self.mesh()), lists)
+        self.assertEqual(self.hash(self.mesh().replace(normals=self.normals.tolist())), lists)
+        scene = shown(self.mesh(normals=self.normals))
+        self.assertEqual(jg.render(scene.to_dict()).hash, lists)
+        self.assertEqual(jg.Renderer(scene).to_dict()["objects"], scene.to_dict()["objects"])
+
+    def test_every_layout_and_type_of_numbers_is_read(self):
+        expected = self.hash(self.mesh())
+        wide = np.zeros((4, 6), "f8")
+        wide[:, ::2] = self.positions
+        forms = {
+            "big-endian": self.positions.astype(">f4"),
+            "double": self.positions.astype("f8"),
+            "half": self.positions.astype("f2"),
+            "columns first": np.asfortranarray(self.positions),
+            "strided": wide[:, ::2],
+            "reversed": self.positions[::-1].copy()[::-1],
+            "read-only": np.frombuffer(self.positions.tobytes(), "f4").reshape(4, 3),
+            "tuples": CORNERS,
+        }
+        for name, positions in forms.items():
+            with self.subTest(name):
+                self.assertEqual(self.hash(self.mesh(positions=positions)), expected)
+        for kind in (">u4", "i8", "u8", "i4", "u1", ">i2"):
+            with self.subTest(kind):
+                self.assertEqual(self.hash(self.mesh(triangles=self.triangles.astype(kind))), expected)
+
+    def test_attributes_of_vertices_and_faces(self):
+        color = np.array([(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)], "u1")
+        by_vertex = jg.render(shown(self.mesh(attributes={"color": color}), color_of("color")))
+        as_floats = jg.render(shown(self.mesh(attributes={"color": color / 255.0}), color_of("color")))
+        self.assertEqual(by_vertex.hash, as_floats.hash)
+        faces = {"part": jg.PerFace(np.array([0.2, 0.9]))}
+        by_face = jg.render(
+            shown(self.mesh(attributes=faces), color_of("part")), integrator="albedo", samples=1
+        )
+        self.assertEqual({round(float(x), 3) for x in np.unique(by_face.color)} - {0.0}, {0.2, 0.9})
+        lists = {"part": {"domain": "face", "channels": 1, "data": {"f32": [0.2, 0.9]}}}
+        known = jg.render(
+            shown(self.mesh(attributes=lists), color_of("part")), integrator="albedo", samples=1
+        )
+        self.assertEqual(known.hash, by_face.hash)
+        plain = shapes.Mesh(
+            positions=CORNERS, triangles=TRIANGLES, attributes={"part": jg.PerFace([0.2, 0.9])}
+        )
+        self.assertEqual(
+            jg.render(shown(plain, color_of("part")), integrator="albedo", samples=1).hash, by_face.hash
+        )
+
+    def test_a_renderer_has_its_own_copy(self):
+        scene = shown(self.mesh())
+        renderer = jg.Renderer(scene)
+        before = renderer.render().hash
+        self.positions[0, 0] = -3
+        self.assertEqual(renderer.render().hash, before)
+        self.assertNotEqual(jg.render(scene).hash, before)
+
+    def test_edits_take_arrays(self):
+        renderer = jg.Renderer(shown(self.mesh()))
+        renderer.render()
+        moved = self.positions + np.array([0.3, 0, 0], "f4")
+        renderer["objects[0].shape"] = self.mesh(positions=moved)
+        self.assertEqual(renderer.render().hash, self.hash(self.mesh(positions=moved)))
+        self.assertIn("geometry", renderer.changed)
+
+    def test_morph_targets_are_arrays(self):
+        target = self.positions + np.array([0, 0.5, 0.5], "f4")
+        lists = shapes.Mesh(
+            positions=CORNERS, triangles=TRIANGLES, morphs=[Morph(positions=target.tolist(), weight=0.5)]
+        )
+        expected = self.hash(lists)
+        for morph in (Morph(positions=target, weight=0.5), Morph(positions=target.tolist(), weight=0.5)):
+            self.assertEqual(self.hash(self.mesh(morphs=[morph])), expected)
+        self.assertNotEqual(self.hash(self.mesh()), expected)
+
+    def test_large_lists_become_arrays(self):
+        from juggler._scene import to_json
+
+        count = 1500
+        positions = [(i, 0, 0) for i in range(count)]
+        triangles = [(i, i + 1, 0) for i in range(count - 1)]
+        text, assets = to_json(shown(shapes.Mesh(positions=positions, triangles=triangles)))
+        self.assertEqual(len(assets), 1)
+        self.assertLess(len(text), 1000)
+        positions[3] = ("=1 + 2", 0, 0)
+        text, assets = to_json(shown(shapes.Mesh(positions=positions, triangles=triangles)))
+        self.assertEqual(assets, [])
+        self.assertIn("=1 + 2", text)
+        self.assertEqual(to_json(shown(shapes.Mesh(positions=CORNERS, triangles=TRIANGLES)))[1], [])
+
+    def test_equal_arrays_are_one_asset(self):
+        from juggler._scene import to_json
+
+        mesh = self.mesh()
+        same = self.mesh(positions=self.positions.astype("f8"))
+        other = self.mesh(positions=self.positions + 1)
+        scene = shown(mesh).replace(objects=[Object(one) for one in (mesh, mesh, same, other)])
+        text, assets = to_json(scene)
+        self.assertEqual(len(assets), 2)
+        self.assertEqual(text.count(assets[0][0]), 3)
+        self.assertRegex(assets[0][0], r"^mesh-[0-9a-f]{16}\.ply$")
+
+    def test_mistakes_are_named(self):
+        nan = self.positions.copy()
+        nan[2, 1] = np.nan
+        cases = [
+            (
+                {"positions": self.positions[:, :2]},
+                r"`positions` of shapes.Mesh must be an array of shape \(n, 3\); its shape is \(4, 2\)",
+            ),
+            ({"positions": self.positions.reshape(-1)}, r"its shape is \(12,\)"),
+            ({"positions": self.positions.astype("c8")}, "real numbers"),
+            ({"positions": np.array([["a", "b", "c"]])}, "real numbers"),
+            ({"positions": np.array([[None, 1, 2]])}, "numbers and other values"),
+            (
+                {"triangles": self.triangles.astype("f4")},
+                "`triangles` of shapes.Mesh must be whole numbers, not float32",
+            ),
+            ({"triangles": self.triangles.astype("i8") - 1}, "not -1"),
+            ({"triangles": self.triangles.astype("i8") + 2**32}, "not 4294967299"),
+            ({"triangles": self.triangles + 1}, "is 4, but there are only 4 positions"),
+            ({"positions": nan}, r"positions\[2\]"),
+            ({"normals": self.normals[:2]}, "one entry per position"),
+            (
+                {"attributes": {"a": np.zeros((4, 5))}},
+                r"the attribute `a` of shapes.Mesh must be .* its shape is \(4, 5\)",
+            ),
+            ({"attributes": {"a": np.zeros(3)}}, "`a`"),
+            ({"attributes": {"a": {"channels": 7, "data": {"f32": [1]}}}}, "`channels` from 1 to 4"),
+            ({"positions": self.positions.astype("f8") * 1e300}, "positions"),
+        ]
+        for fields, message in cases:
+            with self.subTest(message), self.assertRaisesRegex(jg.SceneError, message):
+                jg.render(shown(self.mesh(**fields)))
+
+    def test_empty_arrays(self):
+        empty = shapes.Mesh(positions=np.zeros((0, 3)), triangles=np.zeros((0, 3), "i8"))
+        plain = shapes.Mesh(positions=[], triangles=[])
+        outcomes = []
+        for mesh in (empty, plain):
+            try:
+                outcomes.append(jg.render(shown(mesh)).hash)
+            except jg.SceneError:
+                outcomes.append("error")
+        self.assertEqual(outcomes[0], outcomes[1])
+
+    def test_scenes_and_renderers_are_pickled_with_their_arrays(self):
+        scene = shown(
+            self.mesh(attributes={"color": self.positions, "part": jg.PerFace(np.array([3, 7], "u2"))}),
+            color_of("color"),
+        )
+        expected = jg.render(scene).hash
+        renderer = jg.Renderer(scene)
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            self.assertEqual(jg.render(pickle.loads(pickle.dumps(scene, protocol))).hash, expected)
+            again = pickle.loads(pickle.dumps(renderer, protocol))
+            self.assertEqual(again.render().hash, expected)
+            self.assertEqual(again.fingerprint, renderer.fingerprint)
+        buffers = []
+        data = pickle.dumps(renderer, 5, buffer_callback=buffers.append)
+        self.assertEqual(len(buffers), 4)
+        self.assertNotIn(self.positions.tobytes(), data)
+        self.assertEqual(pickle.loads(data, buffers=buffers).render().hash, expected)
+        writable = [bytearray(buffer) for buffer in buffers]
+        self.assertEqual(pickle.loads(data, buffers=writable).render().hash, expected)
+
+    def test_saved_scenes_have_their_arrays_beside(self):
+        scene = shown(self.mesh(attributes={"heat": np.arange(4) / 3}), color_of("heat"))
+        expected = jg.render(scene).hash
+        path = os.path.join(self.folder, "one.json")
+        scene.save(path)
+        # A second scene in the same folder leaves the files of the first.
+        shown(self.mesh(positions=self.positions * 2)).save(os.path.join(self.folder, "two.json"))
+        files = [name for name in os.listdir(self.folder) if name.endswith(".ply")]
+        self.assertEqual(len(files), 2)
+        self.assertEqual(jg.render(path).hash, expected)
+        self.assertEqual(jg.render(Scene.load(path)).hash, expected)
+
+    def test_equality(self):
+        self.assertEqual(self.mesh(), self.mesh(positions=self.positions.copy()))
+        self.assertNotEqual(self.mesh(), self.mesh(positions=self.positions + 1))
+        self.assertNotEqual(self.mesh(), self.mesh(positions=self.positions[:3]))
+        self.assertEqual(jg.PerFace(self.positions), jg.PerFace(self.positions.copy()))
+        self.assertEqual(shown(self.mesh()), shown(self.mesh()))
+
+
+@needs_numpy
+class Pictures(Folder):
+    def scene(self, array, **fields):
+        wall = textures.Image(array=array, filter="nearest", **fields)
+        corners = shapes.Mesh(positions=CORNERS, triangles=TRIANGLES, uvs=[(0, 0), (1, 0), (1, 1), (0, 1)])
+        return shown(corners, materials.Diffuse(reflectance=wall))
+
+    def test_types_and_channels(self):
+        hashes = set()
+        generator = np.random.default_rng(1)
+        for kind in ("u1", "u2", "f2", "f4", "f8"):
+            for shape in ((3, 4), (3, 4, 1), (3, 4, 2), (3, 4, 3), (3, 4, 4)):
+                with self.subTest((kind, shape)):
+                    numbers = generator.random(shape)
+                    scale = {"u1": 255, "u2": 65535}.get(kind, 1)
+                    array = (numbers * scale).astype(kind)
+                    scene = self.scene(array)
+                    expected = jg.render(scene).hash
+                    hashes.add(expected)
+                    path = os.path.join(self.folder, "scene.json")
+                    scene.save(path)
+                    self.assertEqual(jg.render(path).hash, expected)
+                    self.assertEqual(jg.render(Scene.load(path)).hash, expected)
+                    self.assertEqual(pickle.loads(pickle.dumps(jg.Renderer(scene))).render().hash, expected)
+                    swapped = array.astype(array.dtype.newbyteorder(">"))
+                    self.assertEqual(jg.render(self.scene(swapped[::-1].copy()[::-1])).hash, expected)
+        self.assertEqual(len(hashes), 25)
+
+    def test_rows_start_at_the_top_and_levels_are_srgb(self):
+        array = np.array([[(255, 0, 0)], [(0, 0, 188)]], "u1")
+        image = jg.render(self.scene(array), integrator="albedo", samples=1)
+        np.testing.assert_allclose(image.color[4, 12], (1, 0, 0), atol=1e-6)
+        np.testing.assert_allclose(
+            image.color[11, 12], (0, 0, ((188 / 255 + 0.055) / 1.055) ** 2.4), atol=1e-3
+        )
+        linear = jg.render(self.scene(array, color_space="linear"), integrator="albedo", samples=1)
+        np.testing.assert_allclose(linear.color[11, 12], (0, 0, 188 / 255), atol=1e-3)
+
+    def test_an_environment_is_an_array(self):
+        sky = np.full((4, 8, 3), (0.1, 0.4, 0.9), "f4")
+        scene = shown(shapes.Mesh(positions=CORNERS, triangles=TRIANGLES)).replace(
+            background=backgrounds.Environment(array=sky)
+        )
+        np.testing.assert_allclose(jg.render(scene).color[0, 0], (0.1, 0.4, 0.9), rtol=1e-3)
+
+    def test_mistakes_are_named(self):
+        cases = [
+            (np.zeros(3), r"shape \(height, width\)"),
+            (np.zeros((2, 2, 5)), r"its shape is \(2, 2, 5\)"),
+            (np.zeros((2, 2), "i8"), "not int64"),
+            (np.zeros((2, 2), bool), "not bool"),
+            (np.zeros((0, 2), "u1"), "each side must be 1 to"),
+        ]
+        for array, message in cases:
+            with self.subTest(message), self.assertRaisesRegex(jg.SceneError, message):
+                jg.render(self.scene(array))
+        with self.assertRaisesRegex(TypeError, "`Scene.save` writes it as a file"):
+            jg.Renderer(self.scene(np.zeros((2, 2), "u1"))).to_dict()
+
+
+@needs_numpy
+class ManyInstances(Folder):
+    def test_arrays_are_those_of_lists(self):
+        positions = np.array([(-1, 0, 0), (1, 0, 0), (0, 1, 0)], "f8")
+        scales = np.array([0.3, 0.5, 0.2])
+        as_lists = Instances(positions=positions.tolist(), scales=scales.tolist())
+        scene = shown(shapes.Sphere())
+
+        def rendered(instances):
+            return jg.render(scene.replace(objects=[Object(shapes.Sphere(), instances=instances)])).hash
+
+        expected = rendered(as_lists)
+        self.assertEqual(rendered(Instances(positions=positions, scales=scales)), expected)
+        matrices = np.zeros((3, 4, 4))
+        for matrix, position, scale in zip(matrices, positions, scales):
+            matrix[:3, :3] = np.eye(3) * scale
+            matrix[:3, 3] = position
+            matrix[3, 3] = 1
+        by_matrix = rendered(Instances(matrices=matrices[:, :3].reshape(3, 12).tolist()))
+        self.assertEqual(rendered(Instances(matrices=matrices)), by_matrix)
+        self.assertEqual(rendered(Instances(matrices=matrices[:, :3])), by_matrix)
+
+
+@unittest.skipIf(np, "NumPy is installed")
+class WithoutNumpy(unittest.TestCase):
+    def test_lists_need_no_numpy(self):
+        self.assertTrue(jg.render(shown(shapes.Mesh(positions=CORNERS, triangles=TRIANGLES))).hash)
+
+
+if __name__ == "__main__":
+    unittest.main()
