@@ -5,7 +5,7 @@
 
 The classes of the scene format are in modules that load when they are first used: one for each
 family of kinds (`shapes`, `materials`, ...), `animate` for values that change over time, and
-`scene_types`, whose classes (`Scene`, `Object`, ...) are here, too.
+`scene_types`, whose classes (`Scene`, `Object`, ...) are here, too. `sci` makes scientific pictures.
 
 A number may be an expression such as `"=2 * radius"`, and every value may be a value form of
 `animate`. Lists, tuples and arrays are equivalent, and so are classes and the dictionaries of scene
@@ -26,6 +26,11 @@ _NAMES = {
     "SceneError": "_errors",
     "SceneWarning": "_errors",
     "SettingsError": "_errors",
+    "from_gltf": "_interop",
+    "from_meshio": "_interop",
+    "from_open3d": "_interop",
+    "from_pyvista": "_pyvista",
+    "from_trimesh": "_interop",
     "Comparison": "_comparison",
     "compare": "_comparison",
     "denoise": "_denoise",
@@ -49,13 +54,16 @@ _NAMES = {
     **dict.fromkeys(_SCENE_TYPES, "scene_types"),
 }
 
-__all__ = [*_MODULES, *(name for name in _NAMES if not name.startswith("_"))]
+# Modules that do not follow the scene format.
+_OTHER_MODULES = ("sci",)
+
+__all__ = [*_MODULES, *_OTHER_MODULES, *(name for name in _NAMES if not name.startswith("_"))]
 
 
 def __getattr__(name):
     from importlib import import_module
 
-    if name in _MODULES:
+    if name in _MODULES or name in _OTHER_MODULES:
         return import_module(f".{name}", __name__)
     if name in _NAMES:
         value = globals()[name] = getattr(import_module(f".{_NAMES[name]}", __name__), name)

@@ -10,6 +10,7 @@ from . import lights as lights
 from . import materials as materials
 from . import samplers as samplers
 from . import scene_types as scene_types
+from . import sci as sci
 from . import shapes as shapes
 from . import textures as textures
 from .scene_types import *
@@ -39,7 +40,14 @@ from juggler._errors import (
 )
 from juggler._image import Image as Image
 from juggler._partial_render import PartialRender as PartialRender, merge as merge
+from juggler._interop import (
+    from_gltf as from_gltf,
+    from_meshio as from_meshio,
+    from_open3d as from_open3d,
+    from_trimesh as from_trimesh,
+)
 from juggler._probe import Probe as Probe
 from juggler._progress import Progress as Progress
+from juggler._pyvista import from_pyvista as from_pyvista
 from juggler._renderer import Renderer as Renderer
 from juggler._view import View as View, view as view

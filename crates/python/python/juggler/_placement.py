@@ -10,6 +10,15 @@ class Placement(Node):
 
     __slots__ = ()
 
+    @property
+    def bounds(self):
+        """Bounding box of the object with its transform: the least and the greatest corner, each x, y
+        and z. Objects of infinite extent have none.
+        """
+        from ._bounds import bounds
+
+        return bounds(self)
+
     def translate(self, x, y, z):
         """Moves the object by a vector, in scene units."""
         return self._with_step({"translate": (x, y, z)})

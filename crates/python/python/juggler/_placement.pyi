@@ -7,6 +7,11 @@ from ._node import Node
 class Placement(Node):
     """Base class of objects. Steps of a transform are applied in the order of the calls."""
 
+    @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Bounding box of the object with its transform: the least and the greatest corner, each x, y
+        and z. Objects of infinite extent have none.
+        """
     def translate(self, x: t.Number, y: t.Number, z: t.Number) -> Self:
         """Moves the object by a vector, in scene units."""
     def rotate(self, axis: t.Vec3Like, degrees: t.Number) -> Self:
