@@ -1,17 +1,36 @@
-//! Instances of a mesh (EXT_mesh_gpu_instancing).
+//! Instances of a mesh (EXT_mesh_gpu_instancing). Accessors of applications, whose names begin with
+//! `_`, are attributes of that name if they have one to four components.
 
 use crate::gltf::data::GltfData;
-use crate::gltf::document::{Document, Semantic};
+use crate::gltf::document::{Attributes, Document, Semantic};
 use crate::gltf::error::Fault;
 use glam::{DAffine3, DQuat, DVec3};
 use juggler_math::quaternion;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// Transforms of one node's instances.
-type Decoded = Result<Vec<DAffine3>, Fault>;
+/// Maximum number of components of an attribute.
+const MAX_CHANNELS: usize = 4;
 
-/// Transforms of the instances of each node that has some, decoded at their first use.
+/// Instances of a node.
+#[derive(Debug, Default)]
+pub struct NodeInstances {
+    /// Transforms to the space of the node: scale, then rotation, then translation.
+    pub transforms: Vec<DAffine3>,
+    /// Attributes with their names.
+    pub attributes: Vec<(String, Attribute)>,
+}
+
+/// Attribute of instances: `channels` numbers for each of them.
+#[derive(Debug)]
+pub struct Attribute {
+    pub channels: usize,
+    pub numbers: Vec<f32>,
+}
+
+type Decoded = Result<NodeInstances, Fault>;
+
+/// Instances of each node that has some, decoded at their first use.
 #[derive(Debug, Default)]
 pub struct Instances(BTreeMap<usize, OnceLock<Decoded>>);
 
@@ -29,15 +48,14 @@ impl Instances {
         self.0.contains_key(&node)
     }
 
-    /// Transforms of the instances to the space of the node: scale, then rotation, then translation.
-    /// `None` if the node has no instances.
+    /// Instances of a node; `None` if it has none.
     ///
     /// # Errors
     ///
     /// An array is not valid.
-    pub fn transforms(&self, data: &GltfData, node: usize) -> Result<Option<&[DAffine3]>, Fault> {
+    pub fn of_node(&self, data: &GltfData, node: usize) -> Result<Option<&NodeInstances>, Fault> {
         let Some(cell) = self.0.get(&node) else { return Ok(None) };
-        cell.get_or_init(|| decode(data, node)).as_deref().map(Some).map_err(Clone::clone)
+        cell.get_or_init(|| decode(data, node)).as_ref().map(Some).map_err(Clone::clone)
     }
 }
 
@@ -45,7 +63,7 @@ fn decode(data: &GltfData, node: usize) -> Decoded {
     let at = format!("/nodes/{node}/extensions/EXT_mesh_gpu_instancing");
     let extensions = data.gltf.document.nodes.get(node).and_then(|node| node.extensions.as_deref());
     let Some(instancing) = extensions.and_then(|extensions| extensions.instancing.as_ref()) else {
-        return Ok(Vec::new());
+        return Ok(NodeInstances::default());
     };
     let find = |name: &str| instancing.attributes.find(&Semantic::Other(name.to_owned()));
     let translations = find("TRANSLATION").map(|accessor| data.vec3(accessor)).transpose()?;
@@ -67,5 +85,20 @@ fn decode(data: &GltfData, node: usize) -> Decoded {
         let (scale, translation) = (vector(&scales, i, DVec3::ONE), vector(&translations, i, DVec3::ZERO));
         Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
     };
-    (0..count).map(transform).collect()
+    let transforms: Result<Vec<DAffine3>, Fault> = (0..count).map(transform).collect();
+    Ok(NodeInstances { transforms: transforms?, attributes: attributes(data, &instancing.attributes)? })
+}
+
+/// Attributes of applications, as many values as there are instances.
+fn attributes(data: &GltfData, all: &Attributes) -> Result<Vec<(String, Attribute)>, Fault> {
+    let mut found = Vec::new();
+    for (semantic, accessor) in all.iter() {
+        let Semantic::Other(name) = semantic else { continue };
+        let accessors = &data.gltf.document.accessors;
+        let channels = accessors.get(accessor.get()).map_or(0, |accessor| accessor.element_type.components());
+        if name.starts_with('_') && (1..=MAX_CHANNELS).contains(&channels) {
+            found.push((name.clone(), Attribute { channels, numbers: data.numbers(accessor)? }));
+        }
+    }
+    Ok(found)
 }

@@ -4,6 +4,7 @@
 use super::Content;
 use super::deformed::{Deformation, deformed_mesh, morph_weights};
 use super::faults::Faults;
+use super::instances::{Attribute, NodeInstances};
 use super::materials::{MaterialSet, PrimitiveSurface};
 use super::matrix::{matrix_rows, matrix_step};
 use super::meshes::{Form, Geometry, have_area, pointer};
@@ -19,7 +20,8 @@ use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
 use juggler_math::Vec3;
-use juggler_scene::{Instances, Object};
+use juggler_scene::{InstanceAttribute, Instances, Object};
+use juggler_shape::attribute::AttributeData;
 use juggler_shape::{Mesh, MeshData};
 use std::borrow::Cow;
 
@@ -124,11 +126,11 @@ impl<'a> Objects<'a> {
         let world = if deformation.joints.is_some() { DAffine3::IDENTITY } else { world };
         let is_visible = object.is_visible() && self.view.visible.get(index).copied().unwrap_or(true);
         let object = object.named(format!("{}{}", self.view.prefix, node.path)).visible(is_visible);
-        let Some(instances) = content.instances.transforms(&content.data, index)? else {
+        let Some(instances) = content.instances.of_node(&content.data, index)? else {
             self.place(object, &world, index, findings);
             return Ok(());
         };
-        let count = instances.len() as u64;
+        let count = instances.transforms.len() as u64;
         self.instances_left = self.instances_left.checked_sub(count).ok_or_else(|| {
             let limit = content.data.gltf.limits.instances;
             Fault::at(format_args!("/nodes/{index}"), format!("the scene has more than {limit} instances, the limit"))
@@ -142,17 +144,25 @@ impl<'a> Objects<'a> {
         &mut self,
         object: Object,
         world: &DAffine3,
-        instances: &[DAffine3],
+        instances: &NodeInstances,
         node: usize,
         findings: &mut Findings,
     ) {
-        let matrices: Vec<[f32; 12]> =
-            instances.iter().filter_map(|instance| matrix_rows(&(*world * *instance))).collect();
-        let hidden = instances.len() - matrices.len();
+        let rows: Vec<Option<[f32; 12]>> =
+            instances.transforms.iter().map(|instance| matrix_rows(&(*world * *instance))).collect();
+        let hidden = rows.iter().filter(|rows| rows.is_none()).count();
         let text = "has instances with a scale of 0 or a transform out of range, which are left out";
         findings.warnings.add(format_args!("/nodes/{node}"), text, hidden as u64);
-        if !matrices.is_empty() {
-            self.objects.push(object.instances(Instances::from_matrices(matrices)));
+        if hidden < rows.len() {
+            let attribute = |(name, Attribute { channels, numbers }): &(String, Attribute)| {
+                let values = rows.iter().zip(numbers.chunks_exact((*channels).max(1)));
+                let kept = values.filter(|(rows, _)| rows.is_some()).flat_map(|(_, numbers)| numbers).copied();
+                let data = AttributeData::F32(kept.collect());
+                (name.clone(), InstanceAttribute::new(u32::try_from(*channels).unwrap_or_default(), data))
+            };
+            let attributes = instances.attributes.iter().map(attribute).collect();
+            let placed = Instances::from_matrices(rows.iter().flatten().copied());
+            self.objects.push(object.instances(Instances { attributes, ..placed }));
         }
     }
 

@@ -80,6 +80,31 @@ fn instances_are_placed_in_the_space_of_their_node() {
     assert_eq!((summary.distinct_triangles, summary.drawn_triangles, summary.nodes), (1, 2, 1));
 }
 
+/// Attributes of applications are attributes of the instances that are left.
+#[test]
+fn attributes_of_applications_are_attributes_of_instances() {
+    let mut builder = triangle();
+    builder.floats("VEC3", 3, &[1.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 7.0]);
+    builder.floats("VEC3", 3, &[1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 3.0, 3.0, 3.0]);
+    builder.floats("SCALAR", 1, &[20.5, 30.0, -40.0]);
+    builder.floats("VEC2", 2, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    builder.member(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]"#);
+    builder.member(
+        r#""extensionsUsed": ["EXT_mesh_gpu_instancing"], "scenes": [{"nodes": [0]}], "nodes": [{"name": "Tree",
+            "mesh": 0, "extensions": {"EXT_mesh_gpu_instancing":
+            {"attributes": {"TRANSLATION": 1, "SCALE": 2, "_HEAT": 3, "_WIND": 4}}}}]"#,
+    );
+    let found = parts(&builder);
+    let instances = found.objects[0].instances.as_ref().unwrap();
+    assert_eq!(instances.count(), 2, "a scale of 0 leaves out an instance");
+    let numbers = |name: &str| {
+        let (_, attribute) = instances.attributes.iter().find(|(known, _)| *known == name).unwrap();
+        (attribute.channels, (0..2).flat_map(|i| attribute.numbers(i).collect::<Vec<f32>>()).collect::<Vec<f32>>())
+    };
+    assert_eq!(numbers("_HEAT"), (1, vec![20.5, -40.0]));
+    assert_eq!(numbers("_WIND"), (2, vec![1.0, 2.0, 5.0, 6.0]));
+}
+
 #[test]
 fn points_and_lines_are_solids_of_a_thousandth_of_the_diagonal() {
     let mut builder = Builder::default();
