@@ -15,7 +15,7 @@ use juggler::render::{Control, Scheduler};
 use juggler::scene::built_in_scenes;
 use juggler::world::simd_levels;
 use juggler::{Error, Limit, Picture, RenderOrigin, Settings};
-use juggler_math::testing::skipped;
+use juggler_golden::skipped;
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};

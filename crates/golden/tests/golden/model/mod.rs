@@ -1,7 +1,7 @@
 //! Minimal glTF reader: positions and triangles of the first mesh.
 
 use juggler::math::Vec3;
-use juggler_math::testing::skipped;
+use juggler_golden::skipped;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
