@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs all checks that a change must pass, as CI does. Steps that are cheap or likely to fail come
 # first.
-#   ./check.sh                  runs lint, unit, features, windows and golden
+#   ./check.sh                  runs lint, unit, features, python, windows and golden
 #   ./check.sh STEP...          runs single steps: lint unit python features golden windows web
 #   ./check.sh changed [BASE]   runs lint and the tests of every package that the changes since BASE
 #                               can break; the default BASE is the merge base with main, or the
@@ -15,6 +15,8 @@ set -euo pipefail
 cd "$(dirname "$0")"
 # shellcheck source=tests/check/steps.sh
 . tests/check/steps.sh
+# shellcheck source=tests/check/python.sh
+. tests/check/python.sh
 # shellcheck source=tests/check/changed.sh
 . tests/check/changed.sh
 # shellcheck source=tests/check/deep.sh

@@ -15,9 +15,11 @@ check_all() {
   in_background "golden: optimized programs" at_leisure build_golden
   start_windows
   in_background "features" at_leisure step_features
+  in_background "python" at_leisure step_python
   finish_windows
   finish_background "features"
   finish_background "golden: optimized programs"
+  finish_background "python"
   run_steps golden
 }
 
@@ -90,24 +92,6 @@ step_unit() {
   cargo test --workspace --locked --exclude juggler-golden
 }
 
-# Tests the Python package with each Python that is installed. The module is built with the whole
-# workspace, since a build of its own would select other features of its dependencies.
-step_python() {
-  local folder python
-  heading "python: the package"
-  if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-    skip "python: python3 is missing or older than 3.11 (apt-get install python3)"
-    return
-  fi
-  if ! python3 -c 'import numpy' 2>/dev/null; then skip "python: NumPy is not installed (pip install numpy)"; fi
-  folder=$(crates/python/tests/stage.sh --workspace)
-  for python in python3 python3.13; do
-    command -v "$python" >/dev/null || continue
-    "$python" --version
-    PYTHONPATH=$folder JUGGLER_PROGRAM=$programs/debug/juggler "$python" -m unittest discover crates/python/tests
-  done
-}
-
 # Checks each feature alone and no features, since the workspace builds only all of them together.
 # The program without features uses the libraries without features; `juggler-web` uses the session
 # without threads and clocks.
@@ -150,10 +134,12 @@ step_golden() {
 
 # Leaves out statistics of whole pictures, which take too long unoptimized.
 golden_left_out=(--skip noise:: --skip blur::)
-golden_optimized=(--release --locked -p juggler-golden --test golden)
+# Selects the Python module, too, so that its wheel has the same features of all libraries and shares
+# them (see `build_wheel`). The module itself is not built here.
+golden_optimized=(--release --locked -p juggler-golden -p juggler-python --test golden)
 # Optimizes the crates `scene` and `mesh` less: reading files takes less time here than compiling
-# them.
-golden_native=("${golden_optimized[@]}" --target "$host"
+# them. Leaves out movies, whose encoder takes long to compile.
+golden_native=("${golden_optimized[@]}" --no-default-features --target "$host"
   --config "profile.release.package.juggler-scene.opt-level=1"
   --config "profile.release.package.juggler-mesh.opt-level=1")
 

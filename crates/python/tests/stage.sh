@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # Builds the module without optimization, assembles the package in a folder for tests, and prints
-# the folder. The arguments select packages and features, as those of `cargo build` do.
+# the folder: faster than a wheel while the module changes. `./check.sh python` tests the wheel.
 #   PYTHONPATH=$(crates/python/tests/stage.sh) python3 -m unittest discover crates/python/tests
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
-[ $# -gt 0 ] || set -- -p juggler-python
-cargo build --quiet --locked "$@" >&2
+cargo build --quiet --locked -p juggler-python >&2
 target=${CARGO_TARGET_DIR:-$PWD/target}
 folder=$target/python
 rm -rf "$folder"

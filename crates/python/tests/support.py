@@ -3,10 +3,12 @@
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # The program, built with the same source.
@@ -65,18 +67,33 @@ def program_hash(scene, *flags):
             return json.load(file)["film"]["hash"]
 
 
-def python(code, *words, **arguments):
+def environment():
+    """Environment of a process that imports the same modules."""
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+
+
+def python(code, *words, timeout=120, **arguments):
     """Runs code in a process of its own."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     return subprocess.run(
         [sys.executable, "-c", code, *words],
         capture_output=True,
         text=True,
-        timeout=120,
-        env=environment,
+        timeout=timeout,
+        env=environment(),
         check=False,
         **arguments,
     )
+
+
+def chunks(data):
+    """Chunks of a PNG file."""
+    found, at = [], 8
+    while at < len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        found.append(data[at + 4 : at + 8 + length])
+        assert zlib.crc32(found[-1]) == struct.unpack(">I", data[at + 8 + length : at + 12 + length])[0]
+        at += 12 + length
+    return found
 
 
 class Folder(unittest.TestCase):

@@ -1,24 +1,40 @@
-"""Images of the package and of the program are equal, to the bit."""
+"""Images of the package and of the program are equal, to the bit.
 
+JUGGLER_HASHES=all compares all built-in scenes and three models.
+"""
+
+import os
 import pickle
-import struct
 import unittest
 import warnings
-import zlib
 
 import juggler as jg
-from support import ROOT, SMALL, Folder, needs_numpy, needs_program, numpy, program, program_hash, small_scene
+from support import (
+    ROOT,
+    SMALL,
+    Folder,
+    chunks,
+    needs_numpy,
+    needs_program,
+    numpy,
+    program,
+    program_hash,
+    small_scene,
+)
 
 SCENES = ["juggler", "material-balls", "sphere-lights", "many-lights-room", "glass-caustics"]
+MODELS = [str(ROOT / "scenes/models" / name) for name in ("robot.glb", "room.glb", "still-life.glb")]
+if os.environ.get("JUGGLER_HASHES") == "all":
+    SCENES = [*jg.examples(), *MODELS]
 
 
 class Hashes(unittest.TestCase):
     @needs_program
     def test_the_hash_is_that_of_the_program(self):
         for name in SCENES:
-            expected = program_hash(name, "--size", "32x18", "--samples", "2")
+            expected = program_hash(name, "--size", "64x36", "--samples", "2")
             for threads in (1, 2, 3):
-                renderer = jg.Renderer(name, **SMALL, threads=threads)
+                renderer = jg.Renderer(name, size=(64, 36), samples=2, threads=threads)
                 self.assertEqual(renderer.render().hash, expected, (name, threads))
                 shards = [renderer.render_shard(index, 5) for index in range(5)]
                 self.assertEqual(jg.merge(shards).hash, expected, (name, threads, "5 shards"))
@@ -280,17 +296,6 @@ class Scenes(Folder):
         self.assertEqual((self.folder / "a.webp").read_bytes()[8:12], b"WEBP")
         with self.assertRaises(jg.SettingsError):
             jg.render_movie("juggler", self.folder / "a.docx", frames=range(2), **SMALL)
-
-
-def chunks(data):
-    """Chunks of a PNG file."""
-    found, at = [], 8
-    while at < len(data):
-        (length,) = struct.unpack(">I", data[at : at + 4])
-        found.append(data[at + 4 : at + 8 + length])
-        assert zlib.crc32(found[-1]) == struct.unpack(">I", data[at + 8 + length : at + 12 + length])[0]
-        at += 12 + length
-    return found
 
 
 if __name__ == "__main__":
