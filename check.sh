@@ -7,9 +7,9 @@
 #                               can break; the default BASE is the merge base with main, or the
 #                               previous commit if nothing has changed since the merge base
 #   ./check.sh deep [PART...]   runs the long checks: dist matrix noise rays furnaces memory kills
-#                               kinds fuzz bombs web cluster, and beside other programs gltf aovs
-#                               flip metals samplers denoising peers; a part that passed on the same
-#                               source does not run again
+#                               kinds fuzz bombs web python cluster, and beside other programs
+#                               gltf aovs flip metals samplers denoising peers; a part that passed
+#                               on the same source does not run again
 # CONTRIBUTING.md describes each step and its duration.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -21,6 +21,8 @@ cd "$(dirname "$0")"
 . tests/check/changed.sh
 # shellcheck source=tests/check/deep.sh
 . tests/check/deep.sh
+# shellcheck source=tests/check/deep_python.sh
+. tests/check/deep_python.sh
 
 usage() {
   sed -n '2,/^set/{/^#/p}' check.sh >&2

@@ -2,7 +2,7 @@
 # most on two cores.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays furnaces memory kills kinds fuzz bombs web cluster
+deep_parts=(dist matrix noise rays furnaces memory kills kinds fuzz bombs web python cluster
   gltf aovs flip metals samplers denoising peers)
 
 check_deep() {
@@ -49,11 +49,11 @@ deep_dist() {
 }
 
 # Renders all scenes, and larger pictures, on all threads, vector units, orders and shards.
-deep_matrix() { JUGGLER_MATRIX=wide cargo test --release --locked -p juggler-golden --test golden -- matrix::; }
+deep_matrix() { JUGGLER_MATRIX=wide cargo test "${golden_optimized[@]}" -- matrix::; }
 
 # Compares the error that `--noise` requests with the true error, on more scenes and with longer
 # references.
-deep_noise() { JUGGLER_NOISE=all cargo test --release --locked -p juggler-golden --test golden -- --nocapture noise::; }
+deep_noise() { JUGGLER_NOISE=all cargo test "${golden_optimized[@]}" -- --nocapture noise::; }
 
 # Compares a million rays per case with brute force, and traces 100,000 rays from each shape.
 deep_rays() {
