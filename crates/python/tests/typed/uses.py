@@ -55,3 +55,33 @@ match scene.camera:
 match mesh:
     case shapes.Mesh(file):
         print(file)
+
+
+def renders() -> None:
+    """Renders, images and the other functions, which type checkers read only."""
+    image = jg.render(scene, samples=4, size=(64, 36), aovs=["depth", "normal"], progress=False)
+    assert_type(image, jg.Image)
+    assert_type(image.hash, str)
+    image.save("image.png")
+    jg.render("juggler", denoise="own", camera=cameras.Perspective(eye=(0, 1, 5)), max_memory="4G")
+    jg.render({"version": 1, "objects": []}, progress=lambda progress: print(progress.share))
+    renderer = jg.Renderer(scene, threads=2, frame=1.5)
+    renderer["materials.gold.conductor.roughness"] = 0.1
+    renderer.camera = cameras.Perspective(eye=(0, 2, 6))
+    for better in renderer.progressive(every=0.5):
+        assert_type(better.size, tuple[int, int])
+    parts = [renderer.render_shard(index, 4) for index in range(4)]
+    assert_type(jg.merge(parts), jg.Image)
+    assert_type(jg.compare(image, "reference.exr").p, float | None)
+    assert_type(renderer.submit().result(), jg.Image)
+    assert_type(renderer.probe(3, 4), jg.Probe)
+    for frame in jg.frames("chess-opening", range(30), shutter=(0, 0.5)):
+        print(frame.frame, frame.hash)
+    jg.render_movie("chess-opening", "chess.mp4", frames=range(30))
+    if image.camera is not None and image.camera.opencv is not None:
+        K, R, t = image.camera.opencv
+        print(K, R, t)
+    try:
+        scene.check()
+    except jg.SceneError as error:
+        print([problem.path for problem in error.problems])

@@ -1,0 +1,67 @@
+from collections.abc import Mapping
+from os import PathLike
+from typing import Any, Literal
+
+import numpy
+from numpy.typing import NDArray
+
+from ._camera import Camera
+
+class Image:
+    """Rendered image, with linear pixels and AOVs.
+
+    `img.color` is an array of shape (height, width, 3), `img["depth"]` or `img.aovs["depth"]` that
+    of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
+    """
+
+    def __getitem__(self, name: str) -> NDArray[Any]: ...
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
+    def __dlpack__(self, **arguments: Any) -> Any: ...
+    def __dlpack_device__(self) -> tuple[int, int]: ...
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+    @property
+    def color(self) -> NDArray[numpy.float32]:
+        """Linear pixels: a read-only array of shape (height, width, 3), float32."""
+    @property
+    def aovs(self) -> Mapping[str, NDArray[Any]]:
+        """Arrays of the AOVs by name, of shape (height, width) or (height, width, channels)."""
+    @property
+    def names(self) -> dict[str, list[str | None]]:
+        """Names that the AOVs `object_id` and `material_id` number: `names["object_id"][id]`. The
+        number 0 is nothing.
+        """
+    @property
+    def hash(self) -> str:
+        """Hash of the linear pixels, in hexadecimal."""
+    @property
+    def fingerprint(self) -> str:
+        """Fingerprint of everything that determines the pixels."""
+    @property
+    def frame(self) -> float:
+        """Frame of the animation."""
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Mean of the pixels, and numbers of samples, rays and seconds."""
+    @property
+    def metadata(self) -> dict[str, str]:
+        """Metadata of an image file, such as program, fingerprint and seed."""
+    @property
+    def camera(self) -> Camera | None:
+        """Matrices of the camera; `None` for a camera without finite ones."""
+    def denoised(self, denoiser: Literal["own", "oidn"] = "own") -> Image:
+        """Returns the image without noise, by the denoiser "own" or "oidn" (Open Image Denoise).
+
+        The denoiser uses the AOVs `albedo`, `normal` and `depth` if the image has them, and should have
+        them: they keep edges and textures sharp. A render with `denoise=` knows more of the noise and
+        gives a sharper image; such an image stays as it is.
+        """
+    def save(self, path: str | PathLike[str]) -> None:
+        """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
+    def to_uint8(self, tone: str | None = None, exposure: float | None = None) -> NDArray[numpy.uint8]:
+        """Levels from 0 to 255 as an image file has them, with another tone curve or exposure in
+        stops if given, and without dithering: an array of shape (height, width, 3).
+        """
