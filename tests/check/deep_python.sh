@@ -54,7 +54,7 @@ deep_python_3.13() { test_shipped 3.13; }
 deep_python_typing() {
   shipped_package 3.11 || return 0
   python_with typing mypy==2.4.1 pyright==1.1.414 jedi==0.20.1 numpy==2.4.6 || return 0
-  "${python%/*}/pyright" --project crates/python/tests/typed
+  PATH=$(realpath -s "${python%/*}"):$PATH check_types "${python%/bin/*}"
   "${python%/*}/mypy" --config-file crates/python/tests/typed/mypy.ini
   PYTHONPATH=crates/python/python "$python" tests/python/completion.py
 }

@@ -26,6 +26,13 @@ step_python() {
   heading "python: the package beside NumPy, in $(python3 --version)"
   environment "$folder/numpy" python3 "$wheel" numpy || return 0
   test_package "$folder/numpy"
+  heading "python: types"
+  if command -v pyright >/dev/null; then check_types "$folder/numpy"; else skip "python: pyright is not installed (pip install pyright)"; fi
+}
+
+# Checks the stubs of the package, and uses and mistakes of it, as strictly as pyright can.
+check_types() {
+  PYRIGHT_PYTHON_IGNORE_WARNINGS=1 pyright --pythonpath "$1/bin/python" --project crates/python/tests/typed
 }
 
 # Builds a wheel into a folder of its own, with the given options of maturin, and prints its path.
