@@ -80,6 +80,7 @@ check_changed() {
     run_test_programs $packages
   fi
   if grep -qE '^(crates/(session|viewer|serve)|tests/(viewer|browser|movies))/' <<< "$files"; then step_windows; fi
+  if grep -q '^crates/python/' <<< "$files"; then step_python; fi
 }
 
 # Builds and runs the tests of packages, and the tests of the source tree. The build is that of the
