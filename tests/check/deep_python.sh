@@ -2,7 +2,7 @@
 # Each piece is remembered by itself, so that an interrupted run continues.
 # shellcheck shell=bash
 
-python_pieces=(wheel 3.11 3.13 typing hashes hostile forks memory overhead)
+python_pieces=(wheel 3.11 3.13 typing hostile forks memory overhead)
 
 deep_python() {
   local piece
@@ -28,26 +28,28 @@ deep_python_wheel() {
 # Makes the environment of a Python with the wheel and all packages that tests may use; `$python` is
 # its interpreter. Leaves out the piece if that Python is not installed.
 shipped_package() {
-  local version=$1
+  local version=$1 packages
   if ! "python$version" -c 'import ensurepip, venv' 2>/dev/null; then
     leave_out "python: python$version is not installed (apt-get install python$version-venv)"
     return 1
   fi
   python=$programs/deep/python-$version/bin/python
-  environment "$programs/deep/python-$version" "python$version" "$(shipped_wheel)" \
-    -r crates/python/tests/requirements.txt || { is_left_out=yes; return 1; }
+  mapfile -t packages < <(grep -v '^#' crates/python/tests/requirements.txt)
+  environment "$programs/deep/python-$version" "python$version" "$(shipped_wheel)" "${packages[@]}" ||
+    { is_left_out=yes; return 1; }
 }
 
-# Runs all tests of the package in one Python.
+# Runs tests of the package in one Python, beside the optimized program: those of the given modules,
+# or all, with the hashes of all built-in scenes.
 test_shipped() {
   shipped_package "$1" || return 0
-  build_debug_program
-  test_package "${python%/bin/*}" installed
-  test_package "${python%/bin/*}"
+  shift
+  cargo build --release --locked -p juggler-cli
+  JUGGLER_HASHES=all JUGGLER_PROGRAM=$PWD/$programs/release/juggler test_package "${python%/bin/*}" "$@"
 }
 
-deep_python_3.11() { test_shipped 3.11; }
-deep_python_3.13() { test_shipped 3.13; }
+deep_python_3.11() { test_shipped 3.11 installed && test_shipped 3.11; }
+deep_python_3.13() { test_shipped 3.13 installed && test_shipped 3.13; }
 
 # Checks the package, its tests of types and its examples as strictly as type checkers can, and the
 # completion of editors.
@@ -59,17 +61,9 @@ deep_python_typing() {
   PYTHONPATH=crates/python/python "$python" tests/python/completion.py
 }
 
-# Runs one module of tests with the optimized program beside it.
-long_test() {
-  shipped_package 3.11 || return 0
-  cargo build --release --locked -p juggler-cli
-  JUGGLER_PROGRAM=$PWD/$programs/release/juggler test_package "${python%/bin/*}" "$@"
-}
-
-deep_python_hashes() { JUGGLER_HASHES=all long_test test_render.Hashes; }
-deep_python_hostile() { JUGGLER_INPUTS=100000 long_test test_hostile; }
-deep_python_forks() { JUGGLER_FORKS=1000 long_test test_forks; }
-deep_python_memory() { JUGGLER_SCENES=10000 long_test test_memory; }
+deep_python_hostile() { JUGGLER_INPUTS=100000 test_shipped 3.11 test_hostile; }
+deep_python_forks() { JUGGLER_FORKS=1000 test_shipped 3.11 test_forks; }
+deep_python_memory() { JUGGLER_SCENES=10000 test_shipped 3.11 test_memory; }
 
 # Compares the time of whole processes with that of the program of the same profile.
 deep_python_overhead() {
