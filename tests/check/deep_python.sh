@@ -48,8 +48,15 @@ test_shipped() {
   JUGGLER_HASHES=all JUGGLER_PROGRAM=$PWD/$programs/release/juggler test_package "${python%/bin/*}" "$@"
 }
 
-deep_python_3.11() { test_shipped 3.11 installed && test_shipped 3.11; }
-deep_python_3.13() { test_shipped 3.13 installed && test_shipped 3.13; }
+deep_python_3.11() {
+  test_shipped 3.11 installed
+  test_shipped 3.11
+}
+
+deep_python_3.13() {
+  test_shipped 3.13 installed
+  test_shipped 3.13
+}
 
 # Checks the package, its tests of types and its examples as strictly as type checkers can, and the
 # completion of editors.
