@@ -5,8 +5,8 @@ import pickle
 import unittest
 
 import juggler as jg
-from support import SMALL, Folder, small_scene
 from juggler import Object, Scene, cameras, lights, materials, shapes, textures
+from support import SMALL, Folder, small_scene
 
 
 def typed_scene():
