@@ -167,7 +167,8 @@ fn check_stop(before: Stop, now: Stop) -> Result<(), String> {
     }
 }
 
-fn check_tile(tile: &Tile, number: u64, film: &Film) -> Result<(), String> {
+/// Checks that the film requests all samples of a tile.
+pub(crate) fn check_tile(tile: &Tile, number: u64, film: &Film) -> Result<(), String> {
     let expected = film.requested_of(number);
     let outside = |samples: &Range<u32>| {
         !expected.iter().any(|expected| expected.start <= samples.start && samples.end <= expected.end)

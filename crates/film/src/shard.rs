@@ -8,8 +8,12 @@
 //! as well, at block boundaries. Units of lower cost (tiles at the edge, the remaining samples) are
 //! dealt last, to the shards with the least load.
 
+mod units;
+
+pub use units::{UnitRun, Units};
+
 use crate::partial_render::{RenderDescription, Stop};
-use juggler_camera::film::{BLOCK_SAMPLES, Rect, TILE_EDGE, Tiling};
+use juggler_camera::film::{BLOCK_SAMPLES, Film, Rect, TILE_EDGE, Tiling};
 use juggler_math::hash;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -77,6 +81,22 @@ impl Work {
             assigned.push((shard, unit));
         }
         assigned
+    }
+
+    /// Units that `film` lacks, cut from those of `count` shards, by descending cost, then in Morton
+    /// order. A noise limit decides how many samples a tile needs, so a tile that has samples counts
+    /// as finished.
+    pub fn missing(&self, film: &Film, count: u32) -> Vec<WorkUnit> {
+        let lacking = |unit: WorkUnit| {
+            let tile = film.tile_of(unit.tile);
+            let is_finished = self.stop != Stop::Samples && tile.as_ref().is_some_and(|tile| !tile.is_empty());
+            let ranges = match tile {
+                Some(tile) if !is_finished => tile.all_missing(unit.samples),
+                _ => Vec::new(),
+            };
+            ranges.into_iter().map(move |samples| WorkUnit { tile: unit.tile, samples })
+        };
+        self.units(count).into_iter().flat_map(|(_, unit)| lacking(unit)).collect()
     }
 
     /// Units with their costs in pixel samples, by descending cost, then in Morton order.

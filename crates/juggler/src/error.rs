@@ -1,6 +1,6 @@
 //! Errors of rendering.
 
-use juggler_film::{MergeError, PartialRenderError, ResumeError};
+use juggler_film::{AddError, MergeError, PartialRenderError, ResumeError};
 use juggler_imaging::ImageError;
 use juggler_render::Cancelled;
 use juggler_scene::SceneError;
@@ -24,6 +24,9 @@ pub enum Error {
     /// A render cannot go on from a partial render.
     #[error(transparent)]
     Resume(#[from] ResumeError),
+    /// A partial render cannot be added to a film.
+    #[error(transparent)]
+    Add(#[from] AddError),
     /// Partial renders cannot be merged.
     #[error(transparent)]
     Merge(#[from] MergeError),

@@ -4,12 +4,13 @@ use crate::denoise::DenoiserInput;
 use crate::{Error, Limit, Picture};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Tile, Tiling};
 use juggler_film::partial_render::{AovDescription, RenderDescription, ShardDescription, Stop};
-use juggler_film::shard::Work;
+use juggler_film::shard::{Units, Work, WorkUnit};
 use juggler_film::{Chunk, PartialRender, PartialRenderWriter};
 use juggler_imaging::layered::LayeredWriter;
 use juggler_imaging::{Header, Options, RowWriter};
 use juggler_math::Rgb;
 use juggler_render::{Cancelled, Control};
+use std::ops::Range;
 
 /// Origin of a partial render, beyond what the picture itself stores.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -108,16 +109,57 @@ impl Picture {
         if index >= count {
             return Err(Error::Settings(format!("there is no shard {index} of {count}: the first one is 0")));
         }
-        let samples = 0..self.samples();
-        let work = Work { tiling: self.tiling(), crop: None, samples: samples.clone(), stop: self.stop() };
-        let units = work.shard(index, count).into_iter().map(|unit| (unit.tile, unit.samples));
-        let film = Film::from_tiles(self.tiling(), units);
+        let work = Work { tiling: self.tiling(), crop: None, samples: 0..self.samples(), stop: self.stop() };
+        let shard = ShardDescription { index, count, ..ShardDescription::whole(self.samples()) };
+        self.render_part(&work.shard(index, count), shard, origin, control)
+    }
+
+    /// Renders units of work and returns the bytes of their partial render. Fails for a time limit,
+    /// which a part of an image cannot have, for units that the image does not have, and if `control`
+    /// cancels the render.
+    pub fn render_units(&self, units: &[WorkUnit], origin: &RenderOrigin, control: &Control) -> Result<Vec<u8>, Error> {
+        self.check_divisible()?;
+        let (tiles, most) = (self.tiling().tile_count(), self.samples());
+        let is_known = |unit: &WorkUnit| unit.tile < tiles && !unit.samples.is_empty() && unit.samples.end <= most;
+        if let Some(WorkUnit { tile, samples: Range { start, end } }) = units.iter().find(|unit| !is_known(unit)) {
+            return Err(Error::Settings(format!(
+                "the image has {tiles} tiles of {most} samples, not the samples {start} to {end} of tile {tile}"
+            )));
+        }
+        if units.is_empty() {
+            return Err(Error::Settings("there are no units of work to render".into()));
+        }
+        self.render_part(units, ShardDescription::of_units(self.samples(), Units::new(units)), origin, control)
+    }
+
+    /// Fails for a time limit, since each part of an image would take that time.
+    pub(crate) fn check_divisible(&self) -> Result<(), Error> {
+        match self.limit() {
+            Limit::Time { .. } => {
+                Err(Error::Settings("a time limit acts on one machine only; limit `samples` or `noise`".into()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Renders units of work, which `shard` describes, and returns the bytes of their partial render.
+    fn render_part(
+        &self,
+        units: &[WorkUnit],
+        shard: ShardDescription,
+        origin: &RenderOrigin,
+        control: &Control,
+    ) -> Result<Vec<u8>, Error> {
+        let film = Film::from_tiles(self.tiling(), units.iter().map(|unit| (unit.tile, unit.samples.clone())));
         self.render_to_limit(&film, control)?;
-        let (header, shard) =
-            (self.file_header(Options::default()), ShardDescription { index, count, samples, crop: None });
+        let header = self.file_header(Options::default());
         let description =
             RenderDescription { finished: self.is_finished(&film), ..self.description(origin, &header, shard) };
-        let mut writer = PartialRenderWriter::in_memory(&format!("shard {index} of {count}"), &description)?;
+        let name = match &description.shard {
+            ShardDescription { units, .. } if !units.is_empty() => "units of work".to_owned(),
+            ShardDescription { index, count, .. } => format!("shard {index} of {count}"),
+        };
+        let mut writer = PartialRenderWriter::in_memory(&name, &description)?;
         for (number, tile) in film.tiles() {
             writer.add(number, &Chunk::encode(&tile, description.clamped))?;
         }

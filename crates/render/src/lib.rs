@@ -27,7 +27,8 @@ mod tests;
 
 pub use control::{Control, RayCounts};
 pub use progressive::{
-    NoiseEstimate, ProgressiveRender, Worker, estimate_noise, is_finished, max_runs, render_progressive,
+    NoiseEstimate, ProgressiveRender, Worker, estimate_noise, is_finished, is_tile_finished, max_runs,
+    render_progressive,
 };
 pub use rounds::StopCriterion;
 pub use schedule::{BAND_PIXELS, Cancelled, Schedule, Scheduler, band_bytes, render};

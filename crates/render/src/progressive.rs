@@ -61,7 +61,12 @@ impl Worker<'_> {
 
 /// Whether every tile of the film meets `stop`.
 pub fn is_finished(film: &Film, stop: StopCriterion) -> bool {
-    (0..film.len()).all(|place| Round::after(film, stop, place, 0).is_none())
+    (0..film.len()).all(|place| is_tile_finished(film, stop, place))
+}
+
+/// Whether the tile at index `index` meets `stop`.
+pub fn is_tile_finished(film: &Film, stop: StopCriterion, index: usize) -> bool {
+    Round::after(film, stop, index, 0).is_none()
 }
 
 /// Maximum number of tiles that [`estimate_noise`] inspects.

@@ -96,6 +96,11 @@ impl Film {
         self.cells.get(index).map(|cell| cell.tile.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// Locks tile `number`; `None` if the film does not have the tile.
+    pub fn tile_of(&self, number: u64) -> Option<MutexGuard<'_, Tile>> {
+        self.index_of(number).and_then(|index| self.tile(index))
+    }
+
     /// Copies of all tiles with samples, one at a time, with their numbers.
     pub fn tiles(&self) -> impl Iterator<Item = (u64, Tile)> {
         let copies = (0..self.cells.len()).map(|index| (self.cells[index].number, self.tile(index)));
@@ -104,14 +109,18 @@ impl Film {
 
     /// Copy of tile `number`; `None` if the film does not have the tile.
     pub fn copy_of_tile(&self, number: u64) -> Option<Tile> {
-        self.index_of(number).and_then(|index| self.tile(index)).map(|tile| tile.clone())
+        self.tile_of(number).map(|tile| tile.clone())
     }
 
     /// Adds the samples of tile `number` of another film; `false` if this film does not have the
     /// tile.
     pub fn add(&self, number: u64, tile: Tile) -> Result<bool, TileError> {
-        let held = self.index_of(number).and_then(|index| self.tile(index));
-        held.map_or(Ok(false), |mut held| held.merge(tile).map(|()| true))
+        self.tile_of(number).map_or(Ok(false), |mut held| held.merge(tile).map(|()| true))
+    }
+
+    /// Number of tiles that have samples.
+    pub fn tiles_held(&self) -> usize {
+        (0..self.cells.len()).filter_map(|index| self.tile(index)).filter(|tile| !tile.is_empty()).count()
     }
 
     /// Number of samples over all pixels.
@@ -138,7 +147,7 @@ impl Film {
         for (row, band) in (0..).zip(self.tiling.bands()) {
             let mut pixels = vec![Rgb::BLACK; band.area() as usize];
             for number in self.tiling.tiles_of_band(row) {
-                if let Some(tile) = self.index_of(number).and_then(|index| self.tile(index)) {
+                if let Some(tile) = self.tile_of(number) {
                     tile.copy_to(&band, &mut pixels);
                 }
             }

@@ -70,6 +70,11 @@ impl Tile {
         &self.runs
     }
 
+    /// The runs of the tile, in order.
+    pub fn into_runs(self) -> Vec<SampleRun> {
+        self.runs
+    }
+
     /// Number of samples per pixel from the first up to the first missing one.
     pub fn gapless_samples(&self) -> u32 {
         self.runs.iter().fold(0, |end, run| if run.samples.start == end { run.samples.end } else { end })
@@ -100,6 +105,12 @@ impl Tile {
             start = start.max(run.samples.end);
         }
         (start < among.end).then_some(start..among.end)
+    }
+
+    /// All contiguous ranges of missing samples within `among`, in order.
+    pub fn all_missing(&self, among: Range<u32>) -> Vec<Range<u32>> {
+        let next = |missing: &Range<u32>| self.missing(missing.end..among.end);
+        std::iter::successors(self.missing(among.clone()), next).collect()
     }
 
     /// Removes and returns the incomplete block that ends before sample `end`, to continue it.

@@ -1,6 +1,6 @@
 //! Description of a partial render: the JSON object in the header of a `.jfilm` file.
 
-use crate::shard::whole_tiles;
+use crate::shard::{Units, whole_tiles};
 use juggler_camera::aov::LightGroup;
 use juggler_camera::film::{BLOCK_SAMPLES, Rect, Tiling};
 use juggler_imaging::{CropFrame, Viewpoint};
@@ -105,12 +105,20 @@ pub struct ShardDescription {
     pub samples: Range<u32>,
     /// Pixels that are split into shards, in whole tiles; `None` for the whole region.
     pub crop: Option<Rect>,
+    /// The only units of the shard, if a program chose them; empty for all units.
+    #[serde(default, skip_serializing_if = "Units::is_empty")]
+    pub units: Units,
 }
 
 impl ShardDescription {
     /// The whole image of `samples` samples per pixel.
     pub fn whole(samples: u32) -> Self {
-        Self { index: 0, count: 1, samples: 0..samples, crop: None }
+        Self { index: 0, count: 1, samples: 0..samples, crop: None, units: Units::default() }
+    }
+
+    /// Chosen units of an image of `samples` samples per pixel.
+    pub fn of_units(samples: u32, units: Units) -> Self {
+        Self { units, ..Self::whole(samples) }
     }
 }
 
@@ -293,6 +301,9 @@ impl RenderDescription {
         }
         if shard.crop.is_some_and(|crop| crop.intersection(region) != crop || whole_tiles(region, &crop) != crop) {
             return Some("its pixels are not whole tiles of its region");
+        }
+        if !shard.units.fit(self.tiling().tile_count(), &shard.samples) {
+            return Some("its units are not tiles and samples of its shard");
         }
         None
     }

@@ -60,10 +60,16 @@ fn to_words(partial_render: &PartialRender, contents: &Contents) -> String {
     lines.join("\n")
 }
 
-/// `3/40` or `whole`, and the crop and sample range if there are any.
+/// `3/40`, `whole` or `some tiles`, and the crop and sample range if there are any.
 fn describe_shard(shard: &ShardDescription, all: u32) -> String {
-    let ShardDescription { index, count, samples, crop } = shard;
-    let mut text = if *count > 1 { format!("{index}/{count}") } else { "whole".to_owned() };
+    let ShardDescription { index, count, samples, crop, units } = shard;
+    let mut text = if *count > 1 {
+        format!("{index}/{count}")
+    } else if units.is_empty() {
+        "whole".to_owned()
+    } else {
+        "some tiles".to_owned()
+    };
     if *samples != (0..all) {
         text += &format!(" of samples {}..{}", samples.start, samples.end);
     }

@@ -63,7 +63,7 @@ fn requested_work(command: &RenderCommand, frame: &FrameRender) -> Result<(Film,
         return Ok((Film::from_tiles(tiling, (0..).zip(counts.into_iter().map(|count| 0..count))), whole));
     }
     let Cut { crop, samples } = &plan.cut;
-    let samples = samples.clone().unwrap_or(whole.samples);
+    let samples = samples.clone().unwrap_or(whole.samples.clone());
     if samples.end > picture.samples() {
         let most = picture.samples();
         return Err(Failure::Invalid(format!(
@@ -77,7 +77,8 @@ fn requested_work(command: &RenderCommand, frame: &FrameRender) -> Result<(Film,
     let Shard { index, count } = frame.frame_output.shard;
     let work = Work { tiling, crop: *crop, samples: samples.clone(), stop: picture.stop() };
     let units = work.shard(index, count).into_iter().map(|unit| (unit.tile, unit.samples));
-    Ok((Film::from_tiles(tiling, units), ShardDescription { index, count, samples, crop: *crop }))
+    let shard = ShardDescription { index, count, samples, crop: *crop, ..whole };
+    Ok((Film::from_tiles(tiling, units), shard))
 }
 
 /// Checks that a crop of a partial render lies on tile boundaries.
