@@ -74,7 +74,8 @@ impl Loader {
         models.format(path, &bytes).map_or(0, |format| format.solids(&bytes))
     }
 
-    fn cache(self, store: Store) -> AssetCache {
+    /// Cache of files from a store, in the formats of the loader.
+    pub(crate) fn cache(self, store: Store) -> AssetCache {
         AssetCache::new(store).with_models(ModelCache::new(self.formats, self.is_lenient))
     }
 }

@@ -60,6 +60,11 @@ impl Sources {
         self.files.iter().map(|source| source.name.as_str())
     }
 
+    /// The texts, the main one first.
+    pub fn texts(&self) -> impl Iterator<Item = &Source> {
+        self.files.iter()
+    }
+
     /// Returns the text with this index.
     pub fn get(&self, id: FileId) -> Option<&Source> {
         self.files.get(id.0 as usize)
