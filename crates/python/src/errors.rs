@@ -2,7 +2,7 @@
 
 use crate::scene::UNNAMED;
 use juggler::Error;
-use juggler::film::{PartialRenderError, ResumeError};
+use juggler::film::{AddError, PartialRenderError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::scene::report::plain_io;
 use juggler::scene::{Problem, Problems, SceneError, Severity};
@@ -72,7 +72,10 @@ pub fn convert(error: Error) -> PyErr {
         Error::Scene(error) => of_scene(error),
         Error::Cancelled(_) => cancelled(),
         Error::Image(error) => of_image(&error),
-        Error::PartialRender(error) | Error::Resume(ResumeError::PartialRender(error)) => of_partial_render(&error),
+        Error::PartialRender(error)
+        | Error::Resume(ResumeError::PartialRender(error))
+        | Error::Add(AddError::PartialRender(error)) => of_partial_render(&error),
+        Error::Add(error) => with_message("MergeError", &error.to_string()),
         Error::Merge(error) if error.has_file_errors() => file_error(&error.to_string(), None),
         Error::Merge(error) => with_message("MergeError", &error.to_string()),
         Error::Resume(error) => with_message("MergeError", &error.to_string()),

@@ -4,6 +4,7 @@
 
 mod arrays;
 mod budget;
+mod cluster;
 mod comparison;
 mod denoise;
 mod errors;
@@ -23,6 +24,8 @@ mod threads;
 mod _native {
     #[pymodule_export]
     use crate::arrays::Asset;
+    #[pymodule_export]
+    use crate::cluster::{Ledger, encode_movie, scene_from_package, scene_package};
     #[pymodule_export]
     use crate::comparison::compare;
     #[pymodule_export]

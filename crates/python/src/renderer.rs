@@ -2,6 +2,7 @@
 
 use crate::arrays::Asset;
 use crate::budget;
+use crate::cluster::{Ledger, Unit};
 use crate::errors::{convert, key_error, line, settings_error};
 use crate::image::Image;
 use crate::partial_render::PartialRender;
@@ -10,13 +11,14 @@ use crate::scene::{self, Refusal, Scene};
 use crate::settings::RenderSettings;
 use crate::state::{self, Built};
 use crate::task::{self, Canceler, Fault, Monitor, Watch};
+use juggler::film::shard::WorkUnit;
 use juggler::memory::Effort;
 use juggler::probe::{Detail, Prober};
 use juggler::scene::camera_json;
 use juggler::scene::path::Path;
 use juggler::{RenderOrigin, scene as scenes};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use serde_json::Value;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -141,16 +143,25 @@ impl Renderer {
         std::mem::take(&mut self.lock().warnings)
     }
 
-    /// Fingerprint of everything that determines the pixels.
-    fn fingerprint(&self, py: Python<'_>) -> PyResult<String> {
-        let built = self.built(py)?;
+    /// Fingerprint of everything that determines the pixels, of another frame than the selected one if
+    /// `frame` is given.
+    #[pyo3(signature = (frame=None))]
+    fn fingerprint(&self, py: Python<'_>, frame: Option<f64>) -> PyResult<String> {
+        let built = self.built_at(py, frame)?;
         task::call(py, move || Ok(built.picture.fingerprint().hash()))
     }
 
-    /// Renders the image.
-    #[pyo3(signature = (callback=None, canceler=None))]
-    fn render(&self, py: Python<'_>, callback: Option<Py<PyAny>>, canceler: Option<Py<Canceler>>) -> PyResult<Image> {
-        let (built, image) = self.with_world(py, &Watch { callback, canceler }, state::render)?;
+    /// Renders the image, of another frame than the selected one if `frame` is given.
+    #[pyo3(signature = (callback=None, canceler=None, frame=None))]
+    fn render(
+        &self,
+        py: Python<'_>,
+        callback: Option<Py<PyAny>>,
+        canceler: Option<Py<Canceler>>,
+        frame: Option<f64>,
+    ) -> PyResult<Image> {
+        let watch = Watch { callback, canceler };
+        let (built, image) = self.with_world_of(py, self.start_at(frame)?, &watch, state::render)?;
         self.store(&built);
         Ok(Image::new(image, built.frame))
     }
@@ -185,6 +196,36 @@ impl Renderer {
         })?;
         self.keep_world(&mut self.lock(), &built);
         PartialRender::new(bytes)
+    }
+
+    /// Renders units of work at a frame, and returns the bytes of their partial render.
+    #[pyo3(signature = (units, frame, callback=None))]
+    fn render_units<'py>(
+        &self,
+        py: Python<'py>,
+        units: Vec<Unit>,
+        frame: f64,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let start = self.start_at(Some(frame))?;
+        let origin = RenderOrigin { scene: self.title.clone(), frame, command: String::new() };
+        let units: Vec<WorkUnit> =
+            units.into_iter().map(|(tile, first, end)| WorkUnit { tile, samples: first..end }).collect();
+        let watch = Watch { callback, canceler: None };
+        let (built, bytes) = self.with_world_of(py, start, &watch, move |built, _, monitor| {
+            Ok(built.picture.render_units(&units, &origin, &monitor.control)?)
+        })?;
+        self.keep_world(&mut self.lock(), &built);
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Empty film of the image, which partial renders fill.
+    fn ledger(&self, py: Python<'_>) -> PyResult<Ledger> {
+        let built = self.built(py)?;
+        let origin = RenderOrigin { scene: self.title.clone(), frame: built.frame, command: String::new() };
+        let (picture, frame) = (built.picture.clone(), built.frame);
+        let ledger = task::call(py, move || Ok(juggler::Ledger::new(picture, &origin)?))?;
+        Ok(Ledger::new(ledger, frame))
     }
 
     /// Continues a partial render up to the samples of the settings.
@@ -226,8 +267,13 @@ impl Renderer {
 
     /// Begins a render.
     fn start(&self) -> PyResult<Start> {
+        self.start_at(None)
+    }
+
+    /// Begins a render of this frame, or of the selected one.
+    fn start_at(&self, frame: Option<f64>) -> PyResult<Start> {
         let mut state = self.lock();
-        let (scene, frame) = (state.scene.clone(), state.frame);
+        let (scene, frame) = (state.scene.clone(), frame.unwrap_or(state.frame));
         // Of another frame's world little holds, so memory does not keep both.
         let before = match &state.built {
             Some(built) if built.frame != frame => state.built.take(),
@@ -245,7 +291,18 @@ impl Renderer {
         watch: &Watch,
         work: impl FnOnce(&Built, &Effort, &Monitor) -> Result<T, Fault> + Send + 'static,
     ) -> PyResult<(Arc<Built>, T)> {
-        let (Start { scene, frame, before, effort }, settings) = (self.start()?, self.settings.clone());
+        self.with_world_of(py, self.start()?, watch, work)
+    }
+
+    /// Does work with the world of a render that begins.
+    fn with_world_of<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        Start { scene, frame, before, effort }: Start,
+        watch: &Watch,
+        work: impl FnOnce(&Built, &Effort, &Monitor) -> Result<T, Fault> + Send + 'static,
+    ) -> PyResult<(Arc<Built>, T)> {
+        let settings = self.settings.clone();
         task::run(py, effort.threads, watch, move |monitor| {
             let built = state::build(&scene, frame, &settings.settings, before)?;
             let result = work(&built, &effort, monitor)?;
@@ -255,7 +312,13 @@ impl Renderer {
 
     /// World of the current scene.
     fn built(&self, py: Python<'_>) -> PyResult<Arc<Built>> {
-        let (built, ()) = self.with_world(py, &Watch::default(), |_, _, _| Ok(()))?;
+        self.built_at(py, None)
+    }
+
+    /// World of the current scene at this frame, or at the selected one.
+    fn built_at(&self, py: Python<'_>, frame: Option<f64>) -> PyResult<Arc<Built>> {
+        let start = self.start_at(frame)?;
+        let (built, ()) = self.with_world_of(py, start, &Watch::default(), |_, _, _| Ok(()))?;
         self.keep_world(&mut self.lock(), &built);
         Ok(built)
     }

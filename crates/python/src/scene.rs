@@ -129,7 +129,8 @@ pub fn shared(assets: Vec<(String, Py<Asset>)>) -> Vec<(String, scene::Asset)> {
     assets.into_iter().map(|(name, asset)| (name, asset.get().asset.clone())).collect()
 }
 
-fn loader(lenient: bool) -> Loader {
+/// Loader of all formats; `lenient` shows missing pictures of models gray.
+pub fn loader(lenient: bool) -> Loader {
     if lenient { juggler::loader().lenient() } else { juggler::loader() }
 }
 

@@ -15,6 +15,9 @@ files. A field that is `None` is absent: the documentation of its class tells th
 from ._exports import MODULES as _MODULES
 from ._exports import SCENE_TYPES as _SCENE_TYPES
 
+# Modules that are written by hand.
+_OWN_MODULES = ("cluster", "sci")
+
 # Modules of the names that are no modules themselves.
 _NAMES = {
     "Cancelled": "_errors",
@@ -54,16 +57,13 @@ _NAMES = {
     **dict.fromkeys(_SCENE_TYPES, "scene_types"),
 }
 
-# Modules that do not follow the scene format.
-_OTHER_MODULES = ("sci",)
-
-__all__ = [*_MODULES, *_OTHER_MODULES, *(name for name in _NAMES if not name.startswith("_"))]
+__all__ = [*_MODULES, *_OWN_MODULES, *(name for name in _NAMES if not name.startswith("_"))]
 
 
 def __getattr__(name):
     from importlib import import_module
 
-    if name in _MODULES or name in _OTHER_MODULES:
+    if name in _MODULES or name in _OWN_MODULES:
         return import_module(f".{name}", __name__)
     if name in _NAMES:
         value = globals()[name] = getattr(import_module(f".{_NAMES[name]}", __name__), name)

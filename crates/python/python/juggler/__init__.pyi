@@ -3,6 +3,7 @@
 from . import animate as animate
 from . import backgrounds as backgrounds
 from . import cameras as cameras
+from . import cluster as cluster
 from . import curves as curves
 from . import filters as filters
 from . import integrators as integrators
