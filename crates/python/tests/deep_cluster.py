@@ -237,7 +237,7 @@ class OverDask(unittest.TestCase):
 
 
 class OverProcesses(unittest.TestCase):
-    def test_all_ways_to_start_a_process(self):
+    def test_each_start_of_processes(self):
         expected = expected_hash()
         for method in ("fork", "spawn", "forkserver"):
             context = multiprocessing.get_context(method)

@@ -182,7 +182,7 @@ class Executors(Folder):
                 self.rendered()
         self.assertIn("On the worker", caught.exception.__notes__[0])
 
-    def test_exceptions_that_cannot_be_pickled_are_told(self):
+    def test_exceptions_that_cannot_be_pickled_are_reported(self):
         error = LookupError("odd", lambda: None)
         self.assertIsInstance(worker._portable(error), RuntimeError)
         self.assertIn("LookupError", str(worker._portable(error)))

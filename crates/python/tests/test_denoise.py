@@ -16,7 +16,7 @@ def rmse(image, reference):
 class Denoising(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        # A sky without lamps: its soft shadows are noise, and no edges.
+        # A sky alone: its soft shadows are noise, and no edges.
         scene = small_scene(lights=[], background={"solid": {"color": [1, 1, 1]}})
         settings = {"size": (64, 36), "integrator": "path"}
         cls.noisy = jg.render(scene, samples=8, aovs=FEATURES, **settings)
