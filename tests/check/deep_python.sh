@@ -2,7 +2,7 @@
 # Each piece is remembered by itself, so that an interrupted run continues.
 # shellcheck shell=bash
 
-python_pieces=(wheel 3.11 3.13 typing hostile forks memory overhead)
+python_pieces=(wheel 3.11 3.13 typing hostile forks memory cluster overhead)
 
 deep_python() {
   local piece
@@ -71,6 +71,9 @@ deep_python_typing() {
 deep_python_hostile() { JUGGLER_INPUTS=100000 test_shipped 3.11 test_hostile; }
 deep_python_forks() { JUGGLER_FORKS=1000 test_shipped 3.11 test_forks; }
 deep_python_memory() { JUGGLER_SCENES=10000 test_shipped 3.11 test_memory; }
+
+# Kills workers, nodes and drivers of clusters of Ray and Dask on this machine.
+deep_python_cluster() { test_shipped 3.11 deep_cluster; }
 
 # Compares the time of whole processes with that of the program of the same profile.
 deep_python_overhead() {
