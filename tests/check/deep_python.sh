@@ -61,7 +61,6 @@ deep_python_3.13() {
 # Checks the package, its tests of types and its examples as strictly as type checkers can, and the
 # completion of editors.
 deep_python_typing() {
-  shipped_package 3.11 || return 0
   python_with typing mypy==2.4.1 pyright==1.1.414 jedi==0.20.1 numpy==2.4.6 || return 0
   PATH=$(realpath -s "${python%/*}"):$PATH check_types "${python%/bin/*}"
   "${python%/*}/mypy" --config-file crates/python/tests/typed/mypy.ini

@@ -126,6 +126,51 @@ def arrays(rng):
     return array
 
 
+def numeric(rng, shape, whole=False):
+    """An array of this shape of any type and order, whose numbers are in range."""
+    generator = numpy.random.default_rng(rng.getrandbits(32))
+    if whole:
+        found = generator.integers(0, max(shape[0], 1), shape)
+        found = found.astype(rng.choice(["u4", ">u4", "i4", "i8", ">i8", "u8", "u2", "f4"]))
+    else:
+        found = generator.uniform(-1, 1, shape).astype(rng.choice(["f4", ">f4", "f8", ">f8", "f2"]))
+    view = rng.randrange(5)
+    if view == 0:
+        return found[::-1]
+    if view == 1:
+        return numpy.repeat(found, 2, axis=0)[::2]
+    return numpy.asfortranarray(found) if view == 2 else found
+
+
+def arrayed(rng):
+    """An object with arrays, one of which may be wrong."""
+    count = rng.choice([1, 3, 30, 300, 3000])
+    fields = {"positions": numeric(rng, (count, 3))}
+    if rng.random() < 0.5:
+        others = {"triangles": ((count, 3), True), "normals": ((count, 3), False), "uvs": ((count, 2), False)}
+    else:
+        others = {"rotations": ((count, 4), False), "scales": ((count,), False)}
+    is_mesh = "triangles" in others
+    for name, (shape, whole) in others.items():
+        if name == "triangles" or rng.random() < 0.3:
+            fields[name] = numeric(rng, shape, whole)
+    if rng.random() < 0.3:
+        wrap = jg.PerFace if is_mesh and rng.random() < 0.5 else lambda values: values
+        fields["attributes"] = {rng.choice(["color", "part", words(rng)]): wrap(arrays(rng))}
+    if rng.random() < 0.3:
+        fields[rng.choice([*fields])] = rng.choice([arrays, value])(rng)
+    if is_mesh:
+        return jg.Object(jg.shapes.Mesh(**fields), material="gold")
+    return jg.Object(jg.shapes.Sphere(radius=0.01), instances=jg.Instances(**fields))
+
+
+def picture(rng):
+    """A texture from an array, which may be wrong."""
+    shape = rng.choice([(4, 4), (3, 5, 1), (2, 2, 3), (7, 1, 4), (0, 3), (2, 2, 5), (1,)])
+    pixels = numpy.ones(shape, rng.choice(["u1", "u2", ">u2", "f2", "f4", ">f4", "f8", "i4", "?"]))
+    return jg.textures.Image(array=rng.choice([pixels, pixels[::-1], arrays(rng)]), color_space=words(rng))
+
+
 def value(rng):
     """A value of any kind."""
     make = rng.choice([numbers, numbers, words, oddities, arrays, fragment, row])
@@ -154,6 +199,10 @@ def base(rng):
         scene["lights"] = [of(rng, "lights")]
         scene["background"] = of(rng, "backgrounds")
         scene["textures"].update(scratches=of(rng, "textures"), tiles=of(rng, "textures"))
+    if numpy is not None and rng.random() < 0.4:
+        scene["objects"].append(arrayed(rng))
+    if numpy is not None and rng.random() < 0.1:
+        scene["textures"]["scratches"] = picture(rng)
     if rng.random() < 0.3:
         scene["camera"] = of(rng, "cameras")
         scene["render"]["integrator"] = of(rng, "integrators")
@@ -225,7 +274,10 @@ def settings(rng):
 def attempt(number):
     """Renders an input; returns whether it gave an image."""
     rng = random.Random(number)
-    scene = base(rng)
+    try:
+        scene = base(rng)
+    except ALLOWED:
+        return False
     for _ in range(rng.choice([0, 0, 1, 1, 1, 2, 3])):
         mutate(rng, scene)
     chosen = settings(rng)
