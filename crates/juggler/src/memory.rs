@@ -73,7 +73,7 @@ pub struct Memory {
     world: Vec<MemoryPart>,
     /// Other components while rendering, without bands and threads.
     rendering: Vec<MemoryPart>,
-    /// Bytes of the scene's texts.
+    /// Bytes of the scene's texts and of arrays of instances.
     text: u64,
     /// Bytes of one thread's queues.
     thread: u64,
@@ -111,11 +111,13 @@ impl Memory {
         if needs.meshes > 0 {
             world.push(part("meshes in memory", needs.meshes));
         }
+        let mut text = needs.text.saturating_add(needs.instance_arrays);
         for file in &needs.instance_files {
             let estimate = juggler_mesh::estimate_points(file).unwrap_or_default();
             most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the instances `{name}`"), estimate.resident_bytes));
+            text = text.saturating_add(estimate.resident_bytes);
         }
         if needs.instance_arrays > 0 {
             world.push(part("arrays of instances", needs.instance_arrays));
@@ -131,7 +133,7 @@ impl Memory {
             building,
             world,
             rendering: Vec::new(),
-            text: needs.text,
+            text,
             thread: THREAD + GROUP.saturating_mul(needs.rays * RAY + needs.shadows * SHADOW),
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),

@@ -6,7 +6,7 @@
 //! are linear) and the number of samples, since a render continued with more samples is still of
 //! the same scene.
 
-use crate::compile::{Files, image_files, instance_files, light_files};
+use crate::compile::{Files, image_files, light_files};
 use crate::description::{Description, Object, Render};
 use crate::item::Item;
 use crate::motion::Tracks;
@@ -183,7 +183,7 @@ pub(crate) fn digests(scene: &Description, files: &Files<'_>) -> Vec<(PathBuf, [
     let images = images.map(|(file, space)| (files.asset_cache.image_digest(&file, space), file));
     let lights = light_files(scene, files).into_iter();
     let lights = lights.map(|(file, purpose)| (files.asset_cache.light_digest(&file, purpose), file));
-    let instances = instance_files(scene, files).into_iter();
+    let instances = files.instance_files().into_iter();
     let instances = instances.map(|file| (files.asset_cache.instance_digest(&file), file));
     meshes.chain(images).chain(lights).chain(instances).map(|(hash, file)| (file, hash)).collect()
 }

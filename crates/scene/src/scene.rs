@@ -2,8 +2,7 @@
 
 use crate::SceneError;
 use crate::animate::SceneSources;
-use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files};
-use crate::compile::{instance_files, light_files};
+use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files, light_files};
 use crate::description::{Description, deserialize_scene};
 use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, mesh_files};
@@ -264,7 +263,7 @@ impl Scene {
         let (scene, files) = (&self.description, self.files());
         let images = image_files(scene, &files).into_iter().map(|(file, _)| file);
         let lights = light_files(scene, &files).into_iter().map(|(file, _)| file);
-        let instances = instance_files(scene, &files);
+        let instances = files.instance_files();
         let meshes = mesh_files(scene, &files).into_iter();
         let files: BTreeSet<PathBuf> = meshes.chain(images).chain(lights).chain(instances).collect();
         texts.map(PathBuf::from).chain(files).chain(self.model_paths()).collect()

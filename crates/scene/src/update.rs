@@ -70,7 +70,7 @@ impl Scene {
         let geometry = |scene: &Self| {
             let (description, files) = (&scene.description, scene.files());
             let meshes = mesh_files(description, &files).into_iter().map(|file| scene.asset_cache.digest(&file));
-            let instances = compile::instance_files(description, &files).into_iter();
+            let instances = files.instance_files().into_iter();
             meshes.chain(instances.map(|file| scene.asset_cache.instance_digest(&file))).collect::<Vec<_>>()
         };
         let (tracks, others) = (self.tracks().0, other.tracks().0);

@@ -2,7 +2,8 @@
 
 use juggler::math::{Rgb, Transform, Vec3};
 use juggler::{Picture, Settings};
-use juggler_scene::{Instances, Object, Scene};
+use juggler_scene::{Asset, InstanceAttribute, Instances, Loader, Object, ScaleFactors, Scene};
+use juggler_shape::attribute::AttributeData;
 
 /// A scene of these objects and render settings, with the groups `two` (a ball on a cylinder) and
 /// `many` (18 balls).
@@ -126,4 +127,38 @@ fn a_program_places_a_million_instances() {
     let scene = Scene::new().size(8, 8).samples(1).add(object);
     let picture = Picture::new(&scene, &Settings::default()).unwrap();
     assert_eq!(picture.world().geometry_stats().shapes, 1_000_000);
+}
+
+/// A picture of an asset of instances, turned and colored, and of the same scene saved and read again.
+#[test]
+fn saved_instances_give_the_same_picture() {
+    let count = 40;
+    let number = |i: usize| (i * 37 % 41) as f32 / 41.0;
+    let numbers = |channels: usize| AttributeData::F32((0..count * channels).map(number).collect());
+    let color = |i| [number(i), number(i + 1), number(i + 2), 1.0];
+    let instances = Instances {
+        positions: (0..count).map(|i| Vec3::new(3.0 * number(i), number(3 * i), 2.0 * number(7 * i) - 1.0)).collect(),
+        rotations: (0..count).map(|i| [number(i), 0.3, number(5 * i), 1.0]).collect(),
+        scales: (0..count).map(|i| ScaleFactors::Each(Vec3::new(0.1, -0.3, 0.1 + number(i) / 5.0))).collect(),
+        colors: (0..count).map(color).collect(),
+        end_colors: (0..count).map(|i| color(i + 9)).collect(),
+        attributes: [("tint".to_owned(), InstanceAttribute::new(3, numbers(3)))].into_iter().collect(),
+        ..Instances::default()
+    };
+    let text = r#"{"version": 1, "render": {"size": [32, 24], "samples": 2, "integrator": "path"}, "background": 1,
+        "camera": {"perspective": {"eye": [4, 5, 9], "look_at": [1, 0.5, 0], "vertical_fov_degrees": 20}},
+        "textures": {"color": {"attribute": {}}, "tint": {"attribute": {"name": "tint"}}},
+        "objects": [{"instances": {"file": "points.ply"}, "objects": [
+            {"shape": {"cylinder": {"radius": 1, "y_min": 0, "y_max": 1}}, "material": {"diffuse": {"reflectance": "color"}}},
+            {"shape": {"sphere": {"radius": 1}}, "material": {"diffuse": {"reflectance": "tint"}}}]}]}"#;
+    let assets = [("points.ply".to_owned(), Asset::from_instances(instances))];
+    let scene = Loader::default().from_json_with(text, "scene.json", assets).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("scene.json");
+    scene.save(&place).unwrap();
+    let (found, again) = (pixels(&scene), pixels(&Scene::load(&place).unwrap()));
+    assert!(found == again);
+    let colors: std::collections::BTreeSet<[u32; 3]> =
+        found.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect();
+    assert!(colors.len() > 100, "{}", colors.len());
 }

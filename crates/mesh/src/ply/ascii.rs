@@ -126,3 +126,20 @@ impl Values for AsciiValues<'_> {
         self.scanner.rest().len() as u64
     }
 }
+
+/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers,
+/// with one of the `warnings`; the error is that of the lines unless the sequence fits the header
+/// exactly.
+pub(super) fn read_text<'t, T>(
+    values: &AsciiValues<'t>,
+    read: impl Fn(AsciiValues<'t>) -> Result<T, MeshErrorKind>,
+    warnings: impl Fn(&mut T) -> &mut Vec<String>,
+) -> Result<T, MeshErrorKind> {
+    let strict = read(values.clone());
+    if !matches!(strict, Err(MeshErrorKind::Malformed { .. })) {
+        return strict;
+    }
+    let Ok(mut found) = read(values.clone().without_lines()) else { return strict };
+    warnings(&mut found).push("lines do not hold one element each: read as a sequence of numbers".to_owned());
+    Ok(found)
+}

@@ -43,6 +43,7 @@ use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
 use crate::sampling::{Counts, FACE, FileSampler, lines, scaled, words};
 use crate::text::Scanner;
+use ascii::{AsciiValues, read_text};
 use body::Body;
 pub use header::texture_file;
 use header::{Encoding, Header};
@@ -70,7 +71,7 @@ impl MeshFormat for Ply {
         let body = Body::new(&header, limits, piece);
         match header.encoding {
             Encoding::Ascii => {
-                read_text(&ascii::AsciiValues::new(scanner), |values| body.read(values), |mesh| &mut mesh.warnings)
+                read_text(&AsciiValues::new(scanner), |values| body.read(values), |mesh| &mut mesh.warnings)
             }
             Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
         }
@@ -79,23 +80,6 @@ impl MeshFormat for Ply {
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
         polygons(file)
     }
-}
-
-/// Reads the rows of a text. If its lines do not hold one row each, reads it as a sequence of numbers,
-/// with one of the `warnings`; the error is that of the lines unless the sequence fits the header
-/// exactly.
-fn read_text<'t, T>(
-    values: &ascii::AsciiValues<'t>,
-    read: impl Fn(ascii::AsciiValues<'t>) -> Result<T, MeshErrorKind>,
-    warnings: impl Fn(&mut T) -> &mut Vec<String>,
-) -> Result<T, MeshErrorKind> {
-    let strict = read(values.clone());
-    if !matches!(strict, Err(MeshErrorKind::Malformed { .. })) {
-        return strict;
-    }
-    let Ok(mut found) = read(values.clone().without_lines()) else { return strict };
-    warnings(&mut found).push("lines do not hold one element each: read as a sequence of numbers".to_owned());
-    Ok(found)
 }
 
 /// Estimates the counts of a PLY. The header gives the number of vertices and faces. The number of

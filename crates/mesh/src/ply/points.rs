@@ -7,13 +7,14 @@
 //! those of a mesh. Every other column of numbers is an attribute of its name, in floats of its own
 //! unit. Lists and other elements are ignored with a warning.
 
+use super::ascii::{AsciiValues, read_text};
 use super::attributes::{self, AttributeColumns, NamedAttributes};
+use super::binary::BinaryValues;
 use super::body::{check_counts, skip_element};
 use super::colors::ColorColumns;
 use super::header::{Element, Encoding, Header};
 use super::rows::{RowReader, Rows, note_ignored};
 use super::values::{Values, skip};
-use super::{ascii, binary, read_text};
 use crate::assemble::distinct;
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::limits::MeshLimits;
@@ -77,10 +78,10 @@ pub fn parse_points(bytes: &[u8], limits: &MeshLimits) -> Result<PointFile, Mesh
     let reader = RowReader::new(limits, PIECE);
     match header.encoding {
         Encoding::Ascii => {
-            let values = ascii::AsciiValues::new(scanner);
+            let values = AsciiValues::new(scanner);
             read_text(&values, |values| read(&header, &reader, values), |file| &mut file.warnings)
         }
-        Encoding::Binary(order) => read(&header, &reader, binary::BinaryValues::new(bytes, scanner.position(), order)),
+        Encoding::Binary(order) => read(&header, &reader, BinaryValues::new(bytes, scanner.position(), order)),
     }
 }
 

@@ -1,10 +1,11 @@
 //! Files of instances. Each is read once and shared by all objects, frames and copies of a scene.
 
 use super::count::MAX_STORED;
-use super::file_cache::{CachedFile, FileCache};
+use super::file_cache::CachedFile;
+use super::loaded_instances::LoadedInstances;
 use super::meshes::{AssetCache, Files};
 use crate::asset::display_name;
-use crate::description::{Description, InstanceFile, Instances, Object};
+use crate::description::{Instances, Object};
 use crate::item::Item;
 use crate::path::{Path, PathRef};
 use crate::report::Finding;
@@ -12,27 +13,22 @@ use crate::store::MAX_FILE_BYTES;
 use juggler_mesh::MeshLimits;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Limits of a file of points.
 const LIMITS: MeshLimits = MeshLimits { file_bytes: MAX_FILE_BYTES, vertices: MAX_STORED as u32, triangles: 0 };
 
-/// Cache of files of instances.
-pub type InstanceCache = FileCache<LoadedInstances>;
-
-/// Instances of a file, with warnings about what it contains.
-#[derive(Debug, Default)]
-pub struct LoadedInstances {
-    instances: Instances,
-    warnings: Vec<String>,
-}
-
 impl AssetCache {
     /// Instances of a file or asset.
-    fn instance_file(&self, path: &std::path::Path) -> std::sync::Arc<CachedFile<LoadedInstances>> {
+    fn instance_file(&self, path: &std::path::Path) -> Arc<CachedFile<LoadedInstances>> {
         let asset = self.store().assets.at(path);
         match asset.and_then(|asset| Some((asset.digest(), asset.instances()?))) {
-            Some((digest, instances)) => self.instances().insert_asset(path, digest, || of_asset(instances, path)),
-            None => self.instances().load(path, self.store(), LIMITS.file_bytes, |bytes| parse(path, bytes)),
+            Some((digest, instances)) => self
+                .instances()
+                .insert_asset(path, digest, || LoadedInstances::of_asset(instances, &display_name(path))),
+            None => self.instances().load(path, self.store(), LIMITS.file_bytes, |bytes| {
+                LoadedInstances::parse(bytes, &LIMITS, &display_name(path))
+            }),
         }
     }
 
@@ -44,21 +40,6 @@ impl AssetCache {
             None => self.instance_file(path).digest,
         }
     }
-}
-
-/// Instances of the bytes of a PLY file.
-fn parse(path: &std::path::Path, bytes: &[u8]) -> Result<LoadedInstances, String> {
-    let points = juggler_mesh::parse_points(bytes, &LIMITS);
-    let mut points = points.map_err(|error| format!("cannot read `{}`: {error}", display_name(path)))?;
-    let warnings = std::mem::take(&mut points.warnings);
-    Ok(LoadedInstances { instances: Instances::from_points(points), warnings })
-}
-
-fn of_asset(instances: &Instances, path: &std::path::Path) -> Result<LoadedInstances, String> {
-    if instances.file.is_some() {
-        return Err(format!("the instances of the asset `{}` must not name a `file`", display_name(path)));
-    }
-    Ok(LoadedInstances { instances: instances.clone(), warnings: Vec::new() })
 }
 
 impl Files<'_> {
@@ -100,35 +81,24 @@ impl Files<'_> {
     }
 }
 
-/// Whether a list of objects contains instances of a file.
-pub fn has_instance_files(objects: &[Item<Object>]) -> bool {
-    objects.iter().any(|object| object_has_instance_files(object))
-}
-
-/// Whether an object, or one inside it, has instances of a file.
-pub fn object_has_instance_files(object: &Object) -> bool {
-    file_of(object).is_some() || has_instance_files(object.inner())
-}
-
-fn file_of(object: &Object) -> Option<&InstanceFile> {
-    object.instances.as_ref()?.file.as_ref()
-}
-
-/// Locations of the files of instances of a scene, without duplicates.
-pub fn instance_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
-    let mut found = BTreeSet::new();
-    let groups = PathRef::Root.key("groups");
-    for (name, objects) in scene.groups.iter() {
-        collect(objects, &groups.key(name), files, &mut found);
+impl Files<'_> {
+    /// Locations of the scene's files of instances, without duplicates.
+    pub fn instance_files(&self) -> BTreeSet<PathBuf> {
+        let mut found = BTreeSet::new();
+        let groups = PathRef::Root.key("groups");
+        for (name, objects) in self.scene.groups.iter() {
+            collect(objects, &groups.key(name), self, &mut found);
+        }
+        collect(&self.scene.objects, &PathRef::Root.key("objects"), self, &mut found);
+        found
     }
-    collect(&scene.objects, &PathRef::Root.key("objects"), files, &mut found);
-    found
 }
 
 fn collect(objects: &[Item<Object>], path: &PathRef<'_>, files: &Files<'_>, found: &mut BTreeSet<PathBuf>) {
     for (i, object) in objects.iter().enumerate() {
         let path = path.index(i);
-        found.extend(file_of(object).map(|file| files.locate(&path.key("instances").join("file"), file.name())));
+        let file = object.instances.as_ref().and_then(|instances| instances.file.as_ref());
+        found.extend(file.map(|file| files.locate(&path.key("instances").join("file"), file.name())));
         collect(object.inner(), &path.key("objects"), files, found);
     }
 }

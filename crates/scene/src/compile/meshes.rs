@@ -2,9 +2,10 @@
 //! frames and copies of a scene. For image files see [`super::images`], for files of lights and
 //! backgrounds [`super::lighting`].
 
+use super::file_cache::FileCache;
 use super::images::ImageCache;
-use super::instance_files::InstanceCache;
 use super::lighting::LightFiles;
+use super::loaded_instances::LoadedInstances;
 use crate::asset::{Asset, display_name};
 use crate::description::Description;
 use crate::document::Sources;
@@ -28,7 +29,7 @@ pub struct AssetCache {
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
     images: ImageCache,
     light_files: LightFiles,
-    instances: InstanceCache,
+    instances: FileCache<LoadedInstances>,
     models: ModelCache,
 }
 
@@ -104,7 +105,7 @@ impl AssetCache {
         &self.light_files
     }
 
-    pub(super) fn instances(&self) -> &InstanceCache {
+    pub(super) fn instances(&self) -> &FileCache<LoadedInstances> {
         &self.instances
     }
 

@@ -1,7 +1,6 @@
 //! Placement of prepared objects: expands or shares groups, composes transforms, and inherits materials
 //! and attributes.
 
-use super::count::Counts;
 use super::prepared_instances::PreparedInstances;
 use juggler_material::MaterialId;
 use juggler_math::{Motion, Transform};
@@ -52,13 +51,12 @@ pub struct Placer<'s> {
 }
 
 impl<'s> Placer<'s> {
-    /// Builds the levels of the shared groups.
-    pub fn new(groups: BTreeMap<&'s str, Vec<Prepared<'s>>>, counts: &Counts<'s>) -> Self {
+    /// Builds the levels of the `shared` groups, each of which follows the groups that it places.
+    pub fn new(groups: BTreeMap<&'s str, Vec<Prepared<'s>>>, shared: impl Iterator<Item = &'s str>) -> Self {
         let mut placer = Self { groups, levels: BTreeMap::new() };
-        // Build inner groups first, which precede the groups that place them.
-        for (name, _) in counts.iter().filter(|(_, count)| count.is_shared) {
-            let objects = placer.objects(placer.groups.get(*name).map(Vec::as_slice).unwrap_or_default());
-            placer.levels.insert(*name, Arc::new(Geometry::new(objects)));
+        for name in shared {
+            let objects = placer.objects(placer.groups.get(name).map(Vec::as_slice).unwrap_or_default());
+            placer.levels.insert(name, Arc::new(Geometry::new(objects)));
         }
         placer
     }

@@ -36,7 +36,8 @@ pub fn place(
     let groups = groups.collect();
     let top = preparer.objects(&scene.objects, Times::Tracks(&tracks.objects), &PathRef::Root.key("objects"));
     let default_material = preparer.materials.default_material();
-    Placer::new(groups, counts).entries(&top, scene.objects.len(), default_material)
+    let shared = counts.iter().filter(|(_, count)| count.is_shared).map(|(name, _)| *name);
+    Placer::new(groups, shared).entries(&top, scene.objects.len(), default_material)
 }
 
 struct Preparer<'m> {

@@ -33,6 +33,7 @@ mod instance_points;
 mod instances;
 mod model;
 mod object;
+mod placement_error;
 mod read;
 mod render;
 mod source_section;
@@ -48,6 +49,7 @@ pub use instance_file::InstanceFile;
 pub use instances::Instances;
 pub use model::Model;
 pub use object::{GroupName, Object, Visible};
+pub use placement_error::PlacementError;
 pub(crate) use read::deserialize_scene;
 pub use render::{CameraName, Render};
 pub(crate) use source_section::SourceSection;
@@ -167,22 +169,6 @@ impl Default for Description {
             form_textures: Shared::default(),
             programs: Programs::default(),
         }
-    }
-}
-
-/// Error of geometry that cannot be placed.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct PlacementError {
-    /// Path of the invalid field, as in the scene file; empty if several fields are involved.
-    pub field: &'static str,
-    /// Error message.
-    pub message: String,
-}
-
-impl PlacementError {
-    fn new(field: &'static str, message: impl Into<String>) -> Self {
-        Self { field, message: message.into() }
     }
 }
 

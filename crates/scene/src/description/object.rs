@@ -143,6 +143,12 @@ impl Object {
         self.instances.as_ref().map_or(1, |instances| instances.count() as u64)
     }
 
+    /// Whether the object, or an object inside it, has instances of a file.
+    pub(crate) fn has_instance_file(&self) -> bool {
+        let own = self.instances.as_ref().is_some_and(|instances| instances.file.is_some());
+        own || self.inner().iter().any(|inner| inner.has_instance_file())
+    }
+
     /// Child objects listed in `objects`; empty for all other kinds of objects.
     pub fn inner(&self) -> &[Item<Self>] {
         self.objects.as_ref().map(|objects| objects.as_slice()).unwrap_or_default()

@@ -7,7 +7,7 @@
 
 use super::instance::{ModelNames, Place};
 use super::{ModelChoice, find_camera};
-use crate::compile::{self, AssetCache, Files};
+use crate::compile::{AssetCache, Files};
 use crate::description::{BackgroundInput, CameraName, Description, Instances, Object, Objects};
 use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
@@ -85,12 +85,13 @@ fn object_has_models(object: &Object) -> bool {
 
 /// Whether a scene contains files of instances.
 pub fn has_instance_files(scene: &Description) -> bool {
-    compile::has_instance_files(&scene.objects) || scene.groups.values().any(|o| compile::has_instance_files(o))
+    let contains = |objects: &[Item<Object>]| objects.iter().any(|object| object.has_instance_file());
+    contains(&scene.objects) || scene.groups.values().any(|objects| contains(objects))
 }
 
 /// Whether an object contains a model or a file of instances.
 fn needs_expansion(object: &Object) -> bool {
-    object_has_models(object) || compile::object_has_instance_files(object)
+    object_has_models(object) || object.has_instance_file()
 }
 
 /// Expands the models and files of instances of a scene.
