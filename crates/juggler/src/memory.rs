@@ -8,6 +8,7 @@ use juggler_render::BAND_PIXELS;
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::{Names, Scene};
 use std::ops::Range;
+use std::path::Path;
 
 /// Bytes of the program itself; unoptimized code takes more.
 pub const PROGRAM: u64 = if cfg!(debug_assertions) { 38 << 20 } else { 20 << 20 };
@@ -85,6 +86,56 @@ pub struct Memory {
     film_aovs: FilmAovs,
 }
 
+/// Contents of files and arrays that a scene needs, from sizes and headers of the files.
+#[derive(Default)]
+struct Contents {
+    /// What stays in memory.
+    parts: Vec<MemoryPart>,
+    /// Bytes that the reading of the largest file needs meanwhile, since files are read one after the
+    /// other.
+    temporary: u64,
+    /// Bytes of the arrays of instances.
+    instances: u64,
+}
+
+impl Contents {
+    fn new(needs: &Needs) -> Self {
+        // The reader reports a file that cannot be read.
+        let mut all = Self { instances: needs.instance_arrays, ..Self::default() };
+        for file in &needs.files {
+            let estimate = juggler_mesh::estimate(file).unwrap_or_default();
+            all.add_file("mesh", file, [estimate.peak_bytes, estimate.resident_bytes]);
+        }
+        let pictures = needs.pictures.iter().map(|file| (file, estimate_picture(file)));
+        let panoramas = needs.panoramas.iter().map(|file| (file, estimate_panorama(file)));
+        for (file, estimate) in pictures.chain(panoramas) {
+            all.add_file("picture", file, [estimate.peak_bytes, estimate.resident_bytes]);
+        }
+        all.add_arrays("meshes in memory", needs.meshes);
+        for file in &needs.instance_files {
+            let estimate = juggler_mesh::estimate_points(file).unwrap_or_default();
+            all.instances = all.instances.saturating_add(estimate.resident_bytes);
+            all.add_file("instances", file, [estimate.peak_bytes, estimate.resident_bytes]);
+        }
+        all.add_arrays("arrays of instances", needs.instance_arrays);
+        all.add_arrays("images in memory", needs.images);
+        all
+    }
+
+    /// Adds a file and the bytes that it needs: at most, and after it is read.
+    fn add_file(&mut self, kind: &str, file: &Path, [peak, resident]: [u64; 2]) {
+        self.temporary = self.temporary.max(peak.saturating_sub(resident));
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        self.parts.push(part(format!("the {kind} `{name}`"), resident));
+    }
+
+    fn add_arrays(&mut self, name: &str, bytes: u64) {
+        if bytes > 0 {
+            self.parts.push(part(name, bytes));
+        }
+    }
+}
+
 impl Memory {
     /// Estimates the memory of a scene before its files are read and its world is built, from sizes
     /// and headers of the files.
@@ -92,48 +143,17 @@ impl Memory {
         let needs = scene.needs();
         let mut building = vec![part("the program", PROGRAM), part("the scene", scene_bytes(&needs))];
         let mut world = building.clone();
-        // Files are read one after the other, so only the largest temporary counts.
-        let mut most = 0;
-        for file in &needs.files {
-            // The reader reports a file that cannot be read.
-            let estimate = juggler_mesh::estimate(file).unwrap_or_default();
-            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            world.push(part(format!("the mesh `{name}`"), estimate.resident_bytes));
-        }
-        let pictures = needs.pictures.iter().map(|file| (file, estimate_picture(file)));
-        let panoramas = needs.panoramas.iter().map(|file| (file, estimate_panorama(file)));
-        for (file, estimate) in pictures.chain(panoramas) {
-            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            world.push(part(format!("the picture `{name}`"), estimate.resident_bytes));
-        }
-        if needs.meshes > 0 {
-            world.push(part("meshes in memory", needs.meshes));
-        }
-        let mut text = needs.text.saturating_add(needs.instance_arrays);
-        for file in &needs.instance_files {
-            let estimate = juggler_mesh::estimate_points(file).unwrap_or_default();
-            most = most.max(estimate.peak_bytes.saturating_sub(estimate.resident_bytes));
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            world.push(part(format!("the instances `{name}`"), estimate.resident_bytes));
-            text = text.saturating_add(estimate.resident_bytes);
-        }
-        if needs.instance_arrays > 0 {
-            world.push(part("arrays of instances", needs.instance_arrays));
-        }
-        if needs.images > 0 {
-            world.push(part("images in memory", needs.images));
-        }
+        let contents = Contents::new(&needs);
+        world.extend_from_slice(&contents.parts);
         let more = neighbor_scenes::extra_worlds(scene, &settings.aovs);
         world.push(part(NEIGHBOR_WORLDS, more.saturating_mul(scene_bytes(&needs))));
         building.extend_from_slice(world.get(2..).unwrap_or_default());
-        building.push(part("reading files and building trees", most));
+        building.push(part("reading files and building trees", contents.temporary));
         Ok(Self {
             building,
             world,
             rendering: Vec::new(),
-            text,
+            text: needs.text.saturating_add(contents.instances),
             thread: THREAD + GROUP.saturating_mul(needs.rays * RAY + needs.shadows * SHADOW),
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),

@@ -120,10 +120,7 @@ impl Geometry {
         let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);
         let attributes = ObjectAttributes::new(&objects);
-        let has_instance_attributes =
-            !attributes.is_empty() || objects.iter().any(|object| object.content.has_instance_attributes());
-        let has_mesh_attributes =
-            has_instance_attributes || objects.iter().any(|object| object.content.has_mesh_attributes());
+        let [has_instance_attributes, has_mesh_attributes] = have_attributes(&objects, &attributes);
         // Free the descriptions of the objects before the hierarchy is built.
         let objects = Instance::from_objects(objects);
         let bvh = Bvh::build(std::mem::take(&mut entries.boxes), Quality::Balanced);
@@ -357,4 +354,10 @@ fn first_shapes(objects: &[Object]) -> Vec<u32> {
         first
     };
     objects.iter().map(first).collect()
+}
+
+/// Whether objects, or those below them, have attributes of instances, and attributes at all.
+fn have_attributes(objects: &[Object], attributes: &ObjectAttributes) -> [bool; 2] {
+    let of_instances = !attributes.is_empty() || objects.iter().any(|object| object.content.has_instance_attributes());
+    [of_instances, of_instances || objects.iter().any(|object| object.content.has_mesh_attributes())]
 }

@@ -67,9 +67,9 @@ impl InstanceAttributes {
 }
 
 impl InstanceValues for InstanceAttributes {
-    fn value(&self, shape_index: u32, name: &str, at: Vec2) -> Option<[f32; 4]> {
-        let AttributeList { arrays, outer } = &*self.list;
-        arrays.value(self.index, name, at).or_else(|| outer.as_ref()?.value(shape_index, name, at))
+    fn value(&self, _shape_index: u32, name: &str, at: Vec2) -> Option<[f32; 4]> {
+        let levels = std::iter::successors(Some(self), |inner| inner.list.outer.as_ref());
+        levels.into_iter().find_map(|level| level.list.arrays.value(level.index, name, at))
     }
 }
 

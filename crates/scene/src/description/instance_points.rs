@@ -7,6 +7,7 @@ use juggler_mesh::PointFile;
 impl Instances {
     /// Instances at the points of a file.
     pub(crate) fn from_points(points: PointFile) -> Self {
+        #[expect(clippy::needless_pass_by_value, reason = "each array is freed once it is converted")]
         fn array<const N: usize, T>(numbers: Vec<f32>, value: impl Fn([f32; N]) -> T) -> InstanceArray<T> {
             numbers.as_chunks::<N>().0.iter().map(|numbers| value(*numbers)).collect()
         }
