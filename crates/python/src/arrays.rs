@@ -64,8 +64,8 @@ impl Hash for Asset {
 impl Asset {
     /// Makes an asset of the bytes of a file.
     #[staticmethod]
-    fn file(py: Python<'_>, bytes: PyBuffer<u8>) -> PyResult<Self> {
-        let bytes = bytes.to_vec(py)?;
+    fn file(py: Python<'_>, bytes: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let bytes = PyBuffer::<u8>::get(bytes)?.to_vec(py)?;
         Ok(py.detach(|| Self { asset: scene::Asset::from_bytes(bytes) }))
     }
 
@@ -73,7 +73,7 @@ impl Asset {
     /// triangles.
     #[staticmethod]
     fn mesh(py: Python<'_>, arrays: BTreeMap<String, PyBuffer<u8>>, attributes: Vec<AttributeParts>) -> PyResult<Self> {
-        let (mut arrays, attributes) = copied(py, &arrays, attributes)?;
+        let (mut arrays, attributes) = copied(py, arrays, attributes)?;
         py.detach(|| {
             // Each array of bytes is released before the next one is converted.
             let mut take = |name: &str| arrays.remove(name).unwrap_or_default();
@@ -101,7 +101,7 @@ impl Asset {
         arrays: BTreeMap<String, PyBuffer<u8>>,
         attributes: Vec<AttributeParts>,
     ) -> PyResult<Self> {
-        let (mut arrays, attributes) = copied(py, &arrays, attributes)?;
+        let (mut arrays, attributes) = copied(py, arrays, attributes)?;
         py.detach(|| {
             let mut take = |name: &str| arrays.remove(name).unwrap_or_default();
             let scales = match take("uniform_scales") {
@@ -127,8 +127,8 @@ impl Asset {
 
     /// Makes texels. `kind` is the type of the samples: `u1`, `u2`, `f2` or `f4`.
     #[staticmethod]
-    fn texels(py: Python<'_>, size: [u32; 2], channels: u8, kind: &str, bytes: PyBuffer<u8>) -> PyResult<Self> {
-        let bytes = bytes.to_vec(py)?;
+    fn texels(py: Python<'_>, size: [u32; 2], channels: u8, kind: &str, bytes: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let bytes = PyBuffer::<u8>::get(bytes)?.to_vec(py)?;
         let made = py.detach(|| {
             let samples = match kind {
                 "u1" => TexelSamples::U8(bytes),
@@ -226,12 +226,8 @@ fn instance_attribute(Attribute { name, channels, data, .. }: Attribute) -> (Str
 /// Arrays by name, and attributes, copied from Python.
 type Copied = (BTreeMap<String, Vec<u8>>, Vec<Attribute>);
 
-fn copied(
-    py: Python<'_>,
-    arrays: &BTreeMap<String, PyBuffer<u8>>,
-    attributes: Vec<AttributeParts>,
-) -> PyResult<Copied> {
-    let arrays = arrays.iter().map(|(name, buffer)| Ok((name.clone(), buffer.to_vec(py)?)));
+fn copied(py: Python<'_>, arrays: BTreeMap<String, PyBuffer<u8>>, attributes: Vec<AttributeParts>) -> PyResult<Copied> {
+    let arrays = arrays.into_iter().map(|(name, buffer)| Ok((name, buffer.to_vec(py)?)));
     let attributes = attributes.into_iter().map(|(name, is_face, channels, kind, buffer)| {
         let domain = if is_face { AttributeDomain::Face } else { AttributeDomain::Vertex };
         Ok(Attribute { name, domain, channels, data: AttributeBytes { kind, bytes: buffer.to_vec(py)? } })

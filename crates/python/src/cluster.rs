@@ -1,10 +1,11 @@
 //! Renders that several workers share: the film that their partial renders fill, and the files of a
 //! scene, which travel to them.
 
+use crate::arrays::Asset;
 use crate::denoise::library;
 use crate::errors::settings_error;
 use crate::image::Image;
-use crate::scene::{Scene, loader};
+use crate::scene::{Scene, loader, shared};
 use crate::task::{self, Fault, Watch};
 use crate::threads::thread_count;
 use juggler::film::checkpoint::Checkpoint;
@@ -150,7 +151,8 @@ pub fn scene_package<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Package<'p
     Ok((name, text, files.into_iter().zip(hashes).map(file).collect()))
 }
 
-/// Reads the scene of a package, without files on disk. `title` is the name of the scene in messages.
+/// Reads the scene of a package with its assets, without files on disk. `title` is the name of the
+/// scene in messages.
 #[pyfunction]
 pub fn scene_from_package(
     py: Python<'_>,
@@ -159,10 +161,12 @@ pub fn scene_from_package(
     text: Option<String>,
     files: Vec<(String, Bound<'_, PyBytes>)>,
     lenient: bool,
+    assets: Vec<(String, Py<Asset>)>,
 ) -> PyResult<Scene> {
     let files = files.into_iter().map(|(path, bytes)| (path, bytes.as_bytes().to_vec())).collect();
     let package = ScenePackage { name, text, files };
-    let read = move || loader(lenient).from_package(package, []).map_err(Fault::from);
+    let assets = shared(assets);
+    let read = move || loader(lenient).from_package(package, assets).map_err(Fault::from);
     Ok(Scene { scene: task::call(py, read)?, name: title })
 }
 

@@ -165,6 +165,7 @@ class Meshes(Folder):
             ({"triangles": self.triangles.astype("i8") - 1}, "not -1"),
             ({"triangles": self.triangles.astype("i8") + 2**32}, "not 4294967299"),
             ({"triangles": self.triangles + 1}, "is 4, but there are only 4 positions"),
+            ({"positions": np.ma.masked_less(self.positions, 0)}, "`positions` of shapes.Mesh has masked numbers"),
             ({"positions": nan}, r"positions\[2\]"),
             ({"normals": self.normals[:2]}, "one entry per position"),
             (
@@ -292,25 +293,102 @@ class Pictures(Folder):
 
 @needs_numpy
 class ManyInstances(Folder):
+    POSITIONS = ((-1, 0, 0), (1, 0, 0), (0, 1, 0))
+    SCALES = (0.25, 0.5, 0.125)
+
+    def scene(self, material=None, **fields):
+        made = Object(shapes.Sphere(), instances=Instances(**fields), material=material)
+        return shown(shapes.Sphere()).replace(objects=[made])
+
+    def hash(self, **fields):
+        return jg.render(self.scene(**fields)).hash
+
     def test_arrays_are_those_of_lists(self):
-        positions = np.array([(-1, 0, 0), (1, 0, 0), (0, 1, 0)], "f8")
-        scales = np.array([0.3, 0.5, 0.2])
-        as_lists = Instances(positions=positions.tolist(), scales=scales.tolist())
-        scene = shown(shapes.Sphere())
+        positions, scales = np.array(self.POSITIONS, "f8"), np.array(self.SCALES)
+        expected = self.hash(positions=list(self.POSITIONS), scales=list(self.SCALES))
+        self.assertEqual(self.hash(positions=positions, scales=scales), expected)
+        self.assertEqual(self.hash(positions=positions.astype(">f4"), scales=list(self.SCALES)), expected)
+        self.assertEqual(
+            self.hash(positions=positions, scales=np.repeat(scales[:, None], 3, axis=1)), expected
+        )
+        self.assertEqual(self.hash(positions=positions, scales=[0.25, (0.5, 0.5, 0.5), 0.125]), expected)
+        turned = np.array([(0, 0, 0, 1)] * 3)
+        self.assertEqual(self.hash(positions=positions, scales=scales, rotations=turned), expected)
 
-        def rendered(instances):
-            return jg.render(scene.replace(objects=[Object(shapes.Sphere(), instances=instances)])).hash
-
-        expected = rendered(as_lists)
-        self.assertEqual(rendered(Instances(positions=positions, scales=scales)), expected)
+    def test_matrices_have_three_or_four_rows(self):
         matrices = np.zeros((3, 4, 4))
-        for matrix, position, scale in zip(matrices, positions, scales):
+        matrices[:, 3, 3] = 1
+        for matrix, position, scale in zip(matrices, self.POSITIONS, self.SCALES, strict=True):
             matrix[:3, :3] = np.eye(3) * scale
             matrix[:3, 3] = position
-            matrix[3, 3] = 1
-        by_matrix = rendered(Instances(matrices=matrices[:, :3].reshape(3, 12).tolist()))
-        self.assertEqual(rendered(Instances(matrices=matrices)), by_matrix)
-        self.assertEqual(rendered(Instances(matrices=matrices[:, :3])), by_matrix)
+        expected = self.hash(matrices=matrices[:, :3].reshape(3, 12).tolist())
+        for form in (matrices, matrices[:, :3], matrices.reshape(3, 16), matrices[:, :3].reshape(3, 12)):
+            self.assertEqual(self.hash(matrices=form), expected)
+            self.assertEqual(self.hash(matrices=form.tolist()), expected)
+        matrices[1, 3, 0] = 0.5
+        with self.assertRaisesRegex(jg.SceneError, r"last row of each is \(0, 0, 0, 1\)"):
+            self.hash(matrices=matrices)
+
+    def test_attributes_are_those_of_lists(self):
+        heat = np.array([0.25, 0.5, 0.75])
+        arrays = {"positions": np.array(self.POSITIONS), "scales": np.array(self.SCALES)}
+        lists = {"heat": {"channels": 1, "data": {"f32": [0.25, 0.5, 0.75]}}}
+        scene = self.scene(color_of("heat", channel="r"), **arrays, attributes={"heat": heat})
+        image = jg.render(scene, integrator="albedo", samples=1)
+        self.assertEqual(set(np.unique(image.color).tolist()), {0.0, 0.25, 0.5, 0.75})
+        for attributes in (lists, {"heat": [0.25, 0.5, 0.75]}, {"heat": heat.reshape(3, 1)}):
+            other = self.scene(color_of("heat", channel="r"), **arrays, attributes=attributes)
+            self.assertEqual(jg.render(other, integrator="albedo", samples=1).hash, image.hash)
+        plain = self.scene(
+            color_of("heat", channel="r"),
+            positions=list(self.POSITIONS),
+            scales=list(self.SCALES),
+            attributes={"heat": [0.25, 0.5, 0.75]},
+        )
+        self.assertEqual(jg.render(plain.to_dict(), integrator="albedo", samples=1).hash, image.hash)
+        instances = jg.Renderer(scene).to_dict()["objects"][0]["instances"]
+        self.assertEqual(instances, plain.to_dict()["objects"][0]["instances"])
+
+    def test_they_are_saved_and_pickled(self):
+        for fields in (
+            {"positions": np.array(self.POSITIONS), "scales": np.array(self.SCALES)},
+            {"positions": np.array(self.POSITIONS), "scales": np.array([(0.25, 0.5, 0.25)] * 3)},
+            {"matrices": np.array([[(0.5, 0, 0, 1), (0, 0.25, 0, 0), (0, 0, 0.5, 0)]])},
+            {"positions": np.array(self.POSITIONS), "colors": np.eye(3, 4), "end_colors": np.ones((3, 4))},
+            {"positions": np.array(self.POSITIONS), "attributes": {"color": np.eye(3, dtype="u1") * 255}},
+        ):
+            with self.subTest(tuple(fields)):
+                scene = self.scene(color_of("color"), **fields)
+                expected = jg.render(scene).hash
+                path = os.path.join(self.folder, "scene.json")
+                scene.save(path)
+                self.assertEqual(jg.render(path).hash, expected)
+                self.assertEqual(jg.render(Scene.load(path)).hash, expected)
+                self.assertEqual(pickle.loads(pickle.dumps(jg.Renderer(scene))).render().hash, expected)
+                self.assertEqual(jg.render(pickle.loads(pickle.dumps(scene))).hash, expected)
+        self.assertTrue(any(name.startswith("instances-") for name in os.listdir(self.folder)))
+
+    def test_mistakes_are_named(self):
+        positions = np.array(self.POSITIONS, "f4")
+        cases = [
+            ({"positions": positions[:, :2]}, r"`positions` of Instances must be an array of shape \(n, 3\)"),
+            (
+                {"positions": positions, "scales": np.zeros((3, 2))},
+                r"`scales` of Instances .* \(n,\) or \(n, 3\)",
+            ),
+            ({"positions": positions, "scales": np.ones(2)}, "scales"),
+            ({"positions": positions, "scales": np.zeros(3)}, "scale"),
+            ({"positions": positions, "rotations": np.zeros((3, 3))}, r"shape \(n, 4\)"),
+            (
+                {"matrices": np.zeros((3, 2, 4))},
+                r"shape \(n, 3, 4\) or \(n, 4, 4\); its shape is \(3, 2, 4\)",
+            ),
+            ({"positions": positions, "attributes": {"a": jg.PerFace([1, 2, 3])}}, "instances have no faces"),
+            ({"positions": positions, "attributes": {"a": np.ones(2)}}, "`a`"),
+        ]
+        for fields, message in cases:
+            with self.subTest(message), self.assertRaisesRegex(jg.SceneError, message):
+                self.hash(**fields)
 
 
 @unittest.skipIf(np, "NumPy is installed")

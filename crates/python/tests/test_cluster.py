@@ -10,11 +10,12 @@ import unittest
 import unittest.mock
 
 import juggler as jg
-from juggler import cluster
+from juggler import Instances, Object, cluster, materials, shapes, textures
 from juggler._cluster import dealer as dealing
 from juggler._cluster import worker
 from juggler._cluster.package import Package, unpack
-from support import Folder, program_hash, needs_program, python, small_scene
+from support import Folder, needs_numpy, needs_program, program_hash, python, small_scene
+from support import numpy as np
 
 SIZE = {"size": (64, 36), "samples": 16}
 
@@ -211,6 +212,21 @@ class Executors(Folder):
         package = pickle.loads(pickle.dumps((Package(scene).manifest, Package(scene).blobs)))
         (folder / "a.obj").unlink()
         renderer = jg.Renderer(unpack(*package))
+        self.assertEqual((renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint))
+
+    @needs_numpy
+    def test_arrays_travel_with_the_scene(self):
+        scene = small_scene()
+        uvs = np.array([(0, 0), (1, 0), (0, 1)], "f4")
+        mesh = shapes.Mesh(positions=np.eye(3, dtype="f4"), triangles=np.array([(0, 1, 2)]), uvs=uvs)
+        instances = Instances(positions=np.array([(0, 0, 1), (1, 0, 1)]), attributes={"heat": np.array([1, 2])})
+        wood = textures.Image(array=np.arange(12, dtype="u1").reshape(2, 2, 3) * 20)
+        scene["objects"].append(Object(mesh, material=materials.Diffuse(reflectance=wood), instances=instances))
+        expected = jg.render(scene)
+        package = Package(scene)
+        self.assertEqual(len(package.manifest["assets"]), 3)
+        self.assertEqual(package.key({}), Package(scene).key({}))
+        renderer = jg.Renderer(unpack(*pickle.loads(pickle.dumps((package.manifest, package.blobs)))))
         self.assertEqual((renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint))
 
     def test_meshes_and_models_are_scenes(self):

@@ -113,6 +113,8 @@ class Surfaces(unittest.TestCase):
             image = front(obj).to_uint8()
             self.assertEqual(image[15, 15].tolist(), [255, 0, 0])
             self.assertEqual(image[5, 5].tolist(), levels("#440154"))
+        masked = sci.surface(CORNERS, FACES, values=np.ma.masked_equal([0, 9, 0, 0], 9), nan="#ff0000")
+        self.assertEqual(front(masked).to_uint8()[15, 15].tolist(), [255, 0, 0])
         none = sci.surface(CORNERS, FACES, values=[math.nan] * 4, nan="#00ff00")
         self.assertEqual(front(none).to_uint8()[5, 5].tolist(), [0, 255, 0])
 
@@ -159,6 +161,25 @@ class Glyphs(unittest.TestCase):
         ):
             with self.assertRaisesRegex(jg.SceneError, message):
                 sci.spheres(*arguments)
+
+    def test_values_of_spheres(self):
+        table = sci.ColorMap(cmap="magma", clim=(0, 1)).colors()
+        centers = [(0.25, 0.25, 0), (0.75, 0.25, 0), (0.25, 0.75, 0), (0.75, 0.75, 0)]
+        values = [0, 128 / 255, 1, math.nan]
+        for radii in (0.2, [0.2] * 4):
+            obj = sci.spheres(centers, radii, values=values, cmap="magma", clim=(0, 1), nan="#00ff00")
+            image = front(obj).to_uint8()
+            for (x, y, _), color in zip(centers, (table[0], table[128], table[255], "#00ff00"), strict=True):
+                self.assertEqual(image[19 - int(20 * y), int(20 * x)].tolist(), levels(color))
+        with self.assertRaisesRegex(jg.SceneError, "must have 4 numbers, it has 2"):
+            sci.spheres(centers, values=[1, 2])
+
+    def test_values_of_arrows(self):
+        starts, vectors = [(0, 0.2, 0), (0, 0.8, 0)], [(0.5, 0, 0), (1, 0, 0)]
+        obj = sci.arrows(starts, vectors, values="length", cmap=["#000000", "#ff0000"], clim=(0, 1))
+        image = front(obj, (50, 50)).color
+        np.testing.assert_allclose(image[40, 10], (0.5, 0, 0), atol=0.01)
+        np.testing.assert_allclose(image[10, 10], (1, 0, 0), atol=0.01)
 
     def test_arrows_point_along_their_vectors(self):
         for vector in ((2, 0, 0), (0, 2, 0), (0, 0, 2), (0, 0, -2), (-2, 0, 0)):

@@ -60,6 +60,22 @@ class Tasks(Folder):
         self.assertEqual((scene.render.samples, bigger.render.samples), (4, 16))
         self.assertEqual(jg.render(bigger).stats["samples"], 16)
 
+    @needs_numpy
+    def test_3_arrays(self):
+        v = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], "f8")
+        f, n, uv = numpy.array([(0, 1, 2)]), numpy.array([(0, 0, 1)] * 3), numpy.array([(0, 0), (1, 0), (0, 1)])
+        c, ids = numpy.full((3, 3), 200, "u1"), numpy.array([7])
+        attributes = {"color": c, "part": jg.PerFace(ids)}
+        mesh = shapes.Mesh(positions=v, triangles=f, normals=n, uvs=uv, attributes=attributes)
+        wood = textures.Image(array=numpy.zeros((2, 2, 3), "u1"), color_space="srgb")
+        dots = Object(shapes.Sphere(radius=0.01), instances=jg.Instances(positions=v, scales=numpy.ones(3)))
+        scene = typed_scene()
+        scene.objects += [Object(mesh, material=materials.Diffuse(reflectance=wood)), dots]
+        self.assertEqual(scene.check(), [])
+        image = jg.render(scene)
+        scene.save("arrays.json")
+        self.assertEqual(jg.render(Scene.load("arrays.json")).hash, image.hash)
+
     def test_4_edit_and_render_again(self):
         r = jg.Renderer(typed_scene(), samples=8)
         before = r.render()
@@ -142,3 +158,17 @@ class Tasks(Folder):
         self.assertTrue(future.cancel())
         small = jg.Renderer(typed_scene())
         self.assertEqual(asyncio.run(small.render_async()).hash, small.render().hash)
+
+    @needs_numpy
+    def test_14_scientific_pictures(self):
+        v, f = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 1)], [(0, 1, 2), (0, 2, 3)]
+        obj = jg.sci.surface(v, f, values=[0, 1, 5, numpy.nan], cmap="viridis", clim=(0, 5), nan="#808080")
+        scene = Scene(objects=[obj], camera=jg.sci.camera(obj.bounds, view="isometric"))
+        image = jg.render(scene, samples=2, **SMALL)
+        self.assertGreater(len(numpy.unique(image.color.reshape(-1, 3), axis=0)), 10)
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("matplotlib is not installed")
+        matplotlib.use("Agg")
+        self.assertEqual(len(image.plot(colorbar=True).axes), 2)

@@ -39,6 +39,8 @@ def has_numbers(value):
 def _array(value, label):
     """The NumPy array of a value, of any type of real numbers."""
     np = numpy()
+    if np.ma.is_masked(value):
+        raise SceneError(f"{label} has masked numbers; fill them, such as by `.filled(0)`")
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:
@@ -49,6 +51,14 @@ def _array(value, label):
         )
         raise SceneError(f"{label} must be an array of real numbers; it has {found}")
     return array
+
+
+def unmasked(values):
+    """The array of values, in which masked ones are no numbers (NaN)."""
+    np = numpy()
+    if np.ma.isMaskedArray(values):
+        return values.astype("f8").filled(np.nan)
+    return np.asarray(values)
 
 
 def _contiguous(array, type_name):

@@ -6,6 +6,8 @@ import numpy
 from numpy.typing import NDArray
 
 from ._camera import Camera
+from .scene_types import Object
+from .sci import ColorMap
 
 class Image:
     """Rendered image, with linear pixels and AOVs.
@@ -17,6 +19,21 @@ class Image:
     def __getitem__(self, name: str) -> NDArray[Any]: ...
     def __eq__(self, other: object) -> bool: ...
     def __hash__(self) -> int: ...
+    def plot(
+        self,
+        colorbar: bool | Object | ColorMap = False,
+        scale_bar: str | None = None,
+        *,
+        title: str | None = None,
+        label: str | None = None,
+        ax: Any = None,
+    ) -> Any:
+        """Draws the image by matplotlib, and returns the figure.
+
+        `colorbar=True` adds a bar for each color map of `juggler.sci` in the scene, with `label`
+        beside it; an object of `juggler.sci` may be given instead. `scale_bar` is a length in scene
+        units with its unit, such as "1 mm", for orthographic cameras. `ax` are axes of matplotlib.
+        """
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
     def __dlpack__(self, **arguments: Any) -> Any: ...
     def __dlpack_device__(self) -> tuple[int, int]: ...

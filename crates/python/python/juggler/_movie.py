@@ -76,6 +76,8 @@ def _source(scene, native):
 
 def render_movie(scene, path, frames, settings):
     """Renders a movie, see `juggler.render_movie`."""
+    if getattr(scene, "_lenient", False):
+        settings = {**settings, "lenient": True}
     plain = {name: value for name, value in settings.items() if name != "max_memory"}
     _native.check_settings(plain)
     words = [sys.executable, "-m", "juggler", "render"]

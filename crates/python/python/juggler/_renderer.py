@@ -23,6 +23,8 @@ class Renderer:
         self._progress = settings.pop("progress", None)
         if "max_memory" in settings:
             settings["max_memory"] = bytes_of(settings["max_memory"])
+        if getattr(scene, "_lenient", False):
+            settings["lenient"] = True
         camera = settings.get("camera")
         own_camera = camera is not None and not isinstance(camera, str)
         if own_camera:

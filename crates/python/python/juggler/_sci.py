@@ -51,7 +51,7 @@ class _Values:
 
     def __init__(self, values, label, cmap, clim, nan, lit):
         np = _arrays.numpy()
-        values = np.asarray(values)
+        values = _arrays.unmasked(values)
         if values.dtype.kind not in "biuf" or values.ndim != 1:
             raise SceneError(f"`values` of {label} must be an array of shape (n,) of numbers")
         values = values.astype("f8")
@@ -260,7 +260,7 @@ def arrows(
     def place(where, attributes):
         return Instances(matrices=matrices[where], **attributes)
 
-    values = None if values is None else np.asarray(values)[seen]
+    values = None if values is None else _arrays.unmasked(values)[seen]
     return _instances(arrow(), len(matrices), values, label, (cmap, clim, nan, color, lit, name), place)
 
 
@@ -328,7 +328,7 @@ def _tube(line, radius, values, sides, start, label):
     faces = np.concatenate([start + ring_faces(len(points), sides), *closed])
     if values is None:
         return positions, faces, None
-    found = np.asarray(values, "f8")
+    found = _arrays.unmasked(values).astype("f8")
     if found.shape != (len(line),):
         raise SceneError(f"{label} has {len(line)} points, but its values have the shape {found.shape}")
     found = found[kept]

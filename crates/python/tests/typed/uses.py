@@ -6,7 +6,7 @@
 from typing import assert_type
 
 import juggler as jg
-from juggler import Object, Scene, animate, cameras, lights, materials, shapes, textures
+from juggler import Object, Scene, animate, cameras, lights, materials, sci, shapes, textures
 
 
 class Array:
@@ -27,6 +27,16 @@ scene = Scene(
 assert_type(scene.replace(render=scene.render.replace(samples=256)), Scene)
 scene.camera.replace(eye=(0, 2, 6))
 scene.objects[0].translate(0, 1, 0).rotate("y", 30).scale(2)
+
+# Arrays, and objects made of them.
+tinted = shapes.Mesh(positions=Array(), attributes={"color": Array(), "part": jg.PerFace(Array())})
+jg.Instances(matrices=Array(), attributes={"heat": Array()})
+textures.Image(array=Array(), color_space="linear")
+surface = sci.surface(Array(), Array(), values=[1, 2, 3], cmap="viridis", clim=(0, 5), nan="#808080")
+assert_type(surface, Object)
+assert_type(jg.from_gltf("car.glb", variant="red", lenient=True), Scene)
+view = sci.camera(surface.bounds, view="+x", parallel=True)
+jg.render(Scene(objects=[surface, sci.axes(surface)], camera=view), **sci.flat()).plot(colorbar=True)
 
 # Arrays, expressions, value forms, names and dictionaries.
 mesh = shapes.Mesh(positions=Array(), triangles=[[0, 1, 2]])

@@ -13,17 +13,21 @@ class Package:
     """
 
     def __init__(self, scene, lenient=False):
+        lenient = lenient or getattr(scene, "_lenient", False)
         native = native_scene(scene, lenient)
         name, text, files = _native.scene_package(native)
         self.native = native
         self.blobs = {digest: data for _, digest, data in files}
         if text is not None:
             text = self._blob(text.encode())
+        assets = [(name, asset.digest, asset) for name, asset in native.assets()]
+        self.blobs.update((digest, pickle.dumps(asset, protocol=5)) for _, digest, asset in assets)
         self.manifest = {
             "title": native.name,
             "name": name,
             "text": text,
             "files": [(path, digest) for path, digest, _ in files],
+            "assets": [(name, digest) for name, digest, _ in assets],
             "lenient": bool(lenient),
         }
 
@@ -53,4 +57,5 @@ def unpack(manifest, blobs):
         None if text is None else blobs[text].decode(),
         files,
         manifest["lenient"],
+        [(name, pickle.loads(blobs[digest])) for name, digest in manifest["assets"]],
     )
