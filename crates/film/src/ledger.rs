@@ -1,5 +1,5 @@
 //! Adds partial renders of several workers to one film. They may come in any order, twice or not at
-//! all: the film tells what is missing ([`Work::missing`](crate::shard::Work::missing)), samples that
+//! all: the film names what is missing ([`Work::missing`](crate::shard::Work::missing)), samples that
 //! it holds already are dropped, and sums are joined along the fixed tree, so that the pixels do not
 //! depend on the workers.
 

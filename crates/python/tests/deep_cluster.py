@@ -155,7 +155,9 @@ class OverRay(Folder):
         settings = {"size": (64, 36), "samples": 4}
         for count in (2, 7):
             expected = [image.hash for image in jg.frames("chess-opening", range(count), **settings)]
-            self.assertEqual([image.hash for image in farm.frames("chess-opening", range(count), **settings)], expected)
+            self.assertEqual(
+                [image.hash for image in farm.frames("chess-opening", range(count), **settings)], expected
+            )
         movie, other = self.folder / "a.gif", self.folder / "b.gif"
         farm.render_movie("chess-opening", movie, range(5), **settings)
         jg.render_movie("chess-opening", other, range(5), **settings)
@@ -177,7 +179,9 @@ class OverRay(Folder):
     def test_5_a_killed_node_and_a_new_one(self):
         farm = self.farm()
 
-        added = threading.Thread(target=lambda: self.nodes.append(self.cluster.add_node(**self.node_arguments)))
+        added = threading.Thread(
+            target=lambda: self.nodes.append(self.cluster.add_node(**self.node_arguments))
+        )
 
         def exchange():
             self.cluster.remove_node(self.nodes.pop(0), allow_graceful=False)
@@ -237,7 +241,7 @@ class OverDask(unittest.TestCase):
 
 
 class OverProcesses(unittest.TestCase):
-    def test_each_start_of_processes(self):
+    def test_all_start_methods(self):
         expected = expected_hash()
         for method in ("fork", "spawn", "forkserver"):
             context = multiprocessing.get_context(method)
@@ -257,7 +261,9 @@ def table():
 
     start = time.process_time(), time.monotonic()
     expected = jg.render("juggler", **SETTINGS, threads=1).hash
-    print(f"one process, one thread: {time.monotonic() - start[1]:.1f} s, {time.process_time() - start[0]:.1f} s of CPU")
+    print(
+        f"one process, one thread: {time.monotonic() - start[1]:.1f} s, {time.process_time() - start[0]:.1f} s of CPU"
+    )
     arguments = {"num_cpus": 1, "object_store_memory": 80 * 1024 * 1024}
     head = {**arguments, "num_cpus": 0, "include_dashboard": False}
     local = Cluster(initialize_head=True, head_node_args=head)
@@ -276,7 +282,9 @@ def table():
                 for _ in range(3):
                     start = time.monotonic()
                     assert farm.render("juggler", **SETTINGS).hash == expected
-                    print(f"{nodes} nodes: workers after {ready - began:.1f} s, {time.monotonic() - start:.1f} s")
+                    print(
+                        f"{nodes} nodes: workers after {ready - began:.1f} s, {time.monotonic() - start:.1f} s"
+                    )
             ray.shutdown()
     finally:
         local.shutdown()

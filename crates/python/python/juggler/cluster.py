@@ -15,13 +15,15 @@ from juggler._cluster.errors import ClusterError, WorkerLost
 __all__ = ["ClusterError", "ClusterProgress", "Ray", "WorkerLost", "commands", "frames", "render"]
 
 
-def render(scene, executor, workers=None, *, checkpoint=None, checkpoint_every=60.0, preview=False, **settings):
+def render(
+    scene, executor, workers=None, *, checkpoint=None, checkpoint_every=60.0, preview=False, **settings
+):
     """Renders a scene on the workers of an executor and returns the `Image`, which equals that of
     `juggler.render` to the bit.
 
     `executor` has a method `submit(function, *arguments)` that returns a future: an executor of
     `concurrent.futures`, a `distributed.Client` of Dask, or another one. `workers` is the number of tasks
-    that it runs at a time, where the executor does not tell.
+    that it runs at a time, where the executor does not state it.
 
     `checkpoint` is a `.jfilm` file that is saved every `checkpoint_every` seconds and at the end; the same
     call, or the program with `--checkpoint`, goes on with it. `preview=True` renders all pixels with few

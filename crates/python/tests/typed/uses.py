@@ -3,6 +3,7 @@
     pyright --project crates/python/tests/typed
 """
 
+from concurrent.futures import ProcessPoolExecutor
 from typing import assert_type
 
 import juggler as jg
@@ -95,3 +96,12 @@ def renders() -> None:
         scene.check()
     except jg.SceneError as error:
         print([problem.path for problem in error.problems])
+
+
+def clusters() -> None:
+    """Renders on several workers."""
+    with ProcessPoolExecutor(2) as executor:
+        assert_type(jg.cluster.render(scene, executor, samples=64, checkpoint="job.jfilm"), jg.Image)
+    with jg.cluster.Ray() as farm:
+        assert_type(farm.render("juggler", preview=True), jg.Image)
+        assert_type([image.frame for image in farm.frames("chess", range(3))], list[float])

@@ -58,7 +58,9 @@ def script(scene, shards, system, output, settings):
         known = ", ".join(f'"{name}"' for name in _SYSTEMS)
         raise SettingsError(f"`system` must be one of {known}, not {system!r}")
     if not isinstance(scene, (str, os.PathLike)):
-        raise SettingsError("the machines of a batch system read a scene file: save the scene, and give its path")
+        raise SettingsError(
+            "the machines of a batch system read a scene file: save the scene, and give its path"
+        )
     if not isinstance(shards, int) or not 1 <= shards <= 100_000:
         raise SettingsError(f"`shards` must be a number from 1 to 100,000, not {shards!r}")
     for name in ("time", "threads", "max_memory"):
@@ -82,7 +84,11 @@ def script(scene, shards, system, output, settings):
     parts = " ".join(f"{stem}-{number}.jfilm" for number in range(shards))
     if shards > 3:
         parts = f"{stem}-{{0..{shards - 1}}}.jfilm"
-    output = f"{os.path.splitext(os.path.basename(os.fspath(scene)))[0]}.png" if output is None else os.fspath(output)
+    output = (
+        f"{os.path.splitext(os.path.basename(os.fspath(scene)))[0]}.png"
+        if output is None
+        else os.fspath(output)
+    )
     return _SYSTEMS[system].format_map(values) + _MERGE.format(parts=parts, output=shlex.quote(output))
 
 

@@ -62,7 +62,9 @@ class Job:
         by_samples_alone = not any(settings.get(name) for name in ("aovs", "denoise", "noise"))
         if preview and not by_samples_alone:
             message = "`preview` renders the samples of a tile in several rounds, which `{}` does not allow"
-            raise SettingsError(message.format(next(n for n in ("aovs", "denoise", "noise") if settings.get(n))))
+            raise SettingsError(
+                message.format(next(n for n in ("aovs", "denoise", "noise") if settings.get(n)))
+            )
         self.checkpoint, self.every, self.preview = checkpoint, float(checkpoint_every), preview
         self.package = Package(scene, bool(settings.get("lenient")))
         self.renderer = Renderer(self.package.native, **settings)
@@ -96,7 +98,9 @@ class Job:
         if self.checkpoint is not None:
             damage = self.ledger.resume(os.fspath(self.checkpoint))
             if damage:
-                warnings.warn(f"{damage}; continuing from the previous checkpoint", RuntimeWarning, stacklevel=4)
+                warnings.warn(
+                    f"{damage}; continuing from the previous checkpoint", RuntimeWarning, stacklevel=4
+                )
 
     def dealer(self, workers):
         """Deals what the film lacks."""
@@ -115,7 +119,9 @@ def _portable(settings):
     """Returns settings that every process can read: without the frame, which each task has, and with a
     camera as a dict.
     """
-    settings = {name: value for name, value in settings.items() if value is not None and name not in ("frame", "at")}
+    settings = {
+        name: value for name, value in settings.items() if value is not None and name not in ("frame", "at")
+    }
     camera = settings.get("camera")
     if hasattr(camera, "to_dict"):
         settings["camera"] = camera.to_dict()
