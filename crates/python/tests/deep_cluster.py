@@ -253,42 +253,54 @@ class OverProcesses(unittest.TestCase):
         expected_hash()
 
 
+def cpu_seconds(process):
+    """CPU seconds of a process so far."""
+    with open(f"/proc/{process}/stat", encoding="ascii") as file:
+        fields = file.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def table():
-    """Prints the times of 1 and 2 nodes, and of one process."""
+    """Prints the times of one process, and of 1 and 2 nodes."""
     temporary = temporary_folder()
     import ray
     from ray.cluster_utils import Cluster
 
-    start = time.process_time(), time.monotonic()
+    cpu, start = time.process_time(), time.monotonic()
     expected = jg.render("juggler", **SETTINGS, threads=1).hash
-    print(
-        f"one process, one thread: {time.monotonic() - start[1]:.1f} s, {time.process_time() - start[0]:.1f} s of CPU"
-    )
+    print(f"one process: {time.monotonic() - start:.1f} s, {time.process_time() - cpu:.1f} s of CPU")
     arguments = {"num_cpus": 1, "object_store_memory": 80 * 1024 * 1024}
-    head = {**arguments, "num_cpus": 0, "include_dashboard": False}
-    local = Cluster(initialize_head=True, head_node_args=head)
+    local = Cluster(
+        initialize_head=True, head_node_args={**arguments, "num_cpus": 0, "include_dashboard": False}
+    )
     try:
         for nodes in (1, 2):
             local.add_node(**arguments)
             local.wait_for_nodes()
             ray.init(address=local.address, log_to_driver=False)
-            began = time.monotonic()
             with cluster.Ray(address=local.address) as farm:
-                while not farm._pool.is_free() or farm._pool.count() < nodes:
-                    farm._pool.check()
-                    farm._pool.answers(0.1)
-                ready = time.monotonic()
-                farm.render("juggler", size=(16, 16), samples=1)
-                for _ in range(3):
-                    start = time.monotonic()
-                    assert farm.render("juggler", **SETTINGS).hash == expected
-                    print(
-                        f"{nodes} nodes: workers after {ready - began:.1f} s, {time.monotonic() - start:.1f} s"
-                    )
+                for _ in range(4):
+                    measure(farm, nodes, expected)
             ray.shutdown()
     finally:
         local.shutdown()
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def measure(farm, count, expected):
+    """Prints the times of a render on workers that are ready."""
+    pool = farm._pool
+    while sum(node.is_ready for node in pool._nodes.values()) < count:
+        pool.check()
+        pool.answers(0.1)
+    workers = [int(node.name.rpartition(" ")[2]) for node in pool._nodes.values() if node.is_ready]
+    before, start = [cpu_seconds(process) for process in workers], time.monotonic()
+    driver = time.process_time()
+    assert farm.render("juggler", **SETTINGS).hash == expected
+    seconds, driver = time.monotonic() - start, time.process_time() - driver
+    after = [cpu_seconds(process) - spent for process, spent in zip(workers, before)]
+    shares = " + ".join(f"{own:.1f}" for own in after)
+    print(f"{count} nodes: {seconds:.1f} s; CPU of workers {shares} s, of the driver {driver:.1f} s")
 
 
 if __name__ == "__main__":

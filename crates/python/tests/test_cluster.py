@@ -152,9 +152,7 @@ class Executors(Folder):
         def lose(number, answer):
             raise cluster.WorkerLost(f"node {number} is gone")
 
-        with self.assertRaisesRegex(
-            cluster.ClusterError, r"task \d+ \(tile.* lost 3 times: .*WorkerLost: node"
-        ):
+        with self.assertRaisesRegex(cluster.ClusterError, r"task \d+ \(tile.* lost 3 times: .*WorkerLost: node"):
             self.rendered(lose)
 
     def test_answers_of_another_image_stop_the_render(self):
@@ -214,9 +212,7 @@ class Executors(Folder):
         package = pickle.loads(pickle.dumps((Package(scene).manifest, Package(scene).blobs)))
         (folder / "a.obj").unlink()
         renderer = jg.Renderer(unpack(*package))
-        self.assertEqual(
-            (renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint)
-        )
+        self.assertEqual((renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint))
 
     @needs_numpy
     def test_arrays_travel_with_the_scene(self):
@@ -379,9 +375,7 @@ class Dealing(unittest.TestCase):
 class Commands(unittest.TestCase):
     def test_scripts_name_scene_shards_and_settings(self):
         script = cluster.commands("my scene.json", shards=40, samples=64, size=(320, 180), aovs=["depth"])
-        self.assertIn(
-            "render 'my scene.json' --aov=depth --samples=64 --size=320x180 --shard auto/40", script
-        )
+        self.assertIn("render 'my scene.json' --aov=depth --samples=64 --size=320x180 --shard auto/40", script)
         self.assertIn("#SBATCH --array=0-39", script)
         self.assertIn("juggler merge 'my scene'-{0..39}.jfilm -o 'my scene.png'", script)
         for system in ("hyperqueue", "ssh"):
@@ -404,9 +398,7 @@ class Commands(unittest.TestCase):
 
 class Imports(unittest.TestCase):
     def test_ray_is_loaded_by_its_class_alone(self):
-        code = (
-            "import sys, juggler\nassert 'juggler.cluster' not in sys.modules\nimport juggler.cluster as c\n"
-        )
+        code = "import sys, juggler\nassert 'juggler.cluster' not in sys.modules\nimport juggler.cluster as c\n"
         code += "c.Ray()\nassert 'ray' not in sys.modules and 'numpy' not in sys.modules"
         self.assertEqual(python(code).stderr, "")
 
