@@ -34,7 +34,7 @@ shipped_package() {
     return 1
   fi
   python=$programs/deep/python-$version/bin/python
-  mapfile -t packages < <(grep -v '^#' crates/python/tests/requirements.txt)
+  mapfile -t packages < <(packages_for_tests)
   environment "$programs/deep/python-$version" "python$version" "$(shipped_wheel)" "${packages[@]}" ||
     { is_left_out=yes; return 1; }
 }

@@ -8,7 +8,7 @@ wheel_options=(--manifest-path crates/python/Cargo.toml --profile release --feat
 
 # Tests the Python package as users install it. The program to compare with is the unoptimized one.
 step_python() {
-  local wheel folder=$programs/python
+  local wheel folder=$programs/python packages
   heading "python: the wheel"
   if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
     skip "python: python3 is missing or older than 3.11 (apt-get install python3)"
@@ -23,8 +23,9 @@ step_python() {
   heading "python: the package by itself, in $(python3 --version)"
   environment "$folder/bare" python3 "$wheel" || return 0
   test_package "$folder/bare" installed
-  heading "python: the package beside NumPy, in $(python3 --version)"
-  environment "$folder/numpy" python3 "$wheel" numpy || return 0
+  heading "python: the package beside NumPy and others, in $(python3 --version)"
+  mapfile -t packages < <(packages_for_tests | grep -vE "^($large_packages)")
+  environment "$folder/numpy" python3 "$wheel" "${packages[@]}" || return 0
   test_package "$folder/numpy"
   heading "python: types"
   if command -v pyright >/dev/null; then check_types "$folder/numpy"; else skip "python: pyright is not installed (pip install pyright)"; fi
@@ -34,6 +35,12 @@ step_python() {
 check_types() {
   PYRIGHT_PYTHON_IGNORE_WARNINGS=1 pyright --pythonpath "$1/bin/python" --project crates/python/tests/typed
 }
+
+# Packages of hundreds of megabytes, which only `deep python` installs.
+large_packages="distributed|open3d|pyvista|ray"
+
+# Prints the packages that the tests work with, one per line.
+packages_for_tests() { grep -v '^#' crates/python/tests/requirements.txt; }
 
 # Builds a wheel into a folder of its own, with the given options of maturin, and prints its path.
 build_wheel() {
