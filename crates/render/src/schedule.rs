@@ -80,9 +80,6 @@ pub fn render<E: From<Cancelled>>(
     for band in bands(region, schedule.band_pixels) {
         let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
         let render_tile = |pixels: Rect| {
-            if control.is_cancelled() {
-                return;
-            }
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
             // Compute the means before locking the film.
@@ -97,11 +94,7 @@ pub fn render<E: From<Cancelled>>(
             }
             lock(&engines).push(engine);
         };
-        match schedule.scheduler {
-            Scheduler::WorkStealing => steal(&band, job.samples, render_tile),
-            Scheduler::RowQueue => row_queue(&band, render_tile),
-            Scheduler::StaticRows => static_rows(&band, render_tile),
-        }
+        for_each_tile(schedule.scheduler, &band, job.samples, control, render_tile);
         if control.is_cancelled() {
             return Err(Cancelled.into());
         }
@@ -129,6 +122,27 @@ fn bands(region: Rect, pixels: u64) -> impl Iterator<Item = Rect> {
     let height = (tile_rows.max(1) * u64::from(MAX_TILE)).min(u64::from(u32::MAX)) as u32;
     let end = region.y + region.height;
     (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
+}
+
+/// Renders the tiles of a band on the threads of the current pool. No thread enters a tile after
+/// cancellation.
+fn for_each_tile(
+    scheduler: Scheduler,
+    band: &Rect,
+    samples: u32,
+    control: &Control,
+    render_tile: impl Fn(Rect) + Sync + Send,
+) {
+    let enter = |tile: Rect| {
+        if !control.is_cancelled() {
+            render_tile(tile);
+        }
+    };
+    match scheduler {
+        Scheduler::WorkStealing => steal(band, samples, enter),
+        Scheduler::RowQueue => row_queue(band, enter),
+        Scheduler::StaticRows => static_rows(band, enter),
+    }
 }
 
 fn steal(band: &Rect, samples: u32, render_tile: impl Fn(Rect) + Sync + Send) {
@@ -180,8 +194,6 @@ fn static_rows(band: &Rect, render_tile: impl Fn(Rect) + Sync + Send) {
 mod tests {
     use super::*;
 
-    type RenderTile<'a> = &'a (dyn Fn(Rect) + Sync + Send);
-
     #[test]
     fn bands_cover_every_row_once_and_stay_small() {
         let sizes = [(1, 1), (640, 360), (1920, 1080), (20_000, 20_000), (65_536, 3), (3, 65_536), (0, 0)];
@@ -200,24 +212,44 @@ mod tests {
         }
     }
 
+    /// Number of times that each pixel of a band is rendered. The `last_tile`-th tile cancels.
+    fn rendered_counts(scheduler: Scheduler, band: &Rect, samples: u32, last_tile: u32) -> (Vec<u32>, u32) {
+        let (control, entered) = (Control::default(), AtomicU32::new(0));
+        let counts = Mutex::new(vec![0; band.area() as usize]);
+        for_each_tile(scheduler, band, samples, &control, |tile| {
+            if entered.fetch_add(1, Relaxed) + 1 == last_tile {
+                control.cancel();
+            }
+            for y in tile.y..tile.y + tile.height {
+                for x in tile.x..tile.x + tile.width {
+                    lock(&counts)[((y - band.y) * band.width + x - band.x) as usize] += 1;
+                }
+            }
+        });
+        (counts.into_inner().unwrap(), entered.into_inner())
+    }
+
     #[test]
     fn every_scheduler_draws_every_pixel_once() {
         let band = Rect { x: 3, y: 7, width: 70, height: 41 };
-        let seen = |run: &dyn Fn(RenderTile)| {
-            let counts = Mutex::new(vec![0; band.area() as usize]);
-            run(&|tile: Rect| {
-                for y in tile.y..tile.y + tile.height {
-                    for x in tile.x..tile.x + tile.width {
-                        lock(&counts)[((y - band.y) * band.width + x - band.x) as usize] += 1;
-                    }
-                }
-            });
-            counts.into_inner().is_ok_and(|counts| counts.into_iter().all(|count| count == 1))
-        };
-        for samples in [1, 64, 4096] {
-            assert!(seen(&|render_tile| steal(&band, samples, render_tile)), "stealing, {samples} samples");
+        for scheduler in Scheduler::ALL.iter().copied() {
+            for samples in [1, 64, 4096] {
+                let (counts, _) = rendered_counts(scheduler, &band, samples, u32::MAX);
+                assert!(counts.iter().all(|count| *count == 1), "{scheduler:?}, {samples} samples");
+            }
         }
-        assert!(seen(&|render_tile| row_queue(&band, render_tile)), "row queue");
-        assert!(seen(&|render_tile| static_rows(&band, render_tile)), "static rows");
+    }
+
+    #[test]
+    fn cancellation_enters_no_further_tile() {
+        let band = Rect { x: 0, y: 0, width: 640, height: 360 };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        for scheduler in Scheduler::ALL.iter().copied() {
+            for last in [1, 5, 100] {
+                let (_, entered) = pool.install(|| rendered_counts(scheduler, &band, 100_000, last));
+                // The two other threads may have passed the test for cancellation just before.
+                assert!((last..=last + 2).contains(&entered), "{scheduler:?}: {entered} of {last} tiles");
+            }
+        }
     }
 }
