@@ -6,10 +6,10 @@
 #   ./check.sh changed [BASE]   runs lint and the tests of every package that the changes since BASE
 #                               can break; the default BASE is the merge base with main, or the
 #                               previous commit if nothing has changed since the merge base
-#   ./check.sh deep [PART...]   runs the long checks: dist matrix noise rays furnaces memory kills
-#                               kinds fuzz bombs web python cluster, and beside other programs
-#                               gltf aovs flip metals samplers denoising peers; a part that passed
-#                               on the same source does not run again
+#   ./check.sh deep [PART...]   runs the long checks: dist matrix noise rays furnaces memory
+#                               cancelling kills kinds fuzz bombs web python cluster, and beside
+#                               other programs gltf aovs flip metals samplers denoising peers; a
+#                               part that passed on the same source does not run again
 # CONTRIBUTING.md describes each step and its duration.
 set -euo pipefail
 cd "$(dirname "$0")"

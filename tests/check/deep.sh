@@ -2,7 +2,7 @@
 # most on two cores.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays furnaces memory kills kinds fuzz bombs web python cluster
+deep_parts=(dist matrix noise rays furnaces memory cancelling kills kinds fuzz bombs web python cluster
   gltf aovs flip metals samplers denoising peers)
 
 check_deep() {
@@ -71,6 +71,11 @@ deep_furnaces() {
 
 # Tests `--max-memory` with the optimized program; the step `unit` tests the unoptimized one.
 deep_memory() { cargo test --release --locked -p juggler-cli --test program -- memory::; }
+
+# Cancels builds of ten million triangles and measures the CPU time after that.
+deep_cancelling() {
+  JUGGLER_TRIANGLES=10_000_000 cargo test --release --locked -p juggler --test integration -- --nocapture cancelling::
+}
 
 # Kills renders at random times and resumes them.
 deep_kills() { cargo run --release --locked -p juggler-golden --bin kill-test -- 100 1; }

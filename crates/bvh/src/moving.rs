@@ -12,7 +12,7 @@ use crate::stack::Stack;
 use crate::{BuildOptions, BuildStats, Bvh, Leaf, Quality, SimdLevel};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::{dispatch, f32x8};
-use juggler_math::{Aabb, Ray, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Ray, Vec3};
 use rayon::prelude::*;
 
 /// Boxes of a node's children at shutter open and close.
@@ -71,6 +71,27 @@ impl MovingBvh {
     /// [`MovingBvh::build`] with explicit [`BuildOptions`].
     pub fn build_with(boxes: &[[Aabb; 2]], shutter: f32, options: &BuildOptions) -> Self {
         let bvh = Bvh::build_with(boxes.par_iter().map(swept_bounds).collect::<Vec<_>>(), options);
+        Self::with_topology(bvh, boxes, shutter)
+    }
+
+    /// [`MovingBvh::build_with`], which ends early if `control` is cancelled, and reports its
+    /// progress to it.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn build_with_control(
+        boxes: &[[Aabb; 2]],
+        shutter: f32,
+        options: &BuildOptions,
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        let swept: Vec<Aabb> = boxes.par_iter().map(swept_bounds).collect();
+        let bvh = Bvh::build_with_control(swept, options, control)?;
+        Ok(Self::with_topology(bvh, boxes, shutter))
+    }
+
+    fn with_topology(bvh: Bvh, boxes: &[[Aabb; 2]], shutter: f32) -> Self {
         let ends = [0, 1].map(|end| nodes_with(&bvh, |item| padded(boxes[item][end])));
         let mut motion: Pages<NodeMotion> = Pages::zeroed(bvh.nodes.len());
         motion.par_iter_mut().enumerate().for_each(|(i, motion)| {

@@ -90,7 +90,7 @@ impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         match error {
             SceneError::Problems(problems) => Self::Scene(Box::new(problems)),
-            SceneError::Read { .. } | SceneError::Write { .. } | SceneError::Image(_) => {
+            SceneError::Read { .. } | SceneError::Write { .. } | SceneError::Image(_) | SceneError::Cancelled(_) => {
                 Self::System(error.to_string())
             }
             SceneError::Unknown(unknown) => unknown.into(),
@@ -158,7 +158,7 @@ impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error {
             Error::Scene(error) => error.into(),
-            Error::Settings(message) => Self::Invalid(message),
+            Error::Settings { .. } => Self::Invalid(error.to_string()),
             Error::Image(error) => error.into(),
             Error::PartialRender(error) => error.into(),
             Error::Merge(error) => error.into(),

@@ -1,6 +1,7 @@
 //! Signals that end a render in an orderly way, and a signal that must not end the program.
 
 use crate::failure::{Failure, plain};
+use juggler::BuildControl;
 #[cfg(unix)]
 use signal_hook::consts::{SIGHUP, SIGXFSZ};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -9,6 +10,11 @@ use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+/// Interval between checks for signals.
+pub const TICK: Duration = Duration::from_millis(20);
 
 /// Signals to watch: SIGINT, SIGTERM and, unless ignored as under `nohup`, SIGHUP.
 fn watched_signals() -> Vec<i32> {
@@ -65,6 +71,25 @@ impl Interrupts {
         (number != 0).then_some(Failure::Interrupted { signal, saved: None })
     }
 
+    /// Runs a build while another thread watches for signals, which cancel its control.
+    pub fn cancelling<T>(&self, build: impl FnOnce(&BuildControl) -> T) -> T {
+        let control = BuildControl::default();
+        std::thread::scope(|scope| {
+            let (running, ended) = mpsc::channel::<()>();
+            let control = &control;
+            scope.spawn(move || {
+                while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                    if self.caught().is_some() {
+                        control.cancel();
+                    }
+                }
+            });
+            let result = build(control);
+            drop(running);
+            result
+        })
+    }
+
     /// Fails if a signal was received.
     pub fn check(&self) -> Result<(), Failure> {
         self.caught().map_or(Ok(()), Err)
@@ -94,6 +119,18 @@ fn cannot_watch(error: &std::io::Error) -> Failure {
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_signal_cancels_a_build() {
+        let interrupts = Interrupts { number: Arc::default() };
+        assert!(interrupts.cancelling(|control| !control.is_cancelled()));
+        interrupts.number.store(2, Relaxed);
+        interrupts.cancelling(|control| {
+            while !control.is_cancelled() {
+                std::thread::yield_now();
+            }
+        });
+    }
 
     #[test]
     fn ignored_signals_stay_ignored() {

@@ -2,7 +2,7 @@
 
 use crate::console;
 use crate::format::{amount, duration, whole_seconds};
-use crate::interrupt::Interrupts;
+use crate::interrupt::{Interrupts, TICK};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use juggler::camera::film::Film;
@@ -12,8 +12,6 @@ use std::io::{self, IsTerminal};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-/// Interval between checks for signals.
-const TICK: Duration = Duration::from_millis(20);
 /// Ticks between updates of the bar, and between lines.
 const TICKS: (u32, u32) = (5, 50);
 /// Number of steps of the bar.

@@ -3,7 +3,8 @@
 use crate::gltf::Warnings;
 use crate::obj::{DEFAULT_MATERIAL, gray, parts};
 use indexmap::IndexMap;
-use juggler_mesh::{MAX_SOLIDS, MeshFile, MeshLimits, STL, has_several_solids, parse};
+use juggler_math::BuildControl;
+use juggler_mesh::{MAX_SOLIDS, MeshFile, MeshLimits, STL, has_several_solids, parse_with_control};
 use juggler_scene::Object;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
@@ -34,9 +35,19 @@ impl ModelFormat for StlFormat {
         !has_several_solids(bytes)
     }
 
-    fn open(&self, name: &str, bytes: Vec<u8>, _files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
+    fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
+        self.open_with_control(name, bytes, files, &BuildControl::default())
+    }
+
+    fn open_with_control(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        _files: &dyn Files,
+        control: &BuildControl,
+    ) -> Result<Arc<dyn ModelFile>, ModelError> {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
-        let file = parse(Path::new(name), &bytes, &MeshLimits::default());
+        let file = parse_with_control(Path::new(name), &bytes, &MeshLimits::default(), control);
         let file = file.map_err(|error| ModelError::new(error.to_string()))?;
         let mut warnings = Warnings::default();
         file.warnings.iter().for_each(|warning| warnings.add(&shown, warning, 1));

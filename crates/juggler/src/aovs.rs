@@ -130,7 +130,8 @@ impl Aov {
 
     /// Returns the AOV of a name. The error suggests similar names.
     pub fn by_name(name: &str) -> Result<Self, Error> {
-        check_name("AOV", name, Self::ALL.iter().map(|aov| aov.name()))?;
+        let known = Self::ALL.iter().map(|aov| aov.name());
+        check_name("AOV", name, known).map_err(|error| error.for_setting("aovs"))?;
         // The check above ensures that the name exists.
         Ok(Self::ALL.into_iter().find(|aov| aov.name() == name).unwrap_or(Self::Alpha))
     }
@@ -217,9 +218,10 @@ impl AovSet {
         if planes <= MAX_PLANES as usize {
             return Ok(());
         }
-        Err(Error::Settings(format!(
+        let message = format!(
             "the AOV `light_groups` has {groups} light groups, too many for a picture of at most {MAX_PLANES} planes"
-        )))
+        );
+        Err(Error::setting("aovs", message))
     }
 
     /// Returns the denoiser whose features the film stores.
@@ -285,7 +287,7 @@ impl AovSet {
         let aovs: Vec<Aov> = names_of_aovs.map(|name| Aov::by_name(name)).collect::<Result<_, _>>()?;
         let set = Self::new(&aovs, denoiser.transpose()?, &names);
         if set.film_aovs.planes.len() as u32 != description.planes || set.film_aovs.masks != description.masks {
-            return Err(Error::Settings("the AOVs of the partial render differ from its description".into()));
+            return Err(Error::setting("aovs", "the AOVs of the partial render differ from its description"));
         }
         Ok(set)
     }

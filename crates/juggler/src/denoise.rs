@@ -26,7 +26,8 @@ impl Denoiser {
 
     /// Returns the denoiser of a name. The error suggests similar names.
     pub fn by_name(name: &str) -> Result<Self, Error> {
-        check_name("denoiser", name, Self::ALL.iter().map(|denoiser| denoiser.name()))?;
+        let known = Self::ALL.iter().map(|denoiser| denoiser.name());
+        check_name("denoiser", name, known).map_err(|error| error.for_setting("denoise"))?;
         // The check above ensures that the name exists.
         Ok(Self::ALL.into_iter().find(|denoiser| denoiser.name() == name).unwrap_or(Self::Own))
     }
@@ -206,7 +207,7 @@ fn own(
     control: &Control,
 ) -> Result<Option<Denoised>, Error> {
     let noisy = Noisy::new(width as usize, height as usize, halves, features);
-    let noisy = noisy.map_err(|error| Error::Settings(error.to_string()))?;
+    let noisy = noisy.map_err(|error| Error::setting("denoise", error.to_string()))?;
     Ok(denoise_unless(&noisy, &<_>::default(), &|| control.is_cancelled()))
 }
 
@@ -217,7 +218,7 @@ fn open_image_denoise(
     features: &PixelFeatures,
     library: Option<&Path>,
 ) -> Result<Denoised, Error> {
-    let failed = |error: juggler_oidn::Error| Error::Settings(error.to_string());
+    let failed = |error: juggler_oidn::Error| Error::setting("denoise", error.to_string());
     let library = Oidn::open(library).map_err(failed)?;
     let (width, height) = (width as usize, height as usize);
     let pixels = library.denoise(width, height, color, features.albedo, features.normal).map_err(failed)?;

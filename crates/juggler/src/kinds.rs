@@ -9,12 +9,13 @@ pub fn names<Kind: NamedKind>() -> impl Iterator<Item = &'static str> + Clone {
     Kind::ALL.iter().map(|kind| kind.name())
 }
 
-/// Returns the kind of a name; `what` names the set in messages. The error suggests similar names.
+/// Returns the kind of a name; `what` names the set in messages, and the setting in the error. The
+/// error suggests similar names.
 pub fn by_name<Kind: NamedKind>(what: &str, name: &str) -> Result<Kind, Error> {
     Kind::from_name(name).ok_or_else(|| unknown_name(what, name, names::<Kind>()))
 }
 
-/// Checks that a name is known. The error suggests similar names.
+/// Checks that a name is known; `what` is as for [`by_name`]. The error suggests similar names.
 pub fn check_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n str> + Clone) -> Result<(), Error> {
     if known.clone().any(|one| one == name) {
         return Ok(());
@@ -23,8 +24,8 @@ pub fn check_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n st
 }
 
 fn unknown_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n str> + Clone) -> Error {
-    let help = did_you_mean_or_list(name, known).map(|help| format!("; {help}")).unwrap_or_default();
-    Error::Settings(format!("there is no {what} `{name}`{help}"))
+    let (message, help) = (format!("there is no {what} `{name}`"), did_you_mean_or_list(name, known));
+    Error::Settings { setting: what.to_owned(), message, help }
 }
 
 #[cfg(test)]

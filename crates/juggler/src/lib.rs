@@ -62,6 +62,7 @@ pub use juggler_integrator as integrator;
 pub use juggler_light as light;
 pub use juggler_material as material;
 pub use juggler_math as math;
+pub use juggler_math::{BuildControl, BuildStage};
 pub use juggler_mesh as mesh;
 pub use juggler_render as render;
 pub use juggler_scene as scene;

@@ -2,7 +2,7 @@
 
 use crate::{Aov, AovSet, Error, Settings};
 use juggler_camera::ShutterCamera;
-use juggler_math::UVec2;
+use juggler_math::{BuildControl, UVec2};
 use juggler_scene::{Compiled, Scene};
 use juggler_world::frames::{NeighborFrame, NeighborFrames};
 use std::sync::Arc;
@@ -27,13 +27,14 @@ pub fn extra_worlds(scene: &Scene, aovs: &[Aov]) -> u64 {
 
 impl NeighborScenes {
     /// Builds the neighboring frames of a scene that was compiled with these settings and is seen
-    /// through `shutter_camera`.
+    /// through `shutter_camera`, unless `control` is cancelled.
     pub fn build(
         scene: &Scene,
         settings: &Settings,
         compiled: &Compiled,
         shutter_camera: &ShutterCamera,
         aovs: &AovSet,
+        control: &BuildControl,
     ) -> Result<Self, Error> {
         let [back, on] = [Aov::MotionBack, Aov::Motion].map(|aov| aovs.selected().contains(&aov));
         if !back && !on {
@@ -45,9 +46,13 @@ impl NeighborScenes {
             if !is_needed || !scene.depends_on_time() {
                 return Ok(None);
             }
-            let (frame, fingerprint) = frame(scene, settings, &here, compiled, frames).map_err(|error| {
-                let which = if frames < 0.0 { "before" } else { "after" };
-                Error::Settings(format!("the AOVs need the scene at the frame {which}: {error}"))
+            let known = (&here, compiled);
+            let (frame, fingerprint) = frame(scene, settings, known, frames, control).map_err(|error| match error {
+                Error::Cancelled(cancelled) => Error::Cancelled(cancelled),
+                error => {
+                    let which = if frames < 0.0 { "before" } else { "after" };
+                    Error::setting("aovs", format!("the AOVs need the scene at the frame {which}: {error}"))
+                }
             })?;
             fingerprints.push(fingerprint);
             Ok(Some(frame))
@@ -65,19 +70,21 @@ impl NeighborScenes {
     }
 }
 
-/// Compiles the scene `frames` frames later, and returns its fingerprint too.
+/// Compiles the scene `frames` frames later, and returns its fingerprint too. `here` and `compiled` are
+/// the scene at its own frame.
 fn frame(
     scene: &Scene,
     settings: &Settings,
-    here: &Scene,
-    compiled: &Compiled,
+    (here, compiled): (&Scene, &Compiled),
     frames: f64,
+    control: &BuildControl,
 ) -> Result<(NeighborFrame, String), Error> {
     let there = settings.apply(&scene.later(frames)?)?;
-    let compiled = there.compile_after(here, compiled)?;
+    let compiled = there.compile_after_with_control(here, compiled, control)?;
     let [width, height] = there.description.render.size;
-    let camera =
-        compiled.shutter_camera(UVec2::new(width, height)).map_err(|error| Error::Settings(error.to_string()))?;
+    let camera = compiled
+        .shutter_camera(UVec2::new(width, height))
+        .map_err(|error| Error::setting("camera", error.to_string()))?;
     let mut fingerprint = there.fingerprint();
     if let Some((_, camera)) = compiled.cameras.first() {
         fingerprint.set_camera(camera, &compiled.camera_keys);

@@ -107,7 +107,7 @@ impl Picture {
         control: &Control,
     ) -> Result<Vec<u8>, Error> {
         if index >= count {
-            return Err(Error::Settings(format!("there is no shard {index} of {count}: the first one is 0")));
+            return Err(Error::setting("shard", format!("there is no shard {index} of {count}: the first one is 0")));
         }
         let work = Work { tiling: self.tiling(), crop: None, samples: 0..self.samples(), stop: self.stop() };
         let shard = ShardDescription { index, count, ..ShardDescription::whole(self.samples()) };
@@ -122,12 +122,15 @@ impl Picture {
         let (tiles, most) = (self.tiling().tile_count(), self.samples());
         let is_known = |unit: &WorkUnit| unit.tile < tiles && !unit.samples.is_empty() && unit.samples.end <= most;
         if let Some(WorkUnit { tile, samples: Range { start, end } }) = units.iter().find(|unit| !is_known(unit)) {
-            return Err(Error::Settings(format!(
-                "the image has {tiles} tiles of {most} samples, not the samples {start} to {end} of tile {tile}"
-            )));
+            return Err(Error::setting(
+                "units",
+                format!(
+                    "the image has {tiles} tiles of {most} samples, not the samples {start} to {end} of tile {tile}"
+                ),
+            ));
         }
         if units.is_empty() {
-            return Err(Error::Settings("there are no units of work to render".into()));
+            return Err(Error::setting("units", "there are no units of work to render"));
         }
         self.render_part(units, ShardDescription::of_units(self.samples(), Units::new(units)), origin, control)
     }
@@ -136,7 +139,7 @@ impl Picture {
     pub(crate) fn check_divisible(&self) -> Result<(), Error> {
         match self.limit() {
             Limit::Time { .. } => {
-                Err(Error::Settings("a time limit acts on one machine only; limit `samples` or `noise`".into()))
+                Err(Error::setting("time", "a time limit acts on one machine only; limit `samples` or `noise`"))
             }
             _ => Ok(()),
         }

@@ -2,19 +2,21 @@
 
 use crate::neighbor_scenes::NeighborScenes;
 use crate::scene_fingerprint::SceneFingerprint;
-use crate::{AovSet, Error, Limit, RenderStats, Settings};
+use crate::{AovSet, Error, Limit, RenderStats};
 use juggler_camera::film::{FilmDigest, FilmSummary, FilterSampler, Rect};
 use juggler_camera::{AnyCamera, Perspective, ShutterCamera};
 use juggler_film::counts::SampleCountStats;
 use juggler_imaging::{CropFrame, Header, Options, RowWriter, Tone};
 use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
-use juggler_render::{BAND_PIXELS, Cancelled, Control, Job, Schedule, Scheduler};
+use juggler_render::{Cancelled, Control, Job, Schedule, Scheduler};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_world::{SimdLevel, World};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
+
+mod build;
 
 /// Name of the program in files.
 pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
@@ -47,49 +49,6 @@ pub struct View {
 }
 
 impl Picture {
-    /// Compiles a scene with settings and builds its world.
-    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let adjusted = settings.apply(scene)?;
-        let compiled = adjusted.compile()?;
-        Self::from_compiled(scene, &adjusted, settings, compiled)
-    }
-
-    /// Compiles an edited scene. `before` is the scene of this picture, whose world is reused where
-    /// it still holds ([`Scene::compile_after`]).
-    pub fn rebuild(&self, before: &Scene, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let (adjusted, before) = (settings.apply(scene)?, settings.apply(before)?);
-        let compiled = adjusted.compile_after(&before, &self.compiled)?;
-        Self::from_compiled(scene, &adjusted, settings, compiled)
-    }
-
-    /// Completes a picture of `plain`, which the settings turned into `scene`.
-    fn from_compiled(plain: &Scene, scene: &Scene, settings: &Settings, mut compiled: Compiled) -> Result<Self, Error> {
-        compiled.integrator.reason = reason(plain, settings);
-        let [width, height] = scene.description.render.size;
-        let region = settings.region([width, height])?;
-        let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
-        let shutter_camera =
-            compiled.shutter_camera(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let (tone, limit) = ((*scene.description.tone).clone(), settings.limit);
-        let scene_fingerprint =
-            SceneFingerprint::from_scene(scene.clone(), camera.1.clone(), compiled.camera_keys.clone());
-        let aovs = Arc::new(AovSet::new(&settings.aovs, settings.denoiser, &compiled.names));
-        aovs.check()?;
-        let neighbors = NeighborScenes::build(plain, settings, &compiled, &shutter_camera, &aovs)?;
-        Ok(Self {
-            shutter_camera,
-            region,
-            tone,
-            limit,
-            fingerprint: OnceLock::new(),
-            scene_fingerprint,
-            compiled,
-            band_pixels: BAND_PIXELS,
-            aovs,
-            neighbors,
-        })
-    }
-
     /// Returns the current view.
     pub fn view(&self) -> View {
         let camera = self.compiled.cameras.first().map(|(_, camera)| camera.clone());
@@ -124,7 +83,7 @@ impl Picture {
             *camera = view.camera.clone();
         }
         let shutter_camera = picture.compiled.shutter_camera(UVec2::new(width, height));
-        picture.shutter_camera = shutter_camera.map_err(|error| Error::Settings(error.to_string()))?;
+        picture.shutter_camera = shutter_camera.map_err(|error| Error::setting("camera", error.to_string()))?;
         picture.neighbors = self.neighbors.with_camera(&picture.shutter_camera);
         let camera_keys = picture.compiled.camera_keys.clone();
         picture.scene_fingerprint = self.scene_fingerprint.with_view(scene, view.camera, camera_keys);
@@ -346,14 +305,10 @@ impl Picture {
     }
 }
 
-/// Returns the reason for the choice of the integrator under these settings.
-fn reason(scene: &Scene, settings: &Settings) -> IntegratorReason {
-    if settings.integrator.is_some() { IntegratorReason::Settings } else { scene.integrator_choice().reason }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Settings;
 
     #[test]
     fn changed_camera_equals_a_scene_with_that_camera() {

@@ -180,8 +180,8 @@ fn denoise_pixels(
 fn merged_header(merge: &Merge) -> Result<(Header, SampleCountStats), Error> {
     let description = merge.description();
     let RenderDescription { region, tone, metadata, viewpoint, .. } = description;
-    let tone = serde_json::from_value(tone.clone())
-        .map_err(|error| Error::Settings(format!("cannot read the tone settings of the partial renders: {error}")))?;
+    let cannot_read = |error| format!("cannot read the tone settings of the partial renders: {error}");
+    let tone = serde_json::from_value(tone.clone()).map_err(|error| Error::setting("tone", cannot_read(error)))?;
     let (mut metadata, mut samples) = (metadata.clone(), SampleCountStats::uniform(description.samples));
     if description.stop != Stop::Samples {
         samples = SampleCountStats::from_counts(&description.tiling(), &merge.counts()?);

@@ -47,16 +47,16 @@ impl Limit {
     /// Fails for a relative error that is not a finite number above 0, and for a duration that is
     /// negative or not finite.
     fn check(&self) -> Result<(), Error> {
-        let message = match *self {
+        match *self {
             Self::Noise(level) if !(level > 0.0 && level.is_finite()) => {
-                format!("the noise limit must be a finite number above 0, not {level}")
+                Err(Error::setting("noise", format!("the noise limit must be a finite number above 0, not {level}")))
             }
             Self::Time { seconds } if !(seconds >= 0.0 && seconds.is_finite()) => {
-                format!("the time limit must be a finite number of seconds, not {seconds}")
+                let message = format!("the time limit must be a finite number of seconds, not {seconds}");
+                Err(Error::setting("time", message))
             }
-            _ => return Ok(()),
-        };
-        Err(Error::Settings(message))
+            _ => Ok(()),
+        }
     }
 
     /// Returns the default maximum number of samples per pixel.
@@ -195,7 +195,8 @@ impl Settings {
             return Ok(crop);
         }
         let Rect { x, y, width: w, height: h } = crop;
-        Err(Error::Settings(format!("the crop {x},{y},{w},{h} reaches beyond the picture of {width}x{height} pixels")))
+        let message = format!("the crop {x},{y},{w},{h} reaches beyond the picture of {width}x{height} pixels");
+        Err(Error::setting("crop", message))
     }
 }
 
@@ -221,11 +222,12 @@ fn max_depth(integrator: &mut AnyIntegrator) -> Option<(&mut u32, RangeInclusive
 fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
     let name = integrator.name();
     let Some((place, range)) = max_depth(integrator) else {
-        return Err(Error::Settings(format!("the integrator `{name}` has no maximum depth")));
+        return Err(Error::setting("max_depth", format!("the integrator `{name}` has no maximum depth")));
     };
     if !range.contains(&depth) {
         let (least, most) = (range.start(), range.end());
-        return Err(Error::Settings(format!("a maximum depth of {depth} is out of range: {least} to {most}")));
+        let message = format!("a maximum depth of {depth} is out of range: {least} to {most}");
+        return Err(Error::setting("max_depth", message));
     }
     *place = depth;
     Ok(())
@@ -300,7 +302,12 @@ mod tests {
 
     #[test]
     fn unknown_camera_names_are_errors() {
-        let settings = Settings { camera: Some("top".into()), ..Settings::default() };
-        assert!(settings.apply(&scene()).is_err());
+        let scene = scene().camera("left", juggler_camera::Perspective::default());
+        let settings = Settings { camera: Some("lift".into()), ..Settings::default() };
+        let error = settings.apply(&scene).unwrap_err();
+        assert_eq!(error.to_string(), "there is no camera `lift`; did you mean `left`?");
+        let Error::Settings { setting, message, help } = error else { panic!("{error}") };
+        assert_eq!((setting.as_str(), message.as_str()), ("camera", "there is no camera `lift`"));
+        assert_eq!(help.as_deref(), Some("did you mean `left`?"));
     }
 }

@@ -9,6 +9,7 @@
 pub mod closed_set;
 
 pub mod aabb;
+mod build_control;
 pub mod color;
 pub mod distribution;
 pub mod frame;
@@ -30,6 +31,7 @@ pub mod warp;
 pub mod testing;
 
 pub use aabb::Aabb;
+pub use build_control::{BuildControl, BuildStage, Cancelled};
 pub use closed_set::NamedKind;
 pub use color::Rgb;
 pub use frame::Frame;

@@ -1,6 +1,7 @@
 //! Errors of loading a mesh file: the file, the position in it, and the expected content.
 
 use juggler_imaging::regular::ReadError;
+use juggler_math::Cancelled;
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
@@ -55,6 +56,9 @@ pub enum MeshErrorKind {
         /// List of ignored content in parentheses; empty if nothing was ignored.
         note: String,
     },
+    /// The reading was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// A position in a file.

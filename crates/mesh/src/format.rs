@@ -3,6 +3,7 @@
 use crate::error::MeshErrorKind;
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
+use crate::pieces::PieceReader;
 use crate::sampling::{Counts, FileSampler};
 use std::io;
 
@@ -30,8 +31,8 @@ pub(crate) trait MeshFormat: Sync {
         self.is_content(head)
     }
 
-    /// Reads a whole file, in pieces of about `piece` bytes.
-    fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind>;
+    /// Reads a whole file, in pieces.
+    fn read(&self, bytes: &[u8], limits: &MeshLimits, pieces: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind>;
 
     /// Estimates the counts of a file without reading all of it.
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts>;

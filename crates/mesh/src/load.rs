@@ -4,10 +4,11 @@ use crate::error::{MeshError, MeshErrorKind};
 use crate::formats;
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, PieceReader};
 use crate::text::without_byte_order_mark;
 use crate::unsupported::UnsupportedFormat;
 use juggler_imaging::regular;
+use juggler_math::BuildControl;
 use std::path::Path;
 
 /// Loads a mesh from a file. The extension of its name selects the format, in any case. If the
@@ -19,6 +20,16 @@ pub fn load(path: &Path, limits: &MeshLimits) -> Result<MeshFile, MeshError> {
 
 /// Parses the bytes of a mesh file as [`load`] does. Only the extension of `path` is used.
 pub fn parse(path: &Path, bytes: &[u8], limits: &MeshLimits) -> Result<MeshFile, MeshError> {
+    parse_with_control(path, bytes, limits, &BuildControl::default())
+}
+
+/// Parses as [`parse`] does, and ends early if `control` is cancelled, with an error.
+pub fn parse_with_control(
+    path: &Path,
+    bytes: &[u8],
+    limits: &MeshLimits,
+    control: &BuildControl,
+) -> Result<MeshFile, MeshError> {
     let in_file = |kind| MeshError { path: path.to_owned(), kind };
     limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
     let bytes = without_byte_order_mark(bytes);
@@ -30,7 +41,7 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &MeshLimits) -> Result<MeshFile,
     let unknown = || MeshErrorKind::UnknownFormat { extensions: formats::extensions() };
     let refused = || UnsupportedFormat::of_name(path).map_or_else(unknown, unsupported);
     let format = formats::of_content(bytes).or(named).ok_or_else(|| in_file(refused()))?;
-    let mut found = format.read(bytes, limits, PIECE).map_err(in_file)?;
+    let mut found = format.read(bytes, limits, PieceReader { size: PIECE, control }).map_err(in_file)?;
     let name = format.info().name;
     if named.is_none_or(|named| named.info().name != name) {
         found.warnings.insert(0, format!("the file's extension does not match its content, which is {name}"));

@@ -3,6 +3,7 @@
 //! depends on the number of threads.
 
 use crate::error::MeshErrorKind;
+use juggler_math::BuildControl;
 use memchr::{memchr2, memchr2_iter};
 use rayon::prelude::*;
 
@@ -13,17 +14,34 @@ pub(crate) const PIECE: usize = 1 << 22;
 /// in memory beside the mesh.
 const BATCH: usize = 4;
 
-/// Reads the pieces in parallel and passes the results to `take` in order, up to the first error.
-pub(crate) fn read_pieces<P: Sync, R: Send>(
-    pieces: &[P],
-    read: impl Fn(&P) -> Result<R, MeshErrorKind> + Sync,
-    mut take: impl FnMut(R) -> Result<(), MeshErrorKind>,
-) -> Result<(), MeshErrorKind> {
-    for batch in pieces.chunks(BATCH * rayon::current_num_threads()) {
-        let found: Vec<Result<R, MeshErrorKind>> = batch.par_iter().map(&read).collect();
-        found.into_iter().try_for_each(|piece| take(piece?))?;
+/// Reader of a file in pieces.
+#[derive(Clone, Copy)]
+pub(crate) struct PieceReader<'c> {
+    /// Approximate size of a piece, in bytes.
+    pub size: usize,
+    /// Ends the reading between pieces.
+    pub control: &'c BuildControl,
+}
+
+impl PieceReader<'_> {
+    /// Reads the pieces in parallel and passes the results to `take` in order, up to the first
+    /// error.
+    pub fn read<P: Sync, R: Send>(
+        &self,
+        pieces: &[P],
+        read: impl Fn(&P) -> Result<R, MeshErrorKind> + Sync,
+        mut take: impl FnMut(R) -> Result<(), MeshErrorKind>,
+    ) -> Result<(), MeshErrorKind> {
+        let read = |piece: &P| {
+            self.control.check()?;
+            read(piece)
+        };
+        for batch in pieces.chunks(BATCH * rayon::current_num_threads()) {
+            let found: Vec<Result<R, MeshErrorKind>> = batch.par_iter().map(&read).collect();
+            found.into_iter().try_for_each(|piece| take(piece?))?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Finds the start of the first line that begins at byte `from` or later and for which
@@ -57,4 +75,11 @@ pub(crate) fn line_break(bytes: &[u8]) -> usize {
 pub(crate) fn line_breaks(text: &[u8]) -> u64 {
     let ends = memchr2_iter(b'\n', b'\r', text);
     ends.filter(|&at| text.get(at) == Some(&b'\n') || text.get(at + 1) != Some(&b'\n')).count() as u64
+}
+
+/// Reader in pieces of this size, which nothing cancels.
+#[cfg(test)]
+pub(crate) fn pieces(size: usize) -> PieceReader<'static> {
+    static CONTROL: std::sync::LazyLock<BuildControl> = std::sync::LazyLock::new(BuildControl::default);
+    PieceReader { size, control: &CONTROL }
 }

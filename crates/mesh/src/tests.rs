@@ -2,6 +2,7 @@
 
 use crate::format::MeshFormat;
 use crate::obj::Obj;
+use crate::pieces::pieces;
 use crate::ply::Ply;
 use crate::stl::Stl;
 use crate::*;
@@ -73,7 +74,7 @@ fn an_error_names_file_and_line() {
 /// Asserts that a file read in pieces of every size, on one thread and on three, gives the same
 /// mesh, warnings or error as the file read in one piece.
 fn assert_pieces_do_not_show(format: &dyn MeshFormat, bytes: &[u8]) {
-    let outcome = |piece| format.read(bytes, &MeshLimits::default(), piece).map_err(|error| error.to_string());
+    let outcome = |piece| format.read(bytes, &MeshLimits::default(), pieces(piece)).map_err(|error| error.to_string());
     let whole = outcome(usize::MAX);
     let [alone, three] = [1, 3].map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap());
     for piece in (1..bytes.len().min(300)).chain([bytes.len()]) {

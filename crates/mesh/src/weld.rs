@@ -12,6 +12,7 @@ use crate::limits::{MeshLimits, too_many};
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
+use juggler_math::{BuildControl, Cancelled};
 use rayon::prelude::*;
 use std::hash::BuildHasher;
 
@@ -93,9 +94,9 @@ impl Welded {
 
     /// Welds the pieces. Returns the distinct keys in the order of their first corner, and the
     /// faces.
-    pub fn finish(mut self, limits: &MeshLimits) -> Result<(Vec<Key>, Faces), MeshErrorKind> {
+    pub fn finish(mut self, limits: &MeshLimits, control: &BuildControl) -> Result<(Vec<Key>, Faces), MeshErrorKind> {
         if self.pieces > 1 {
-            let numbers = deduplicate(&mut self.keys);
+            let numbers = deduplicate(&mut self.keys, control)?;
             self.faces.renumber(|corner| numbers.get(corner as usize).copied().unwrap_or_default());
         }
         limits.check_vertices(self.keys.len() as u64)?;
@@ -104,9 +105,9 @@ impl Welded {
 }
 
 /// Removes repeated keys and returns the vertex index of each former key.
-fn deduplicate(keys: &mut Vec<Key>) -> Vec<u32> {
-    let again: Vec<Vec<(u32, u32)>> =
-        (0..PARTITIONS).into_par_iter().map(|partition| find_repeated(keys, partition)).collect();
+fn deduplicate(keys: &mut Vec<Key>, control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
+    let find = |partition| control.check().map(|()| find_repeated(keys, partition));
+    let again: Vec<Vec<(u32, u32)>> = (0..PARTITIONS).into_par_iter().map(find).collect::<Result<_, Cancelled>>()?;
     // Initialize each entry with the position of the first equal key, then replace it by its vertex
     // index.
     let mut numbers: Vec<u32> = (0..keys.len() as u32).collect();
@@ -125,7 +126,7 @@ fn deduplicate(keys: &mut Vec<Key>) -> Vec<u32> {
         count += 1;
     }
     keys.truncate(count);
-    numbers
+    Ok(numbers)
 }
 
 /// Finds the repeated keys of a shard: pairs of the key's position and the position of the first
@@ -183,7 +184,7 @@ mod tests {
                 }
                 welded.append(local, &limits).unwrap();
             }
-            let (keys, faces) = welded.finish(&limits).unwrap();
+            let (keys, faces) = welded.finish(&limits, &BuildControl::default()).unwrap();
             (keys, faces.triangulate(&[], &mut Vec::new()))
         };
         let whole = weld(2000);

@@ -23,6 +23,7 @@ pub const NAMES: &[&str] = if cfg!(target_os = "windows") {
 
 /// Error of denoising.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The library does not exist or cannot be opened.
     #[error("Open Image Denoise was not found: looked for {}", tried.join("; "))]

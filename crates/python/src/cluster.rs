@@ -179,7 +179,7 @@ fn hexadecimal(digest: &[u8; 32]) -> String {
 pub fn encode_movie(py: Python<'_>, path: String, frames: Vec<String>, frames_per_second: f64) -> PyResult<()> {
     let Some(format) = AnimationFormat::from_path(Path::new(&path)) else {
         let known = AnimationFormat::extensions();
-        return Err(settings_error(format!("`{path}` is no movie: the ending must be one of {known}")));
+        return Err(settings_error("path", format!("`{path}` is no movie: the ending must be one of {known}")));
     };
     let watch = Watch::default();
     task::run(py, thread_count(None)?, &watch, move |monitor| {

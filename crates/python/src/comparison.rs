@@ -41,7 +41,8 @@ pub fn compare<'py>(
     with_flip: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     if !(significance > 0.0 && significance < 1.0) {
-        return Err(settings_error(format!("`significance` must lie between 0 and 1, not {significance}")));
+        let message = format!("`significance` must lie between 0 and 1, not {significance}");
+        return Err(settings_error("significance", message));
     }
     let sources = [source(image), source(reference)];
     let compared = task::call(py, move || {

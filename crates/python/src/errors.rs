@@ -6,7 +6,6 @@ use juggler::film::{AddError, PartialRenderError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::scene::report::plain_io;
 use juggler::scene::{Problem, Problems, SceneError, Severity};
-use pyo3::IntoPyObjectExt;
 use pyo3::call::PyCallArgs;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
@@ -22,9 +21,14 @@ fn with_message(name: &str, message: &str) -> PyErr {
     Python::attach(|py| exception(py, name, (message,)))
 }
 
-/// Error of a setting or an argument.
-pub fn settings_error(message: impl AsRef<str>) -> PyErr {
-    with_message("SettingsError", message.as_ref())
+/// Error of a setting or an argument of this name.
+pub fn settings_error(setting: &str, message: impl AsRef<str>) -> PyErr {
+    invalid(message.as_ref(), Some(setting), None)
+}
+
+/// Error of settings: its text, the setting at fault and a suggested fix.
+fn invalid(text: &str, setting: Option<&str>, help: Option<&str>) -> PyErr {
+    Python::attach(|py| exception(py, "SettingsError", (text, setting, help)))
 }
 
 /// Error of a scene, of which the message alone is known.
@@ -79,7 +83,8 @@ pub fn convert(error: Error) -> PyErr {
         Error::Merge(error) if error.has_file_errors() => file_error(&error.to_string(), None),
         Error::Merge(error) => with_message("MergeError", &error.to_string()),
         Error::Resume(error) => with_message("MergeError", &error.to_string()),
-        error => settings_error(error.to_string()),
+        Error::Settings { ref setting, ref help, .. } => invalid(&error.to_string(), Some(setting), help.as_deref()),
+        error => invalid(&error.to_string(), None, None),
     }
 }
 
@@ -91,6 +96,7 @@ pub fn of_scene(error: SceneError) -> PyErr {
         SceneError::Read { source, .. } | SceneError::Write { source, .. } => file_error(&message, Some(&source)),
         SceneError::Image(error) => of_image(&error),
         SceneError::NotText { .. } | SceneError::Foreign { .. } => file_error(&message, None),
+        SceneError::Cancelled(_) => cancelled(),
         SceneError::Unknown(unknown) if unknown.is_file => {
             file_error(&message, Some(&io::Error::from_raw_os_error(NOT_FOUND)))
         }
@@ -132,11 +138,9 @@ pub fn of_image(error: &ImageError) -> PyErr {
     match error {
         ImageError::Read { file, source } => of_file("read", file, source),
         ImageError::Write { file, source } => of_file("write", file, source),
-        ImageError::UnknownFormat { .. }
-        | ImageError::ReadOnly { .. }
-        | ImageError::Dimensions { .. }
-        | ImageError::Primaries { .. }
-        | ImageError::SizesDiffer { .. } => settings_error(message),
+        ImageError::UnknownFormat { .. } | ImageError::ReadOnly { .. } => settings_error("path", message),
+        ImageError::Dimensions { .. } | ImageError::SizesDiffer { .. } => settings_error("size", message),
+        ImageError::Primaries { .. } => settings_error("primaries", message),
         _ => file_error(&message, None),
     }
 }
@@ -154,7 +158,6 @@ pub fn of_partial_render(error: &PartialRenderError) -> PyErr {
 /// Text of the problems: that of `juggler check` for scenes that were read from files, otherwise a
 /// line for each path.
 fn text(problems: &Problems) -> String {
-    let is_of_file = |problem: &Problem| place(problems, problem).is_some();
     if problems.list().iter().any(is_of_file) {
         return problems.render(false);
     }
@@ -170,22 +173,18 @@ pub fn line(problem: &Problem) -> String {
     format!("{warning}{path}{message}{help}")
 }
 
-/// File, line and column of a problem of a scene file; `None` if the text is no file.
-fn place<'p>(problems: &'p Problems, problem: &Problem) -> Option<(&'p str, usize, usize)> {
-    let file = problems.sources().get(problem.place?.file)?.name.as_str();
-    let (line, column) = problem.line_and_column(problems.sources())?;
-    (!file.ends_with(UNNAMED)).then_some((file, line, column))
+/// Whether a problem lies in a file: other texts end with this name.
+fn is_of_file(problem: &Problem) -> bool {
+    problem.file.as_ref().is_some_and(|file| !file.ends_with(UNNAMED))
 }
 
 /// The problems as a list of `juggler.Problem`.
 fn list<'py>(py: Python<'py>, problems: &Problems) -> PyResult<Bound<'py, PyAny>> {
-    let class = py.import("juggler._errors")?.getattr("Problem")?;
-    let problem = |problem: &Problem| {
-        let severity = if problem.severity == Severity::Error { "error" } else { "warning" };
-        let (file, line, column) = place(problems, problem)
-            .map_or((None, None, None), |(file, line, column)| (Some(file.to_owned()), Some(line), Some(column)));
-        class.call1((&problem.path, &problem.message, problem.help.as_ref(), severity, file, line, column))
+    let own = |problem: &Problem| match is_of_file(problem) {
+        true => problem.clone(),
+        false => Problem { file: None, line: None, column: None, ..problem.clone() },
     };
-    let problems: Vec<Bound<'py, PyAny>> = problems.list().iter().map(problem).collect::<PyResult<_>>()?;
-    problems.into_bound_py_any(py)
+    let problems: Vec<Problem> = problems.list().iter().map(own).collect();
+    let json = serde_json::to_string(&problems).unwrap_or_default();
+    py.import("juggler._errors")?.getattr("problems_from_json")?.call1((json,))
 }

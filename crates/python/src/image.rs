@@ -1,7 +1,7 @@
 //! Rendered images: pixels and AOVs as bytes, which arrays wrap.
 
 use crate::denoise::library;
-use crate::errors::settings_error;
+use crate::errors::{convert, of_image, settings_error};
 use crate::settings::denoiser_by_name;
 use crate::task;
 use juggler::film::counts::SampleCountStats;
@@ -157,7 +157,7 @@ impl Image {
     /// Bytes of an image file in the format of this extension, at most `most` pixels wide.
     fn encode<'py>(&self, py: Python<'py>, extension: &str, most: u32) -> PyResult<Bound<'py, PyBytes>> {
         let name = format!("image.{extension}");
-        let format = ImageFormat::from_path(Path::new(&name)).map_err(|error| crate::errors::of_image(&error))?;
+        let format = ImageFormat::from_path(Path::new(&name)).map_err(|error| of_image(&error))?;
         let image = Arc::clone(&self.image);
         let bytes = task::call(py, move || Ok(image.encode(format, most)?))?;
         Ok(PyBytes::new(py, &bytes))
@@ -187,7 +187,8 @@ impl Image {
     ) -> PyResult<Bound<'py, PyBytes>> {
         let mut tone = self.image.header.tone.clone();
         if let Some(name) = curve {
-            let kind: juggler::imaging::ToneCurveKind = by_name("tone curve", name).map_err(crate::errors::convert)?;
+            let kind: juggler::imaging::ToneCurveKind =
+                by_name("tone curve", name).map_err(|error| convert(error.for_setting("tone")))?;
             tone.curve = kind.into();
         }
         tone.exposure_stops = exposure.unwrap_or(tone.exposure_stops);
@@ -237,7 +238,7 @@ impl Image {
             write,
         };
         let description = serde_json::from_str(&item::<String>(state, "aovs")?).map_err(|_| broken())?;
-        let aovs = AovSet::from_description(&description).map_err(crate::errors::convert)?;
+        let aovs = AovSet::from_description(&description).map_err(convert)?;
         let pixels = floats(&item::<Vec<u8>>(state, "pixels")?);
         let pixels = pixels.as_chunks::<3>().0.iter().map(|pixel| Rgb::from(*pixel)).collect();
         let channels = item::<Vec<Vec<u8>>>(state, "channels")?.iter().map(|bytes| floats(bytes)).collect();
@@ -268,7 +269,7 @@ fn thumbnail(image: &RenderedImage, name: &str) -> Result<RenderedImage, Error> 
         Vec::new(),
         image.stats().clone(),
     );
-    made.ok_or_else(|| Error::Settings(format!("the image has no layer `{name}`")))
+    made.ok_or_else(|| Error::setting("layer", format!("the image has no layer `{name}`")))
 }
 
 /// Header of the image with this state.
@@ -288,7 +289,7 @@ fn item<T: for<'a, 'py> FromPyObject<'a, 'py>>(state: &Bound<'_, PyDict>, name: 
 }
 
 fn broken() -> PyErr {
-    settings_error("the pickled image is damaged, or another version of juggler made it")
+    settings_error("state", "the pickled image is damaged, or another version of juggler made it")
 }
 
 /// Whether a layer numbers objects, materials or instances.

@@ -72,7 +72,7 @@ impl PartialRender {
 #[pyfunction]
 pub fn merge(py: Python<'_>, partial_renders: Vec<Py<PartialRender>>) -> PyResult<Image> {
     if partial_renders.is_empty() {
-        return Err(settings_error("there are no partial renders to merge"));
+        return Err(settings_error("partial_renders", "there are no partial renders to merge"));
     }
     let frame = partial_renders.first().map_or(0.0, |first| first.get().partial_render.description().frame);
     let named = partial_renders.into_iter().enumerate().map(|(number, one)| {

@@ -4,7 +4,7 @@ use crate::image::Image;
 use crate::state::{self, Built};
 use crate::task::{self, Fault, Monitor, Task, Watch};
 use juggler::camera::film::Film;
-use juggler::{Error, RenderedImage};
+use juggler::{BuildControl, Error, RenderedImage};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,12 +31,12 @@ impl Progressive {
         py: Python<'_>,
         threads: usize,
         every: f64,
-        build: impl FnOnce() -> Result<Arc<Built>, Error> + Send + 'static,
+        build: impl FnOnce(&BuildControl) -> Result<Arc<Built>, Error> + Send + 'static,
     ) -> PyResult<Self> {
         let begun = Begun::default();
         let shared = Arc::clone(&begun);
         let task = Task::start(py, threads, move |monitor: &Monitor| {
-            let built = build()?;
+            let built = build(monitor.control.build())?;
             let (film, start) = (Arc::new(built.picture.film()), Instant::now());
             let begin = (Arc::clone(&built), Arc::clone(&film), start);
             *shared.lock().unwrap_or_else(PoisonError::into_inner) = Some(begin);

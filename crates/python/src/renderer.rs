@@ -16,7 +16,7 @@ use juggler::memory::Effort;
 use juggler::probe::{Detail, Prober};
 use juggler::scene::camera_json;
 use juggler::scene::path::Path;
-use juggler::{RenderOrigin, scene as scenes};
+use juggler::{BuildControl, RenderOrigin, scene as scenes};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::Value;
@@ -90,7 +90,7 @@ impl Renderer {
     /// Sets the value at a path, given as JSON with the assets that it names; `null` removes it.
     #[pyo3(signature = (path, json, assets=Vec::new()))]
     fn set_value(&self, path: &str, json: &str, assets: Vec<(String, Py<Asset>)>) -> PyResult<()> {
-        let value: Value = serde_json::from_str(json).map_err(|error| settings_error(error.to_string()))?;
+        let value: Value = serde_json::from_str(json).map_err(|error| settings_error("value", error.to_string()))?;
         let (path, assets) = (scene::path(path)?, scene::shared(assets));
         // Edits of several threads follow each other. The lock is released before an exception is
         // made, which may let other threads run.
@@ -127,7 +127,7 @@ impl Renderer {
     /// Selects another frame.
     fn set_frame(&self, frame: f64) -> PyResult<()> {
         if !frame.is_finite() {
-            return Err(settings_error(format!("a frame must be a finite number, not {frame}")));
+            return Err(settings_error("frame", format!("a frame must be a finite number, not {frame}")));
         }
         self.lock().frame = frame;
         Ok(())
@@ -169,7 +169,7 @@ impl Renderer {
     /// Renders better and better images.
     fn progressive(&self, py: Python<'_>, every: f64) -> PyResult<Progressive> {
         let (Start { scene, frame, before, effort }, settings) = (self.start()?, self.settings.clone());
-        let build = move || state::build(&scene, frame, &settings.settings, before);
+        let build = move |control: &BuildControl| state::build(&scene, frame, &settings.settings, before, control);
         Progressive::start(py, effort.threads, every, build)
     }
 
@@ -304,7 +304,7 @@ impl Renderer {
     ) -> PyResult<(Arc<Built>, T)> {
         let settings = self.settings.clone();
         task::run(py, effort.threads, watch, move |monitor| {
-            let built = state::build(&scene, frame, &settings.settings, before)?;
+            let built = state::build(&scene, frame, &settings.settings, before, monitor.control.build())?;
             let result = work(&built, &effort, monitor)?;
             Ok((built, result))
         })

@@ -3,6 +3,7 @@
 use crate::arrays::Asset;
 use crate::errors::{key_error, of_problems, of_scene, scene_error, settings_error};
 use crate::task::{self, Fault};
+use juggler::BuildControl;
 use juggler::scene::model::{ModelSummary, SceneModel};
 use juggler::scene::path::{Path as ScenePath, Step};
 use juggler::scene::{self, Loader, UnknownPath};
@@ -36,7 +37,7 @@ impl Scene {
     #[staticmethod]
     fn named(py: Python<'_>, name: String, lenient: bool) -> PyResult<Self> {
         let file = name.clone();
-        let scene = task::call(py, move || loader(lenient).named(&file).map_err(Fault::from))?;
+        let scene = task::read(py, move |control| Ok(loader(lenient).named_with_control(&file, control)?))?;
         Ok(Self { scene, name })
     }
 
@@ -53,8 +54,9 @@ impl Scene {
     ) -> PyResult<Self> {
         let name = name.unwrap_or_else(|| UNNAMED.to_owned());
         let (file, assets) = (name.clone(), shared(assets));
-        let read = move || loader(lenient).from_json_with(text, &file, assets).map_err(Fault::from);
-        Ok(Self { scene: task::call(py, read)?, name })
+        let read =
+            move |control: &BuildControl| Ok(loader(lenient).from_json_with_control(text, &file, assets, control)?);
+        Ok(Self { scene: task::read(py, read)?, name })
     }
 
     /// The assets with their names.
@@ -201,5 +203,5 @@ fn appends(unknown: &UnknownPath) -> bool {
 
 /// Error of a setting for models, of a scene around none.
 pub fn no_model(setting: &str, name: &str) -> PyErr {
-    settings_error(format!("`{setting}` is for model files; `{name}` is another scene"))
+    settings_error(setting, format!("`{setting}` is for model files; `{name}` is another scene"))
 }

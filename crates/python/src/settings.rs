@@ -74,7 +74,7 @@ impl RenderSettings {
         let mut read = Self::default();
         for (name, value) in keywords.iter() {
             let name: String = name.extract()?;
-            check_name("setting", &name, NAMES.iter().copied()).map_err(convert)?;
+            check_name("setting", &name, NAMES.iter().copied()).map_err(|e| convert(e.for_setting(&name)))?;
             if !value.is_none() {
                 read.set(&name, &value)?;
             }
@@ -128,7 +128,10 @@ impl RenderSettings {
     fn set_tone(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let settings = &mut self.settings;
         match name {
-            "tone" => settings.curve = Some(by_name("tone curve", &text(name, value)?).map_err(convert)?),
+            "tone" => {
+                let curve = by_name("tone curve", &text(name, value)?);
+                settings.curve = Some(curve.map_err(|error| convert(error.for_setting(name)))?);
+            }
             "exposure" => settings.exposure_stops = Some(read(name, value, "a number of stops, such as -0.5")?),
             "dither" => settings.dither = Some(read(name, value, "True or False")?),
             "primaries" => {
@@ -145,10 +148,10 @@ impl RenderSettings {
     fn set_limit(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let number: f64 = read(name, value, "a positive number")?;
         if !(number > 0.0 && number.is_finite()) {
-            return Err(settings_error(format!("`{name}` must be a positive number, not {number}")));
+            return Err(settings_error(name, format!("`{name}` must be a positive number, not {number}")));
         }
         if self.settings.limit != Limit::Samples {
-            return Err(settings_error("`noise` and `time` exclude each other"));
+            return Err(settings_error(name, "`noise` and `time` exclude each other"));
         }
         self.settings.limit =
             if name == "noise" { Limit::Noise(number as f32) } else { Limit::Time { seconds: number } };
@@ -158,7 +161,7 @@ impl RenderSettings {
     fn set_time(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let number: f64 = read(name, value, "a number")?;
         if !number.is_finite() {
-            return Err(settings_error(format!("`{name}` must be a finite number")));
+            return Err(settings_error(name, format!("`{name}` must be a finite number")));
         }
         match name {
             "at" => self.at = Some(number),
@@ -186,7 +189,7 @@ fn read<'py, T: for<'a> FromPyObject<'a, 'py>>(name: &str, value: &Bound<'py, Py
 
 fn wrong(name: &str, value: &Bound<'_, PyAny>, expected: &str) -> PyErr {
     let shown = value.repr().map_or_else(|_| "that".to_owned(), |repr| repr.to_string());
-    settings_error(format!("`{name}` must be {expected}, not {shown}"))
+    settings_error(name, format!("`{name}` must be {expected}, not {shown}"))
 }
 
 fn text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {

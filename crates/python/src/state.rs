@@ -7,7 +7,7 @@ use juggler::camera::film::Film;
 use juggler::memory::Effort;
 use juggler::render::{Control, estimate_noise};
 use juggler::scene::Scene;
-use juggler::{Error, Limit, Picture, RenderedImage, Settings};
+use juggler::{BuildControl, Error, Limit, Picture, RenderedImage, Settings};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -26,19 +26,27 @@ pub fn frame(scene: &Scene, settings: &RenderSettings) -> f64 {
     settings.at.map_or(settings.frame, |seconds| seconds * scene.description.animation.frames_per_second)
 }
 
-/// Builds a scene at a frame. The world of `before` is reused where it still holds.
-pub fn build(scene: &Scene, frame: f64, settings: &Settings, before: Option<Arc<Built>>) -> Result<Arc<Built>, Error> {
+/// Builds a scene at a frame, unless `control` is cancelled. The world of `before` is reused where it
+/// still holds.
+pub fn build(
+    scene: &Scene,
+    frame: f64,
+    settings: &Settings,
+    before: Option<Arc<Built>>,
+    control: &BuildControl,
+) -> Result<Arc<Built>, Error> {
     let moved = if frame == 0.0 { scene.clone() } else { scene.at_frame(frame)? };
     // Apply the shutter first, since it decides what moves.
     let scene = settings.apply(&moved)?;
     if settings.denoiser.is_some() && scene.description.render.samples < 2 {
-        return Err(Error::Settings("`denoise` needs at least 2 samples per pixel to estimate the noise".into()));
+        let message = "`denoise` needs at least 2 samples per pixel to estimate the noise";
+        return Err(Error::setting("denoise", message));
     }
     let before = before.filter(|before| before.frame == frame || scene.has_world_of(&before.scene));
     let picture = match &before {
         Some(before) if before.frame == frame && before.scene == scene => return Ok(Arc::clone(before)),
-        Some(before) => before.picture.rebuild(&before.scene, &scene, settings)?,
-        None => Picture::new(&scene, settings)?,
+        Some(before) => before.picture.rebuild_with_control(&before.scene, &scene, settings, control)?,
+        None => Picture::new_with_control(&scene, settings, control)?,
     };
     Ok(Arc::new(Built { scene, picture, frame }))
 }

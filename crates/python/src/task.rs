@@ -3,11 +3,11 @@
 
 use crate::errors;
 use crate::threads::{self, Use};
-use juggler::Error;
 use juggler::film::{MergeError, PartialRenderError};
 use juggler::imaging::ImageError;
 use juggler::render::{Cancelled, Control};
 use juggler::scene::SceneError;
+use juggler::{BuildControl, Error};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use std::any::Any;
@@ -61,7 +61,7 @@ type Estimate = dyn Fn(&Control) -> (f64, Option<f64>) + Send;
 /// Cancellation and progress of work, shared with the thread that waits.
 #[derive(Default)]
 pub struct Monitor {
-    /// Control of the render.
+    /// Control of the render, which contains that of the build.
     pub control: Control,
     estimate: Mutex<Option<Box<Estimate>>>,
 }
@@ -125,8 +125,8 @@ impl Watch {
     fn call(&self, py: Python<'_>, monitor: &Monitor, start: Instant) -> PyResult<()> {
         let Some(callback) = &self.callback else { return Ok(()) };
         let (stage, share, left) = match monitor.progress() {
-            None => ("build", 0.0, None),
-            Some((share, left)) => ("render", share.clamp(0.0, 1.0), left),
+            None => (monitor.control.build().stage().name(), monitor.control.build().share(), None),
+            Some((share, left)) => ("rendering", share.clamp(0.0, 1.0), left),
         };
         let seconds = start.elapsed().as_secs_f64();
         callback.call1(py, (stage, share, seconds, left, monitor.control.samples())).map(drop)
@@ -234,8 +234,17 @@ pub fn call<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, Fault> + Send + 'static,
 ) -> PyResult<T> {
+    read(py, |_| work())
+}
+
+/// Reads a scene or the like, which waits for no render. The work looks at the control, which an
+/// exception of a signal handler cancels.
+pub fn read<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&BuildControl) -> Result<T, Fault> + Send + 'static,
+) -> PyResult<T> {
     let pool = threads::pool(py, threads::thread_count(None)?, Use::Short)?;
-    let task = Task::start_on(&pool, |_| work());
+    let task = Task::start_on(&pool, |monitor| work(monitor.control.build()));
     task.wait(py, &Watch::default(), Duration::MAX)?.ok_or_else(errors::cancelled)
 }
 

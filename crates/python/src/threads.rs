@@ -34,14 +34,15 @@ pub fn thread_count(requested: Option<usize>) -> PyResult<usize> {
         if (1..=MAX_THREADS).contains(&count) {
             return Ok(count);
         }
-        Err(settings_error(format!("{what} is {count}, which is out of range: 1 to {MAX_THREADS}")))
+        Err(settings_error("threads", format!("{what} is {count}, which is out of range: 1 to {MAX_THREADS}")))
     };
     if let Some(count) = requested {
         return check(count, "`threads`");
     }
     match std::env::var(VARIABLE) {
         Ok(text) if !text.is_empty() => {
-            let count = text.parse().map_err(|_| settings_error(format!("{VARIABLE} is `{text}`, not a number")))?;
+            let wrong = || settings_error("threads", format!("{VARIABLE} is `{text}`, not a number"));
+            let count = text.parse().map_err(|_| wrong())?;
             check(count, VARIABLE)
         }
         _ => Ok(std::thread::available_parallelism().map_or(1, std::num::NonZero::get)),
@@ -60,7 +61,7 @@ pub fn pool(_: Python<'_>, threads: usize, purpose: Use) -> PyResult<Arc<ThreadP
             None => new_pool(threads).map(|pool| Arc::clone(pools.entry(key).or_insert(Arc::new(pool)))),
         }
     };
-    found.map_err(|error| settings_error(format!("cannot start {threads} threads: {error}")))
+    found.map_err(|error| settings_error("threads", format!("cannot start {threads} threads: {error}")))
 }
 
 fn new_pool(threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {

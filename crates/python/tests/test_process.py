@@ -1,5 +1,6 @@
 """Renderers in processes of Python: edits, threads, signals, forks, imports."""
 
+import array
 import asyncio
 import concurrent.futures
 import io
@@ -8,6 +9,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import types
 import unittest
@@ -113,7 +115,7 @@ class Renderers(unittest.TestCase):
         start = time.monotonic()
         jg.render("juggler", size=(320, 180), samples=4096, time=0.7, progress=seen.append)
         self.assertTrue(2 <= len(seen) <= 10 * (time.monotonic() - start) + 1, len(seen))
-        self.assertTrue(all(0 <= progress.share <= 1 for progress in seen) and seen[-1].stage == "render")
+        self.assertTrue(all(0 <= progress.share <= 1 for progress in seen) and seen[-1].stage == "rendering")
         self.assertLess(seen[-1].seconds_left, 0.7)
 
     def test_errors_of_callbacks_cancel(self):
@@ -124,6 +126,46 @@ class Renderers(unittest.TestCase):
         with self.assertRaisesRegex(LookupError, "stop"):
             jg.render("juggler", **LONG, progress=fail)
         self.assertLess(time.monotonic() - start, 5)
+
+    def test_errors_of_callbacks_cancel_builds(self):
+        side = 500
+        corners = array.array("f", (c for y in range(side) for x in range(side) for c in (x, (x * y) % 7, y)))
+        faces = array.array("i")
+        for corner in (y * side + x for y in range(side - 1) for x in range(side - 1)):
+            faces.extend((corner, corner + side, corner + 1, corner + 1, corner + side, corner + side + 1))
+        rows = (b"\3" + faces[i : i + 3].tobytes() for i in range(0, len(faces), 3))
+        head = f"""ply
+format binary_{sys.byteorder}_endian 1.0
+element vertex {side * side}
+property float x
+property float y
+property float z
+element face {len(faces) // 3}
+property list uchar int vertex_indices
+end_header
+"""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        file = os.path.join(folder.name, "bumps.ply")
+        with open(file, "wb") as stream:
+            stream.write(head.encode() + corners.tobytes() + b"".join(rows))
+        mesh = {"mesh": {"file": file}}
+        renderer = jg.Renderer({"version": 1, "objects": [{"shape": mesh}]}, size=(8, 8), samples=1)
+        seen = []
+
+        def fail(progress):
+            seen.append(progress)
+            raise LookupError("stop")
+
+        with self.assertRaisesRegex(LookupError, "stop"):
+            renderer.render(progress=fail)
+        self.assertIn(seen[0].stage, ("preparing", "building"))
+        # The build does not go on.
+        time.sleep(0.5)
+        before = time.process_time()
+        time.sleep(1)
+        self.assertLess(time.process_time() - before, 0.5)
+        self.assertEqual(len(renderer.render().hash), 64)
 
     def test_notebooks_show_a_growing_image(self):
         shown = []

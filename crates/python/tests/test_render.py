@@ -265,8 +265,14 @@ class Scenes(Folder):
         for name, value in cases:
             with self.assertRaises(jg.SettingsError, msg=name):
                 jg.render(small_scene(), **{name: value})
-        with self.assertRaisesRegex(jg.SettingsError, "did you mean `samples`"):
+            with self.assertRaises(jg.SettingsError) as caught:
+                jg.Renderer(small_scene(), **{name: value}).render()
+            self.assertEqual(caught.exception.setting, name)
+        with self.assertRaisesRegex(jg.SettingsError, "did you mean `samples`") as caught:
             jg.render("does-not-exist.json", sampels=3)
+        error = pickle.loads(pickle.dumps(caught.exception))
+        self.assertEqual((error.setting, error.help), ("sampels", "did you mean `samples`?"))
+        self.assertEqual(str(error), "there is no setting `sampels`; did you mean `samples`?")
         with self.assertRaises(MemoryError):
             jg.render(small_scene(), max_memory="1M")
         jg.render(small_scene(), max_memory="4G")

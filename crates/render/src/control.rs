@@ -1,5 +1,6 @@
 //! Progress and cancellation of a running render, shared with other threads.
 
+use juggler_math::BuildControl;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 /// Numbers of rays traced.
@@ -25,7 +26,8 @@ impl RayCounts {
 /// Progress of a render, and requests to end it. All methods may be called from any thread.
 #[derive(Debug, Default)]
 pub struct Control {
-    cancelled: AtomicBool,
+    /// Control of the build before the render, which holds the request for cancellation.
+    build: BuildControl,
     finishing: AtomicBool,
     samples: AtomicU64,
     camera: AtomicU64,
@@ -35,14 +37,19 @@ pub struct Control {
 }
 
 impl Control {
+    /// Control of the build before the render. Cancelling either cancels both.
+    pub fn build(&self) -> &BuildControl {
+        &self.build
+    }
+
     /// Requests cancellation. Unfinished tiles are discarded.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Relaxed);
+        self.build.cancel();
     }
 
     /// Whether cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Relaxed)
+        self.build.is_cancelled()
     }
 
     /// Requests an early end: tiles in progress are completed, and no further samples are started.

@@ -26,12 +26,13 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, RayCounts};
+pub use juggler_math::Cancelled;
 pub use progressive::{
     NoiseEstimate, ProgressiveRender, Worker, estimate_noise, is_finished, is_tile_finished, max_runs,
     render_progressive,
 };
 pub use rounds::StopCriterion;
-pub use schedule::{BAND_PIXELS, Cancelled, Schedule, Scheduler, band_bytes, render};
+pub use schedule::{BAND_PIXELS, Schedule, Scheduler, band_bytes, render};
 pub use wavefront::{InspectedSample, LightContribution, PathVertex, inspect};
 
 /// Unit of work for a thread, a pass or a machine.

@@ -1,7 +1,7 @@
 //! Distribution of pixels among threads. It cannot change a bit of the picture.
 
 use super::wavefront::Engine;
-use super::{Control, Job, Work};
+use super::{Cancelled, Control, Job, Work};
 use juggler_camera::film::{ClampedRadiance, Rect};
 use juggler_math::{NamedKind, Rgb};
 use rayon::prelude::*;
@@ -56,11 +56,6 @@ impl Default for Schedule {
         Self { scheduler: Scheduler::default(), band_pixels: BAND_PIXELS }
     }
 }
-
-/// The render was cancelled before its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the render was interrupted")]
-pub struct Cancelled;
 
 /// Renders all samples of `region` on the threads of the current rayon pool and passes the finished
 /// rows to `rows` from top to bottom, one band of whole rows at a time; only one band is held in

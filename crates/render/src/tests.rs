@@ -52,7 +52,14 @@ pub fn world_in_motion(objects: &[(&str, Motion, &str)], lights: &[&str], backgr
         })
         .collect();
     let lights = lights.iter().map(|light| read::<AnyLight>(light));
-    World::new(objects, compiler.finish().unwrap(), lights, AnyBackground::Solid(Solid { color: background }))
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        lights,
+        AnyBackground::Solid(Solid { color: background }),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> ShutterCamera {

@@ -2,6 +2,7 @@
 
 use crate::named::UnknownName;
 use crate::report::{Problems, plain_io};
+use juggler_math::Cancelled;
 use juggler_mesh::UnsupportedFormat;
 use std::io;
 use std::path::PathBuf;
@@ -71,4 +72,7 @@ pub enum SceneError {
     /// The scene has errors.
     #[error("{0}")]
     Problems(Problems),
+    /// Reading or compiling was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

@@ -18,6 +18,7 @@ mod building;
 mod camera_text;
 mod change;
 pub mod compile;
+mod compiling;
 pub mod description;
 pub mod document;
 mod edit;

@@ -1,10 +1,11 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::asset::Asset;
-use crate::compile::AssetCache;
+use crate::compile::{AssetCache, NEVER_CANCELLED};
 use crate::model::{ModelCache, ModelFormat};
 use crate::store::{Bundle, MAX_FILE_BYTES, Store};
 use crate::{Scene, SceneError};
+use juggler_math::BuildControl;
 use std::path::Path;
 
 /// Loads scene files, mesh files and files of the model formats that it knows.
@@ -33,17 +34,22 @@ impl Loader {
     /// Loads a file as [`Scene::load`] does. A model becomes a scene that shows it, with a light if
     /// it has none.
     pub fn load(self, path: impl AsRef<Path>) -> Result<Scene, SceneError> {
-        Scene::read(path.as_ref(), self.cache(Store::default()))
+        self.load_with_control(path, &NEVER_CANCELLED)
+    }
+
+    /// [`Loader::load`], which ends early if `control` is cancelled, and reports its progress to it.
+    pub fn load_with_control(self, path: impl AsRef<Path>, control: &BuildControl) -> Result<Scene, SceneError> {
+        Scene::read(path.as_ref(), self.cache(Store::default()), control)
     }
 
     /// Reads a scene from files in memory, as [`Loader::load`] does from disk.
     pub fn from_bundle(self, bundle: Bundle, name: &str) -> Result<Scene, SceneError> {
-        Scene::read(Path::new(name), self.cache(bundle.into()))
+        Scene::read(Path::new(name), self.cache(bundle.into()), &NEVER_CANCELLED)
     }
 
     /// Parses a scene as [`Scene::from_json`] does.
     pub fn from_json(self, text: impl Into<String>, name: &str) -> Result<Scene, SceneError> {
-        Scene::parse(text.into(), name, self.cache(Store::default()))
+        self.from_json_with(text, name, [])
     }
 
     /// Parses a scene as [`Scene::from_json`] does, with assets by the names under which the scene
@@ -54,9 +60,21 @@ impl Loader {
         name: &str,
         assets: impl IntoIterator<Item = (String, Asset)>,
     ) -> Result<Scene, SceneError> {
+        self.from_json_with_control(text, name, assets, &NEVER_CANCELLED)
+    }
+
+    /// [`Loader::from_json_with`], which ends early if `control` is cancelled, and reports its progress
+    /// to it.
+    pub fn from_json_with_control(
+        self,
+        text: impl Into<String>,
+        name: &str,
+        assets: impl IntoIterator<Item = (String, Asset)>,
+        control: &BuildControl,
+    ) -> Result<Scene, SceneError> {
         let mut cache = self.cache(Store::default());
         assets.into_iter().for_each(|(name, asset)| cache.insert_asset(name, asset));
-        Scene::parse(text.into(), name, cache)
+        Scene::parse(text.into(), name, cache, control)
     }
 
     /// Whether a file is a model in a format that the loader knows, by its first bytes or its name. A

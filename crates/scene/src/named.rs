@@ -1,8 +1,10 @@
 //! Scenes by name: a file or a built-in scene.
 
+use crate::compile::NEVER_CANCELLED;
 use crate::presets::built_in_scenes;
 use crate::suggest::closest;
 use crate::{Loader, Scene, SceneError};
+use juggler_math::BuildControl;
 use std::path::Path;
 
 /// Maximum number of file names of a folder that are searched for suggestions.
@@ -29,10 +31,15 @@ impl Scene {
 impl Loader {
     /// Loads a file, or the built-in scene of this name if there is no such file.
     pub fn named(self, name: &str) -> Result<Scene, SceneError> {
+        self.named_with_control(name, &NEVER_CANCELLED)
+    }
+
+    /// [`Loader::named`], which ends early if `control` is cancelled, and reports its progress to it.
+    pub fn named_with_control(self, name: &str, control: &BuildControl) -> Result<Scene, SceneError> {
         let path = Path::new(name);
         // A dangling link gets the error of loading it.
         if (path.exists() || path.is_symlink()) && !path.is_dir() {
-            return self.load(path);
+            return self.load_with_control(path, control);
         }
         if built_in_scenes().iter().any(|scene| scene.name == name) {
             return Scene::built_in(name);

@@ -1,5 +1,6 @@
 //! Everything that a scene was read from, so that another process can read it again without the files.
 
+use crate::compile::NEVER_CANCELLED;
 use crate::store::{Bundle, MAX_FILE_BYTES};
 use crate::{Asset, Loader, Scene, SceneError};
 use juggler_imaging::regular::{self, ReadError};
@@ -45,8 +46,8 @@ impl Loader {
         let mut cache = self.cache(package.files.into_iter().collect::<Bundle>().into());
         assets.into_iter().for_each(|(name, asset)| cache.insert_asset(name, asset));
         match package.text {
-            Some(text) => Scene::parse(text, &package.name, cache),
-            None => Scene::read(Path::new(&package.name), cache),
+            Some(text) => Scene::parse(text, &package.name, cache, &NEVER_CANCELLED),
+            None => Scene::read(Path::new(&package.name), cache, &NEVER_CANCELLED),
         }
     }
 }

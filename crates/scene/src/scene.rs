@@ -2,7 +2,7 @@
 
 use crate::SceneError;
 use crate::animate::SceneSources;
-use crate::compile::{Assembly, AssetCache, Compiled, Files, Illuminance, Needs, image_files, light_files};
+use crate::compile::{Assembly, AssetCache, Files, NEVER_CANCELLED, Needs, image_files, light_files};
 use crate::description::{Description, deserialize_scene};
 use crate::document::{Document, Node, SourceSpan, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, mesh_files};
@@ -15,6 +15,7 @@ use crate::report::{Finding, Problems};
 use crate::store::Bundle;
 use crate::validate::DeclaredNames;
 use crate::{animate, mesh_scene};
+use juggler_math::{BuildControl, BuildStage};
 use juggler_mesh::FileContent;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -77,22 +78,27 @@ impl Scene {
     /// Reads a scene file and the files it includes, at frame 0. For a mesh file, creates a scene
     /// with a floor, lights and a camera that frames the mesh.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::read(path.as_ref(), AssetCache::default())
+        Self::read(path.as_ref(), AssetCache::default(), &NEVER_CANCELLED)
     }
 
     /// Reads a scene from files in memory, as [`Scene::load`] does from disk.
     pub fn from_bundle(bundle: Bundle, name: &str) -> Result<Self, SceneError> {
-        Self::read(Path::new(name), AssetCache::new(bundle.into()))
+        Self::read(Path::new(name), AssetCache::new(bundle.into()), &NEVER_CANCELLED)
     }
 
-    pub(crate) fn read(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
+    /// Reads a file as [`Scene::load`] does, unless `control` is cancelled.
+    pub(crate) fn read(path: &Path, asset_cache: AssetCache, control: &BuildControl) -> Result<Self, SceneError> {
+        control.begin(BuildStage::Reading);
+        control.check()?;
         if asset_cache.is_model(path) && !asset_cache.is_plain_mesh(path) {
-            return Self::around_model(path, asset_cache);
+            return Self::around_model(path, asset_cache, control);
         }
         match asset_cache.store().content(path) {
             FileContent::Other => {}
             FileContent::Mesh { z_up } => {
-                let overview = asset_cache.mesh_overview(path).map_err(SceneError::Mesh)?;
+                let overview = asset_cache.mesh_overview(path, control);
+                control.check()?;
+                let overview = overview.map_err(SceneError::Mesh)?;
                 let description = mesh_scene::describe_mesh_scene(&path.to_string_lossy(), &overview, z_up);
                 return Ok(Self::around(description, asset_cache));
             }
@@ -102,7 +108,7 @@ impl Scene {
             Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
             Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
         })?;
-        Self::parse(text, &path.to_string_lossy(), asset_cache)
+        Self::parse(text, &path.to_string_lossy(), asset_cache, control)
     }
 
     /// A generated scene.
@@ -113,16 +119,25 @@ impl Scene {
     /// Parses a scene. `name` is the text's name in messages; file names in the scene are relative
     /// to the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
-        Self::parse(text.into(), name, AssetCache::default())
+        Self::parse(text.into(), name, AssetCache::default(), &NEVER_CANCELLED)
     }
 
-    pub(crate) fn parse(text: String, name: &str, asset_cache: AssetCache) -> Result<Self, SceneError> {
+    /// Parses a text as [`Scene::from_json`] does, unless `control` is cancelled.
+    pub(crate) fn parse(
+        text: String,
+        name: &str,
+        asset_cache: AssetCache,
+        control: &BuildControl,
+    ) -> Result<Self, SceneError> {
+        control.begin(BuildStage::Reading);
         let (mut document, mut findings) = Document::read(name, text, asset_cache.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
+        control.check()?;
         let programs = animate::Programs::default();
         let sources = SceneSources { texts: &document.sources, asset_cache: &asset_cache };
         let (resolved, wrong) = animate::resolve_with(&document.tree, sources, &programs, 0.0);
         findings.extend(wrong);
+        control.check()?;
         let found = deserialize_scene(&resolved, &mut findings);
         drop(resolved);
         let is_valid = found.is_some() && !findings.iter().any(Finding::is_error);
@@ -130,8 +145,9 @@ impl Scene {
         description.programs = programs;
         motion::attach(&mut description, &document.tree, &inline_names);
         for list in std::mem::take(&mut document.lists) {
-            findings.extend(read_list(&mut description, &list, sources));
+            findings.extend(read_list(&mut description, &list, sources, control));
         }
+        control.check()?;
         let is_valid = is_valid && !findings.iter().any(Finding::is_error);
         let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
         let names = DeclaredNames::of(&description);
@@ -145,7 +161,9 @@ impl Scene {
             return Ok(scene);
         }
         // Compile the valid parts too, to report all errors at once.
-        let more = Assembly::from_scene(&scene.description, &Tracks::default(), scene.files()).1;
+        let files = Files { control, ..scene.files() };
+        let more = Assembly::from_scene(&scene.description, &Tracks::default(), files).1;
+        control.check()?;
         Err(SceneError::Problems(scene.report(merge_findings(findings, more))))
     }
 
@@ -184,58 +202,21 @@ impl Scene {
 
     /// Reads the scene file again, and those of its other files that have changed.
     pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::read(path.as_ref(), self.asset_cache.without_changed_files())
+        self.reload_with_control(path, &NEVER_CANCELLED)
     }
 
-    /// Finds all errors and warnings of the scene without building the world.
-    pub fn check(&self) -> Problems {
-        let (_, wrong, more) = self.assembly();
-        self.report(merge_findings(merge_findings(self.schema_findings(), wrong), more))
-    }
-
-    /// Finds the problems as [`Scene::check`] does, and builds the world to find objects of which the
-    /// order decides what is seen. Returns also the light with the largest unoccluded illuminance at
-    /// the center of the scene.
-    pub fn check_with_light(&self) -> (Problems, Option<Illuminance>) {
-        let (assembly, wrong, more) = self.assembly();
-        let findings = merge_findings(merge_findings(self.schema_findings(), wrong), more);
-        let illuminance = assembly.illuminance.clone();
-        let order = if findings.iter().any(Finding::is_error) { Vec::new() } else { assembly.ambiguity_warnings() };
-        (self.report(merge_findings(findings, order)), illuminance)
-    }
-
-    /// Builds the world.
-    pub fn compile(&self) -> Result<Compiled, SceneError> {
-        let (assembly, wrong, more) = self.assembly();
-        let warnings = self.warnings(wrong, more)?;
-        Ok(assembly.compile((*self.description.render).clone(), warnings))
-    }
-
-    /// Parts of the world, with the findings about motion and those of the compilation.
-    fn assembly(&self) -> (Assembly, Vec<Finding>, Vec<Finding>) {
-        let (tracks, wrong) = self.tracks();
-        let (assembly, more) = match self.expanded() {
-            None => Assembly::from_scene(&self.description, &tracks, self.files()),
-            Some(expansion) => {
-                let (assembly, more) =
-                    Assembly::from_scene(&expansion.description, &expansion.tracks, self.files_of(&expansion));
-                (assembly, merge_findings(expansion.findings.clone(), more))
-            }
-        };
-        (assembly, wrong, more)
-    }
-
-    /// Returns the warnings, or an error if any finding is an error. `motion` are the findings
-    /// about motion, `more` those of the compilation.
-    pub(crate) fn warnings(&self, motion: Vec<Finding>, more: Vec<Finding>) -> Result<Problems, SceneError> {
-        let findings = merge_findings(merge_findings(self.schema_findings(), motion), more);
-        let is_broken = findings.iter().any(Finding::is_error);
-        let problems = self.report(findings);
-        if is_broken { Err(SceneError::Problems(problems)) } else { Ok(problems) }
+    /// [`Scene::reload`], which ends early if `control` is cancelled, and reports its progress to it.
+    pub fn reload_with_control(&self, path: impl AsRef<Path>, control: &BuildControl) -> Result<Self, SceneError> {
+        Self::read(path.as_ref(), self.asset_cache.without_changed_files(), control)
     }
 
     /// Motion while the shutter is open, with the findings about it.
     pub(crate) fn tracks(&self) -> (Arc<Tracks>, Vec<Finding>) {
+        self.tracks_with_control(&NEVER_CANCELLED)
+    }
+
+    /// [`Scene::tracks`]; empty if `control` is cancelled.
+    pub(crate) fn tracks_with_control(&self, control: &BuildControl) -> (Arc<Tracks>, Vec<Finding>) {
         let mut known = self.tracks.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) =
             known.as_ref().filter(|k| k.frame == self.frame && k.scene.has_same_motion(&self.description))
@@ -243,8 +224,11 @@ impl Scene {
             return (Arc::clone(&known.tracks), known.findings.clone());
         }
         let edits_merged = self.edits_merged();
-        let (tracks, findings) = Tracks::sample(&edits_merged, self.scene_sources(), self.frame);
+        let (tracks, findings) = Tracks::sample(&edits_merged, self.scene_sources(), self.frame, control);
         let tracks = Arc::new(tracks);
+        if control.is_cancelled() {
+            return (tracks, findings);
+        }
         let (scene, frame) = (self.description.clone(), self.frame);
         *known = Some(CachedTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
         (tracks, findings)
@@ -323,7 +307,7 @@ impl Scene {
 
     /// Checks the description against the schema. Items read from a file were checked then, so only
     /// their warnings are repeated; items that programs added or changed are checked here.
-    fn schema_findings(&self) -> Vec<Finding> {
+    pub(crate) fn schema_findings(&self) -> Vec<Finding> {
         let mut findings = self.description.head_findings();
         let names_are_missing = self.origin.as_ref().is_some_and(|origin| !origin.names.are_in(&self.description));
         findings.extend(self.description.item_findings(|item| names_are_missing || item.is_changed()));
@@ -351,7 +335,8 @@ impl Scene {
     }
 
     pub(crate) fn files(&self) -> Files<'_> {
-        Files { scene: &self.description, sources: self.sources(), asset_cache: &self.asset_cache }
+        let (sources, asset_cache) = (self.sources(), &self.asset_cache);
+        Files { scene: &self.description, sources, asset_cache, control: &NEVER_CANCELLED }
     }
 
     pub(crate) fn report(&self, findings: Vec<Finding>) -> Problems {
@@ -391,7 +376,7 @@ impl Scene {
 
 /// Concatenates the findings of two steps, without later findings about values that an early error
 /// covers.
-fn merge_findings(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
+pub(crate) fn merge_findings(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
     let fresh = |finding: &Finding| !early.iter().any(|known| known.is_error() && known.concerns_same_value(finding));
     let mut later: Vec<Finding> = later.into_iter().filter(fresh).collect();
     early.append(&mut later);

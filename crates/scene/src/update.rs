@@ -1,9 +1,10 @@
 //! Compilation after an edit, which keeps the parts of an earlier compilation that still hold.
 
-use crate::compile::{self, Compiled, area_lights};
+use crate::compile::{self, Compiled, Files, NEVER_CANCELLED, area_lights};
 use crate::fingerprint::{digests, mesh_files};
 use crate::{Change, Changed, Scene, SceneError};
 use juggler_light::Area;
+use juggler_math::{BuildControl, BuildStage};
 use std::sync::Arc;
 
 impl Scene {
@@ -13,9 +14,23 @@ impl Scene {
     /// in memory are never prepared twice. The result equals the result of [`Scene::compile`], bit
     /// for bit.
     pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
-        let (mut tracks, wrong) = self.tracks();
+        self.compile_after_with_control(before, earlier, &NEVER_CANCELLED)
+    }
+
+    /// [`Scene::compile_after`], which ends early if `control` is cancelled, as
+    /// [`Scene::compile_with_control`] does.
+    pub fn compile_after_with_control(
+        &self,
+        before: &Self,
+        earlier: &Compiled,
+        control: &BuildControl,
+    ) -> Result<Compiled, SceneError> {
+        control.begin(BuildStage::Preparing);
+        let (mut tracks, wrong) = self.tracks_with_control(control);
         let change = self.change_since(before);
-        let expansion = self.expanded();
+        let expansion = self.expanded_with_control(control);
+        // After cancellation tracks and models are incomplete.
+        control.check()?;
         let (mut description, mut files) = (&self.description, self.files());
         if let Some(expansion) = &expansion {
             (description, tracks) = (&expansion.description, Arc::clone(&expansion.tracks));
@@ -27,11 +42,12 @@ impl Scene {
             let integrator = self.integrator_choice();
             Some((Compiled { cameras, camera_keys, settings, integrator, ..earlier.clone() }, findings))
         } else if !self.has_models() && !before.has_models() && self.has_objects(before, &change) {
-            compile::with_shading(description, &tracks, files, earlier)
+            compile::with_shading(description, &tracks, Files { control, ..files }, earlier)
         } else {
             None
         };
-        let Some((compiled, mut findings)) = found else { return self.compile() };
+        let Some((compiled, mut findings)) = found else { return self.compile_with_control(control) };
+        control.check()?;
         findings.extend(expansion.iter().flat_map(|expansion| expansion.findings.clone()));
         let warnings = self.warnings(wrong, findings)?;
         Ok(Compiled { warnings, ..compiled })

@@ -80,6 +80,7 @@ impl Default for Limits {
 
 /// Error of starting a server.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ServeError {
     /// The address is reachable from other machines, which the options do not allow.
     #[error(

@@ -4,6 +4,7 @@ use crate::build::{BuildError, BuildRequest};
 use crate::status::Stage;
 use crate::subject::Subject;
 use crate::worker_state::{BuildReason, RunningBuild, Worker};
+use juggler::BuildControl;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 pub const LOADING_DELAY: Duration = Duration::from_millis(100);
 
 impl Worker {
-    /// Starts a build; the result of a running one will be discarded.
+    /// Starts a build and cancels a running one, whose result is discarded.
     pub fn build(&mut self, build: BuildRequest, reason: BuildReason) {
         let shared = Arc::clone(&self.shared);
         let number = {
@@ -22,14 +23,15 @@ impl Worker {
             mailbox.build_number += 1;
             mailbox.build_number
         };
-        self.building = Some(RunningBuild { began: Instant::now(), reason });
+        let control = Arc::new(BuildControl::default());
+        self.building = Some(RunningBuild { began: Instant::now(), reason, control: Arc::clone(&control) });
         if reason == BuildReason::OtherScene {
             self.status.stage = Stage::Loading;
             self.publish(None);
         }
         self.threads.pool.spawn(move || {
             // An uncaught panic in the pool would abort the program.
-            let result = catch_unwind(AssertUnwindSafe(|| build.run())).unwrap_or_else(|_| {
+            let result = catch_unwind(AssertUnwindSafe(|| build.run_with_control(&control))).unwrap_or_else(|_| {
                 Err(BuildError {
                     text: "error: cannot build the scene: this is a bug of Juggler".into(),
                     files: Vec::new(),
@@ -46,7 +48,7 @@ impl Worker {
 
     /// Adopts the result of a build that has ended.
     pub fn adopt_build(&mut self) {
-        let Some(building) = self.building else { return };
+        let Some(building) = &self.building else { return };
         let built = self.shared.mailbox().built.take();
         let Some(built) = built else {
             if building.began.elapsed() >= LOADING_DELAY && self.status.stage != Stage::Loading {
@@ -55,20 +57,20 @@ impl Worker {
             }
             return;
         };
-        self.building = None;
+        let Some(building) = self.building.take() else { return };
         match built {
-            Ok(subject) => self.adopt_subject(subject, building),
-            Err(error) => self.report_build_error(error, building),
+            Ok(subject) => self.adopt_subject(subject, building.reason),
+            Err(error) => self.report_build_error(error, building.reason),
         }
     }
 
-    fn adopt_subject(&mut self, subject: Subject, building: RunningBuild) {
+    fn adopt_subject(&mut self, subject: Subject, reason: BuildReason) {
         self.status.error = None;
-        if building.reason != BuildReason::Edit {
+        if reason != BuildReason::Edit {
             self.source.error = None;
             self.watch(&subject.files());
         }
-        if building.reason == BuildReason::OtherScene {
+        if reason == BuildReason::OtherScene {
             (self.samples.region, self.playback) = (None, None);
             self.pending.rate.forget();
         }
@@ -81,8 +83,8 @@ impl Worker {
         self.update_status();
     }
 
-    fn report_build_error(&mut self, error: BuildError, building: RunningBuild) {
-        if building.reason != BuildReason::Edit {
+    fn report_build_error(&mut self, error: BuildError, reason: BuildReason) {
+        if reason != BuildReason::Edit {
             self.source.error = Some(error.text.clone());
             let mut files = self.subject.as_ref().map_or_else(Vec::new, |subject| subject.files());
             files.extend(error.files);

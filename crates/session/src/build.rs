@@ -7,7 +7,7 @@ use crate::subject::Subject;
 use juggler::camera::AnyCamera;
 use juggler::math::Vec3;
 use juggler::scene::{Bundle, Loader, Names, Scene, SceneError};
-use juggler::{Aov, Error, Picture, Settings, View};
+use juggler::{Aov, BuildControl, Error, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -117,9 +117,14 @@ impl BuildRequest {
     /// Reads the scene and builds its world on the threads of the current rayon pool. This call may
     /// take long.
     pub fn run(self) -> Result<Subject, BuildError> {
+        self.run_with_control(&BuildControl::default())
+    }
+
+    /// [`BuildRequest::run`], which ends early with an error if `control` is cancelled.
+    pub fn run_with_control(self, control: &BuildControl) -> Result<Subject, BuildError> {
         let is_in_memory = matches!(self.source, SceneSource::Files(_));
         let mut files = if is_in_memory { Vec::new() } else { vec![PathBuf::from(&self.name)] };
-        self.build().map_err(|error| {
+        self.build(control).map_err(|error| {
             if let Error::Scene(SceneError::Problems(problems)) = &error
                 && !is_in_memory
             {
@@ -129,11 +134,11 @@ impl BuildRequest {
         })
     }
 
-    fn build(mut self) -> Result<Subject, Error> {
-        let scene = self.scene()?;
+    fn build(mut self, control: &BuildControl) -> Result<Subject, Error> {
+        let scene = self.scene(control)?;
         let displayed = Arc::clone(scene.displayed());
         self.fit_settings(&displayed);
-        let mut picture = self.picture(&displayed)?;
+        let mut picture = self.picture(&displayed, control)?;
         let upward = picture.view().camera.up();
         if let Some(camera) = &self.choices.camera {
             picture = picture.with_view(View { camera: camera.clone(), ..picture.view() })?;
@@ -151,9 +156,9 @@ impl BuildRequest {
     }
 
     /// Reads the scene, or changes the one before.
-    fn scene(&mut self) -> Result<EditedScene, Error> {
+    fn scene(&mut self, control: &BuildControl) -> Result<EditedScene, Error> {
         let file = match &self.source {
-            SceneSource::Name => Arc::new(self.loader().named(&self.name)?),
+            SceneSource::Name => Arc::new(self.loader().named_with_control(&self.name, control)?),
             SceneSource::Files(files) => Arc::new(self.loader().from_bundle(files.clone(), &self.name)?),
             SceneSource::Program(scene) => Arc::clone(scene),
             SceneSource::Edited(scene, SceneChange::None) => return Ok(scene.clone()),
@@ -164,7 +169,7 @@ impl BuildRequest {
             SceneSource::Edited(scene, SceneChange::Reset) => return Ok(scene.reset()?),
             SceneSource::Edited(scene, SceneChange::Reload) => {
                 let scene = scene.clone();
-                return self.reload(&scene);
+                return self.reload(&scene, control);
             }
         };
         Ok(EditedScene::new(file, Arc::clone(&self.given))?)
@@ -184,10 +189,11 @@ impl BuildRequest {
         self.choices.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
     }
 
-    fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
+    fn picture(&self, scene: &Scene, control: &BuildControl) -> Result<Picture, Error> {
+        let settings = &self.choices.settings;
         match &self.previous {
-            Some((before, picture)) => picture.rebuild(before, scene, &self.choices.settings),
-            _ => Picture::new(scene, &self.choices.settings),
+            Some((before, picture)) => picture.rebuild_with_control(before, scene, settings, control),
+            _ => Picture::new_with_control(scene, settings, control),
         }
     }
 
@@ -197,13 +203,16 @@ impl BuildRequest {
 
     /// Reads the file again. Edited values and the camera are kept unless the file has changed
     /// there too.
-    fn reload(&mut self, scene: &EditedScene) -> Result<EditedScene, Error> {
+    fn reload(&mut self, scene: &EditedScene, control: &BuildControl) -> Result<EditedScene, Error> {
         let old = scene.file();
         if old.is_in_memory() {
             return Ok(scene.clone());
         }
         let is_file = Path::new(&self.name).is_file();
-        let new = if is_file { old.reload(&self.name)? } else { self.loader().named(&self.name)? };
+        let new = match is_file {
+            true => old.reload_with_control(&self.name, control)?,
+            false => self.loader().named_with_control(&self.name, control)?,
+        };
         let Choices { settings, camera, .. } = &mut self.choices;
         if chosen_camera(settings, old) != chosen_camera(settings, &new) {
             (*camera, settings.camera) = (None, None);

@@ -19,6 +19,7 @@ use std::time::Duration;
 
 /// Error of saving an image.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SaveError {
     /// No image has been rendered yet.
     #[error("there is no picture yet")]

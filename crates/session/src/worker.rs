@@ -35,7 +35,7 @@ impl Worker {
     }
 
     fn wait_for_work(&self) {
-        let timeout = match self.building {
+        let timeout = match &self.building {
             Some(_) if self.status.stage != Stage::Loading => Some(LOADING_DELAY),
             None if self.playback.is_some() => Some(TICK),
             _ => None,

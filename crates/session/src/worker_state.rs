@@ -10,6 +10,7 @@ use crate::shared::{Shared, Snapshot};
 use crate::status::Status;
 use crate::subject::Subject;
 use crate::watch::Watch;
+use juggler::BuildControl;
 use juggler::camera::film::{Film, Rect};
 use juggler::imaging::Tone;
 use juggler::math::Rgb;
@@ -56,13 +57,20 @@ pub struct RequestedScene {
     pub watch: Option<Watch>,
 }
 
-/// Build that is running.
-#[derive(Clone, Copy)]
+/// Build that is running. It is cancelled when this object is dropped.
 pub struct RunningBuild {
     /// Start of the build.
     pub began: Instant,
     /// Reason of the build.
     pub reason: BuildReason,
+    /// Control of the build.
+    pub control: Arc<BuildControl>,
+}
+
+impl Drop for RunningBuild {
+    fn drop(&mut self) {
+        self.control.cancel();
+    }
 }
 
 /// Reason of a build.

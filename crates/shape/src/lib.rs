@@ -1,7 +1,7 @@
 //! Shapes: solids and surfaces, each in its own object space.
 
 use crate::surface::Surface;
-use juggler_math::{Aabb, Ray, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Ray, Vec2, Vec3};
 
 mod arithmetic;
 pub mod attribute;
@@ -101,12 +101,23 @@ pub struct InvalidShape {
     pub message: String,
 }
 
+impl From<Cancelled> for InvalidShape {
+    fn from(cancelled: Cancelled) -> Self {
+        Self { field: String::new(), message: cancelled.to_string() }
+    }
+}
+
 /// A solid or surface in object space. The direction of a ray need not be a unit vector: distances
 /// are in units of its length.
 pub trait Shape: Send + Sync {
     /// Validates the description and derives the data that intersection needs, such as a mesh's
     /// hierarchy. Called once before anything else.
     fn prepare(&mut self) -> Result<(), InvalidShape>;
+    /// [`Shape::prepare`], which ends early if `control` is cancelled, with an error, and reports its
+    /// progress to it. Shapes that are prepared at once do not look at it.
+    fn prepare_with_control(&mut self, _control: &BuildControl) -> Result<(), InvalidShape> {
+        self.prepare()
+    }
     /// Bounding box; [`Aabb::INFINITE`] for an unbounded shape.
     fn bounds(&self) -> Aabb;
     /// The nearest hit in the ray's range.

@@ -39,6 +39,7 @@ const MIN_WINDOW: [f32; 2] = [480.0, 320.0];
 
 /// Error of opening a window.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewerError {
     /// There is no display.
     #[error("no window can be opened: there is no display (neither DISPLAY nor WAYLAND_DISPLAY leads to one)")]

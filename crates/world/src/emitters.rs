@@ -9,7 +9,7 @@ use juggler_bvh::SimdLevel;
 use juggler_light::LightSample;
 use juggler_light::background::AnyBackground;
 use juggler_light::emitter::{AreaEmitter, LightBounds, LightTree, LightTreeSample};
-use juggler_math::{Ray, Rgb, Vec2, Vec3, robust};
+use juggler_math::{BuildControl, Cancelled, Ray, Rgb, Vec2, Vec3, robust};
 
 /// All emitters of a world.
 #[derive(Clone, Debug, Default)]
@@ -106,12 +106,17 @@ impl LightSampleContext {
 impl Emitters {
     /// Creates the emitters of lights, emissive shapes and background. `radius` is that of a sphere
     /// around all bounded objects.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
     pub fn new(
         lights: &[SceneLight],
         emissive_shapes: Vec<EmissiveShape>,
         background: &AnyBackground,
         radius: f32,
-    ) -> Self {
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
         let mut emitters = Self::default();
         let (mut bounds, mut infinite): (Vec<LightBounds>, Vec<(InfiniteLight, f32)>) = (Vec::new(), Vec::new());
         // Lights with a surface are among the emissive shapes.
@@ -128,9 +133,9 @@ impl Emitters {
             infinite.push((InfiniteLight::Background, background.power(1.0)));
         }
         emitters.infinite = InfiniteLights::new(infinite);
-        emitters.add(emissive_shapes, &mut bounds);
-        emitters.tree = LightTree::build(&bounds);
-        emitters
+        emitters.add(emissive_shapes, &mut bounds, control);
+        emitters.tree = LightTree::build_with_control(&bounds, control)?;
+        Ok(emitters)
     }
 
     /// Sets the SIMD instruction set of the light tree.
@@ -139,9 +144,9 @@ impl Emitters {
         self
     }
 
-    /// Adds the emitters of shapes. Moves the list of shapes before the lists of emitters grow, so
+    /// Adds the emitters of shapes, not all if `control` is cancelled. Moves the list of shapes before the lists of emitters grow, so
     /// that millions of emissive shapes are never stored twice.
-    fn add(&mut self, emissive_shapes: Vec<EmissiveShape>, bounds: &mut Vec<LightBounds>) {
+    fn add(&mut self, emissive_shapes: Vec<EmissiveShape>, bounds: &mut Vec<LightBounds>, control: &BuildControl) {
         let entry = |shape| EmissiveShapeEntry { shape, first_emitter: 0, emitter_indices: Box::default() };
         self.shapes = emissive_shapes.into_iter().map(entry).collect();
         // The list is mostly sorted already, and indices are unique.
@@ -149,6 +154,9 @@ impl Emitters {
         self.finite.reserve(self.shapes.len());
         bounds.reserve(self.shapes.len());
         for (entry_index, EmissiveShapeEntry { shape, first_emitter, emitter_indices }) in (0..).zip(&mut self.shapes) {
+            if control.is_cancelled() {
+                return;
+            }
             *first_emitter = self.finite.len() as u32;
             let Some(emissive) =
                 shape.static_transform().and_then(|transform| EmissiveSurfaces::from_shape(shape.shape(), &transform))

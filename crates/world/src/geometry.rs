@@ -9,7 +9,7 @@ use super::merged_meshes::{self, MergedMeshes};
 use super::{Content, Object, Vertex, WorldHit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_material::{MaterialId, MaterialTable};
-use juggler_math::{Aabb, Ray, Transform, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Ray, Transform, Vec2, Vec3};
 use juggler_shape::surface::Surface;
 use juggler_shape::{Hit, InstanceValues, MeshPoint, SurfaceDerivatives};
 use std::collections::BTreeSet;
@@ -90,32 +90,41 @@ impl GeometryTotals {
 impl Geometry {
     /// Builds the hierarchy over all bounded objects. The caller must ensure at most
     /// [`MAX_OBJECTS`] shapes and a nesting depth of at most [`MAX_DEPTH`].
-    pub fn new(objects: Vec<Object>) -> Self {
-        Self::with_separate_meshes(objects, &[], &[])
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn new(objects: Vec<Object>, control: &BuildControl) -> Result<Self, Cancelled> {
+        Self::with_separate_meshes(objects, &[], &[], control)
     }
 
     /// Builds the top level of a world.
-    pub(super) fn top_level(objects: Vec<Object>) -> Self {
+    pub(super) fn top_level(objects: Vec<Object>, control: &BuildControl) -> Result<Self, Cancelled> {
         let large_meshes = large_mesh::indices(&objects);
         let small_meshes = merged_meshes::indices(&objects, &large_meshes);
-        Self::with_separate_meshes(objects, &large_meshes, &small_meshes)
+        Self::with_separate_meshes(objects, &large_meshes, &small_meshes, control)
     }
 
     /// Builds a geometry whose objects `large_meshes` stay beside the hierarchy, and whose meshes
     /// `small_meshes` are merged.
-    fn with_separate_meshes(objects: Vec<Object>, large_meshes: &[u32], small_meshes: &[u32]) -> Self {
+    fn with_separate_meshes(
+        objects: Vec<Object>,
+        large_meshes: &[u32],
+        small_meshes: &[u32],
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
         let totals = GeometryTotals::from_objects(&objects);
         debug_assert!(totals.shapes <= MAX_OBJECTS && totals.depth <= MAX_DEPTH);
         let first_shapes = if totals.instances == 0 { Vec::new() } else { first_shapes(&objects) };
         let shape_index = |object_index: u32| first_shapes.get(object_index as usize).copied().unwrap_or(object_index);
-        let merged_meshes = MergedMeshes::new(&objects, small_meshes, shape_index);
+        let merged_meshes = MergedMeshes::new(&objects, small_meshes, shape_index, control);
         let separate: BTreeSet<u32> = large_meshes.iter().chain(small_meshes).copied().collect();
         let indices = (0..objects.len() as u32).filter(|object_index| !separate.contains(object_index));
         let all_boxes: Vec<Aabb> = objects.iter().map(Object::bounds).collect();
         let bounds = all_boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
         let (bounded, unbounded): (Vec<u32>, Vec<u32>) =
             indices.partition(|i| objects[*i as usize].is_bounded_by(&all_boxes[*i as usize]));
-        let mut entries = HierarchyEntries::new(&objects, bounded, all_boxes);
+        let mut entries = HierarchyEntries::new(&objects, bounded, all_boxes, control);
         let large_mesh = |i: &u32| LargeMesh::new(&objects[*i as usize], *i, shape_index(*i));
         let large_meshes = large_meshes.iter().map(large_mesh).collect();
         let moves = objects.iter().any(Object::moves);
@@ -123,13 +132,14 @@ impl Geometry {
         let [has_instance_attributes, has_mesh_attributes] = have_attributes(&objects, &attributes);
         // Free the descriptions of the objects before the hierarchy is built.
         let objects = Instance::from_objects(objects);
-        let bvh = Bvh::build(std::mem::take(&mut entries.boxes), Quality::Balanced);
+        control.check()?;
+        let bvh = Bvh::build_with_control(std::mem::take(&mut entries.boxes), &Quality::Balanced.into(), control)?;
         let item = |entry: &u32| {
             let (object_index, times) = (entries.objects[*entry as usize], entries.times(*entry as usize));
             LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
         };
         let items = bvh.order().iter().map(item).collect();
-        Self {
+        Ok(Self {
             objects,
             first_shapes,
             items,
@@ -143,7 +153,7 @@ impl Geometry {
             has_mesh_attributes,
             has_instance_attributes,
             totals,
-        }
+        })
     }
 
     /// Sets the SIMD instruction set of this geometry and all geometries below it.

@@ -8,7 +8,7 @@
 
 use super::instance::SphereKeys;
 use super::{Content, Object};
-use juggler_math::{Aabb, Motion};
+use juggler_math::{Aabb, BuildControl, Motion};
 
 /// Maximum number of segments of an object.
 const MAX_SEGMENTS: usize = 256;
@@ -31,8 +31,9 @@ pub struct HierarchyEntries {
 }
 
 impl HierarchyEntries {
-    /// Entries of the objects `bounded`. `boxes` holds the bounds of all objects.
-    pub fn new(objects: &[Object], bounded: Vec<u32>, boxes: Vec<Aabb>) -> Self {
+    /// Entries of the objects `bounded`; incomplete if `control` is cancelled. `boxes` holds the bounds
+    /// of all objects.
+    pub fn new(objects: &[Object], bounded: Vec<u32>, boxes: Vec<Aabb>, control: &BuildControl) -> Self {
         let bounds = |index: &u32| boxes.get(*index as usize).copied().unwrap_or(Aabb::EMPTY);
         let moving = objects.iter().filter(|object| object.motion.moves()).count();
         let limit = (MAX_ENTRIES / moving.max(1)).min(MAX_SEGMENTS);
@@ -43,7 +44,7 @@ impl HierarchyEntries {
             return Self { boxes: bounded.iter().map(bounds).collect(), objects: bounded, times: Vec::new() };
         }
         let mut entries = Self::default();
-        for index in bounded {
+        for index in bounded.into_iter().take_while(|_| !control.is_cancelled()) {
             let segments = objects.get(index as usize).map_or_else(Vec::new, |object| segments(object, limit));
             if segments.is_empty() {
                 entries.add(index, bounds(&index), [0.0, 1.0]);

@@ -94,7 +94,14 @@ mod tests {
         let sun =
             |intensity: &f32| SceneLight::from(AnyLight::from(Directional { intensity: *intensity, ..<_>::default() }));
         let background = AnyBackground::from(Solid { color: Rgb::splat(sky) });
-        World::new(Vec::new(), MaterialTable::default(), suns.iter().map(sun), background)
+        World::new(
+            Vec::new(),
+            MaterialTable::default(),
+            suns.iter().map(sun),
+            background,
+            &juggler_math::BuildControl::default(),
+        )
+        .unwrap()
     }
 
     const CONTEXT: LightSampleContext =

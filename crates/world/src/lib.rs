@@ -7,7 +7,7 @@ use juggler_bsdf::PhongParameters;
 use juggler_light::background::AnyBackground;
 use juggler_material::medium::{Interior, InteriorId};
 use juggler_material::{MaterialId, MaterialTable, Shading, ShadingView, TexturedPoint};
-use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Ray, Rgb, Vec2, Vec3};
 use juggler_shape::Hit;
 use juggler_shape::surface::{Surface, Tangents};
 use std::borrow::Cow;
@@ -145,25 +145,36 @@ pub struct World {
 
 impl World {
     /// Builds the hierarchy over the objects. Every `Object::material` must be in `materials`.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
     pub fn new(
         objects: Vec<Object>,
         materials: MaterialTable,
         lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
-    ) -> Self {
-        Self::from_top_level(Arc::new(Geometry::top_level(objects)), materials, lights, background)
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        let top = Geometry::top_level(objects, control)?;
+        Self::from_top_level(Arc::new(top), materials, lights, background, control)
     }
 
     /// Creates a world with the same geometry and other materials, lights and background. Reuses
     /// the bounding volume hierarchy. Every `Object::material` must be in `materials`. The result
     /// is bit for bit that of [`World::new`].
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
     pub fn with_shading(
         &self,
         materials: MaterialTable,
         lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
-    ) -> Self {
-        Self::from_top_level(Arc::clone(&self.top), materials, lights, background)
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        Self::from_top_level(Arc::clone(&self.top), materials, lights, background, control)
     }
 
     fn from_top_level(
@@ -171,7 +182,8 @@ impl World {
         materials: MaterialTable,
         lights: impl IntoIterator<Item = impl Into<SceneLight>>,
         background: AnyBackground,
-    ) -> Self {
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
         let geometries = geometry_stats::geometries(&top);
         let used =
             || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material());
@@ -187,11 +199,11 @@ impl World {
         let has_mesh_attributes = top.has_mesh_attributes;
         let has_image_textures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lights.iter().any(SceneLight::moves);
-        let emitters =
-            Emitters::new(&lights, EmissiveShape::collect(&top, &materials), &background, radius(&top.bounds()));
+        let shapes = EmissiveShape::collect(&top, &materials);
+        let emitters = Emitters::new(&lights, shapes, &background, radius(&top.bounds()), control)?;
         let casters = CausticCaster::collect(&top, &materials);
         let contacts = Contacts::new(&top, &materials);
-        Self {
+        Ok(Self {
             top,
             materials,
             lights,
@@ -211,7 +223,7 @@ impl World {
             moves,
             labels: Labels::default(),
             has_groups: false,
-        }
+        })
     }
 
     /// Sets the SIMD instruction set of all ray queries, for tests and measurements. The default is

@@ -6,7 +6,7 @@ use super::closest_after::HitKey;
 use super::large_mesh::RayCoherence;
 use super::{Object, WorldHit};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
-use juggler_math::{Ray, Vec2, Vec3};
+use juggler_math::{BuildControl, Ray, Vec2, Vec3};
 use juggler_shape::{Hit, Mesh, Shape, clamp_to_f32_range};
 use std::sync::Arc;
 
@@ -53,8 +53,13 @@ fn mesh(object: &Object) -> Option<&Mesh> {
 
 impl MergedMeshes {
     /// Merges the meshes of the objects at `indices`; `shape_index` maps them to shape indices.
-    /// `None` if there is none.
-    pub fn new(objects: &[Object], indices: &[u32], shape_index: impl Fn(u32) -> u32) -> Option<Self> {
+    /// `None` if there is none, or if `control` is cancelled.
+    pub fn new(
+        objects: &[Object],
+        indices: &[u32],
+        shape_index: impl Fn(u32) -> u32,
+        control: &BuildControl,
+    ) -> Option<Self> {
         let (mut positions, mut triangles, mut owners) = (Vec::<Vec3>::new(), Vec::new(), Vec::new());
         for object_index in indices {
             let data = mesh(objects.get(*object_index as usize)?)?.data()?;
@@ -63,7 +68,8 @@ impl MergedMeshes {
             triangles.extend(data.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
             positions.extend_from_slice(&data.positions);
         }
-        let bvh = TriangleBvh::build(&positions, &triangles, Quality::Balanced).ok().filter(|_| !indices.is_empty())?;
+        let bvh = TriangleBvh::build_with_control(&positions, &triangles, Quality::Balanced, control);
+        let bvh = bvh.ok().filter(|_| !indices.is_empty())?;
         Some(Self { bvh: Arc::new(bvh), owners })
     }
 

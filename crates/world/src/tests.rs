@@ -5,7 +5,7 @@ use super::*;
 use juggler_light::background::Solid;
 use juggler_material::{Checkerboard, MaterialCompiler, MaterialRef, MaterialResolver};
 use juggler_math::testing::Random;
-use juggler_math::{Transform, Vec3};
+use juggler_math::{BuildControl, Transform, Vec3};
 use juggler_shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
 use juggler_texture::TextureTable;
 use std::sync::Arc;
@@ -41,12 +41,22 @@ fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec
     objects
 }
 
+/// A world without lights.
+fn world(objects: Vec<Object>, materials: MaterialTable, color: Rgb) -> World {
+    World::new(objects, materials, NO_LIGHTS, Solid { color }.into(), &BuildControl::new()).unwrap()
+}
+
+/// A geometry of objects.
+fn geometry(objects: Vec<Object>) -> Arc<Geometry> {
+    Arc::new(Geometry::new(objects, &BuildControl::new()).unwrap())
+}
+
 /// A world whose objects have the materials 0, 1 and 2.
 fn world_of(objects: Vec<Object>) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let materials = [0, 1, 2].map(|_| compiler.material("material", &MaterialRef::default()).unwrap());
     assert_eq!(materials, [0, 1, 2].map(MaterialId));
-    World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+    world(objects, compiler.finish().unwrap(), Rgb::BLACK)
 }
 
 /// Three levels: a crowd with a ground plane, reflected, sheared and rotated instances of it, and
@@ -67,16 +77,18 @@ fn nested(random: &mut Random) -> World {
         (0..count).map(one).collect()
     };
     let mut random = Random::new(18);
-    let inner = Arc::new(Geometry::new(crowd(&mut random, 1, None)));
+    let inner = geometry(crowd(&mut random, 1, None));
     let mut objects = instances(&inner, 3, Some(MaterialId(1)));
     objects.extend(crowd(&mut random, 1, Some(MaterialId(2))));
     objects.extend(instances(&inner, 2, None));
-    let middle = Arc::new(Geometry::new(objects));
+    let middle = geometry(objects);
     let mut objects = instances(&middle, 3, None);
     objects.extend(crowd(&mut random, 1, Some(MaterialId(0))));
     objects.extend(instances(&inner, 4, Some(MaterialId(0))));
     let plane = Object::new(Plane::default().into(), Transform::translation(Vec3::Y * -30.0), MaterialId(0));
-    let ground = Arc::new(Geometry::new(vec![plane.clone(), instances(&inner, 1, None).remove(0)]));
+    let ground = Arc::new(
+        Geometry::new(vec![plane.clone(), instances(&inner, 1, None).remove(0)], &BuildControl::new()).unwrap(),
+    );
     objects.extend(instances(&ground, 1, Some(MaterialId(1))));
     objects.push(plane);
     world_of(objects)
@@ -88,7 +100,7 @@ fn grove(random: &mut Random) -> World {
         objects.retain(Object::is_bounded);
         objects
     };
-    let mut content = Arc::new(Geometry::new(bounded(crowd(random, 1, None))));
+    let mut content = geometry(bounded(crowd(random, 1, None)));
     for material in [1, 2] {
         let mut objects = bounded(crowd(random, 1, Some(MaterialId(0))));
         for _ in 0..6 {
@@ -104,7 +116,7 @@ fn grove(random: &mut Random) -> World {
                 },
             );
         }
-        content = Arc::new(Geometry::new(objects));
+        content = geometry(objects);
     }
     world_of(vec![Object {
         content: Content::Geometry(content),
@@ -217,7 +229,7 @@ fn coincident_instances_hit_the_lowest_index() {
     let mut random = Random::new(25);
     let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
     objects.retain(Object::is_bounded);
-    let geometry = Arc::new(Geometry::new(objects));
+    let geometry = geometry(objects);
     let instance = Object {
         content: Content::Geometry(geometry),
         motion: random.rotation().into(),
@@ -342,7 +354,8 @@ fn shared_geometry_is_stored_once() {
     for _ in 0..3 {
         let place = |i: u16| Transform::translation(Vec3::new(f32::from(i % 32), 0.0, f32::from(i / 32)) * step);
         let object = |i| Object { content: content.clone(), motion: place(i).into(), material: None, attributes: None };
-        content = Content::Geometry(Arc::new(Geometry::new((0..1024).map(object).collect())));
+        content =
+            Content::Geometry(Arc::new(Geometry::new((0..1024).map(object).collect(), &BuildControl::new()).unwrap()));
         step *= 32.0;
     }
     let world = world_of(vec![Object {
@@ -369,8 +382,7 @@ fn shared_geometry_is_stored_once() {
 
 #[test]
 fn empty_world_has_only_its_background() {
-    let world =
-        World::new(Vec::new(), MaterialTable::default(), NO_LIGHTS, AnyBackground::Solid(Solid { color: Rgb::WHITE }));
+    let world = world(Vec::new(), MaterialTable::default(), Rgb::WHITE);
     let mut ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert!(!world.closest(&mut ray).is_some());
     assert_eq!(world.background_radiance(&ray), Rgb::WHITE);
@@ -383,5 +395,5 @@ pub fn world_with(shape: AnyShape, transform: Transform, textured: bool) -> Worl
     let recipe = if textured { MaterialRef::from(Checkerboard::default()) } else { MaterialRef::default() };
     let material = compiler.material("material", &recipe).unwrap();
     let objects = vec![Object::new(shape, transform, material)];
-    World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+    world(objects, compiler.finish().unwrap(), Rgb::BLACK)
 }

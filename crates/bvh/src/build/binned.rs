@@ -7,6 +7,7 @@ use super::bins::{Bins, BlockShift, Mapping, ObjectSplit, SideTest};
 use super::item::{Item, Items, SetBounds};
 use super::partition;
 use crate::pages::Pages;
+use juggler_math::{BuildControl, Cancelled};
 use rayon::prelude::*;
 
 /// Depth from which sets are split at the median, so that no tree exceeds 72 levels.
@@ -18,7 +19,7 @@ pub(super) const CHUNK: usize = 1 << 13;
 
 /// Parameters of the surface-area heuristic.
 #[derive(Clone, Copy)]
-pub(super) struct Settings {
+pub(super) struct Settings<'c> {
     pub leaf_size: usize,
     pub block: BlockShift,
     /// Cost of a node test in units of the cost of one leaf block test.
@@ -26,9 +27,16 @@ pub(super) struct Settings {
     /// Sets up to this size are halved in their present order: the collapse mostly merges them into
     /// one wide node.
     pub split_in_order_size: usize,
+    /// Ends the build between subtrees.
+    pub control: &'c BuildControl,
 }
 
-impl Settings {
+impl<'c> Settings<'c> {
+    /// Settings of a tree over clusters, in whose leaves single clusters lie.
+    pub fn of_clusters(control: &'c BuildControl) -> Self {
+        Self { leaf_size: 1, block: BlockShift(0), node_cost: 0.0, split_in_order_size: 4, control }
+    }
+
     /// Whether a split is cheaper than a leaf. Boxes without area have a cost of NaN and become
     /// leaves.
     pub fn pays(&self, count: usize, cost: f32) -> bool {
@@ -38,14 +46,15 @@ impl Settings {
 }
 
 /// Builds the binary tree, empty without items, and the item indices in leaf order.
-pub(super) fn build(mut items: Items, settings: &Settings) -> (Pages<BinaryNode>, Vec<u32>) {
+pub(super) fn build(mut items: Items, settings: &Settings) -> Result<(Pages<BinaryNode>, Vec<u32>), Cancelled> {
     let extents = items.extents;
     if items.count == 0 {
-        return (Pages::zeroed(0), Vec::new());
+        return Ok((Pages::zeroed(0), Vec::new()));
     }
     let mut order = vec![0; items.count];
     let set = Set { items: items.list(), order: &mut order, first: 0, extents, depth: 0 };
-    (subtree(set, settings).into_nodes(), order)
+    let tree = subtree(set, settings)?;
+    Ok((tree.into_nodes(), order))
 }
 
 /// A set of items to build a subtree over: the items, the output for item indices in leaf order, the
@@ -71,15 +80,17 @@ impl<'a> Set<'a> {
 }
 
 /// Builds the subtree over a set of at least one item.
-pub(super) fn subtree<'a>(set: Set<'a>, settings: &Settings) -> Subtree<'a> {
+pub(super) fn subtree<'a>(set: Set<'a>, settings: &Settings) -> Result<Subtree<'a>, Cancelled> {
+    settings.control.check()?;
     if set.items.len() <= TASK {
-        return build_sequentially(set, settings);
+        settings.control.advance(set.items.len());
+        return Ok(build_sequentially(set, settings));
     }
     let bounds = set.extents.bounds;
     let (left, extents) = split_large(&mut *set.items, &set.extents, set.depth, settings);
     let [left, right] = set.halves(left, extents);
     let (left, right) = rayon::join(|| subtree(left, settings), || subtree(right, settings));
-    Subtree::join(bounds, left, right)
+    Ok(Subtree::join(bounds, left?, right?))
 }
 
 /// Partitions the items, left side first. Returns the size of the left side and the bounds of both
@@ -141,14 +152,14 @@ pub(super) fn write_order(order: &mut [u32], items: &[Item]) {
 
 /// State of a sequential build.
 pub(super) struct Task<'a> {
-    settings: &'a Settings,
+    settings: &'a Settings<'a>,
     /// Bins of the last call of [`Task::find_object_split`].
     pub bins: Bins,
     pub nodes: Vec<BinaryNode>,
 }
 
 impl<'a> Task<'a> {
-    pub fn new(settings: &'a Settings) -> Self {
+    pub fn new(settings: &'a Settings<'a>) -> Self {
         Self { settings, bins: Bins::EMPTY, nodes: Vec::new() }
     }
 

@@ -3,10 +3,12 @@
 
 use super::BuildStats;
 use super::binary::BinaryNode;
+use super::binned::Settings;
 use super::plan::Plan;
 use super::refit::sah_cost;
 use crate::node::{Child, Node, WIDTH};
 use crate::pages::Pages;
+use juggler_math::{BuildControl, Cancelled};
 use rayon::prelude::*;
 
 /// Number of wide levels whose children are parallel tasks.
@@ -16,18 +18,22 @@ const SMALL: usize = 1 << 13;
 
 /// Collapses a binary tree. Returns the wide nodes, root first, and their statistics. There is a
 /// root even without items.
-pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) -> (Pages<Node>, BuildStats) {
+pub(super) fn collapse(binary: &[BinaryNode], settings: &Settings) -> Result<(Pages<Node>, BuildStats), Cancelled> {
+    let (leaf_size, block, control) = (settings.leaf_size, 1 << settings.block.0, settings.control);
     if binary.is_empty() {
-        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
+        return Ok((vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() }));
     }
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
-    let collapser = Collapser { binary, plan: Plan::new(binary, leaf_size, block) };
+    let collapser = Collapser { binary, plan: Plan::new(binary, leaf_size, block, control), control };
+    control.check()?;
     let size = collapser.size(0, levels);
+    control.check()?;
     let mut nodes = Pages::zeroed(size.nodes);
     let stats = collapser.write(0, &size, &mut nodes, 0);
     let sah_cost = sah_cost(&nodes, block);
     let stats = BuildStats { nodes: nodes.len(), sah_cost, block, ..stats };
-    (nodes, stats)
+    control.check()?;
+    Ok((nodes, stats))
 }
 
 /// Number of wide nodes of a subtree. `below` has the sizes of its inner children's subtrees if
@@ -40,11 +46,16 @@ struct Size {
 struct Collapser<'a> {
     binary: &'a [BinaryNode],
     plan: Plan<'a>,
+    control: &'a BuildControl,
 }
 
 impl Collapser<'_> {
-    /// Size of the subtree at a binary node; children down to `levels` are parallel tasks.
+    /// Size of the subtree at a binary node; children down to `levels` are parallel tasks. After
+    /// cancellation sizes are too small, and nothing may be written.
     fn size(&self, binary: usize, levels: usize) -> Size {
+        if self.control.is_cancelled() {
+            return Size { nodes: 0, below: Vec::new() };
+        }
         if levels == 0 {
             return Size { nodes: self.count(binary), below: Vec::new() };
         }
@@ -64,6 +75,9 @@ impl Collapser<'_> {
     /// Writes the wide nodes of the subtree at a binary node into `nodes`, the first of which has
     /// the index `first` in the tree.
     fn write(&self, binary: usize, size: &Size, nodes: &mut [Node], first: usize) -> BuildStats {
+        if self.control.is_cancelled() {
+            return BuildStats::default();
+        }
         if size.below.is_empty() {
             return self.write_sequentially(binary, nodes, first, &mut 0);
         }

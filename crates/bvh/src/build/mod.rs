@@ -18,13 +18,13 @@ mod spatial_bins;
 mod tests;
 
 use crate::Bvh;
-use crate::node::LEAF_MAX;
+use crate::node::{LEAF_MAX, Node};
 use crate::pages::Pages;
 use binary::BinaryNode;
 use binned::Settings;
 use bins::BlockShift;
 pub(crate) use item::{Items, SimdBox};
-use juggler_math::Aabb;
+use juggler_math::{Aabb, BuildControl, Cancelled};
 pub use refit::RefitError;
 pub(crate) use refit::{checked_box, refit};
 pub(crate) use spatial::ItemSplitter;
@@ -77,7 +77,7 @@ pub struct BuildOptions {
 }
 
 impl BuildOptions {
-    fn settings(&self) -> Settings {
+    fn settings<'c>(&self, control: &'c BuildControl) -> Settings<'c> {
         let block = self.block.clamp(1, LEAF_MAX).next_power_of_two();
         let leaf_size = self.leaf_size.clamp(1, LEAF_MAX);
         Settings {
@@ -85,6 +85,7 @@ impl BuildOptions {
             block: BlockShift(block.trailing_zeros() as i32),
             node_cost: NODE_COST,
             split_in_order_size: 0,
+            control,
         }
     }
 }
@@ -133,38 +134,74 @@ impl Bvh {
 
     /// [`Bvh::build`] with explicit [`BuildOptions`].
     pub fn build_with(boxes: impl AsRef<[Aabb]>, options: &BuildOptions) -> Self {
+        // Nothing cancels this control.
+        Self::build_with_control(boxes, options, &BuildControl::default()).unwrap_or_else(|Cancelled| Self::empty())
+    }
+
+    /// [`Bvh::build_with`], which ends early if `control` is cancelled, and reports its progress to
+    /// it.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn build_with_control(
+        boxes: impl AsRef<[Aabb]>,
+        options: &BuildOptions,
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        control.check()?;
         let list = boxes.as_ref();
         let list = &list[..list.len().min(MAX_ITEMS)];
         let Ok(items) = Items::new(list.len(), |i| Ok::<_, Infallible>(SimdBox::raw(&list[i])));
         drop(boxes);
-        Self::from_items(items, options)
+        Self::from_items(items, options, control)
     }
 
-    pub(crate) fn from_items(items: Items, options: &BuildOptions) -> Self {
-        let (settings, left_out) = (options.settings(), items.left_out);
+    /// Hierarchy over no items.
+    fn empty() -> Self {
+        let nodes = vec![Node::EMPTY].into();
+        let stats = BuildStats { nodes: 1, depth: 1, block: 1, ..BuildStats::default() };
+        Self { nodes, order: Vec::new(), bounds: Aabb::EMPTY, stats, level: fearless_simd::Level::new() }
+    }
+
+    pub(crate) fn from_items(items: Items, options: &BuildOptions, control: &BuildControl) -> Result<Self, Cancelled> {
+        let (settings, left_out, count) = (options.settings(control), items.left_out, items.count);
+        // The rest costs about as much as the binary tree.
+        control.expect(2 * count);
         let built = match options.quality {
-            Quality::Fast => morton::build(items, settings.leaf_size),
-            Quality::Balanced => reinsert::optimize(binned::build(items, &settings), SHARE_BALANCED),
-            Quality::Best => reinsert::optimize(binned::build(items, &settings), SHARE_BEST),
+            Quality::Fast => morton::build(items, settings.leaf_size, control)?,
+            Quality::Balanced => reinsert::optimize(binned::build(items, &settings)?, SHARE_BALANCED, control)?,
+            Quality::Best => reinsert::optimize(binned::build(items, &settings)?, SHARE_BEST, control)?,
         };
-        Self::from_binary(built, &settings, left_out)
+        let bvh = Self::from_binary(built, &settings, left_out)?;
+        control.advance(count);
+        Ok(bvh)
     }
 
     /// [`Bvh::from_items`] with spatial splits and the best quality, whatever `options` says;
     /// several leaves may refer to an item.
-    pub(crate) fn with_spatial_splits(items: Items, options: &BuildOptions, splitter: &impl ItemSplitter) -> Self {
-        let (settings, left_out, count) = (options.settings(), items.left_out, items.count);
-        let built = reinsert::optimize(spatial::build(items, &settings, splitter), SHARE_BEST);
-        let mut bvh = Self::from_binary(built, &settings, left_out);
+    pub(crate) fn with_spatial_splits(
+        items: Items,
+        options: &BuildOptions,
+        splitter: &impl ItemSplitter,
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        let (settings, left_out, count) = (options.settings(control), items.left_out, items.count);
+        let built = reinsert::optimize(spatial::build(items, &settings, splitter)?, SHARE_BEST, control)?;
+        let mut bvh = Self::from_binary(built, &settings, left_out)?;
         bvh.stats.items = count;
-        bvh
+        Ok(bvh)
     }
 
-    fn from_binary((binary, order): (Pages<BinaryNode>, Vec<u32>), settings: &Settings, left_out: usize) -> Self {
-        let (nodes, mut stats) = collapse::collapse(&binary, settings.leaf_size, 1 << settings.block.0);
+    fn from_binary(
+        (binary, order): (Pages<BinaryNode>, Vec<u32>),
+        settings: &Settings,
+        left_out: usize,
+    ) -> Result<Self, Cancelled> {
+        let (nodes, mut stats) = collapse::collapse(&binary, settings)?;
         (stats.items, stats.references) = (order.len(), order.len());
         stats.left_out = left_out;
         let bounds = binary.first().map_or(Aabb::EMPTY, BinaryNode::aabb);
-        Self { nodes, order, bounds, stats, level: fearless_simd::Level::new() }
+        Ok(Self { nodes, order, bounds, stats, level: fearless_simd::Level::new() })
     }
 }

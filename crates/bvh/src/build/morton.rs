@@ -5,9 +5,9 @@
 
 use super::binary::BinaryNode;
 use super::binned::{self, Settings};
-use super::bins::BlockShift;
 use super::item::{Item, Items, SimdBox};
 use crate::pages::Pages;
+use juggler_math::{BuildControl, Cancelled};
 use rayon::prelude::*;
 use std::convert::Infallible;
 use wide::f32x4;
@@ -16,12 +16,18 @@ use wide::f32x4;
 const TASK: usize = 1 << 13;
 
 /// Builds the binary tree, empty without items, and the item indices in leaf order.
-pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, Vec<u32>) {
+pub(super) fn build(
+    mut items: Items,
+    leaf_size: usize,
+    control: &BuildControl,
+) -> Result<(Pages<BinaryNode>, Vec<u32>), Cancelled> {
     let curve = Curve::new(items.extents.centers, items.list().len());
     let items = items.list();
     let mut keys = Pages::zeroed(items.len());
     keys.par_iter_mut().zip(&*items).enumerate().for_each(|(i, (key, item))| *key = curve.key(item, i));
+    control.check()?;
     keys.par_sort_unstable();
+    control.check()?;
     let item = |key: &u64| &items[curve.position(*key)];
     let clusters = clusters(&keys, 0, leaf_size);
     let bounds = |cluster: usize| {
@@ -30,8 +36,7 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
         Ok::<_, Infallible>(keys.iter().fold(SimdBox::EMPTY, |all, key| all.union(item(key).bounds())))
     };
     let Ok(boxes) = Items::new(clusters.len(), bounds);
-    let (mut nodes, order) =
-        binned::build(boxes, &Settings { leaf_size: 1, block: BlockShift(0), node_cost: 0.0, split_in_order_size: 4 });
+    let (mut nodes, order) = binned::build(boxes, &Settings::of_clusters(control))?;
     // List the items of the clusters in the tree's leaf order.
     let mut starts = vec![0; order.len()];
     let mut numbers = Vec::with_capacity(items.len());
@@ -44,7 +49,7 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
         let place = leaf.first as usize;
         (leaf.first, leaf.count) = (starts[place], clusters[order[place] as usize].1);
     });
-    (nodes, numbers)
+    Ok((nodes, numbers))
 }
 
 /// Mapping from centers to sort keys: the Morton code in the upper bits, the item's position in the

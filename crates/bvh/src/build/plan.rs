@@ -4,6 +4,7 @@
 
 use super::binary::BinaryNode;
 use crate::node::WIDTH;
+use juggler_math::BuildControl;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Number of binary levels whose two sides are evaluated in parallel.
@@ -38,16 +39,17 @@ pub(super) struct Plan<'a> {
     leaf_size: u32,
     block: u32,
     inverse_area: f64,
+    control: &'a BuildControl,
 }
 
 impl<'a> Plan<'a> {
-    /// Evaluates all nodes. `block` is the number of items per leaf block, which costs as much as a
-    /// node.
-    pub fn new(nodes: &'a [BinaryNode], leaf_size: usize, block: usize) -> Self {
+    /// Evaluates all nodes, not all if `control` is cancelled. `block` is the number of items per leaf
+    /// block, which costs as much as a node.
+    pub fn new(nodes: &'a [BinaryNode], leaf_size: usize, block: usize, control: &'a BuildControl) -> Self {
         let choices = (0..nodes.len()).map(|_| AtomicU32::new(0)).collect();
         let area = nodes.first().map_or(0.0, BinaryNode::half_area);
         let inverse_area = if area > 0.0 { area.recip() } else { 0.0 };
-        let plan = Self { nodes, choices, leaf_size: leaf_size as u32, block: block as u32, inverse_area };
+        let plan = Self { nodes, choices, leaf_size: leaf_size as u32, block: block as u32, inverse_area, control };
         if !nodes.is_empty() {
             plan.evaluate(0, if nodes.len() < SMALL { 0 } else { TASK_LEVELS });
         }
@@ -55,6 +57,9 @@ impl<'a> Plan<'a> {
     }
 
     fn evaluate(&self, number: usize, levels: usize) -> SubtreeCosts {
+        if levels > 0 && self.control.is_cancelled() {
+            return SubtreeCosts { costs: [0.0; WIDTH], items: 0 };
+        }
         let node = &self.nodes[number];
         let area = ((node.half_area() * self.inverse_area) as f32).max(LEAST_AREA);
         if node.is_leaf() {

@@ -12,6 +12,7 @@ const CHUNK: usize = 1 << 8;
 
 /// Reason why a tree cannot be refitted and must be rebuilt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RefitError {
     /// The number of items differs from that of the build.
     Count {

@@ -10,6 +10,7 @@
 use super::binary::BinaryNode;
 use super::item::SimdBox;
 use crate::pages::Pages;
+use juggler_math::{BuildControl, Cancelled};
 use rayon::prelude::*;
 
 /// Number of rounds. More rounds gain next to nothing.
@@ -20,26 +21,36 @@ const STEPS: usize = 2000;
 const MAX_DEPTH: usize = 72;
 /// Number of levels whose depths are measured in parallel.
 const TASK_LEVELS: usize = 10;
+/// Number of nodes that are listed between tests for cancellation, a power of two.
+const CHECKED: usize = 1 << 16;
 
 /// Returns the optimized tree, or the original one if the former is too deep. Leaves keep their
 /// items. Each round considers one of `share` nodes, the largest ones.
-pub(super) fn optimize((nodes, order): (Pages<BinaryNode>, Vec<u32>), share: usize) -> (Pages<BinaryNode>, Vec<u32>) {
+pub(super) fn optimize(
+    (nodes, order): (Pages<BinaryNode>, Vec<u32>),
+    share: usize,
+    control: &BuildControl,
+) -> Result<(Pages<BinaryNode>, Vec<u32>), Cancelled> {
     if nodes.len() < 8 {
-        return (nodes, order);
+        return Ok((nodes, order));
     }
+    control.check()?;
     let mut better = nodes.clone();
+    control.check()?;
     let mut tree = Tree::new(&mut better);
+    control.check()?;
     let least = tree.least_area(share);
     for _ in 0..ROUNDS {
-        let moves = tree.find_moves(least);
+        let moves = tree.find_moves(least, control)?;
         tree.apply(&moves);
     }
     drop(tree);
+    control.check()?;
     if depth(&better, 0, TASK_LEVELS) > MAX_DEPTH {
-        return (nodes, order);
+        return Ok((nodes, order));
     }
     drop(nodes);
-    relist(&better, &order)
+    relist(&better, &order, control)
 }
 
 /// Number of levels of the subtree at a node; the upper `levels` are parallel tasks.
@@ -103,14 +114,18 @@ impl<'a> Tree<'a> {
     }
 
     /// Finds the best moves of nodes with an area above `least_area`, by decreasing gain.
-    fn find_moves(&self, least_area: f64) -> Vec<Move> {
+    fn find_moves(&self, least_area: f64, control: &BuildControl) -> Result<Vec<Move>, Cancelled> {
+        control.check()?;
         let large = self.nodes.par_iter().enumerate().filter(|(_, node)| node.half_area() > least_area);
         // Children of the root have no other place.
         let numbers: Vec<usize> = large.map(|(n, _)| n).filter(|&n| self.parent(n) != 0).collect();
-        let find = |stack: &mut Vec<(f64, usize)>, &number: &usize| self.find_move(number, stack);
+        let find = |stack: &mut Vec<(f64, usize)>, &number: &usize| {
+            if control.is_cancelled() { None } else { self.find_move(number, stack) }
+        };
         let mut moves: Vec<Move> = numbers.par_iter().map_init(Vec::new, find).flatten().collect();
+        control.check()?;
         moves.par_sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
-        moves
+        Ok(moves)
     }
 
     /// Finds the best target for a node. Walks up from the node and, at each level, descends into
@@ -210,7 +225,11 @@ impl<'a> Tree<'a> {
 }
 
 /// Lists the nodes depth first, with items in leaf order.
-pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>) {
+pub(super) fn relist(
+    nodes: &[BinaryNode],
+    order: &[u32],
+    control: &BuildControl,
+) -> Result<(Pages<BinaryNode>, Vec<u32>), Cancelled> {
     let mut pages = Pages::zeroed(nodes.len());
     let listed = &mut pages[..];
     let mut items = Vec::with_capacity(order.len());
@@ -222,10 +241,13 @@ pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>,
             listed[place] = BinaryNode { first: items.len() as u32, ..node };
             items.extend_from_slice(&order[first..first + node.count as usize]);
         } else {
+            if end % CHECKED == 1 {
+                control.check()?;
+            }
             listed[place] = BinaryNode { first: end as u32, ..node };
             stack.extend([(first + 1, end + 1), (first, end)]);
             end += 2;
         }
     }
-    (pages, items)
+    Ok((pages, items))
 }

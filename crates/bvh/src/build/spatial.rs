@@ -16,6 +16,7 @@ use super::item::{Item, Items, SetBounds, SimdBox};
 use super::reinsert::relist;
 use super::spatial_bins::{SpatialBins, SpatialSplit, half_area};
 use crate::pages::Pages;
+use juggler_math::Cancelled;
 use rayon::prelude::*;
 
 /// At most one reference is added per this many items.
@@ -40,19 +41,19 @@ pub(super) fn build(
     mut items: Items,
     settings: &Settings,
     splitter: &impl ItemSplitter,
-) -> (Pages<BinaryNode>, Vec<u32>) {
+) -> Result<(Pages<BinaryNode>, Vec<u32>), Cancelled> {
     let extents = items.extents;
     let items = items.list().to_vec();
     if items.is_empty() {
-        return (Pages::zeroed(0), Vec::new());
+        return Ok((Pages::zeroed(0), Vec::new()));
     }
     let budget = (items.len() / SHARE).min(MAX_ITEMS - items.len());
     let mut order = vec![0; items.len() + budget];
     let builder = Builder { settings, splitter };
     let set = Set { items, budget, order: &mut order, first: 0, extents, depth: 0 };
-    let nodes = builder.subtree(set).into_nodes();
+    let nodes = builder.subtree(set)?.into_nodes();
     // Close the gaps where subtrees used fewer references than their budget.
-    relist(&nodes, &order)
+    relist(&nodes, &order, settings.control)
 }
 
 /// References to build a subtree over: `budget` is the number that may be added, `order` the output
@@ -114,29 +115,30 @@ impl Side {
 }
 
 struct Builder<'a, D> {
-    settings: &'a Settings,
+    settings: &'a Settings<'a>,
     splitter: &'a D,
 }
 
 impl<D: ItemSplitter> Builder<'_, D> {
     /// Builds the subtree over a set of at least one reference.
-    fn subtree(&self, set: Set<'_>) -> Subtree<'static> {
+    fn subtree(&self, set: Set<'_>) -> Result<Subtree<'static>, Cancelled> {
+        self.settings.control.check()?;
         let mut task = Task::new(self.settings);
         if set.items.len() <= TASK {
             let root = self.grow(set, &mut task);
-            return Subtree::new(root, task.nodes);
+            return Ok(Subtree::new(root, task.nodes));
         }
         if set.budget == 0 {
             let Set { mut items, order, first, extents, depth, .. } = set;
             let set = binned::Set { items: &mut items, order, first, extents, depth };
-            return binned::subtree(set, self.settings).into_owned();
+            return Ok(binned::subtree(set, self.settings)?.into_owned());
         }
         let (bounds, leaf) = (set.extents.bounds, set.leaf());
         match self.split(set, &mut task) {
-            None => Subtree::new(leaf, Vec::new()),
+            None => Ok(Subtree::new(leaf, Vec::new())),
             Some([left, right]) => {
                 let (left, right) = rayon::join(|| self.subtree(left), || self.subtree(right));
-                Subtree::join(bounds, left, right)
+                Ok(Subtree::join(bounds, left?, right?))
             }
         }
     }

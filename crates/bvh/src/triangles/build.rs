@@ -8,7 +8,7 @@ use crate::triangle::TriangleTest;
 use crate::triangle::has_area;
 use crate::{BuildOptions, Bvh, MAX_ITEMS, Quality};
 use bytemuck::cast;
-use juggler_math::{Aabb, Vec3};
+use juggler_math::{Aabb, BuildControl, Vec3};
 use rayon::prelude::*;
 use wide::{f32x4, i32x4};
 
@@ -20,16 +20,30 @@ impl TriangleBvh {
     /// triangles and those with a vertex that is not finite are never hit. Uses the threads of the
     /// current rayon pool; the result does not depend on their number.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], quality: Quality) -> Result<Self, TriangleError> {
+        Self::build_with_control(positions, triangles, quality, &BuildControl::default())
+    }
+
+    /// [`TriangleBvh::build`], which ends early if `control` is cancelled, and reports its progress
+    /// to it.
+    pub fn build_with_control(
+        positions: &[Vec3],
+        triangles: &[[u32; 3]],
+        quality: Quality,
+        control: &BuildControl,
+    ) -> Result<Self, TriangleError> {
+        control.check()?;
         if triangles.len() > MAX_ITEMS {
             return Err(TriangleError::TooMany { triangles: triangles.len() });
         }
         let mesh = TriangleList { positions, triangles };
-        let mut bvh = mesh.tree(quality)?;
+        let mut bvh = mesh.tree(quality, control)?;
         let leaves = number_leaves(&mut bvh.nodes);
+        control.check()?;
         // The blocks hold the triangles' indices, so the tree no longer needs the order.
         let order = std::mem::take(&mut bvh.order);
         let mut blocks = Pages::zeroed(leaves.len());
         blocks.par_iter_mut().zip(&leaves).with_min_len(CHUNK).try_for_each(|(block, leaf)| {
+            control.check()?;
             *block = mesh.block(&order[leaf.items().start as usize..leaf.items().end as usize])?;
             Ok::<_, TriangleError>(())
         })?;
@@ -106,13 +120,13 @@ impl TriangleList<'_> {
     }
 
     /// Builds the tree; for the best quality the cheaper of two, with and without spatial splits.
-    fn tree(&self, quality: Quality) -> Result<Bvh, TriangleError> {
+    fn tree(&self, quality: Quality, control: &BuildControl) -> Result<Bvh, TriangleError> {
         let options = BuildOptions { block: LANES, ..quality.into() };
-        let whole = Bvh::from_items(self.items()?, &options);
+        let whole = Bvh::from_items(self.items()?, &options, control)?;
         if quality != Quality::Best {
             return Ok(whole);
         }
-        let with_splits = Bvh::with_spatial_splits(self.items()?, &options, self);
+        let with_splits = Bvh::with_spatial_splits(self.items()?, &options, self, control)?;
         Ok(if with_splits.stats.sah_cost < whole.stats.sah_cost { with_splits } else { whole })
     }
 

@@ -23,7 +23,7 @@ use bytemuck::{Pod, Zeroable};
 use fearless_simd::prelude::*;
 use fearless_simd::{dispatch, f32x8};
 use filter::{All, FilterFn};
-use juggler_math::{Aabb, Ray, Vec3};
+use juggler_math::{Aabb, Cancelled, Ray, Vec3};
 pub use moving::MovingTriangleBvh;
 pub use query::Filtered;
 use query::Query;
@@ -73,6 +73,7 @@ impl TriangleHit {
 
 /// Reason why a build or refit was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TriangleError {
     /// A triangle refers to a vertex that does not exist.
     NoSuchVertex {
@@ -90,6 +91,14 @@ pub enum TriangleError {
     },
     /// The triangles do not match those of the build.
     Refit(RefitError),
+    /// The build was cancelled.
+    Cancelled,
+}
+
+impl From<Cancelled> for TriangleError {
+    fn from(Cancelled: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 impl From<RefitError> for TriangleError {
@@ -105,6 +114,7 @@ impl fmt::Display for TriangleError {
                 write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
             }
             Self::Refit(error) => error.fmt(f),
+            Self::Cancelled => Cancelled.fmt(f),
             Self::TooMany { triangles } => {
                 write!(f, "{triangles} triangles are more than the {} that a tree can hold", crate::MAX_ITEMS)
             }

@@ -10,7 +10,7 @@ use crate::slabs::Slabs;
 use crate::triangle::{Shear, has_area};
 use crate::{BuildOptions, BuildStats, Leaf, MAX_ITEMS, MovingBvh, Quality, SimdLevel};
 use fearless_simd::dispatch;
-use juggler_math::{Aabb, Ray, Vec3};
+use juggler_math::{Aabb, BuildControl, Ray, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -37,14 +37,28 @@ impl MovingTriangleBvh {
         shutter: f32,
         quality: Quality,
     ) -> Result<Self, TriangleError> {
+        Self::build_with_control([open, close], triangles, shutter, quality, &BuildControl::default())
+    }
+
+    /// [`MovingTriangleBvh::build`], which ends early if `control` is cancelled, and reports its
+    /// progress to it. `ends` are the vertices at shutter open and at shutter close.
+    pub fn build_with_control(
+        ends: [&[Vec3]; 2],
+        triangles: &[[u32; 3]],
+        shutter: f32,
+        quality: Quality,
+        control: &BuildControl,
+    ) -> Result<Self, TriangleError> {
+        control.check()?;
         if triangles.len() > MAX_ITEMS {
             return Err(TriangleError::TooMany { triangles: triangles.len() });
         }
-        let ends = [open, close].map(|positions| TriangleList { positions, triangles });
+        let ends = ends.map(|positions| TriangleList { positions, triangles });
         let boxes = |triangle| Ok([bounds_of(ends[0].corners(triangle)?), bounds_of(ends[1].corners(triangle)?)]);
         let boxes: Vec<Result<_, TriangleError>> = (0..triangles.len()).into_par_iter().map(boxes).collect();
         let boxes = boxes.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let mut tree = MovingBvh::build_with(&boxes, shutter, &BuildOptions { block: LANES, ..quality.into() });
+        let options = BuildOptions { block: LANES, ..quality.into() };
+        let mut tree = MovingBvh::build_with_control(&boxes, shutter, &options, control)?;
         let leaves = number_leaves(&mut tree.bvh.nodes);
         let order = std::mem::take(&mut tree.bvh.order);
         let mut blocks: Pages<[Block; 2]> = Pages::zeroed(leaves.len());

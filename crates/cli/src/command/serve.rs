@@ -96,7 +96,7 @@ impl From<ServeError> for Failure {
     fn from(error: ServeError) -> Self {
         match error {
             ServeError::Remote(_) => Self::Invalid(error.to_string()),
-            ServeError::Busy(_) | ServeError::Listen { .. } | ServeError::System(_) => Self::System(error.to_string()),
+            _ => Self::System(error.to_string()),
         }
     }
 }

@@ -42,6 +42,7 @@ pub struct DracoMesh {
 
 /// Why a stream cannot be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DracoError {
     /// This build has no decoder.
     #[error("KHR_draco_mesh_compression cannot be read: this program was built without the feature `draco`")]

@@ -7,6 +7,7 @@ use super::open::Gltf;
 use super::translate::{Content, Meshes};
 use super::{is_binary, summary};
 use glam::DAffine3;
+use juggler_math::BuildControl;
 use juggler_scene::model::{
     FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
@@ -40,16 +41,27 @@ impl ModelFormat for GltfFormat {
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
+        self.open_with_control(name, bytes, files, &BuildControl::default())
+    }
+
+    fn open_with_control(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        files: &dyn Files,
+        control: &BuildControl,
+    ) -> Result<Arc<dyn ModelFile>, ModelError> {
         let files = Recorder { files, read: RefCell::default() };
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);
         let limits = self.limits.unwrap_or_default();
         let content = Gltf::open(name, bytes, &limits).and_then(|gltf| {
             let mut data = gltf.load(&files)?;
-            data.load_media(&files)?;
+            data.load_media(&files, control)?;
             Content::new(data)
         });
         let content = content.map_err(|error| model_error(&error))?;
+        control.check()?;
         let read = files.read.into_inner();
         for (name, digest) in &read {
             // The length keeps names apart from what follows them.
@@ -86,7 +98,18 @@ impl ModelFile for GltfModel {
     }
 
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
-        self.content.parts(choice, prefix).map_err(|error| model_error(&error))
+        self.parts_with_control(choice, prefix, &BuildControl::default())
+    }
+
+    fn parts_with_control(
+        &self,
+        choice: &ModelChoice,
+        prefix: &str,
+        control: &BuildControl,
+    ) -> Result<ModelParts, ModelError> {
+        let parts = self.content.parts(choice, prefix, control).map_err(|error| model_error(&error));
+        control.check()?;
+        parts
     }
 
     fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, ModelError> {

@@ -44,6 +44,7 @@ pub struct Ktx2Head {
 
 /// Why a KTX2 file cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Ktx2Error {
     /// This build has no decoder.
     #[error("KHR_texture_basisu cannot be read: this program was built without the feature `ktx2`")]

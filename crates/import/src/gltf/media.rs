@@ -7,6 +7,7 @@ use super::document::{Document, IesProfile, Index};
 use super::error::{Fault, GltfError};
 use super::ktx2;
 use juggler_imaging::{Limits as ImageLimits, decode_raster};
+use juggler_math::BuildControl;
 use juggler_scene::Asset;
 use std::io::Cursor;
 
@@ -40,8 +41,8 @@ impl GltfData {
     ///
     /// A file is missing or too large, or a data URI is not valid. A picture may be missing if all
     /// its textures have one in another format, or if the files are lenient. All faults are reported
-    /// at once.
-    pub fn load_media(&mut self, files: &dyn Files) -> Result<(), GltfError> {
+    /// at once. If `control` is cancelled, pictures are missing.
+    pub fn load_media(&mut self, files: &dyn Files, control: &BuildControl) -> Result<(), GltfError> {
         let (mut faults, mut lost, is_lenient) = (Vec::new(), Vec::new(), files.is_lenient());
         let mut keep = |result: Result<Asset, Fault>, is_replaceable: bool| match result {
             Ok(asset) => Some(asset),
@@ -55,6 +56,7 @@ impl GltfData {
         let document = &self.gltf.document;
         let uses = uses(document).into_iter().enumerate();
         let images = uses.map(|(index, Use { is_used, is_replaceable })| {
+            control.check().ok()?;
             let index = Index::from(u32::try_from(index).ok()?);
             let read = || self.image(index, files).map(|bytes| Asset::from_bytes(bytes.into_owned()));
             if !is_used || !is_lenient {

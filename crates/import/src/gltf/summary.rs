@@ -5,6 +5,7 @@ use super::error::GltfError;
 use super::extensions::{Support, extension};
 use super::format::GltfModel;
 use super::translate::camera_aspects;
+use juggler_math::BuildControl;
 use juggler_scene::model::{ExtensionSupport, ModelChoice, ModelClip, ModelExtension, ModelSummary};
 use std::collections::BTreeSet;
 
@@ -16,7 +17,7 @@ use std::collections::BTreeSet;
 pub fn summary(model: &GltfModel, choice: &ModelChoice) -> Result<ModelSummary, GltfError> {
     let (content, document) = (&model.content, model.document());
     let posed = content.posed(choice)?;
-    let parts = content.parts(choice, "")?;
+    let parts = content.parts(choice, "", &BuildControl::new())?;
     let nodes = posed.nodes.iter().map(|node| node.index);
     let clips = content.clips.iter().map(|clip| ModelClip { name: clip.name.clone(), seconds: clip.duration() });
     let names = &content.names;

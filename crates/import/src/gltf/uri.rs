@@ -19,6 +19,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 
 /// Why a URI is not read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum UriError {
     /// The URI is empty.
     #[error("the name of the file is empty")]

@@ -7,9 +7,9 @@ use super::pieces::{MAX_OBJECTS, Piece, pieces};
 use crate::gltf::{Warnings, image_size};
 use crate::textures::{NamedTextures, VERTEX_COLORS};
 use indexmap::IndexMap;
-use juggler_math::Aabb;
 use juggler_math::message::{MAX_QUOTE, excerpt};
-use juggler_mesh::{MeshLimits, OBJ, is_plain_obj, parse_obj};
+use juggler_math::{Aabb, BuildControl};
+use juggler_mesh::{MeshLimits, OBJ, is_plain_obj, parse_obj_with_control};
 use juggler_scene::Object;
 use juggler_scene::model::{
     AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
@@ -43,8 +43,18 @@ impl ModelFormat for ObjFormat {
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
+        self.open_with_control(name, bytes, files, &BuildControl::default())
+    }
+
+    fn open_with_control(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        files: &dyn Files,
+        control: &BuildControl,
+    ) -> Result<Arc<dyn ModelFile>, ModelError> {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        let parsed = parse_obj(Path::new(name), &bytes, &MeshLimits::default());
+        let parsed = parse_obj_with_control(Path::new(name), &bytes, &MeshLimits::default(), control);
         let model = parsed.map_err(|error| ModelError::new(error.to_string()))?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);

@@ -1,7 +1,7 @@
 //! AOV names of other programs: Blender passes, Arnold AOVs, V-Ray render elements, RenderMan.
 
 use super::Aov;
-use crate::{Error, check_name};
+use crate::Error;
 
 /// Names of other programs, in lower case with `_` between words, and the equivalent AOVs. The
 /// rendered image itself is no AOV.
@@ -74,7 +74,7 @@ impl Aov {
         if let Some((_, same)) = FOREIGN.iter().find(|(names, _)| names.contains(&plain.as_str())) {
             return Ok(same.to_vec());
         }
-        check_name("AOV", name, Self::ALL.iter().map(|aov| aov.name())).map(|()| Vec::new())
+        Self::by_name(name).map(|aov| vec![aov])
     }
 }
 

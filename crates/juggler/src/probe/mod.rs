@@ -151,10 +151,11 @@ impl<'s> Prober<'s> {
             return Ok(());
         }
         let (last_x, last_y) = (region.x + region.width.max(1) - 1, region.y + region.height.max(1) - 1);
-        Err(Error::Settings(format!(
+        let message = format!(
             "the pixel {x},{y} is outside the picture: X is {} to {last_x}, Y is {} to {last_y}",
             region.x, region.y
-        )))
+        );
+        Err(Error::setting("pixel", message))
     }
 
     /// Traces all samples of a pixel, given by column and row from the top left, and explains their

@@ -13,6 +13,7 @@ mod aovs;
 mod area_lights;
 mod assets;
 mod building;
+mod cancelling;
 mod changes;
 mod cryptomatte;
 mod edits;

@@ -140,7 +140,7 @@ fn one_call_heeds_all_settings() {
     let limits = [-1.0, f64::NAN, f64::INFINITY].map(|seconds| Limit::Time { seconds });
     for limit in limits.into_iter().chain([0.0, -1.0, f32::NAN].map(Limit::Noise)) {
         let result = juggler::render(&scene(), &Settings { limit, ..Settings::default() });
-        assert!(matches!(result, Err(Error::Settings(_))), "{limit:?}");
+        assert!(matches!(result, Err(Error::Settings { .. })), "{limit:?}");
     }
     let nowhere = juggler::render_to_file(&scene(), &with_aovs(), "no such folder/a.exr");
     assert!(matches!(nowhere, Err(Error::Image(_))));

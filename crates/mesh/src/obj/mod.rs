@@ -24,9 +24,10 @@ use crate::error::{MeshError, MeshErrorKind};
 use crate::format::{MeshFormat, MeshFormatInfo};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, PieceReader};
 use crate::sampling::{Counts, FileSampler};
 use crate::text::{Scanner, without_byte_order_mark};
+use juggler_math::BuildControl;
 pub use model::{ObjModel, ObjSection, is_plain_obj};
 use reader::Contents;
 use std::io;
@@ -48,8 +49,8 @@ impl MeshFormat for Obj {
         matches!(first, Some(b"v" | b"vt" | b"vn" | b"f" | b"mtllib" | b"usemtl" | b"o" | b"g"))
     }
 
-    fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
-        reader::read(bytes, limits, piece, false).map(|contents| contents.file)
+    fn read(&self, bytes: &[u8], limits: &MeshLimits, pieces: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
+        reader::read(bytes, limits, pieces, false).map(|contents| contents.file)
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {
@@ -60,9 +61,20 @@ impl MeshFormat for Obj {
 /// Parses the bytes of an OBJ with what its statements say about the faces: objects, groups,
 /// materials, smoothing groups and colors of positions. `path` names the file in errors.
 pub fn parse_obj(path: &Path, bytes: &[u8], limits: &MeshLimits) -> Result<ObjModel, MeshError> {
+    parse_obj_with_control(path, bytes, limits, &BuildControl::default())
+}
+
+/// Parses as [`parse_obj`] does, and ends early if `control` is cancelled, with an error.
+pub fn parse_obj_with_control(
+    path: &Path,
+    bytes: &[u8],
+    limits: &MeshLimits,
+    control: &BuildControl,
+) -> Result<ObjModel, MeshError> {
     let in_file = |kind| MeshError { path: path.to_owned(), kind };
     limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
-    let found = reader::read(without_byte_order_mark(bytes), limits, PIECE, true).map_err(in_file)?;
+    let pieces = PieceReader { size: PIECE, control };
+    let found = reader::read(without_byte_order_mark(bytes), limits, pieces, true).map_err(in_file)?;
     let Contents { file: MeshFile { mesh, warnings, .. }, positions, marks } = found;
     let (sections, libraries) = model::sections(marks);
     Ok(ObjModel { mesh, positions, sections, libraries, warnings })

@@ -8,10 +8,10 @@ use crate::assemble::{Colors, MeshParts};
 use crate::error::{MeshErrorKind, quote};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
-use crate::pieces::{next_line_start, read_pieces};
+use crate::pieces::{PieceReader, next_line_start};
 use crate::text::{Scanner, integer};
 use crate::weld::{Key, Welded, WeldedPiece};
-use juggler_math::{Vec2, Vec3, vec3};
+use juggler_math::{BuildControl, Vec2, Vec3, vec3};
 use rayon::prelude::*;
 
 /// Index of an element that a corner does not have.
@@ -27,12 +27,17 @@ pub(super) struct Contents {
     pub marks: Vec<Mark>,
 }
 
-/// Reads a whole file in pieces of about `piece` bytes. A model keeps the settings of faces.
-pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize, is_model: bool) -> Result<Contents, MeshErrorKind> {
-    let texts = cut(bytes, piece);
+/// Reads a whole file in pieces. A model keeps the settings of faces.
+pub(super) fn read(
+    bytes: &[u8],
+    limits: &MeshLimits,
+    reader: PieceReader<'_>,
+    is_model: bool,
+) -> Result<Contents, MeshErrorKind> {
+    let texts = cut(bytes, reader.size);
     let mut start = Start { line: 1, is_model, ..Start::default() };
     let mut starts = Vec::with_capacity(texts.len());
-    read_pieces(
+    reader.read(
         &texts,
         |text| Ok(Start::of_next(text)),
         |counts| {
@@ -43,8 +48,8 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize, is_model: bo
     )?;
     let mut whole = ObjData::with_room_for(&start, limits);
     let pieces: Vec<(&[u8], Start)> = texts.into_iter().zip(starts).collect();
-    read_pieces(&pieces, |(text, start)| read_piece(text, *start, limits), |piece| whole.append(piece, limits))?;
-    whole.finish(limits)
+    reader.read(&pieces, |(text, start)| read_piece(text, *start, limits), |piece| whole.append(piece, limits))?;
+    whole.finish(limits, reader.control)
 }
 
 /// Cuts the text into pieces at line ends that no `\` continues.
@@ -262,14 +267,14 @@ impl ObjData {
         self.welded.append(piece.welded, limits)
     }
 
-    fn finish(self, limits: &MeshLimits) -> Result<Contents, MeshErrorKind> {
+    fn finish(self, limits: &MeshLimits, control: &BuildControl) -> Result<Contents, MeshErrorKind> {
         let count = self.positions.len();
         if let Some((index, place)) = self.notes.furthest.filter(|(index, _)| *index as usize >= count) {
             let number = u64::from(index) + 1;
             return Err(place.error(format!("{} index {number} is out of range: the file has only {count}", NAMES[0])));
         }
         let mut warnings = self.notes.in_words();
-        let (mut keys, faces) = self.welded.finish(limits)?;
+        let (mut keys, faces) = self.welded.finish(limits, control)?;
         drop_undefined(&mut keys, 1, self.uvs.len(), &mut warnings);
         drop_undefined(&mut keys, 2, self.normals.len(), &mut warnings);
         let positions = gather(&keys, 0, &self.positions);

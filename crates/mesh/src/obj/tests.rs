@@ -3,17 +3,17 @@
 use super::Obj;
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::format::MeshFormat;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, pieces};
 use crate::{MeshFile, MeshLimits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 
 fn read(text: &str) -> MeshFile {
-    Obj.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap()
+    Obj.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap()
 }
 
 /// Reads a malformed text and returns the line and the message of the error.
 fn error(text: &str) -> (u64, String) {
-    match Obj.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err() {
+    match Obj.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap_err() {
         MeshErrorKind::Malformed { place: FilePosition::Line(line), message } => (line, message),
         other => panic!("expected a line: {other}"),
     }
@@ -179,7 +179,7 @@ fn faults_name_the_line_and_what_was_expected() {
 #[test]
 fn limits_are_kept_and_named() {
     let check = |text: &str, limits: MeshLimits, expected: &str| {
-        assert_eq!(Obj.read(text.as_bytes(), &limits, PIECE).unwrap_err().to_string(), expected);
+        assert_eq!(Obj.read(text.as_bytes(), &limits, pieces(PIECE)).unwrap_err().to_string(), expected);
     };
     let few = MeshLimits { vertices: 3, ..MeshLimits::default() };
     check(&format!("{SQUARE}f 1 2 3\n"), few, "at least 4 vertices, the limit is 3");

@@ -1,14 +1,14 @@
 //! Tests of attribute columns: names, types, domains, and faults.
 
 use super::*;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, pieces};
 use crate::ply::Ply;
 use crate::{MeshFile, MeshLimits, format::MeshFormat, ply_bytes};
 use juggler_math::Vec3;
 use juggler_shape::MeshData;
 
 fn read(text: &str) -> MeshFile {
-    let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap();
+    let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap();
     assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), 1).unwrap(), whole, "in small pieces");
     whole
 }
@@ -80,7 +80,7 @@ fn faulty_attributes_are_left_out_and_named() {
 fn numbers_out_of_range_are_errors() {
     let message = |column: &str, value: &str| {
         let text = file([&format!("{column} attribute.a"), &format!("1|{value}|1|1")], ["", ""]);
-        Ply.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err().to_string()
+        Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap_err().to_string()
     };
     let expected = "line 12: expected an integer from 0 to 255 for 'attribute.a', found 256";
     assert_eq!(message("uchar", "256"), expected);
@@ -146,7 +146,7 @@ fn names_survive_their_escapes() {
             attributes: [(name.to_owned(), attribute(AttributeDomain::Vertex, channels, data))].into(),
             ..MeshData::default()
         };
-        let found = Ply.read(&ply_bytes(&mesh), &MeshLimits::default(), PIECE).unwrap();
+        let found = Ply.read(&ply_bytes(&mesh), &MeshLimits::default(), pieces(PIECE)).unwrap();
         assert_eq!((found.mesh, found.warnings), (mesh, Vec::new()), "{name:?}");
     }
 }

@@ -13,6 +13,7 @@ use crate::error::{MeshErrorKind, quote};
 use crate::faces::Faces;
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
+use crate::pieces::PieceReader;
 use crate::text::finite;
 use crate::weld::WeldedPiece;
 use juggler_shape::attribute::{AttributeDomain, MeshAttribute};
@@ -24,9 +25,9 @@ pub(super) struct Body<'h> {
 }
 
 impl<'h> Body<'h> {
-    /// Creates a reader that works in pieces of about `piece` bytes.
-    pub fn new(header: &'h Header, limits: &'h MeshLimits, piece: usize) -> Self {
-        Self { header, reader: RowReader::new(limits, piece) }
+    /// Creates a reader that works in pieces.
+    pub fn new(header: &'h Header, limits: &'h MeshLimits, pieces: PieceReader<'h>) -> Self {
+        Self { header, reader: RowReader::new(limits, pieces) }
     }
 
     /// Reads all elements and assembles the mesh.
@@ -45,7 +46,8 @@ impl<'h> Body<'h> {
             }
         }
         values.end()?;
-        corners.map_or(Ok(()), |corners| corners.replace(&mut parts, self.reader.limits))?;
+        corners
+            .map_or(Ok(()), |corners| corners.replace(&mut parts, self.reader.limits, self.reader.pieces.control))?;
         drop_short_arrays(&mut parts);
         parts.assemble()
     }

@@ -9,7 +9,7 @@ use crate::error::MeshErrorKind;
 use crate::limits::MeshLimits;
 use crate::text::finite;
 use crate::weld::{Key, Welded, WeldedPiece};
-use juggler_math::{Vec2, vec2};
+use juggler_math::{BuildControl, Vec2, vec2};
 
 /// Vertices of all faces by position and surface coordinates.
 #[derive(Default)]
@@ -63,8 +63,13 @@ pub(super) fn push(
 
 impl CornerVertices {
     /// Replaces the vertices and faces of `parts` by these.
-    pub fn replace(self, parts: &mut MeshParts, limits: &MeshLimits) -> Result<(), MeshErrorKind> {
-        let (keys, faces) = self.welded.finish(limits)?;
+    pub fn replace(
+        self,
+        parts: &mut MeshParts,
+        limits: &MeshLimits,
+        control: &BuildControl,
+    ) -> Result<(), MeshErrorKind> {
+        let (keys, faces) = self.welded.finish(limits, control)?;
         if self.missing > 0 {
             parts.warnings.push(format!("faces without texture coordinates, which get 0 0: {}", self.missing));
         }

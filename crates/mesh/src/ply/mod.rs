@@ -41,6 +41,7 @@ use crate::error::MeshErrorKind;
 use crate::format::{MeshFormat, MeshFormatInfo};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
+use crate::pieces::PieceReader;
 use crate::sampling::{Counts, FACE, FileSampler, lines, scaled, words};
 use crate::text::Scanner;
 use ascii::{AsciiValues, read_text};
@@ -65,10 +66,10 @@ impl MeshFormat for Ply {
         scanner.word_anywhere() == Some(b"ply") && scanner.word().is_none()
     }
 
-    fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
+    fn read(&self, bytes: &[u8], limits: &MeshLimits, pieces: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
         let mut scanner = Scanner::new(bytes);
         let header = Header::read(&mut scanner)?;
-        let body = Body::new(&header, limits, piece);
+        let body = Body::new(&header, limits, pieces);
         match header.encoding {
             Encoding::Ascii => {
                 read_text(&AsciiValues::new(scanner), |values| body.read(values), |mesh| &mut mesh.warnings)

@@ -18,8 +18,9 @@ use super::values::{Values, skip};
 use crate::assemble::distinct;
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::limits::MeshLimits;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, PieceReader};
 use crate::text::{Scanner, finite, without_byte_order_mark};
+use juggler_math::BuildControl;
 use juggler_shape::attribute::{AttributeData, AttributeDomain, MeshAttribute};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -75,7 +76,9 @@ pub fn parse_points(bytes: &[u8], limits: &MeshLimits) -> Result<PointFile, Mesh
     let bytes = without_byte_order_mark(bytes);
     let mut scanner = Scanner::new(bytes);
     let header = Header::read(&mut scanner)?;
-    let reader = RowReader::new(limits, PIECE);
+    // Points are read fast, and nothing cancels this control.
+    let control = BuildControl::new();
+    let reader = RowReader::new(limits, PieceReader { size: PIECE, control: &control });
     match header.encoding {
         Encoding::Ascii => {
             let values = AsciiValues::new(scanner);

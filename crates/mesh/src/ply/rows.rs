@@ -4,7 +4,7 @@ use super::header::Element;
 use super::values::Values;
 use crate::error::{MeshErrorKind, quote};
 use crate::limits::MeshLimits;
-use crate::pieces::read_pieces;
+use crate::pieces::PieceReader;
 
 /// A run of rows of an element.
 pub(super) struct Rows<V> {
@@ -18,17 +18,19 @@ pub(super) struct Rows<V> {
 pub(super) struct RowReader<'l> {
     /// Limits of the file's contents.
     pub limits: &'l MeshLimits,
+    /// Reader of the pieces.
+    pub pieces: PieceReader<'l>,
     /// Number of rows of a piece.
     rows: u64,
 }
 
 impl<'l> RowReader<'l> {
-    /// Creates a reader that works in pieces of about `piece` bytes.
-    pub fn new(limits: &'l MeshLimits, piece: usize) -> Self {
+    /// Creates a reader that works in pieces.
+    pub fn new(limits: &'l MeshLimits, pieces: PieceReader<'l>) -> Self {
         // A row usually takes about 16 bytes. Dividing by 256 gives smaller pieces, whose results
         // stay in the cache.
         const ROW: u64 = 256;
-        Self { limits, rows: (piece as u64 / ROW).max(1) }
+        Self { limits, rows: (pieces.size as u64 / ROW).max(1), pieces }
     }
 
     /// Reads the rows of an element in pieces: `read` runs in parallel, `take` receives the results
@@ -51,7 +53,7 @@ impl<'l> RowReader<'l> {
             passed = values.skip_rows(element, count);
             left -= count;
         }
-        read_pieces(&pieces, |(values, count)| read(Rows { values: values.clone(), count: *count }), take)?;
+        self.pieces.read(&pieces, |(values, count)| read(Rows { values: values.clone(), count: *count }), take)?;
         passed
     }
 }

@@ -3,16 +3,16 @@
 use super::Ply;
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::format::MeshFormat;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, pieces};
 use crate::{MeshFile, MeshLimits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 
 fn read(bytes: impl AsRef<[u8]>) -> MeshFile {
-    Ply.read(bytes.as_ref(), &MeshLimits::default(), PIECE).unwrap()
+    Ply.read(bytes.as_ref(), &MeshLimits::default(), pieces(PIECE)).unwrap()
 }
 
 fn error(bytes: impl AsRef<[u8]>) -> (FilePosition, String) {
-    match Ply.read(bytes.as_ref(), &MeshLimits::default(), PIECE).unwrap_err() {
+    match Ply.read(bytes.as_ref(), &MeshLimits::default(), pieces(PIECE)).unwrap_err() {
         MeshErrorKind::Malformed { place, message } => (place, message),
         other => panic!("expected a place: {other}"),
     }
@@ -257,12 +257,12 @@ fn header_length_is_limited() {
 #[test]
 fn limits_are_kept_and_named() {
     let check = |limits: MeshLimits, expected: &str| {
-        assert_eq!(Ply.read(SQUARE.as_bytes(), &limits, PIECE).unwrap_err().to_string(), expected);
+        assert_eq!(Ply.read(SQUARE.as_bytes(), &limits, pieces(PIECE)).unwrap_err().to_string(), expected);
     };
     check(MeshLimits { vertices: 3, ..MeshLimits::default() }, "at least 4 vertices, the limit is 3");
     check(MeshLimits { triangles: 1, ..MeshLimits::default() }, "at least 2 triangles, the limit is 1");
     let no_faces = SQUARE.replace("face 1", "face 0").replace("4 0 1 2 3\n", "");
-    let error = Ply.read(no_faces.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err();
+    let error = Ply.read(no_faces.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap_err();
     assert_eq!(error.to_string(), "contains no triangles");
 }
 
@@ -369,6 +369,6 @@ fn coordinates_of_corners_split_vertices() {
     assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (2, 5));
     assert!(warnings.contains(&"faces without texture coordinates, which get 0 0: 1".to_owned()), "{warnings:?}");
     // Small pieces give the same mesh.
-    let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap();
+    let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap();
     assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), 1).unwrap(), whole);
 }

@@ -5,7 +5,7 @@ use super::facets::{AllFacets, WeldedFacets};
 use crate::error::MeshErrorKind;
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
-use crate::pieces::{line_breaks, next_line_start, read_pieces};
+use crate::pieces::{PieceReader, line_breaks, next_line_start};
 use crate::text::Scanner;
 use juggler_math::{Vec3, vec3};
 
@@ -16,16 +16,16 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     !bytes.get(..ENOUGH).unwrap_or(bytes).contains(&0)
 }
 
-/// Reads all solids of a file in pieces of about `piece` bytes.
+/// Reads all solids of a file in pieces.
 ///
 /// The text is cut at lines that begin with the word `facet`, and each piece is read as if a facet
 /// inside a solid began there. When the pieces are joined, a piece that does not begin where the
 /// previous one ended is read again from there.
-pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
+pub(super) fn read(bytes: &[u8], limits: &MeshLimits, reader: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
     let mut all_facets = AllFacets::default();
     let mut at = State { position: 0, inside: false };
-    read_pieces(
-        &cut(bytes, piece),
+    reader.read(
+        &cut(bytes, reader.size),
         |piece| Ok((*piece, read_piece(bytes, *piece, limits))),
         |(mut piece, mut found)| {
             if piece.start != at {
@@ -41,7 +41,7 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
             all_facets.append(welded, limits)
         },
     )?;
-    all_facets.finish(Vec::new(), limits)
+    all_facets.finish(Vec::new(), limits, reader.control)
 }
 
 /// State of the reader between two facets.

@@ -5,7 +5,7 @@ use super::facets::{AllFacets, WeldedFacets};
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
-use crate::pieces::read_pieces;
+use crate::pieces::PieceReader;
 use crate::text::Scanner;
 use juggler_math::Vec3;
 
@@ -30,8 +30,8 @@ fn count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(*field)))
 }
 
-/// Reads a whole file in pieces of about `piece` bytes.
-pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
+/// Reads a whole file in pieces.
+pub(super) fn read(bytes: &[u8], limits: &MeshLimits, reader: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
     let short = || {
         FilePosition::Byte(bytes.len() as u64).error("expected an STL file: text, or 80 bytes and the number of facets")
     };
@@ -47,11 +47,11 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
     let count = usize::try_from(count).unwrap_or(usize::MAX);
     limits.check_triangles(count)?;
     let facets = body.get(..count * FACET).unwrap_or_default();
-    let pieces: Vec<&[u8]> = facets.chunks((piece / FACET).max(1) * FACET).collect();
+    let pieces: Vec<&[u8]> = facets.chunks((reader.size / FACET).max(1) * FACET).collect();
     let mut all_facets = AllFacets::with_capacity(count);
     all_facets.begin_solid(name(bytes.get(..HEADER).unwrap_or_default()));
     let mut colored = 0;
-    read_pieces(
+    reader.read(
         &pieces,
         |piece| read_piece(piece, limits),
         |(welded, colors)| {
@@ -66,7 +66,7 @@ pub(super) fn read(bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<Me
     if let trailing @ 1.. = body.len() - count * FACET {
         warnings.push(format!("{trailing} bytes after the last facet ignored"));
     }
-    all_facets.finish(warnings, limits)
+    all_facets.finish(warnings, limits, reader.control)
 }
 
 /// Name of the only solid, if the header begins with the line of a text: `solid NAME`.

@@ -5,7 +5,7 @@ use crate::error::MeshErrorKind;
 use crate::limits::MeshLimits;
 use crate::mesh_file::{MAX_SOLIDS, MeshFile, StlSolid};
 use crate::weld::{Welded, WeldedPiece};
-use juggler_math::Vec3;
+use juggler_math::{BuildControl, Vec3};
 
 /// Maximum number of bytes of the name of a solid.
 const MAX_NAME: usize = 1024;
@@ -89,14 +89,19 @@ impl AllFacets {
     }
 
     /// Assembles the mesh.
-    pub fn finish(self, mut warnings: Vec<String>, limits: &MeshLimits) -> Result<MeshFile, MeshErrorKind> {
+    pub fn finish(
+        self,
+        mut warnings: Vec<String>,
+        limits: &MeshLimits,
+        control: &BuildControl,
+    ) -> Result<MeshFile, MeshErrorKind> {
         if self.dropped > 0 {
             warnings.push(format!("{} facets with infinite or NaN coordinates ignored", self.dropped));
         }
         if self.without_normal > 0 {
             warnings.push(format!("facets without 'normal', which STL requires: {}", self.without_normal));
         }
-        let (keys, faces) = self.welded.finish(limits)?;
+        let (keys, faces) = self.welded.finish(limits, control)?;
         let positions = keys.into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();
         let file = MeshParts { positions, faces, warnings, ..MeshParts::default() }.assemble()?;
         Ok(MeshFile { solids: self.solids, ..file })

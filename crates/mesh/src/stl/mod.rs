@@ -15,6 +15,7 @@ use crate::error::MeshErrorKind;
 use crate::format::{MeshFormat, MeshFormatInfo};
 use crate::limits::MeshLimits;
 use crate::mesh_file::MeshFile;
+use crate::pieces::PieceReader;
 use crate::sampling::{Counts, FileSampler, lines, scaled, words};
 use crate::text::{Scanner, without_byte_order_mark};
 use std::io;
@@ -39,8 +40,8 @@ impl MeshFormat for Stl {
         binary::declared_size(head) == Some(size) || self.is_content(head)
     }
 
-    fn read(&self, bytes: &[u8], limits: &MeshLimits, piece: usize) -> Result<MeshFile, MeshErrorKind> {
-        if is_text(bytes) { ascii::read(bytes, limits, piece) } else { binary::read(bytes, limits, piece) }
+    fn read(&self, bytes: &[u8], limits: &MeshLimits, pieces: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
+        if is_text(bytes) { ascii::read(bytes, limits, pieces) } else { binary::read(bytes, limits, pieces) }
     }
 
     fn counts(&self, file: &mut FileSampler) -> io::Result<Counts> {

@@ -3,16 +3,16 @@
 use super::{Stl, has_several_solids};
 use crate::error::{FilePosition, MeshErrorKind};
 use crate::format::MeshFormat;
-use crate::pieces::PIECE;
+use crate::pieces::{PIECE, pieces};
 use crate::{MAX_SOLIDS, MeshFile, MeshLimits};
 use juggler_math::{Vec3, vec3};
 
 fn read(bytes: &[u8]) -> MeshFile {
-    Stl.read(bytes, &MeshLimits::default(), PIECE).unwrap()
+    Stl.read(bytes, &MeshLimits::default(), pieces(PIECE)).unwrap()
 }
 
 fn message(bytes: &[u8]) -> String {
-    Stl.read(bytes, &MeshLimits::default(), PIECE).unwrap_err().to_string()
+    Stl.read(bytes, &MeshLimits::default(), pieces(PIECE)).unwrap_err().to_string()
 }
 
 fn facet(corners: [Vec3; 3]) -> String {
@@ -109,7 +109,7 @@ fn a_binary_file_is_one_solid_that_its_header_may_name() {
 fn solids_beyond_the_limit_are_not_kept() {
     let count = |solids: usize, piece: usize| {
         let text = format!("{}solid\n{}endsolid", "solid a\nendsolid\n".repeat(solids - 1), facet(LOWER));
-        Stl.read(text.as_bytes(), &MeshLimits::default(), piece).unwrap().solids.len()
+        Stl.read(text.as_bytes(), &MeshLimits::default(), pieces(piece)).unwrap().solids.len()
     };
     assert_eq!(count(MAX_SOLIDS, PIECE), MAX_SOLIDS);
     assert_eq!([PIECE, 1000].map(|piece| count(MAX_SOLIDS + 9, piece)), [MAX_SOLIDS + 1; 2]);
@@ -189,7 +189,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
     ];
     for (old, new, line, message) in cases {
         let text = good.replacen(old, new, 1);
-        match Stl.read(text.as_bytes(), &MeshLimits::default(), PIECE).unwrap_err() {
+        match Stl.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap_err() {
             MeshErrorKind::Malformed { place, message: found } => {
                 assert_eq!((place, found.as_str()), (FilePosition::Line(line), message), "{old} -> {new}");
             }
@@ -203,7 +203,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
 fn limits_are_kept_and_named() {
     let bytes = binary("", &[LOWER, UPPER]);
     let check = |limits: MeshLimits, expected: &str| {
-        assert_eq!(Stl.read(&bytes, &limits, PIECE).unwrap_err().to_string(), expected);
+        assert_eq!(Stl.read(&bytes, &limits, pieces(PIECE)).unwrap_err().to_string(), expected);
     };
     check(MeshLimits { triangles: 1, ..MeshLimits::default() }, "at least 2 triangles, the limit is 1");
     check(MeshLimits { vertices: 3, ..MeshLimits::default() }, "at least 4 vertices, the limit is 3");

@@ -16,7 +16,7 @@ def denoise(color, *, albedo=None, normal=None, depth=None, denoiser="own"):
     color = _floats("color", color)
     has_halves = color.ndim == 4 and color.shape[0] == 2
     if color.ndim != (4 if has_halves else 3) or color.shape[-1] != 3 or not color.size:
-        raise _settings_error(f"`color` must have the shape (height, width, 3), not {color.shape}")
+        raise _settings_error("color", f"`color` must have the shape (height, width, 3), not {color.shape}")
     height, width = color.shape[-3:-1]
     features = [
         _feature("albedo", albedo, (height, width, 3)),
@@ -35,7 +35,7 @@ def _floats(name, values):
     try:
         return numpy.asarray(values, dtype=numpy.float32)
     except (TypeError, ValueError) as error:
-        raise _settings_error(f"`{name}` must be an array of numbers: {error}") from None
+        raise _settings_error(name, f"`{name}` must be an array of numbers: {error}") from None
 
 
 def _feature(name, values, shape):
@@ -46,14 +46,14 @@ def _feature(name, values, shape):
     if values.shape == (*shape, 1):
         values = values.reshape(shape)
     if values.shape != shape:
-        raise _settings_error(f"`{name}` must have the shape {shape}, as `color`, not {values.shape}")
+        raise _settings_error(name, f"`{name}` must have the shape {shape}, as `color`, not {values.shape}")
     return values.tobytes()
 
 
-def _settings_error(message):
+def _settings_error(name, message):
     from juggler._errors import SettingsError
 
-    return SettingsError(message)
+    return SettingsError(message, name)
 
 
 denoise.__module__ = "juggler"

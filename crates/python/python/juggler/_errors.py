@@ -43,6 +43,13 @@ class Problem:
         return f"{place}{path}{self.message}{help}"
 
 
+def problems_from_json(text):
+    """Returns the problems of a list that the renderer wrote."""
+    import json
+
+    return [Problem(**fields) for fields in json.loads(text)]
+
+
 class SceneError(ValueError):
     """The scene has mistakes, all of which are in `problems`."""
 
@@ -55,7 +62,19 @@ class SceneError(ValueError):
 
 
 class SettingsError(ValueError):
-    """A setting or an argument is wrong."""
+    """A setting or an argument is wrong.
+
+    `setting` is its name, or `None` if there is no single one, and `help` suggests a fix, or is
+    `None`.
+    """
+
+    def __init__(self, message="", setting=None, help=None):
+        super().__init__(message, setting, help)
+        self.setting = setting
+        self.help = help
+
+    def __str__(self):
+        return str(self.args[0])
 
 
 class MergeError(ValueError):

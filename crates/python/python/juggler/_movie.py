@@ -53,7 +53,7 @@ def _flags(settings):
         elif name == "lenient":
             words += ["--lenient"] if value else []
         else:
-            raise SettingsError(f"a movie cannot have the setting `{name}`")
+            raise SettingsError(f"a movie cannot have the setting `{name}`", name)
     return words
 
 
@@ -87,7 +87,8 @@ def render_movie(scene, path, frames, settings):
     if frames is not None:
         frames = range(frames.start, frames.stop, frames.step)
         if frames.step != 1 or not frames:
-            raise SettingsError(f"the frames of a movie are a range like range(0, 30), not {frames!r}")
+            message = f"the frames of a movie are a range like range(0, 30), not {frames!r}"
+            raise SettingsError(message, "frames")
         words.append(f"--frames={frames.start}..{frames.stop}")
     words.append("--quiet" if not settings.get("progress") else "--progress=bar")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}

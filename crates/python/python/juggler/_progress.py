@@ -9,8 +9,12 @@ _WIDTH = 40
 
 
 class Progress:
-    """Progress of a render: `stage` ("build" or "render"), `share` (0 to 1), `seconds` so far,
-    `seconds_left` (`None` if unknown), and `samples` of all pixels so far.
+    """Progress of a render: `stage` ("reading", "preparing", "building" or "rendering"), `share` of
+    this stage (0 to 1), `seconds` so far, `seconds_left` (`None` if unknown), and `samples` of all
+    pixels so far.
+
+    Meshes and pictures are prepared; then the world is built. The share may decrease while a stage
+    finds more work.
     """
 
     _fields = ("stage", "share", "seconds", "seconds_left", "samples")
@@ -70,7 +74,7 @@ class Bar(Display):
             return
         done = round(_WIDTH * progress.share)
         left = "" if progress.seconds_left is None else f" {duration(progress.seconds_left)} left"
-        text = "building" if progress.stage == "build" else f"{100 * progress.share:3.0f} %{left}"
+        text = f"{100 * progress.share:3.0f} %{left}" if progress.stage == "rendering" else progress.stage
         self._stream.write(f"\r{'━' * done}{'┄' * (_WIDTH - done)} {text}\x1b[K")
         self._stream.flush()
         self._is_shown = True

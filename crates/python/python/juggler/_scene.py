@@ -88,7 +88,8 @@ def bytes_of(size):
         pass
     from juggler._errors import SettingsError
 
-    raise SettingsError(f'`max_memory` must be a number of bytes or a size such as "4G", not {size!r}')
+    message = f'`max_memory` must be a number of bytes or a size such as "4G", not {size!r}'
+    raise SettingsError(message, "max_memory")
 
 
 def warn(messages):

@@ -101,7 +101,7 @@ def _flags(settings):
             flags += ["--lenient"] if value else []
         elif name not in _FLAGS:
             known = ", ".join([*_FLAGS, "lenient"])
-            raise SettingsError(f"the viewer has no setting `{name}`; it has {known}")
+            raise SettingsError(f"the viewer has no setting `{name}`; it has {known}", name)
         elif value is not None:
             flags += [_FLAGS[name], "x".join(map(str, value)) if name == "size" else str(value)]
     return flags

@@ -86,6 +86,7 @@ pub struct MeshSpec {
 
 /// Reason why a name is not a recipe.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MeshSpecError {
     /// No kind has this name.
     Unknown,

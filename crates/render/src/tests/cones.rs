@@ -32,7 +32,14 @@ fn floor(texture: &str) -> World {
     let mirror = r#"{"phong": {"diffuse": 0, "reflection": 1}}"#;
     let objects = vec![plane(0.0, emissive), plane(100.0, mirror)];
     let background = AnyBackground::Solid(Solid { color: Rgb::BLACK });
-    World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        Vec::<AnyLight>::new(),
+        background,
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 /// Mean absolute difference of the pixels from 1/2.

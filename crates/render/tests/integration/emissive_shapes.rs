@@ -78,7 +78,7 @@ fn nested_instances_of_an_emitter_match_the_closed_form() {
 }
 
 fn geometry(objects: Vec<Object>) -> Arc<Geometry> {
-    Arc::new(Geometry::new(objects))
+    Arc::new(Geometry::new(objects, &juggler_math::BuildControl::default()).unwrap())
 }
 
 /// A mesh as one emitter: the four sides of a pyramid whose top points down, all visible from a

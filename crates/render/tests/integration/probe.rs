@@ -79,7 +79,14 @@ impl Scene {
     }
 
     pub fn world(self) -> World {
-        World::new(self.objects, self.compiler.finish().unwrap(), self.lights, self.background)
+        World::new(
+            self.objects,
+            self.compiler.finish().unwrap(),
+            self.lights,
+            self.background,
+            &juggler_math::BuildControl::default(),
+        )
+        .unwrap()
     }
 }
 

@@ -52,7 +52,7 @@ impl Item {
 }
 
 fn instance(object: Object) -> Content {
-    Content::Geometry(Arc::new(Geometry::new(vec![object])))
+    Content::Geometry(Arc::new(Geometry::new(vec![object], &juggler_math::BuildControl::default()).unwrap()))
 }
 
 /// Triangle mesh with the surface of a cuboid or of a rectangle in the plane y = 0.

@@ -1,6 +1,6 @@
 //! Warnings about objects of which the order in the file decides what is seen.
 
-use super::Assembly;
+use super::{Assembly, NEVER_CANCELLED};
 use crate::report::Finding;
 use juggler_world::{Ambiguity, Object, World};
 
@@ -18,7 +18,8 @@ impl Assembly {
         if objects.iter().map(Object::shapes).fold(0, u64::saturating_add) > MAX_SHAPES {
             return Vec::new();
         }
-        let found = World::new(objects, materials, lights, background).with_labels(labels).ambiguities();
+        let Ok(world) = World::new(objects, materials, lights, background, &NEVER_CANCELLED) else { return Vec::new() };
+        let found = world.with_labels(labels).ambiguities();
         let warning = |(kind, first, second): &(Ambiguity, u32, u32)| {
             let [first, second] = [first, second].map(|entry| names.object(*entry));
             match kind {

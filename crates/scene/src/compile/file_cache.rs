@@ -2,6 +2,7 @@
 
 use super::meshes::{file_stamp, read_error_message};
 use crate::store::Store;
+use juggler_math::BuildControl;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -86,4 +87,14 @@ impl<T> FileCache<T> {
     fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<CachedFile<T>>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// BLAKE3 hash of the content of a file; of its first part if `control` is cancelled.
+pub fn hash(bytes: &[u8], control: &BuildControl) -> [u8; 32] {
+    const PART: usize = 1 << 22;
+    let mut hasher = blake3::Hasher::new();
+    for part in bytes.chunks(PART).take_while(|_| !control.is_cancelled()) {
+        hasher.update(part);
+    }
+    hasher.finalize().into()
 }

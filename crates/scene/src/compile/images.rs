@@ -1,7 +1,7 @@
 //! Image files of textures. Each file is read and prepared once and shared by all textures, frames
 //! and copies of a scene.
 
-use super::meshes::{AssetCache, Files, file_stamp, read_error_message};
+use super::meshes::{AssetCache, Files, NEVER_CANCELLED, file_stamp, read_error_message};
 use crate::asset::display_name;
 use crate::description::Description;
 use crate::item::Item;
@@ -12,7 +12,7 @@ use crate::texel_array::TexelArray;
 pub use crate::texel_array::{MAX_SIDE, MAX_TEXELS};
 use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
 use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
-use juggler_math::Rgb;
+use juggler_math::{BuildControl, Rgb};
 use juggler_texture::{AnyTexture, ColorSpace, Image, Images, MipMap};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -63,12 +63,16 @@ impl ImageCache {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    /// Loads an image without holding the lock, as for meshes.
-    fn load(&self, path: &std::path::Path, space: ColorSpace, store: &Store) -> Arc<ImageFile> {
+    /// Loads an image without holding the lock, as for meshes. If `control` is cancelled, the image
+    /// has a message and is not kept.
+    fn load(&self, path: &std::path::Path, space: ColorSpace, store: &Store, control: &BuildControl) -> Arc<ImageFile> {
         let name = (store.canonical_name(path), space);
         let entries = || self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = entries().get(&name) {
             return Arc::clone(known);
+        }
+        if let Err(cancelled) = control.check() {
+            return Arc::new(ImageFile::new([0; 32], Err(cancelled.to_string())));
         }
         let image = Arc::new(ImageFile::load(path, space, store));
         Arc::clone(entries().entry(name).or_insert(image))
@@ -78,13 +82,23 @@ impl ImageCache {
 impl AssetCache {
     /// Mipmap pyramid of an image file, or an error message that names the file.
     pub fn image(&self, path: &std::path::Path, space: ColorSpace) -> Result<Arc<MipMap>, String> {
-        self.images().load(path, space, self.store()).pixels.clone()
+        self.image_with_control(path, space, &NEVER_CANCELLED)
+    }
+
+    /// [`AssetCache::image`]; a message if `control` is cancelled.
+    fn image_with_control(
+        &self,
+        path: &std::path::Path,
+        space: ColorSpace,
+        control: &BuildControl,
+    ) -> Result<Arc<MipMap>, String> {
+        self.images().load(path, space, self.store(), control).pixels.clone()
     }
 
     /// Hash of an image file's content; zeros for a file that cannot be read, which compilation
     /// reports.
     pub fn image_digest(&self, path: &std::path::Path, space: ColorSpace) -> [u8; 32] {
-        self.images().load(path, space, self.store()).digest
+        self.images().load(path, space, self.store(), &NEVER_CANCELLED).digest
     }
 }
 
@@ -224,7 +238,7 @@ fn linear_values(samples: RasterSamples, channels: u8, transfer_function: Transf
 
 impl Images for Files<'_> {
     fn image(&self, texture: &str, image: &Image) -> Result<Arc<MipMap>, String> {
-        self.asset_cache.image(&self.texture_file(texture, image), image.color_space)
+        self.asset_cache.image_with_control(&self.texture_file(texture, image), image.color_space, self.control)
     }
 }
 

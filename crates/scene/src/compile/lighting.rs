@@ -138,7 +138,7 @@ pub fn lights(lights: &[Item<AnyLight>], files: Files<'_>, findings: &mut Vec<Fi
 pub fn load_light(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut Vec<Finding>) -> AnyLight {
     let mut light = light.clone();
     // Build the path only if necessary: a scene may have a million lights.
-    if light.ies().is_some() {
+    if light.ies().is_some() && !files.control.is_cancelled() {
         let path = light_file_path(i, &light);
         if let Some(ies) = light.ies() {
             match &files.asset_cache.profile(&files.locate(&path, &ies.file)).content {
@@ -152,6 +152,7 @@ pub fn load_light(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut V
 
 /// Prepared background of the scene; `None` if the scene has none or an invalid one.
 pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Option<AnyBackground> {
+    files.control.check().ok()?;
     let mut background = AnyBackground::from(scene.background.clone()?.into_inner());
     let path = background_path(&background);
     if let AnyBackground::Environment(environment) = &mut background {
@@ -169,6 +170,7 @@ pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Find
             }
         }
     }
+    files.control.check().ok()?;
     let is_expensive = matches!(background, AnyBackground::Sky(_));
     let light_files = files.asset_cache.light_files();
     if let Some(prepared) = is_expensive.then(|| light_files.prepared(&background)).flatten() {

@@ -3,6 +3,7 @@
 //! backgrounds [`super::lighting`].
 
 use super::file_cache::FileCache;
+use super::file_cache::hash;
 use super::images::ImageCache;
 use super::lighting::LightFiles;
 use super::loaded_instances::LoadedInstances;
@@ -15,6 +16,7 @@ use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;
+use juggler_math::BuildControl;
 use juggler_mesh::{FileContent, MeshError, MeshLimits};
 use juggler_shape::{InvalidShape, Mesh, MeshData, MorphArrays, Shape};
 use std::collections::BTreeMap;
@@ -66,7 +68,12 @@ impl AssetCache {
 
     /// Model file.
     pub(crate) fn model(&self, path: &std::path::Path) -> Arc<OpenedModel> {
-        self.models.get(path, &self.store)
+        self.model_with_control(path, &NEVER_CANCELLED)
+    }
+
+    /// Model file; one with a message, which is not kept, if `control` is cancelled.
+    pub(crate) fn model_with_control(&self, path: &std::path::Path, control: &BuildControl) -> Arc<OpenedModel> {
+        self.models.get(path, &self.store, control)
     }
 
     /// Whether a file is in a known format of models, by its first bytes or its name.
@@ -122,12 +129,12 @@ impl AssetCache {
 
     /// Hash of a file's content; zeros for a file that cannot be read, which compilation reports.
     pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
-        self.get(path).digest
+        self.get(path, &NEVER_CANCELLED).digest
     }
 
     /// Properties of a file's mesh that decide the scene around it, or an error message.
-    pub fn mesh_overview(&self, path: &std::path::Path) -> Result<MeshOverview, String> {
-        let entry = self.get(path);
+    pub fn mesh_overview(&self, path: &std::path::Path, control: &BuildControl) -> Result<MeshOverview, String> {
+        let entry = self.get(path, control);
         let (mesh, _) = entry.mesh.as_ref().map_err(Clone::clone)?;
         let arrays = mesh.arrays();
         Ok(MeshOverview {
@@ -139,15 +146,18 @@ impl AssetCache {
 
     /// Loads a file without holding the lock, since threads of one pool must not wait for each
     /// other in the middle of their work. If two threads load the same file, both get the mesh of
-    /// the first.
-    fn get(&self, path: &std::path::Path) -> Arc<Entry> {
+    /// the first. If `control` is cancelled, the entry has a message and is not kept.
+    fn get(&self, path: &std::path::Path, control: &BuildControl) -> Arc<Entry> {
         if let Some(known) = self.entries().get(path) {
             return Arc::clone(known);
         }
         // Find the same file under another name.
         let file = self.store.canonical_name(path);
         let known = self.entries().get(&file).filter(|entry| entry.mesh.is_ok()).map(Arc::clone);
-        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path, &self.store)));
+        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path, &self.store, control)));
+        if control.is_cancelled() {
+            return entry;
+        }
         let mut entries = self.entries();
         let first = Arc::clone(entries.entry(file).or_insert(entry));
         Arc::clone(entries.entry(path.to_path_buf()).or_insert(first))
@@ -159,11 +169,11 @@ impl AssetCache {
 }
 
 impl Entry {
-    fn load(path: &std::path::Path, store: &Store) -> Self {
+    fn load(path: &std::path::Path, store: &Store, control: &BuildControl) -> Self {
         if let Some(asset) = store.assets.at(path)
             && let Some(arrays) = asset.mesh()
         {
-            let mesh = prepared(Arc::clone(arrays).into(), Vec::new(), path);
+            let mesh = prepared(Arc::clone(arrays).into(), Vec::new(), path, control);
             return Self { digest: asset.digest(), mesh, texture_file: None, stamp: None };
         }
         let (limits, stamp) = (MeshLimits::default(), file_stamp(path));
@@ -174,20 +184,27 @@ impl Entry {
                 return Self { digest: [0; 32], mesh, texture_file: None, stamp };
             }
         };
-        let (digest, imported) =
-            rayon::join(|| blake3::hash(&bytes).into(), || juggler_mesh::parse(path, &bytes, &limits));
+        let parse = || juggler_mesh::parse_with_control(path, &bytes, &limits, control);
+        let (digest, imported) = rayon::join(|| hash(&bytes, control), parse);
         let texture_file = juggler_mesh::texture_file(&bytes);
         // Free memory before the hierarchy is built.
         drop(bytes);
         let cannot_read = |error: MeshError| format!("cannot read `{}`: {}", display_name(path), error.kind);
-        let mesh = imported.map_err(cannot_read).and_then(|found| prepared(found.mesh.into(), found.warnings, path));
+        let mesh =
+            imported.map_err(cannot_read).and_then(|found| prepared(found.mesh.into(), found.warnings, path, control));
         Self { digest, mesh, texture_file, stamp }
     }
 }
 
 /// The mesh of a file or asset with its hierarchy and its warnings, or an error message.
-fn prepared(mut mesh: Mesh, mut warnings: Vec<String>, path: &std::path::Path) -> Result<(Mesh, Vec<String>), String> {
-    mesh.prepare().map_err(|invalid| format!("`{}` contains an invalid mesh: {invalid}", display_name(path)))?;
+fn prepared(
+    mut mesh: Mesh,
+    mut warnings: Vec<String>,
+    path: &std::path::Path,
+    control: &BuildControl,
+) -> Result<(Mesh, Vec<String>), String> {
+    mesh.prepare_with_control(control)
+        .map_err(|invalid| format!("`{}` contains an invalid mesh: {invalid}", display_name(path)))?;
     warnings.extend(mesh.warnings());
     Ok((mesh, warnings))
 }
@@ -210,7 +227,13 @@ pub struct Files<'s> {
     pub sources: &'s Sources,
     /// Cache of loaded files.
     pub asset_cache: &'s AssetCache,
+    /// Control of the build that uses the files. After its cancellation, files are not read, and
+    /// messages say so.
+    pub control: &'s BuildControl,
 }
+
+/// Control of work that nothing cancels.
+pub(crate) static NEVER_CANCELLED: BuildControl = BuildControl::new();
 
 impl Files<'_> {
     /// Location of a file named at `path`: the asset of that name, or a file relative to the scene
@@ -251,7 +274,7 @@ impl Files<'_> {
             // Warnings about files are reported already.
             keys.push(self.data(at, path, &mut Vec::new())?);
         }
-        Some(Mesh::from_keyframes(keys, first.crease_angle_degrees))
+        Some(Mesh::from_keyframes_with_control(keys, first.crease_angle_degrees, self.control))
     }
 
     /// Arrays of a mesh with morph targets applied.
@@ -304,7 +327,7 @@ impl Files<'_> {
 
     /// Mesh of a file named at `path`.
     fn file(&self, file: &str, path: &Path, findings: &mut Vec<Finding>) -> Option<Mesh> {
-        match &self.asset_cache.get(&self.locate(path, file)).mesh {
+        match &self.asset_cache.get(&self.locate(path, file), self.control).mesh {
             Ok((mesh, warnings)) => {
                 findings.extend(warnings.iter().map(|warning| Finding::warning(warning.clone()).at(path)));
                 Some(mesh.clone())
@@ -330,12 +353,12 @@ mod tests {
         let file = folder.path().join("a.obj");
         std::fs::write(&file, TRIANGLE).unwrap();
         let asset_cache = AssetCache::default();
-        let first = asset_cache.get(&file);
+        let first = asset_cache.get(&file, &NEVER_CANCELLED);
         assert_eq!(first.digest, *blake3::hash(TRIANGLE.as_bytes()).as_bytes());
         // Loaded files are not read again.
         std::fs::write(&file, "v 0 0 0\n").unwrap();
         for name in [file.clone(), folder.path().join("sub/../a.obj"), folder.path().join("./a.obj")] {
-            assert!(Arc::ptr_eq(&asset_cache.clone().get(&name), &first), "{}", name.display());
+            assert!(Arc::ptr_eq(&asset_cache.clone().get(&name, &NEVER_CANCELLED), &first), "{}", name.display());
         }
         std::fs::write(folder.path().join("b.obj"), TRIANGLE).unwrap();
         let names = ["b.obj", "sub/../b.obj"].map(|name| folder.path().join(name));
@@ -344,7 +367,7 @@ mod tests {
                 .map(|i| {
                     let name = &names[i % 2];
                     let asset_cache = &asset_cache;
-                    scope.spawn(move || asset_cache.get(name))
+                    scope.spawn(move || asset_cache.get(name, &NEVER_CANCELLED))
                 })
                 .collect();
             threads.into_iter().map(|thread| thread.join().unwrap()).collect()
@@ -359,7 +382,7 @@ mod tests {
         let file = folder.path().join("a.obj");
         std::fs::write(&file, "v 0 0\n").unwrap();
         let asset_cache = AssetCache::default();
-        let broken = asset_cache.get(&file);
+        let broken = asset_cache.get(&file, &NEVER_CANCELLED);
         assert_eq!(broken.digest, *blake3::hash(b"v 0 0\n").as_bytes());
         assert!(
             broken

@@ -6,16 +6,18 @@ use crate::integrator::IntegratorChoice;
 use crate::motion::Tracks;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
+use bounds::{bounds, farthest_object};
 use juggler_camera::{AnyCamera, InvalidCamera, Perspective, ShutterCamera};
 use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::{MaterialId, MaterialTable};
-use juggler_math::{Aabb, Transform, UVec2, Vec3};
+use juggler_math::{Aabb, BuildControl, BuildStage, Cancelled, UVec2};
 use juggler_world::{Labels, Object, SceneLight, World};
 use std::sync::Arc;
 
 mod ambiguities;
 pub(crate) mod area_lights;
+mod bounds;
 mod count;
 mod darkness;
 mod defaults;
@@ -50,7 +52,7 @@ pub(crate) use lighting::files as light_files;
 pub use lighting::{Purpose, estimate as estimate_panorama};
 pub use locate::ShapePlace;
 pub use meshes::{AssetCache, Files};
-pub(crate) use meshes::{file_stamp, read_error_message};
+pub(crate) use meshes::{NEVER_CANCELLED, file_stamp, read_error_message};
 pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 
@@ -123,8 +125,10 @@ impl Compiled {
 
 impl Assembly {
     /// Assembles a scene. Reports invalid parts and leaves them out. `tracks` holds the items that
-    /// move while the shutter is open.
+    /// move while the shutter is open. The assembly is incomplete if the control of `files` is
+    /// cancelled.
     pub fn from_scene(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
+        files.control.begin(BuildStage::Preparing);
         let mut findings = Vec::new();
         let SceneInputs { integrator, sources, background, mut materials, mut names } =
             SceneInputs::from_scene(scene, files, &mut findings);
@@ -160,11 +164,17 @@ impl Assembly {
     }
 
     /// Builds the world with its bounding volume hierarchies.
-    pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
-        let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn compile(self, settings: Render, warnings: Problems, control: &BuildControl) -> Result<Compiled, Cancelled> {
+        control.begin(BuildStage::Building);
+        let world = World::new(self.objects, self.materials, self.lights, self.background, control)?;
+        let world = world.with_labels(self.labels);
         let Self { cameras, camera_keys, names, integrator, bounds, illuminance, object_materials, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
-        Compiled {
+        Ok(Compiled {
             world,
             cameras,
             camera_keys,
@@ -175,7 +185,7 @@ impl Assembly {
             names,
             illuminance,
             object_materials,
-        }
+        })
     }
 }
 
@@ -237,7 +247,8 @@ impl LightingInputs<'_> {
 
 /// Compiles materials, lights and background for the objects of an earlier compilation, without
 /// placing or preparing them or building hierarchies. Returns `None` if that does not suffice:
-/// objects would get other materials, or other objects emit light.
+/// objects would get other materials, or other objects emit light; and if the control of `files` is
+/// cancelled.
 pub fn with_shading(
     scene: &Description,
     tracks: &Tracks,
@@ -259,12 +270,13 @@ pub fn with_shading(
     let emits = |table: &MaterialTable, id: &MaterialId| table.emission(*id).is_some();
     let fits = object_materials == earlier.object_materials
         && object_materials.iter().all(|id| emits(&materials, id) == emits(earlier.world.materials(), id));
-    fits.then(|| {
-        let world = Arc::new(earlier.world.with_shading(materials, lights, background).with_labels(labels));
-        let (settings, names) = ((*scene.render).clone(), Arc::new(names));
-        let base = Compiled { world, cameras, camera_keys, settings, integrator, ..earlier.clone() };
-        (Compiled { names, illuminance, object_materials, ..base }, findings)
-    })
+    if !fits {
+        return None;
+    }
+    let world = earlier.world.with_shading(materials, lights, background, files.control).ok()?.with_labels(labels);
+    let (world, settings, names) = (Arc::new(world), (*scene.render).clone(), Arc::new(names));
+    let base = Compiled { world, cameras, camera_keys, settings, integrator, ..earlier.clone() };
+    Some((Compiled { names, illuminance, object_materials, ..base }, findings))
 }
 
 /// Places all objects. Returns them with the index of the first shape of each scene entry. If there
@@ -305,35 +317,6 @@ pub fn cameras_of(
     settings::check(&scene.render, &mut findings);
     let (cameras, camera_keys) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
     (cameras, camera_keys, findings)
-}
-
-/// Bounding box of all bounded objects; the box of [`or_some`] if there are none.
-fn bounds(objects: &[Object]) -> Aabb {
-    or_some(objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union))
-}
-
-/// Replaces an empty box by the cube from −1 to 1.
-fn or_some(bounds: Aabb) -> Aabb {
-    if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
-}
-
-/// Path of the object that extends farthest from the origin; `entries` holds the index of the first
-/// shape of each scene entry.
-fn farthest_object(objects: &[Object], entries: &[u32]) -> Path {
-    let reach = |bounds: Aabb| match bounds.is_empty() {
-        true => 0.0,
-        false => bounds.min.abs().max(bounds.max.abs()).max_element(),
-    };
-    let (mut first, mut most, mut number) = (0u64, 0.0, 0);
-    for object in objects {
-        let size = reach(object.bounds());
-        if size > most {
-            (most, number) = (size, first);
-        }
-        first = first.saturating_add(object.shapes());
-    }
-    let entry = entries.partition_point(|entry| u64::from(*entry) <= number).saturating_sub(1);
-    Path::root().key("objects").index(entry)
 }
 
 /// Cameras of the scene or the default camera, each of them checked, the selected one first.

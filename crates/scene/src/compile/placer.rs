@@ -3,7 +3,7 @@
 
 use super::prepared_instances::PreparedInstances;
 use juggler_material::MaterialId;
-use juggler_math::{Motion, Transform};
+use juggler_math::{BuildControl, Motion, Transform};
 use juggler_shape::AnyShape;
 use juggler_world::{Content as WorldContent, Geometry, InstanceAttributes};
 use std::collections::BTreeMap;
@@ -48,15 +48,22 @@ pub struct Placer<'s> {
     groups: BTreeMap<&'s str, Vec<Prepared<'s>>>,
     /// Levels of shared groups built so far.
     levels: BTreeMap<&'s str, Arc<Geometry>>,
+    control: &'s BuildControl,
 }
 
 impl<'s> Placer<'s> {
-    /// Builds the levels of the `shared` groups, each of which follows the groups that it places.
-    pub fn new(groups: BTreeMap<&'s str, Vec<Prepared<'s>>>, shared: impl Iterator<Item = &'s str>) -> Self {
-        let mut placer = Self { groups, levels: BTreeMap::new() };
+    /// Builds the levels of the `shared` groups, each of which follows the groups that it places. Once
+    /// `control` is cancelled, levels and objects are missing.
+    pub fn new(
+        groups: BTreeMap<&'s str, Vec<Prepared<'s>>>,
+        shared: impl Iterator<Item = &'s str>,
+        control: &'s BuildControl,
+    ) -> Self {
+        let mut placer = Self { groups, levels: BTreeMap::new(), control };
         for name in shared {
             let objects = placer.objects(placer.groups.get(name).map(Vec::as_slice).unwrap_or_default());
-            placer.levels.insert(name, Arc::new(Geometry::new(objects)));
+            let Ok(level) = Geometry::new(objects, control) else { break };
+            placer.levels.insert(name, Arc::new(level));
         }
         placer
     }
@@ -70,7 +77,7 @@ impl<'s> Placer<'s> {
     ) -> (Vec<juggler_world::Object>, Vec<u32>) {
         let (mut found, mut firsts, mut shapes) = (Vec::new(), Vec::with_capacity(count), 0u64);
         let number = |shapes: u64| u32::try_from(shapes).unwrap_or(u32::MAX);
-        for object in objects {
+        for object in objects.iter().take_while(|_| !self.control.is_cancelled()) {
             firsts.resize(firsts.len().max(object.index + 1), number(shapes));
             let before = found.len();
             let inherited = Inherited { material: Some(default_material), attributes: None };
@@ -97,7 +104,7 @@ impl<'s> Placer<'s> {
         inherited: &Inherited,
         found: &mut Vec<juggler_world::Object>,
     ) {
-        for object in objects {
+        for object in objects.iter().take_while(|_| !self.control.is_cancelled()) {
             let motion = object.motion.then(parent);
             let Inherited { material, attributes } = inherited.clone();
             let inherited = Inherited { material: object.material.or(material), attributes };
@@ -118,7 +125,7 @@ impl<'s> Placer<'s> {
     ) {
         found.reserve(instances.count());
         let attributes = instances.attributes(inherited.attributes.as_ref());
-        for index in 0..instances.count() {
+        for index in (0..instances.count()).take_while(|_| !self.control.is_cancelled()) {
             if let (Some(list), Ok(index)) = (&attributes, u32::try_from(index)) {
                 inherited.attributes = Some(InstanceAttributes { list: Arc::clone(list), index });
             }

@@ -37,7 +37,7 @@ pub fn place(
     let top = preparer.objects(&scene.objects, Times::Tracks(&tracks.objects), &PathRef::Root.key("objects"));
     let default_material = preparer.materials.default_material();
     let shared = counts.iter().filter(|(_, count)| count.is_shared).map(|(name, _)| *name);
-    Placer::new(groups, shared).entries(&top, scene.objects.len(), default_material)
+    Placer::new(groups, shared, files.control).entries(&top, scene.objects.len(), default_material)
 }
 
 struct Preparer<'m> {
@@ -58,7 +58,7 @@ impl Preparer<'_> {
     fn objects<'s>(&mut self, objects: &'s [Item<Object>], times: Times<'_>, path: &PathRef<'_>) -> Vec<Prepared<'s>> {
         let times = times.fitting(objects.len());
         let mut prepared = Vec::with_capacity(objects.len());
-        for (i, object) in objects.iter().enumerate() {
+        for (i, object) in objects.iter().enumerate().take_while(|_| !self.files.control.is_cancelled()) {
             if !object.is_visible() {
                 self.check_flat(object, &path.index(i));
                 continue;
@@ -158,7 +158,7 @@ impl Preparer<'_> {
             Some(mesh) => self.mesh(mesh, at, &path.key("mesh"))?.into(),
             None => shape.clone(),
         };
-        match shape.prepare() {
+        match shape.prepare_with_control(self.files.control) {
             Ok(()) => Some(shape),
             Err(invalid) => {
                 let path = path.key(&crate::kind::name_of(&shape)).join(&invalid.field);

@@ -107,8 +107,12 @@ mod tests {
                 tracks.lights.insert(i, keys);
             }
         }
-        let (scene, sources, asset_cache) = Default::default();
-        super::lights(still, &tracks, Files { scene: &scene, sources: &sources, asset_cache: &asset_cache })
+        let (scene, sources, asset_cache, control) = Default::default();
+        super::lights(
+            still,
+            &tracks,
+            Files { scene: &scene, sources: &sources, asset_cache: &asset_cache, control: &control },
+        )
     }
 
     #[test]

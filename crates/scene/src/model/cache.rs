@@ -6,6 +6,7 @@ use crate::compile::file_stamp;
 use crate::report::plain_io;
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;
+use juggler_math::BuildControl;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -65,17 +66,21 @@ impl ModelCache {
         Self { entries: Arc::new(Mutex::new(kept)), ..*self }
     }
 
-    /// Opens a file without holding the lock, as for meshes.
-    pub fn get(&self, path: &Path, store: &Store) -> Arc<OpenedModel> {
+    /// Opens a file without holding the lock, as for meshes. If `control` is cancelled, the model has
+    /// a message and is not kept.
+    pub fn get(&self, path: &Path, store: &Store, control: &BuildControl) -> Arc<OpenedModel> {
         let name = store.canonical_name(path);
         if let Some(known) = self.entries().get(&name) {
             return Arc::clone(known);
         }
-        let model = Arc::new(self.open(path, store));
+        let model = Arc::new(self.open(path, store, control));
+        if control.is_cancelled() {
+            return model;
+        }
         Arc::clone(self.entries().entry(name).or_insert(model))
     }
 
-    fn open(&self, path: &Path, store: &Store) -> OpenedModel {
+    fn open(&self, path: &Path, store: &Store, control: &BuildControl) -> OpenedModel {
         let (folder, shown) = (path.parent().unwrap_or(Path::new("")), path.display().to_string());
         let mut stamps = vec![(path.to_owned(), file_stamp(path))];
         let failed = |message: String| OpenedModel { file: Err(vec![message]), stamps: stamps.clone() };
@@ -87,7 +92,7 @@ impl ModelCache {
             return failed(format!("`{shown}` is in no known format of models"));
         };
         let beside = FolderFiles { folder, store, is_lenient: self.is_lenient };
-        match format.open(&shown, bytes, &beside) {
+        match format.open_with_control(&shown, bytes, &beside, control) {
             Ok(file) => {
                 let others = file.files().iter().map(|name| folder.join(name));
                 stamps.extend(others.map(|path| (path.clone(), file_stamp(&path))));

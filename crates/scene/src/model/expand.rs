@@ -252,8 +252,8 @@ impl Expander<'_> {
     /// Whether the shutter is open and a model in an object shows a clip at the scene's time.
     fn moves(&self, object: &Object, path: &PathRef<'_>) -> bool {
         let own = object.model.as_ref().is_some_and(|model| {
-            let opened =
-                self.asset_cache.model(&self.files.locate(&Path::from(&path.key("model").key("file")), &model.file));
+            let file = self.files.locate(&Path::from(&path.key("model").key("file")), &model.file);
+            let opened = self.asset_cache.model_with_control(&file, self.files.control);
             let summary = |choice: &ModelChoice| opened.file.as_ref().ok()?.summary(choice).ok();
             model.at.is_none() && summary(&model.choice(self.seconds)).is_some_and(|summary| summary.clip.is_some())
         });

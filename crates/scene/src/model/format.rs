@@ -2,6 +2,7 @@
 
 use super::{Files, ModelChoice, ModelParts, ModelSummary};
 use glam::DAffine3;
+use juggler_math::{BuildControl, Cancelled};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -35,6 +36,18 @@ pub trait ModelFormat: Debug + Send + Sync {
     ///
     /// The file or one of its files is not valid, is missing, or exceeds a limit.
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError>;
+
+    /// [`ModelFormat::open`], which may end early with an error if `control` is cancelled. Defaults to
+    /// opening the whole file.
+    fn open_with_control(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        files: &dyn Files,
+        _control: &BuildControl,
+    ) -> Result<Arc<dyn ModelFile>, ModelError> {
+        self.open(name, bytes, files)
+    }
 }
 
 /// An opened model file. All files that it names are read.
@@ -62,6 +75,17 @@ pub trait ModelFile: Debug + Send + Sync {
     /// The content is not valid, or the choice names something that the file does not have.
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError>;
 
+    /// [`ModelFile::parts`], which may end early with an error if `control` is cancelled. Defaults to
+    /// translating the whole file.
+    fn parts_with_control(
+        &self,
+        choice: &ModelChoice,
+        prefix: &str,
+        _control: &BuildControl,
+    ) -> Result<ModelParts, ModelError> {
+        self.parts(choice, prefix)
+    }
+
     /// Transform of a node to the space of the file, in the pose of a choice. `node` is the name of
     /// the node, or a path of names such as "Root/Body/Head". Defaults to an error: the format has
     /// no nodes.
@@ -88,6 +112,12 @@ pub trait ModelFile: Debug + Send + Sync {
 pub struct ModelError {
     /// Messages such as "car.glb: /accessors/7: needs 48 bytes from byte 1020". At least one.
     pub faults: Vec<String>,
+}
+
+impl From<Cancelled> for ModelError {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::new(cancelled.to_string())
+    }
 }
 
 impl ModelError {

@@ -10,7 +10,7 @@ use crate::report::Finding;
 use indexmap::IndexMap;
 use juggler_material::MaterialRef;
 use juggler_math::suggest::did_you_mean_or_list;
-use juggler_math::{Transform, portable};
+use juggler_math::{BuildControl, Transform, portable};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -64,11 +64,11 @@ impl Expander<'_> {
         place: Place<'_>,
     ) -> Vec<Object> {
         let file = self.files.locate(&Path::from(path).key("file"), &model.file);
-        let opened = self.asset_cache.model(&file);
+        let opened = self.asset_cache.model_with_control(&file, self.files.control);
         let size = self.description.render.size;
         let choice = ModelChoice { picture_size: Some(size), ..model.choice(seconds) };
         let prefix = self.prefix(&file, model, replaced, path, place);
-        let mut parts = match open_parts(&opened, &choice, &prefix) {
+        let mut parts = match open_parts(&opened, &choice, &prefix, self.files.control) {
             Ok(parts) => parts,
             Err(faults) => {
                 let at = Path::from(path).key("file");
@@ -226,9 +226,14 @@ impl Expander<'_> {
 }
 
 /// Parts of an opened file, or messages.
-fn open_parts(opened: &OpenedModel, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, Vec<String>> {
+fn open_parts(
+    opened: &OpenedModel,
+    choice: &ModelChoice,
+    prefix: &str,
+    control: &BuildControl,
+) -> Result<ModelParts, Vec<String>> {
     let file = opened.file.as_ref().map_err(Clone::clone)?;
-    file.parts(choice, prefix).map_err(|error| error.faults)
+    file.parts_with_control(choice, prefix, control).map_err(|error| error.faults)
 }
 
 /// Objects of the nodes that the model shows.

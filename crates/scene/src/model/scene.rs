@@ -4,12 +4,13 @@ use super::{Expansion, ModelSummary, NameOrIndex, SceneTime, describe_model_scen
 use super::{expand, expand_heads, has_instance_files, has_models};
 use crate::animate::posed_files;
 use crate::asset::Assets;
-use crate::compile::{AssetCache, Files};
+use crate::compile::{AssetCache, Files, NEVER_CANCELLED};
 use crate::description::{Description, Model, Object};
 use crate::item::Item;
 use crate::motion::Tracks;
 use crate::path::{Path as ScenePath, PathRef};
 use crate::{Scene, SceneError};
+use juggler_math::BuildControl;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -47,10 +48,15 @@ pub struct SceneModel {
 impl Scene {
     /// The scene with its models and files of instances expanded; `None` without any.
     pub(crate) fn expanded(&self) -> Option<Arc<Expansion>> {
+        self.expanded_with_control(&NEVER_CANCELLED)
+    }
+
+    /// [`Scene::expanded`]; incomplete, and not kept, if `control` is cancelled.
+    pub(crate) fn expanded_with_control(&self, control: &BuildControl) -> Option<Arc<Expansion>> {
         if !(has_models(&self.description) || has_instance_files(&self.description)) {
             return None;
         }
-        Some(self.memoized(&self.expansion.whole, expand))
+        Some(self.memoized(&self.expansion.whole, expand, control))
     }
 
     /// The scene with its models expanded and, of its files of instances, how many instances their heads
@@ -59,10 +65,15 @@ impl Scene {
         if !has_instance_files(&self.description) {
             return self.expanded();
         }
-        Some(self.memoized(&self.expansion.heads, expand_heads))
+        Some(self.memoized(&self.expansion.heads, expand_heads, &NEVER_CANCELLED))
     }
 
-    fn memoized(&self, memo: &Memo, expand: fn(Files<'_>, &Tracks, SceneTime) -> Expansion) -> Arc<Expansion> {
+    fn memoized(
+        &self,
+        memo: &Memo,
+        expand: fn(Files<'_>, &Tracks, SceneTime) -> Expansion,
+        control: &BuildControl,
+    ) -> Arc<Expansion> {
         let memo = || memo.lock().unwrap_or_else(PoisonError::into_inner);
         let assets = &self.asset_cache.store().assets;
         let is_current =
@@ -72,9 +83,13 @@ impl Scene {
         }
         // The lock is not held meanwhile: a thread that waits for parallel work may start other
         // work that needs it.
+        let (tracks, _) = self.tracks_with_control(control);
         let frames_per_second = self.description.animation.frames_per_second;
         let time = SceneTime { frame: self.frame, shutter: self.description.render.shutter, frames_per_second };
-        let expansion = Arc::new(expand(self.files(), &self.tracks().0, time));
+        let expansion = Arc::new(expand(Files { control, ..self.files() }, &tracks, time));
+        if control.is_cancelled() {
+            return expansion;
+        }
         *memo() = Some(KnownExpansion {
             scene: self.description.clone(),
             frame: self.frame,
@@ -86,12 +101,18 @@ impl Scene {
 
     /// Files of the expanded scene.
     pub(crate) fn files_of<'s>(&'s self, expansion: &'s Expansion) -> Files<'s> {
-        Files { scene: &expansion.description, sources: self.sources(), asset_cache: &expansion.asset_cache }
+        let (sources, asset_cache) = (self.sources(), &expansion.asset_cache);
+        Files { scene: &expansion.description, sources, asset_cache, control: &NEVER_CANCELLED }
     }
 
     /// Creates the scene that shows a model file.
-    pub(crate) fn around_model(path: &Path, asset_cache: AssetCache) -> Result<Self, SceneError> {
-        let opened = asset_cache.model(path);
+    pub(crate) fn around_model(
+        path: &Path,
+        asset_cache: AssetCache,
+        control: &BuildControl,
+    ) -> Result<Self, SceneError> {
+        let opened = asset_cache.model_with_control(path, control);
+        control.check()?;
         let model = opened.file.as_ref().map_err(|faults| SceneError::Model { faults: faults.clone() })?;
         let description = describe_model_scene(&path.to_string_lossy(), &**model);
         Ok(Self::around(description, asset_cache))

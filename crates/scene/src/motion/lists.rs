@@ -7,13 +7,20 @@ use crate::description::Description;
 use crate::document::{FileId, LongList, Node, finding};
 use crate::path::Path;
 use crate::report::Finding;
+use juggler_math::BuildControl;
 
 /// Maximum number of errors reported per list.
 const MAX_FINDINGS: usize = 200;
 
 /// Reads the items of a long list into a scene at frame 0, whose other sections are already read.
-/// Returns all findings; after an error the scene's list is empty.
-pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: SceneSources<'_>) -> Vec<Finding> {
+/// Returns all findings; after an error the scene's list is empty. Ends early if `control` is
+/// cancelled.
+pub(crate) fn read_list(
+    scene: &mut Description,
+    list: &LongList,
+    sources: SceneSources<'_>,
+    control: &BuildControl,
+) -> Vec<Finding> {
     let text = sources.texts.get(FileId::MAIN).map(|source| source.text.as_str()).unwrap_or_default();
     let head = head(scene);
     let mut findings = Vec::new();
@@ -25,7 +32,7 @@ pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: Scene
             }
             Err(error) => findings.push(finding(FileId::MAIN, error)),
         }
-        if findings.iter().filter(|finding| finding.is_error()).count() >= MAX_FINDINGS {
+        if control.is_cancelled() || findings.iter().filter(|finding| finding.is_error()).count() >= MAX_FINDINGS {
             break;
         }
     }

@@ -10,6 +10,7 @@ use crate::path::Step;
 use crate::report::Finding;
 use juggler_camera::AnyCamera;
 use juggler_light::AnyLight;
+use juggler_math::BuildControl;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,8 +46,13 @@ pub enum ObjectTrack {
 
 impl Tracks {
     /// Samples all animated items of a scene at `frame` over its shutter interval. Returns empty
-    /// tracks and the findings if a sample is invalid.
-    pub(crate) fn sample(scene: &Description, sources: SceneSources<'_>, frame: f64) -> (Self, Vec<Finding>) {
+    /// tracks and the findings if a sample is invalid, and empty tracks if `control` is cancelled.
+    pub(crate) fn sample(
+        scene: &Description,
+        sources: SceneSources<'_>,
+        frame: f64,
+        control: &BuildControl,
+    ) -> (Self, Vec<Finding>) {
         let [open, close] = scene.render.shutter;
         let is_open = open < close && open.is_finite() && close.is_finite();
         let items = if is_open { moving_items(scene) } else { Vec::new() };
@@ -56,6 +62,9 @@ impl Tracks {
         let head = write::head(scene);
         let mut moments: Vec<ItemValues<'_>> = Vec::with_capacity(SHUTTER_SAMPLES);
         for moment in 0..SHUTTER_SAMPLES {
+            if control.is_cancelled() {
+                return Default::default();
+            }
             let share = moment as f64 / (SHUTTER_SAMPLES - 1) as f64;
             let time = frame + open + (close - open) * share;
             match read_items(scene, &head, sources, time, &items) {

@@ -3,13 +3,17 @@
 use crate::document::{Node, SourceSpan, Sources, parse};
 use crate::path::Path;
 use juggler_math::message;
+use position::Cursor;
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::{fmt, io};
 
+mod position;
 mod text;
 
 /// Severity of a problem.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Severity {
     /// The scene cannot be rendered.
@@ -91,20 +95,27 @@ impl Finding {
     }
 }
 
-/// A located problem of a scene.
-#[derive(Clone, Debug, PartialEq)]
+/// A located problem of a scene. Its JSON form has all fields except the range of bytes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// Severity of the problem.
-    pub severity: Severity,
     /// Path of the value, such as `objects[0].shape.sphere.radius`, relative to the file that
     /// contains it.
     pub path: String,
-    /// Place in a file; `None` for scenes that were not read from a file.
-    pub place: Option<SourceSpan>,
+    /// Severity of the problem.
+    pub severity: Severity,
     /// Description of the problem.
     pub message: String,
     /// Suggested fix.
     pub help: Option<String>,
+    /// Range of bytes in a file; `None` for scenes that were not read from a file.
+    #[serde(skip)]
+    pub place: Option<SourceSpan>,
+    /// Name of the file, `None` without a place.
+    pub file: Option<String>,
+    /// Line in the file, counted from 1.
+    pub line: Option<usize>,
+    /// Column in the line, in characters, counted from 1.
+    pub column: Option<usize>,
 }
 
 /// All problems of a scene, errors first, in the order of the files.
@@ -124,12 +135,22 @@ impl Problems {
         for finding in findings {
             let (place, path) = locate(&finding, &sources, written, &mut files);
             let Finding { severity, message, help, .. } = finding;
-            list.push(Problem { severity, path, place, message, help });
+            list.push(Problem { path, severity, message, help, place, file: None, line: None, column: None });
         }
         list.sort_by_key(|problem| (problem.severity, problem.place));
         // Two checks may report the same problem; keep the first, which has the better suggestion.
         let mut seen = BTreeSet::new();
         list.retain(|problem| seen.insert((problem.path.clone(), problem.message.clone())));
+        // In the order of the places, this is one pass over the texts.
+        let mut cursor = Cursor::new();
+        for problem in &mut list {
+            let Some((place, source)) = problem.place.and_then(|place| Some((place, sources.get(place.file)?))) else {
+                continue;
+            };
+            cursor = cursor.moved_to(&place, &source.text);
+            problem.file = Some(source.name.clone());
+            (problem.line, problem.column) = (Some(cursor.line), Some(cursor.column));
+        }
         Self { list, sources }
     }
 

@@ -1,7 +1,7 @@
 //! Formatting of problems as text.
 
 use super::{Problem, Problems, Severity};
-use crate::document::{SourceSpan, Sources};
+use crate::document::Sources;
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use juggler_math::message::{MAX_QUOTE, excerpt};
 use std::fmt::Write;
@@ -43,7 +43,7 @@ fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
         Severity::Warning => Level::WARNING,
     };
     let mut elements: Vec<Element<'p>> = Vec::new();
-    if let Some(excerpt) = problem.place.and_then(|place| Excerpt::of(place, sources)) {
+    if let Some(excerpt) = Excerpt::of(problem, sources) {
         let annotation = AnnotationKind::Primary.span(excerpt.start..excerpt.end);
         let snippet = Snippet::source(excerpt.text).line_start(excerpt.line).annotation(annotation);
         if excerpt.cut {
@@ -79,15 +79,14 @@ struct Excerpt<'p> {
 }
 
 impl<'p> Excerpt<'p> {
-    fn of(place: SourceSpan, sources: &'p Sources) -> Option<Self> {
+    fn of(problem: &Problem, sources: &'p Sources) -> Option<Self> {
+        let (place, line, column) = (problem.place?, problem.line?, problem.column?);
         let source = sources.get(place.file)?;
         let start = source.text.floor_char_boundary(place.start as usize);
         let (before, after) = source.text.split_at_checked(start)?;
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line = before.matches('\n').count() + 1;
         let left = before.get(line_start..)?;
         let right = after.lines().next().unwrap_or_default();
-        let column = left.chars().count() + 1;
         let fault = right.floor_char_boundary(((place.end - place.start) as usize).clamp(0, MARGIN));
         let shown_left = left.get(left.ceil_char_boundary(left.len().saturating_sub(MARGIN))..)?;
         let shown_right = right.get(..right.floor_char_boundary((fault + MARGIN).min(right.len())))?;
@@ -97,13 +96,5 @@ impl<'p> Excerpt<'p> {
         let text = format!("{head}{shown_left}{shown_right}{tail}");
         let start = head.len() + shown_left.len();
         Some(Self { file: &source.name, line, column, text, cut, start, end: start + fault.min(shown_right.len()) })
-    }
-}
-
-impl Problem {
-    /// Line and column of the problem, both counted from 1; the column is in characters.
-    pub fn line_and_column(&self, sources: &Sources) -> Option<(usize, usize)> {
-        let excerpt = Excerpt::of(self.place?, sources)?;
-        Some((excerpt.line, excerpt.column))
     }
 }

@@ -2,7 +2,7 @@
 //! 2010, step 27) and with numbers computed from them by hand.
 
 use juggler_light::background::AnyBackground;
-use juggler_math::{DVec3, Vec3};
+use juggler_math::{BuildControl, DVec3, Vec3};
 use juggler_scene::compile::{Assembly, AssetCache, Files};
 use juggler_scene::document::Sources;
 use juggler_scene::{Scene, Tracks};
@@ -16,8 +16,8 @@ const NEAR: f64 = 2e-4;
 fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let scene = Scene::built_in("juggler").unwrap().at_frame(frame).unwrap();
     let asset_cache = AssetCache::default();
-    let sources = Sources::default();
-    let files = Files { scene: &scene.description, sources: &sources, asset_cache: &asset_cache };
+    let (sources, control) = (Sources::default(), BuildControl::new());
+    let files = Files { scene: &scene.description, sources: &sources, asset_cache: &asset_cache, control: &control };
     let (assembly, findings) = Assembly::from_scene(&scene.description, &Tracks::default(), files);
     assert!(findings.is_empty(), "{findings:?}");
     let shape = |object: &Object| object.content.as_shape().unwrap().as_ref().clone();

@@ -6,11 +6,13 @@
 use super::MeshData;
 use crate::attribute::MeshAttribute;
 use crate::{InvalidShape, check};
-use juggler_math::{DVec3, portable};
+use juggler_math::{BuildControl, Cancelled, DVec3, portable};
 use std::collections::BTreeMap;
 
 /// Maximum number of triangles, so that the index of every corner fits a `u32`.
 const MAX_TRIANGLES: usize = 1 << 30;
+/// Number of triangles that are split between tests for cancellation.
+const CHECKED: usize = 1 << 16;
 
 /// Smoothing groups of a mesh's corners.
 pub struct SmoothingGroups {
@@ -24,14 +26,14 @@ impl SmoothingGroups {
     /// Smoothing groups of a mesh. Edges are creases where the normals of their two triangles
     /// differ by more than the angle, in degrees; edges of one triangle, and of more than two, are
     /// creases too. Coincident positions count as one.
-    pub fn new(data: &MeshData, angle_degrees: f32) -> Result<Self, InvalidShape> {
+    pub fn new(data: &MeshData, angle_degrees: f32, control: &BuildControl) -> Result<Self, InvalidShape> {
         check::number("crease_angle_degrees", angle_degrees, 0.0, 180.0)?;
         data.check()?;
         if data.triangles.len() > MAX_TRIANGLES {
             let message = format!("a mesh with a crease angle has at most {MAX_TRIANGLES} triangles");
             return Err(check::invalid("crease_angle_degrees", message));
         }
-        let groups = groups(data, f64::from(portable::cos(angle_degrees.to_radians())));
+        let groups = groups(data, f64::from(portable::cos(angle_degrees.to_radians())), control)?;
         let mut known = BTreeMap::new();
         let mut corners = Vec::new();
         let mut split = |position: u32, group: u32| {
@@ -40,8 +42,12 @@ impl SmoothingGroups {
                 corners.len() as u32 - 1
             })
         };
-        let triangles = data.triangles.iter().zip(groups.as_chunks::<3>().0);
-        let triangles = triangles.map(|([a, b, c], [x, y, z])| [split(*a, *x), split(*b, *y), split(*c, *z)]).collect();
+        let mut triangles = Vec::with_capacity(data.triangles.len());
+        for (indices, groups) in data.triangles.chunks(CHECKED).zip(groups.as_chunks::<3>().0.chunks(CHECKED)) {
+            control.check()?;
+            let corners = indices.iter().zip(groups);
+            triangles.extend(corners.map(|([a, b, c], [x, y, z])| [split(*a, *x), split(*b, *y), split(*c, *z)]));
+        }
         Ok(Self { triangles, corners })
     }
 
@@ -92,8 +98,10 @@ impl SmoothingGroups {
 }
 
 /// For each corner of each triangle, the index of its smoothing group.
-fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
+fn groups(data: &MeshData, least_cosine: f64, control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
+    control.check()?;
     let places = coincident_positions(data);
+    control.check()?;
     let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
     let normal = |corner: u32| {
         data.triangle_geometry(corner as usize / 3).map(|triangle| triangle.area_normal().normalize_or_zero())
@@ -111,7 +119,9 @@ fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
             edges.push(if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) });
         }
     }
+    control.check()?;
     edges.sort_unstable();
+    control.check()?;
     let mut groups: Vec<u32> = (0..3 * data.triangles.len() as u32).collect();
     for shared in edges.chunk_by(|a, b| a.0 == b.0) {
         let [(_, one), (_, other)] = shared else { continue };
@@ -121,7 +131,8 @@ fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
             (0..2).for_each(|end| join(&mut groups, one[end], other[end]));
         }
     }
-    (0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect()
+    control.check()?;
+    Ok((0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect())
 }
 
 /// For each position, the lowest index of a coincident position.
@@ -185,7 +196,7 @@ mod tests {
     }
 
     fn smooth(data: MeshData, angle: f32) -> MeshData {
-        SmoothingGroups::new(&data, angle).unwrap().smoothed(data)
+        SmoothingGroups::new(&data, angle, &BuildControl::default()).unwrap().smoothed(data)
     }
 
     #[test]
@@ -241,7 +252,13 @@ mod tests {
         }
         let own = MeshData { normals: vec![Vec3::Y; data.positions.len()], ..data.clone() };
         assert_eq!(smooth(own.clone(), 30.0), own, "a mesh with normals keeps them");
-        assert_eq!(SmoothingGroups::new(&data, 181.0).err().unwrap().field, "crease_angle_degrees");
-        assert!(SmoothingGroups::new(&MeshData { triangles: vec![[0, 1, 99]], ..data }, 30.0).is_err());
+        assert_eq!(
+            SmoothingGroups::new(&data, 181.0, &BuildControl::default()).err().unwrap().field,
+            "crease_angle_degrees"
+        );
+        assert!(
+            SmoothingGroups::new(&MeshData { triangles: vec![[0, 1, 99]], ..data }, 30.0, &BuildControl::default())
+                .is_err()
+        );
     }
 }

@@ -22,7 +22,7 @@ use crate::surface::Surface;
 use crease::SmoothingGroups;
 use description::MeshDescription;
 use juggler_bvh::SimdLevel;
-use juggler_math::{Aabb, Ray, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Ray, Vec2, Vec3};
 use prepared::PreparedMesh;
 use serde::Deserialize;
 use std::sync::{Arc, OnceLock};
@@ -165,7 +165,17 @@ impl Mesh {
     /// Mesh that moves linearly between keyframes at uniform times from opening to closing of the
     /// shutter, all with the same triangles. Its area is the mean over that time; its creases are
     /// those of the first keyframe. The error names the field at fault.
-    pub fn from_keyframes(mut keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
+    pub fn from_keyframes(keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
+        Self::from_keyframes_with_control(keys, crease_angle_degrees, &BuildControl::default())
+    }
+
+    /// [`Mesh::from_keyframes`], which ends early if `control` is cancelled, with an error, and
+    /// reports its progress to it.
+    pub fn from_keyframes_with_control(
+        mut keys: Vec<MeshData>,
+        crease_angle_degrees: Option<f32>,
+        control: &BuildControl,
+    ) -> Result<Self, InvalidShape> {
         let same = keys.windows(2).all(|pair| match pair {
             [a, b] => a.triangles == b.triangles && a.positions.len() == b.positions.len(),
             _ => true,
@@ -177,10 +187,10 @@ impl Mesh {
             ));
         }
         if let (Some(angle), Some(first)) = (crease_angle_degrees, keys.first().filter(|key| key.normals.is_empty())) {
-            let smoothing = SmoothingGroups::new(first, angle)?;
+            let smoothing = SmoothingGroups::new(first, angle, control)?;
             keys = keys.into_iter().map(|key| smoothing.smoothed(key)).collect();
         }
-        let prepared = PreparedMesh::from_keyframes(keys)?;
+        let prepared = PreparedMesh::from_keyframes(keys, control)?;
         let (arrays, prepared) = (Arc::clone(prepared.arrays()), Some(Arc::new(prepared)));
         Ok(Self { arrays, prepared, crease_angle_degrees, ..Self::default() })
     }
@@ -265,6 +275,10 @@ impl Mesh {
 
 impl Shape for Mesh {
     fn prepare(&mut self) -> Result<(), InvalidShape> {
+        self.prepare_with_control(&BuildControl::default())
+    }
+
+    fn prepare_with_control(&mut self, control: &BuildControl) -> Result<(), InvalidShape> {
         if self.prepared.is_some() {
             return Ok(());
         }
@@ -280,14 +294,14 @@ impl Shape for Mesh {
             morph::blend(Arc::make_mut(&mut arrays), &morphs)?;
         }
         if let Some(angle) = self.crease_angle_degrees.filter(|_| arrays.normals.is_empty()) {
-            let smoothing = SmoothingGroups::new(&arrays, angle)?;
+            let smoothing = SmoothingGroups::new(&arrays, angle, control)?;
             arrays = Arc::new(smoothing.smoothed(Arc::unwrap_or_clone(arrays)));
         }
         // Morphs and creases may change, so only the arrays' own preparation is kept.
         let is_own = Arc::ptr_eq(&arrays, &self.arrays);
         let prepared = match self.memo.0.get().filter(|_| is_own) {
             Some(prepared) => Arc::clone(prepared),
-            None => Arc::new(PreparedMesh::new(Arc::clone(&arrays))?),
+            None => Arc::new(PreparedMesh::new(Arc::clone(&arrays), control)?),
         };
         if is_own {
             // Another thread may have been first; both results are equal.

@@ -5,7 +5,7 @@ use crate::triangle_geometry::TriangleGeometry;
 use crate::{InvalidShape, check::invalid};
 use juggler_bvh::{MovingTriangleBvh, Quality, SimdLevel, TriangleHit};
 use juggler_math::motion::{key_interval, lerp, without_redundant_keys};
-use juggler_math::{Aabb, Ray, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Ray, Vec2, Vec3};
 
 /// Largest distance of a corner from its path where keyframes are left out, relative to the mesh's
 /// size.
@@ -23,14 +23,15 @@ pub struct MovingMesh {
 impl MovingMesh {
     /// Hierarchies of meshes with the same triangles at uniform times, each already validated.
     /// Keyframes are left out where corners move linearly.
-    pub fn new(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+    pub fn new(keys: Vec<MeshData>, control: &BuildControl) -> Result<Self, InvalidShape> {
         let points = keys.iter().flat_map(|key| key.positions.iter().copied());
         let bounds = Aabb::from_points(points);
         let tolerance = TOLERANCE * bounds.extent().length();
         let keys = without_redundant_keys(keys, |at, before, after| is_between(at, before, after, tolerance));
         let tree = |pair: &[MeshData]| match pair {
             [from, to] => {
-                MovingTriangleBvh::build(&from.positions, &to.positions, &from.triangles, 1.0, Quality::Balanced)
+                let ends = [&from.positions[..], &to.positions[..]];
+                MovingTriangleBvh::build_with_control(ends, &from.triangles, 1.0, Quality::Balanced, control)
                     .map_err(|error| invalid("triangles", error.to_string()))
             }
             _ => Err(invalid("triangles", "a moving mesh needs at least two keyframes")),

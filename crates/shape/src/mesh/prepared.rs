@@ -5,7 +5,7 @@ use super::moving_mesh::MovingMesh;
 use crate::triangle_geometry::TriangleGeometry;
 use crate::{InvalidShape, check::invalid};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
-use juggler_math::{Aabb, Ray, Vec2, Vec3};
+use juggler_math::{Aabb, BuildControl, Ray, Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -68,24 +68,25 @@ impl MeshMeasures {
 
 impl PreparedMesh {
     /// Validates the arrays and builds the hierarchy.
-    pub fn new(arrays: Arc<MeshData>) -> Result<Self, InvalidShape> {
-        let measures = checked(&arrays)?;
-        let bvh = TriangleBvh::build(&arrays.positions, &arrays.triangles, Quality::Balanced)
+    pub fn new(arrays: Arc<MeshData>, control: &BuildControl) -> Result<Self, InvalidShape> {
+        let measures = checked(&arrays, control)?;
+        let bvh = TriangleBvh::build_with_control(&arrays.positions, &arrays.triangles, Quality::Balanced, control)
             .map_err(|error| invalid("triangles", error.to_string()))?;
         Ok(Self::with(arrays, Tree::Still(Box::new(bvh)), measures))
     }
 
     /// Validates and prepares a mesh that moves linearly between keyframes at uniform times while
     /// the shutter is open, all with the same triangles.
-    pub fn from_keyframes(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+    pub fn from_keyframes(keys: Vec<MeshData>, control: &BuildControl) -> Result<Self, InvalidShape> {
         for key in &keys {
+            control.check()?;
             key.check()?;
         }
-        let Some(data) = keys.first().cloned() else { return Self::new(Arc::default()) };
-        let measures = checked(&data)?;
+        let Some(data) = keys.first().cloned() else { return Self::new(Arc::default(), control) };
+        let measures = checked(&data, control)?;
         // Only the first keyframe gives what does not move.
         let keys = keys.into_iter().map(|key| MeshData { uvs1: Vec::new(), attributes: BTreeMap::new(), ..key });
-        let tree = MovingMesh::new(keys.collect())?;
+        let tree = MovingMesh::new(keys.collect(), control)?;
         let measures = MeshMeasures { bounds: tree.bounds(), ..measures };
         Ok(Self::with(Arc::new(data), Tree::Moving(tree), measures))
     }
@@ -210,8 +211,10 @@ impl PreparedMesh {
 }
 
 /// Validates the arrays; some triangle must have an area.
-fn checked(data: &MeshData) -> Result<MeshMeasures, InvalidShape> {
+fn checked(data: &MeshData, control: &BuildControl) -> Result<MeshMeasures, InvalidShape> {
+    control.check()?;
     data.check()?;
+    control.check()?;
     let measures = MeshMeasures::from_data(data);
     if measures.degenerate == data.triangles.len() {
         let message = format!("`triangles` must have an area, but all {} are degenerate", measures.degenerate);

@@ -21,7 +21,14 @@ fn spheres(radii: &[f32]) -> World {
     };
     let objects = radii.iter().enumerate().map(place).collect();
     let none: [AnyLight; 0] = [];
-    World::new(objects, compiler.finish().unwrap(), none, AnyBackground::Solid(Solid::default()))
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        none,
+        AnyBackground::Solid(Solid::default()),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 #[test]

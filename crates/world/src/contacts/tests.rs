@@ -19,7 +19,14 @@ fn sphere_and(other: Content, motion: Motion) -> World {
     let solid = Object::new(shape(r#"{"sphere": {"radius": 1}}"#), Transform::translation(Vec3::Y), glass);
     let objects = vec![solid, Object { content: other, motion, material: Some(diffuse), attributes: None }];
     let background = AnyBackground::Solid(Solid::default());
-    World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        Vec::<AnyLight>::new(),
+        background,
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 fn shape(json: &str) -> AnyShape {
@@ -97,7 +104,8 @@ fn contents_of_instances_count() {
         material: None,
         attributes: None,
     };
-    let unbounded = Content::Geometry(Arc::new(Geometry::new(vec![plane])));
+    let unbounded =
+        Content::Geometry(Arc::new(Geometry::new(vec![plane], &juggler_math::BuildControl::default()).unwrap()));
     assert!(fraction_apart(&sphere_and(unbounded, Transform::IDENTITY.into())) == 0.0);
     let tile = Object {
         content: content(r#"{"rectangle": {"size": [1, 1]}}"#),
@@ -105,7 +113,7 @@ fn contents_of_instances_count() {
         material: None,
         attributes: None,
     };
-    let tiles = Content::Geometry(Arc::new(Geometry::new(vec![tile])));
+    let tiles = Content::Geometry(Arc::new(Geometry::new(vec![tile], &juggler_math::BuildControl::default()).unwrap()));
     let world = sphere_and(tiles, Transform::IDENTITY.into());
     assert!(!is_apart(&world, Vec3::NEG_Y) && is_apart(&world, Vec3::Y));
 }

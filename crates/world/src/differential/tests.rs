@@ -53,7 +53,14 @@ fn materials_with_maps_get_tangents() {
         let material = compiler.compile(&recipe).unwrap();
         let objects = vec![Object::new(Sphere { radius: 2.0 }.into(), Transform::IDENTITY, material)];
         let lights = Vec::<SceneLight>::new();
-        let world = World::new(objects, compiler.finish().unwrap(), lights, AnyBackground::Solid(Solid::default()));
+        let world = World::new(
+            objects,
+            compiler.finish().unwrap(),
+            lights,
+            AnyBackground::Solid(Solid::default()),
+            &juggler_math::BuildControl::default(),
+        )
+        .unwrap();
         let mut ray = Ray::new(Vec3::X * 9.0, Vec3::NEG_X);
         let hit = world.closest(&mut ray);
         let tangents = world.vertex(&ray, &hit).tangents;

@@ -24,7 +24,14 @@ fn world(objects: &[(&str, Transform, &str)]) -> World {
     };
     let objects = objects.iter().map(object).collect();
     let background = AnyBackground::Solid(Solid::default());
-    World::new(objects, compiler.finish().unwrap(), Vec::<AnyLight>::new(), background)
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        Vec::<AnyLight>::new(),
+        background,
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 fn at(place: Vec3) -> Transform {

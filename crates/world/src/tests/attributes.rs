@@ -31,19 +31,25 @@ fn world(mesh: Mesh, transform: Transform, texture: &str, material: &str) -> Wor
     let mut compiler = MaterialCompiler::new(TextureTable::new(textures), []);
     let material = compiler.compile(&serde_json::from_str(material).unwrap()).unwrap();
     let half = Transform::scale(Vec3::splat(0.5)).unwrap();
-    let geometry = Geometry::new(vec![Object {
-        content: Content::Shape(Arc::new(mesh)),
-        motion: half.into(),
-        material: None,
-        attributes: None,
-    }]);
+    let geometry = Geometry::new(
+        vec![Object { content: Content::Shape(Arc::new(mesh)), motion: half.into(), material: None, attributes: None }],
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap();
     let object = Object {
         content: Content::Geometry(Arc::new(geometry)),
         motion: transform.into(),
         material: Some(material),
         attributes: None,
     };
-    World::new(vec![object], compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+    World::new(
+        vec![object],
+        compiler.finish().unwrap(),
+        NO_LIGHTS,
+        AnyBackground::Solid(Solid::default()),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 /// Vertex at barycentrics (0.25, 0.5), seen along its normal.
@@ -78,9 +84,17 @@ fn sphere_world(inner: Option<InstanceAttributes>, outer: Option<InstanceAttribu
     let motion = juggler_math::Motion::from(Transform::IDENTITY);
     let content = Content::Shape(Arc::new(sphere));
     let sphere = Object { content, motion: motion.clone(), material: None, attributes: inner };
-    let content = Content::Geometry(Arc::new(Geometry::new(vec![sphere])));
+    let content =
+        Content::Geometry(Arc::new(Geometry::new(vec![sphere], &juggler_math::BuildControl::default()).unwrap()));
     let instance = Object { content, motion, material: Some(MaterialId(0)), attributes: outer };
-    World::new(vec![instance], materials, NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+    World::new(
+        vec![instance],
+        materials,
+        NO_LIGHTS,
+        AnyBackground::Solid(Solid::default()),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 /// The second of two instances, from red at v = 0 to this color at v = 1.

@@ -15,7 +15,12 @@ use std::sync::Arc;
 fn doubled(random: &mut Random) -> Vec<Object> {
     let mut objects = crowd(random, 2, Some(MaterialId(0)));
     objects.push(Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1)));
-    for content in [Content::Geometry(Arc::new(Geometry::new(crowd(random, 1, None)))), objects[0].content.clone()] {
+    for content in [
+        Content::Geometry(Arc::new(
+            Geometry::new(crowd(random, 1, None), &juggler_math::BuildControl::default()).unwrap(),
+        )),
+        objects[0].content.clone(),
+    ] {
         let keys = vec![random.transform(), random.transform()];
         objects.push(Object { content, motion: Motion::from_keys(keys).unwrap(), material: None, attributes: None });
     }
@@ -101,7 +106,14 @@ fn ambiguous(cuboids: &[([f32; 2], &str)]) -> Vec<(Ambiguity, u32, u32)> {
         objects.push(Object::new(shape, Transform::IDENTITY, material));
     }
     let entries = (0..objects.len() as u32).collect();
-    let world = World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()));
+    let world = World::new(
+        objects,
+        compiler.finish().unwrap(),
+        NO_LIGHTS,
+        AnyBackground::Solid(Solid::default()),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap();
     world.with_labels(Labels { entries, ..Labels::default() }).ambiguities().into_iter().collect()
 }
 

@@ -12,7 +12,14 @@ fn emissive(transform: Transform) -> World {
     let mut rectangle: AnyShape = serde_json::from_str(r#"{"rectangle": {"size": [2, 2]}}"#).unwrap();
     rectangle.prepare().unwrap();
     let objects = vec![Object::new(rectangle, transform, material)];
-    World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
+    World::new(
+        objects,
+        compiler.finish().unwrap(),
+        NO_LIGHTS,
+        AnyBackground::Solid(Solid::default()),
+        &juggler_math::BuildControl::default(),
+    )
+    .unwrap()
 }
 
 #[test]

@@ -18,7 +18,13 @@ fn crossed(count: u32, long: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 
 /// Tree without spatial splits.
 fn whole(mesh: &TriangleList) -> Bvh {
-    Bvh::from_items(mesh.items().unwrap(), &BuildOptions { block: LANES, ..Quality::Best.into() })
+    let options = BuildOptions { block: LANES, ..Quality::Best.into() };
+    Bvh::from_items(mesh.items().unwrap(), &options, &BuildControl::default()).unwrap()
+}
+
+/// Tree with spatial splits.
+fn with_spatial_splits(mesh: &TriangleList, options: &BuildOptions) -> Bvh {
+    Bvh::with_spatial_splits(mesh.items().unwrap(), options, mesh, &BuildControl::default()).unwrap()
 }
 
 #[test]
@@ -60,7 +66,7 @@ fn no_part_of_a_triangle_is_missing() {
         let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale + offset * scale).collect();
         let mesh = TriangleList { positions: &positions, triangles: &triangles };
         let options = BuildOptions { block: LANES, ..Quality::Best.into() };
-        let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
+        let bvh = with_spatial_splits(&mesh, &options);
         let mut divided = 0;
         for (triangle, boxes) in boxes_of(&bvh, triangles.len()).iter().enumerate() {
             let corners = mesh.corners(triangle).unwrap();
@@ -114,11 +120,11 @@ fn bad_triangles_are_left_out_or_divided_soundly() {
     let options = BuildOptions { block: LANES, ..Quality::Best.into() };
     for count in [0, 1, 2, 9] {
         let mesh = TriangleList { triangles: &triangles[10..10 + count], ..mesh };
-        let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
+        let bvh = with_spatial_splits(&mesh, &options);
         assert_eq!((bvh.stats.items, bvh.stats.references >= count), (count, true));
     }
     let equal = vec![triangles[20]; 500];
     let mesh = TriangleList { triangles: &equal, ..mesh };
-    let bvh = Bvh::with_spatial_splits(mesh.items().unwrap(), &options, &mesh);
+    let bvh = with_spatial_splits(&mesh, &options);
     assert!(bvh.stats.items == 500 && bvh.stats.references <= 625 && bvh.stats.depth <= 72, "{:?}", bvh.stats);
 }

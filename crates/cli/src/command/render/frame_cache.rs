@@ -2,9 +2,10 @@
 //! once in any case, since all frames of a scene share its mesh library.
 
 use crate::failure::Failure;
+use crate::interrupt::Interrupts;
 use crate::plan::Plan;
 use juggler::scene::Scene;
-use juggler::{Error, Picture};
+use juggler::{BuildControl, Error, Picture};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Threads and world of the previous frame.
@@ -34,15 +35,24 @@ impl FrameCache {
 
     /// Picture of a frame. It shares the world of the previous frame if no object moved; otherwise
     /// the old world is dropped before the new one is built, so that memory never holds both.
-    pub fn picture(&mut self, plan: &Plan, scene: &Scene) -> Result<Picture, Failure> {
+    /// `interrupts` end the build; until signals are caught, they end the program.
+    pub fn picture(&mut self, plan: &Plan, scene: &Scene, interrupts: Option<&Interrupts>) -> Result<Picture, Failure> {
         // Apply the shutter first, since it decides what moves.
         let scene = plan.settings.apply(scene)?;
         let last = self.last.take().filter(|(last, _)| scene.has_world_of(last));
-        let picture = self.install(|| match &last {
-            Some((last, picture)) => picture.rebuild(last, &scene, &plan.settings),
-            None => Picture::new(&scene, &plan.settings),
-        });
-        picture.map_err(|error: Error| error.into())
+        let build = |control: &BuildControl| match &last {
+            Some((last, picture)) => picture.rebuild_with_control(last, &scene, &plan.settings, control),
+            None => Picture::new_with_control(&scene, &plan.settings, control),
+        };
+        let picture = match interrupts {
+            Some(interrupts) => interrupts.cancelling(|control| self.install(|| build(control))),
+            None => self.install(|| build(&BuildControl::default())),
+        };
+        let caught = || interrupts.and_then(Interrupts::caught);
+        picture.map_err(|error: Error| match error {
+            Error::Cancelled(_) => caught().unwrap_or_else(|| error.into()),
+            error => error.into(),
+        })
     }
 
     /// Keeps the world of a frame for the next one.
@@ -69,10 +79,10 @@ mod tests {
         let second = first.at_frame(1.0).unwrap();
         let mut frame_cache = FrameCache::default();
         frame_cache.set_threads(1).unwrap();
-        let picture = frame_cache.picture(&plan, &first).unwrap();
+        let picture = frame_cache.picture(&plan, &first, None).unwrap();
         let world = Arc::clone(picture.world());
         frame_cache.keep(&plan, &first, picture).unwrap();
-        let again = frame_cache.picture(&plan, &second).unwrap();
+        let again = frame_cache.picture(&plan, &second, None).unwrap();
         assert_eq!(again.fingerprint(), Picture::new(&second, &plan.settings).unwrap().fingerprint());
         Arc::ptr_eq(&world, again.world())
     }

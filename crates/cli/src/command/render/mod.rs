@@ -168,7 +168,7 @@ impl RenderCommand {
         let (memory, effort, frame_output) = memory::fit(&self.plan, scene, frame_output)?;
         frame_cache.set_threads(effort.threads)?;
         let built = Instant::now();
-        let picture = frame_cache.picture(&self.plan, scene)?;
+        let picture = frame_cache.picture(&self.plan, scene, interrupts.as_ref())?;
         let expected = memory.bytes(&effort);
         // With the world built, larger bands may fit.
         let Effort { band_pixels, .. } = memory::effort(&self.plan, &memory.with_world(&picture), effort.threads)?;

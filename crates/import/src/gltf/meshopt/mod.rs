@@ -108,6 +108,7 @@ impl Filter {
 
 /// Why a stream cannot be decoded. Bytes are counted from the first byte of the stream.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshoptError {
     /// The mode or the filter does not support the stride.
     #[error("byteStride is {stride}, {name} needs {needed}")]

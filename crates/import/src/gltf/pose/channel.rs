@@ -5,6 +5,7 @@ use super::target::{ChannelTarget, NodeProperty};
 
 /// Error of an animation channel.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChannelError {
     /// The curve has another number of components than the target.
     #[error("the keys have {found} components; the target has {expected}")]

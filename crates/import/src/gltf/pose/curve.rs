@@ -55,6 +55,7 @@ impl Interpolation {
 
 /// Error of the keys of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// There are no keys.
     #[error("there are no keys; a curve needs at least one")]

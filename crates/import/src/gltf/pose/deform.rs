@@ -8,6 +8,7 @@ use juggler_math::Aabb;
 
 /// Error of a deformation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DeformError {
     /// The morph targets do not fit the mesh.
     #[error(transparent)]

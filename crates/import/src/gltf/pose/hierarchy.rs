@@ -9,6 +9,7 @@ const NONE: u32 = u32::MAX;
 
 /// Error of the parents of a hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HierarchyError {
     /// A parent is not a node of the hierarchy.
     #[error("the parent of node {node} is node {parent}; there are {nodes} nodes")]

@@ -14,6 +14,7 @@ const SINGULAR: f64 = 1e-12;
 
 /// Error of a 4×4 matrix in a file.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MatrixError {
     /// An element is infinite or not a number.
     #[error("element {index} of the matrix is {value}; all 16 must be finite")]

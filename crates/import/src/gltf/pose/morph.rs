@@ -11,6 +11,7 @@ use juggler_math::{Vec2, Vec3};
 
 /// Error of the morph targets of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MorphError {
     /// An array of a target has another length than that of the mesh.
     #[error("morph target {target} has {found} displacements of `{attribute}`; the mesh has {expected}")]

@@ -9,6 +9,7 @@ use juggler_math::quaternion;
 
 /// Error of the transform of a node.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NodeError {
     /// The matrix is not affine.
     #[error(transparent)]

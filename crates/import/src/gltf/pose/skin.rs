@@ -15,6 +15,7 @@ const SUM_TOLERANCE: f64 = 1e-3;
 
 /// Error of a skin or of its influences on vertices.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SkinError {
     /// There are fewer inverse bind matrices than joints.
     #[error("there are {found} inverse bind matrices for {joints} joints")]

@@ -50,6 +50,7 @@ use glam::DAffine3;
 use image_based::ImageBased;
 use instances::Instances;
 use juggler_light::AnyLight;
+use juggler_math::BuildControl;
 use juggler_scene::model::{ModelChoice, ModelParts};
 use materials::MaterialSet;
 use objects::{Findings, Objects};
@@ -165,8 +166,8 @@ impl Content {
     /// # Errors
     ///
     /// An array is not valid, or the choice names something that the file does not have. All faults
-    /// are reported at once.
-    pub fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, GltfError> {
+    /// are reported at once. If `control` is cancelled, objects are missing.
+    pub fn parts(&self, choice: &ModelChoice, prefix: &str, control: &BuildControl) -> Result<ModelParts, GltfError> {
         let posed = self.posed(choice)?;
         let view = self.view(&posed, prefix);
         let mut findings =
@@ -177,7 +178,7 @@ impl Content {
         findings.warnings.add("/nodes", "nodes with a matrix are not animated", ignored as u64);
         let document = pointers::animated(&self.data.gltf.document, &posed.pose, &mut findings.warnings);
         let mut objects = Objects::new(view, MaterialSet::new(&document, &self.data, prefix));
-        objects.add_all(&mut findings);
+        objects.add_all(&mut findings, control);
         let lights = lights::lights(&view, &document, choice.photometric);
         let efficacy = if choice.photometric { lights::EFFICACY } else { 1.0 };
         let environment = self.image_based.environment(&view, &document, efficacy);

@@ -19,7 +19,7 @@ use crate::gltf::primitive::{Faces, PrimitiveArrays};
 use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
-use juggler_math::Vec3;
+use juggler_math::{BuildControl, Vec3};
 use juggler_scene::{InstanceAttribute, Instances, Object};
 use juggler_shape::attribute::AttributeData;
 use juggler_shape::{Mesh, MeshData};
@@ -102,9 +102,9 @@ impl<'a> Objects<'a> {
         }
     }
 
-    /// Adds the objects of all nodes.
-    pub fn add_all(&mut self, findings: &mut Findings) {
-        for node in self.view.nodes {
+    /// Adds the objects of all nodes, not of all if `control` is cancelled.
+    pub fn add_all(&mut self, findings: &mut Findings, control: &BuildControl) {
+        for node in self.view.nodes.iter().take_while(|_| !control.is_cancelled()) {
             if let Err(fault) = self.add(node, findings) {
                 findings.faults.add(fault);
             }

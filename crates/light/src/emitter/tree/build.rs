@@ -5,8 +5,7 @@ use super::child_bounds::{BuildLight, ChildBounds, CostEstimate};
 use super::node::{Child, Node, WIDTH};
 use super::{LightBounds, LightTree};
 use arrayvec::ArrayVec;
-use juggler_bvh::SimdLevel;
-use juggler_math::{Aabb, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Vec3};
 use std::ops::Range;
 
 /// Level from which parts are split in the middle, so that any number of lights fits into the 21
@@ -26,20 +25,16 @@ struct Task {
     bit_trail: u64,
 }
 
-pub(super) fn build(lights: &[LightBounds]) -> LightTree {
+pub(super) fn build(lights: &[LightBounds], control: &BuildControl) -> Result<LightTree, Cancelled> {
     let (mut items, scale) = build_lights(lights);
-    let mut tree = LightTree {
-        nodes: Vec::new(),
-        bit_trails: vec![LightTree::NOT_IN_TREE; lights.len()],
-        scale,
-        level: SimdLevel::new(),
-    };
+    let mut tree = LightTree { scale, ..LightTree::empty(lights.len()) };
     if items.is_empty() {
-        return tree;
+        return Ok(tree);
     }
     tree.nodes.push(Node::empty());
     let mut tasks = vec![Task { node: 0, range: 0..items.len(), level: 0, bit_trail: 0 }];
     while let Some(task) = tasks.pop() {
+        control.check()?;
         for (slot, part) in split_into_children(&mut items, &task).into_iter().enumerate() {
             let bit_trail = task.bit_trail | (slot as u64) << (3 * task.level);
             let child = match &items[part.clone()] {
@@ -56,7 +51,7 @@ pub(super) fn build(lights: &[LightBounds]) -> LightTree {
             }
         }
     }
-    tree
+    Ok(tree)
 }
 
 /// Emitting lights in coordinates below 1 and with powers up to 1, and the scale factor of the

@@ -13,7 +13,7 @@
 
 use fearless_simd::dispatch;
 use juggler_bvh::SimdLevel;
-use juggler_math::{Aabb, Vec3};
+use juggler_math::{Aabb, BuildControl, Cancelled, Vec3};
 
 mod build;
 mod child_bounds;
@@ -82,7 +82,22 @@ impl LightTree {
     /// Builds a tree over lights. A light is never selected if its power is not above 0, or if its
     /// box is empty or not finite.
     pub fn build(lights: &[LightBounds]) -> Self {
-        build::build(lights)
+        // Nothing cancels this control.
+        Self::build_with_control(lights, &BuildControl::default()).unwrap_or_else(|Cancelled| Self::empty(lights.len()))
+    }
+
+    /// [`LightTree::build`], which ends early if `control` is cancelled.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn build_with_control(lights: &[LightBounds], control: &BuildControl) -> Result<Self, Cancelled> {
+        build::build(lights, control)
+    }
+
+    /// Tree that selects none of `count` lights.
+    fn empty(count: usize) -> Self {
+        Self { nodes: Vec::new(), bit_trails: vec![Self::NOT_IN_TREE; count], scale: 1.0, level: SimdLevel::new() }
     }
 
     /// Sets the vector instructions, which are the best of this machine by default; for tests and

@@ -26,7 +26,7 @@ fn file(material: &str) -> GltfData {
     );
     builder.member(format!(r#""materials": [{material}]"#));
     let mut data = builder.load();
-    data.load_media(&BTreeMap::new()).unwrap();
+    data.load_media(&BTreeMap::new(), &juggler_math::BuildControl::new()).unwrap();
     data
 }
 
@@ -373,7 +373,7 @@ fn compressed_pictures_give_way_to_plain_ones_unless_required() {
         builder.member(r#""materials": [{"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}]"#);
         builder.member(format!(r#""extensionsUsed": ["KHR_texture_basisu"]{required}"#));
         let mut data = builder.load();
-        data.load_media(&BTreeMap::new()).unwrap();
+        data.load_media(&BTreeMap::new(), &juggler_math::BuildControl::new()).unwrap();
         data
     };
     let data = file("");
