@@ -36,8 +36,8 @@ pub use juggler_scene::animate::{
 };
 pub use juggler_scene::description::{Animation, LookAt, Rotate, ScenePath};
 pub use juggler_scene::{
-    Animated, Asset, Chain, ControlSphere, InstanceArray, Instances, Limb, Model, Object, ScaleFactors, Scene,
-    TransformStep, ValueSource,
+    Animated, Asset, Chain, ControlSphere, InstanceArray, InstanceAttribute, InstanceFile, Instances, Limb, Model,
+    NamedAttributes, Object, ScaleFactors, Scene, TransformStep, ValueSource,
 };
 
 // Shapes.

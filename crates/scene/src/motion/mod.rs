@@ -31,7 +31,7 @@ pub use tracks::{ListTracks, ObjectTrack, Tracks};
 pub(crate) use write::{head, node, object_node, written};
 
 use crate::Object;
-use crate::description::{BackgroundInput, Description, Objects, Render};
+use crate::description::{BackgroundInput, Description, Instances, Objects, Render};
 use crate::document::{Node, SourceSpan};
 use crate::item::{Item, Template};
 use crate::path::{Path, PathRef, Step};
@@ -87,8 +87,8 @@ pub(crate) trait AnyItem {
     fn set_passed(&self, names: u64);
     /// JSON of the value.
     fn json(&self) -> serde_json::Value;
-    /// JSON of the value without mesh arrays, for validation; arrays are checked when a mesh is
-    /// prepared.
+    /// JSON of the value without the arrays of meshes and instances, for validation; arrays are checked
+    /// when an object is prepared.
     fn json_without_arrays(&self) -> serde_json::Value;
     /// As [`Item::set_source`].
     fn set_source(&mut self, place: Option<SourceSpan>, template: Option<Arc<Template>>);
@@ -117,6 +117,9 @@ impl ItemContent for Object {
         let mut json_without_arrays = self.clone();
         if let Some(mesh) = json_without_arrays.shape.as_mut().and_then(|shape| shape.mesh_mut()) {
             mesh.clear_arrays();
+        }
+        if let Some(instances) = &mut json_without_arrays.instances {
+            *instances = Instances { file: instances.file.take(), ..Instances::default() };
         }
         // Child objects are validated by themselves.
         json_without_arrays.objects = json_without_arrays.objects.map(|_| Objects::default());

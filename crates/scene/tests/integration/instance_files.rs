@@ -300,6 +300,25 @@ fn assets_of_instances_are_saved_with_everything() {
     }
 }
 
+/// The arrays of a program are checked when they are placed; the check of the schema skips them, since
+/// their JSON would take many times their memory.
+#[test]
+fn arrays_of_programs_are_checked_without_json() {
+    let object = |instances| Object::new(Sphere::default()).instances(instances);
+    let flat = Instances { scales: [ScaleFactors::All(0.0)].into_iter().collect(), ..Instances::default() };
+    let wrong = [
+        (Instances::at([at(f32::NAN)]), "objects[0].instances.positions"),
+        (flat, "objects[0].instances.scales"),
+        (Instances { attributes: attribute("a", &[1.0]), ..three() }, "objects[0].instances.attributes"),
+    ];
+    for (instances, path) in wrong {
+        let error = message(&Scene::new().add(object(instances)));
+        assert!(error.contains(path), "{error}");
+    }
+    let scene = Scene::new().add(object(three()).at(f32::NAN, 0.0, 0.0));
+    assert!(scene.check().errors() > 0, "all else is checked");
+}
+
 #[test]
 fn programs_name_files_and_assets() {
     let object = Object::new(Sphere::default()).instances(Instances::from_file("points"));
