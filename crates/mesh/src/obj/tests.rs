@@ -187,7 +187,9 @@ fn limits_are_kept_and_named() {
     check(seams, few, "at least 4 vertices, the limit is 3");
     let one = MeshLimits { triangles: 1, ..MeshLimits::default() };
     check(&format!("{SQUARE}f 1 2 3 4\n"), one, "at least 2 triangles, the limit is 1");
-    assert!(Obj.read(SQUARE.as_bytes(), &one, PIECE).unwrap_err().to_string().starts_with("contains no triangles"));
+    assert!(
+        Obj.read(SQUARE.as_bytes(), &one, pieces(PIECE)).unwrap_err().to_string().starts_with("contains no triangles")
+    );
 }
 
 #[test]

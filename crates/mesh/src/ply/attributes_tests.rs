@@ -9,7 +9,7 @@ use juggler_shape::MeshData;
 
 fn read(text: &str) -> MeshFile {
     let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap();
-    assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), 1).unwrap(), whole, "in small pieces");
+    assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(1)).unwrap(), whole, "in small pieces");
     whole
 }
 

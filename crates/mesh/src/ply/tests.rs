@@ -370,5 +370,5 @@ fn coordinates_of_corners_split_vertices() {
     assert!(warnings.contains(&"faces without texture coordinates, which get 0 0: 1".to_owned()), "{warnings:?}");
     // Small pieces give the same mesh.
     let whole = Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(PIECE)).unwrap();
-    assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), 1).unwrap(), whole);
+    assert_eq!(Ply.read(text.as_bytes(), &MeshLimits::default(), pieces(1)).unwrap(), whole);
 }

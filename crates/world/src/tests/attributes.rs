@@ -33,7 +33,7 @@ fn world(mesh: Mesh, transform: Transform, texture: &str, material: &str) -> Wor
     let half = Transform::scale(Vec3::splat(0.5)).unwrap();
     let geometry = Geometry::new(
         vec![Object { content: Content::Shape(Arc::new(mesh)), motion: half.into(), material: None, attributes: None }],
-        &juggler_math::BuildControl::default(),
+        &BuildControl::default(),
     )
     .unwrap();
     let object = Object {
@@ -47,7 +47,7 @@ fn world(mesh: Mesh, transform: Transform, texture: &str, material: &str) -> Wor
         compiler.finish().unwrap(),
         NO_LIGHTS,
         AnyBackground::Solid(Solid::default()),
-        &juggler_math::BuildControl::default(),
+        &BuildControl::default(),
     )
     .unwrap()
 }
@@ -84,17 +84,10 @@ fn sphere_world(inner: Option<InstanceAttributes>, outer: Option<InstanceAttribu
     let motion = juggler_math::Motion::from(Transform::IDENTITY);
     let content = Content::Shape(Arc::new(sphere));
     let sphere = Object { content, motion: motion.clone(), material: None, attributes: inner };
-    let content =
-        Content::Geometry(Arc::new(Geometry::new(vec![sphere], &juggler_math::BuildControl::default()).unwrap()));
+    let content = Content::Geometry(Arc::new(Geometry::new(vec![sphere], &BuildControl::default()).unwrap()));
     let instance = Object { content, motion, material: Some(MaterialId(0)), attributes: outer };
-    World::new(
-        vec![instance],
-        materials,
-        NO_LIGHTS,
-        AnyBackground::Solid(Solid::default()),
-        &juggler_math::BuildControl::default(),
-    )
-    .unwrap()
+    World::new(vec![instance], materials, NO_LIGHTS, AnyBackground::Solid(Solid::default()), &BuildControl::default())
+        .unwrap()
 }
 
 /// The second of two instances, from red at v = 0 to this color at v = 1.

@@ -16,9 +16,7 @@ fn doubled(random: &mut Random) -> Vec<Object> {
     let mut objects = crowd(random, 2, Some(MaterialId(0)));
     objects.push(Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1)));
     for content in [
-        Content::Geometry(Arc::new(
-            Geometry::new(crowd(random, 1, None), &juggler_math::BuildControl::default()).unwrap(),
-        )),
+        Content::Geometry(Arc::new(Geometry::new(crowd(random, 1, None), &BuildControl::default()).unwrap())),
         objects[0].content.clone(),
     ] {
         let keys = vec![random.transform(), random.transform()];
@@ -111,7 +109,7 @@ fn ambiguous(cuboids: &[([f32; 2], &str)]) -> Vec<(Ambiguity, u32, u32)> {
         compiler.finish().unwrap(),
         NO_LIGHTS,
         AnyBackground::Solid(Solid::default()),
-        &juggler_math::BuildControl::default(),
+        &BuildControl::default(),
     )
     .unwrap();
     world.with_labels(Labels { entries, ..Labels::default() }).ambiguities().into_iter().collect()

@@ -17,7 +17,7 @@ fn emissive(transform: Transform) -> World {
         compiler.finish().unwrap(),
         NO_LIGHTS,
         AnyBackground::Solid(Solid::default()),
-        &juggler_math::BuildControl::default(),
+        &BuildControl::default(),
     )
     .unwrap()
 }

@@ -22,9 +22,8 @@ fn in_motion(random: &mut Random) -> World {
         objects
     };
     let mut objects = moving(crowd(&mut Random::new(41), 2, Some(MaterialId(0))));
-    let geometry = Arc::new(
-        Geometry::new(moving(crowd(&mut Random::new(42), 1, None)), &juggler_math::BuildControl::default()).unwrap(),
-    );
+    let geometry =
+        Arc::new(Geometry::new(moving(crowd(&mut Random::new(42), 1, None)), &BuildControl::default()).unwrap());
     let instance = Object {
         content: Content::Geometry(geometry),
         motion: Transform::IDENTITY.into(),
@@ -88,11 +87,8 @@ fn objects_on_long_curves_equal_brute_force_in_all_segments_of_time() {
     let mut objects: Vec<Object> =
         (0..40).flat_map(|_| [turning(Sphere { radius: 3.5 }.into()), turning(cuboid().into())]).collect();
     let below = Arc::new(
-        Geometry::new(
-            vec![turning(Sphere { radius: 0.2 }.into()), turning(cuboid().into())],
-            &juggler_math::BuildControl::default(),
-        )
-        .unwrap(),
+        Geometry::new(vec![turning(Sphere { radius: 0.2 }.into()), turning(cuboid().into())], &BuildControl::default())
+            .unwrap(),
     );
     let motion = turning(Sphere { radius: 1.0 }.into()).motion;
     objects.push(Object { content: Content::Geometry(below), motion, material: Some(MaterialId(1)), attributes: None });
