@@ -110,6 +110,7 @@ const OPENERS: &[&str] = &[
     "fuzz/src/seeds.rs",
     "imaging/src/regular.rs",
     "juggler/benches/edits.rs",
+    "juggler/benches/instances.rs",
     "juggler/benches/models.rs",
 ];
 
