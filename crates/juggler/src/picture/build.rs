@@ -16,7 +16,8 @@ impl Picture {
     }
 
     /// [`Picture::new`], which ends early if `control` is cancelled, and reports its progress to it.
-    /// A render passes the control of its [`Control`] ([`Control::build`]).
+    /// A render passes the control of its [`Control`](juggler_render::Control)
+    /// ([`Control::build`](juggler_render::Control::build)).
     ///
     /// # Errors
     ///
