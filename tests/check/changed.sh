@@ -94,7 +94,6 @@ run_test_programs() {
   for package in "$@"; do
     filter=()
     case "$package" in
-      golden) filter=("${golden_left_out[@]}") ;;
       descriptions) package=scene filter=(format:: units::) ;;
     esac
     test_programs "$package" "$built" | while read -r program; do

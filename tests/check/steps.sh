@@ -86,10 +86,11 @@ step_lint() {
   RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
 }
 
-# Tests every package except `golden`, unoptimized, with overflow checks.
+# Tests every package, unoptimized, with overflow checks. All steps select the whole workspace, since
+# another set of packages would compile all libraries again.
 step_unit() {
   heading "unit: tests of each package, and of its documentation"
-  cargo test --workspace --locked --exclude juggler-golden
+  cargo test --workspace --locked
 }
 
 # Checks each feature alone and no features, since the workspace builds only all of them together.
@@ -120,20 +121,15 @@ END
   fi
 }
 
-# Compares hashes of pictures in every kind of build; they must be equal to the bit. Statistics of
-# whole pictures run in the optimized build only, and tests of the source tree in the unoptimized
-# one.
+# Compares hashes of pictures in optimized builds with those of the step unit; they must be equal to
+# the bit. Statistics of whole pictures run here only, and tests of the source tree there only.
 step_golden() {
-  heading "golden: pictures and hashes, unoptimized, with overflow checks"
-  cargo test --workspace --locked --test golden -- "${golden_left_out[@]}"
   heading "golden: pictures and hashes, optimized"
   cargo test "${golden_optimized[@]}" -- --skip tree:: --skip arithmetic:: --skip kinds::
   heading "golden: hashes, optimized for this very processor"
   RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: hits:: matrix::
 }
 
-# Leaves out statistics of whole pictures, which take too long unoptimized.
-golden_left_out=(--skip noise:: --skip blur::)
 # Selects the Python module, too, so that its wheel has the same features of all libraries and shares
 # them (see `build_wheel`). The module itself is not built here.
 golden_optimized=(--release --locked -p juggler-golden -p juggler-python --test golden)

@@ -45,6 +45,7 @@ fn difference(a: &[Rgb], b: &[Rgb]) -> (f32, f32) {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "statistics of whole pictures run in the optimized build only")]
 fn a_blurred_picture_is_the_mean_of_its_instants() {
     const INSTANTS: u32 = 96;
     for [open, close] in [[0.0, 4.0], [-1.0, 0.5]] {

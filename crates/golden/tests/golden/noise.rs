@@ -103,6 +103,7 @@ fn error_ratios(name: &str, level: f32, test_size: &TestSize) -> (f64, f64) {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "statistics of whole pictures run in the optimized build only")]
 fn the_true_error_is_the_requested_one() {
     let all = std::env::var_os("JUGGLER_NOISE").is_some_and(|value| value == "all");
     let test_size = if all { &ALL } else { &USUAL };
@@ -119,6 +120,7 @@ fn the_true_error_is_the_requested_one() {
 /// paths: the mean over many seeds is biased towards dark. The bias must be smaller than the
 /// requested error.
 #[test]
+#[cfg_attr(debug_assertions, ignore = "statistics of whole pictures run in the optimized build only")]
 fn the_mean_of_many_seeds_is_within_the_requested_error() {
     const SEEDS: u64 = 12;
     let (size, level) = ([48, 32], 0.03);
