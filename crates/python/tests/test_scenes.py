@@ -1,5 +1,6 @@
 """Scenes of typed classes: checked, saved, loaded and rendered."""
 
+import inspect
 import os
 import pickle
 import unittest
@@ -70,6 +71,38 @@ class TypedScenes(Folder):
             {"shape": {"sphere": {"radius": 0.3}}, "material": "gold", "transform": [{"translate": [1, 0.3, 1]}]}
         )
         self.assertEqual(jg.render(mixed, **SMALL).hash, jg.render(plain, **SMALL).hash)
+
+
+class Tracing(unittest.TestCase):
+    def tearDown(self):
+        jg.trace_nodes(False)
+
+    def problems(self, scene):
+        with self.assertRaises(jg.SceneError) as caught:
+            scene.check()
+        return caught.exception
+
+    def test_mistakes_name_the_line_that_made_the_part(self):
+        jg.trace_nodes(True)
+        sphere = shapes.Sphere(radius=-1)
+        line = inspect.currentframe().f_lineno - 1
+        error = self.problems(Scene(objects=[Object(shapes.Plane()), Object(sphere)]))
+        [problem] = error.problems
+        self.assertEqual(problem.path, "objects[1].shape.sphere.radius")
+        self.assertEqual(problem.made_at, f"{__file__}:{line}")
+        self.assertTrue(str(error).endswith(f"; made at {__file__}:{line}"), error)
+        self.assertEqual(pickle.loads(pickle.dumps(problem)), problem)
+
+    def test_a_part_without_a_class_has_the_line_of_the_part_around_it(self):
+        jg.trace_nodes(True)
+        scene = Scene(materials={"odd name": {"diffuse": {"reflectance": "=1 +"}}}, objects=[Object(shapes.Plane())])
+        line = inspect.currentframe().f_lineno - 1
+        self.assertEqual({problem.made_at for problem in self.problems(scene).problems}, {f"{__file__}:{line}"})
+
+    def test_nothing_is_traced_at_first(self):
+        error = self.problems(Scene(objects=[Object(shapes.Sphere(radius=-1))]))
+        self.assertEqual([problem.made_at for problem in error.problems], [None])
+        self.assertNotIn("made at", str(error))
 
 
 if __name__ == "__main__":

@@ -53,6 +53,7 @@ _NAMES = {
     "render": "_api",
     "render_movie": "_api",
     "show_config": "_api",
+    "trace_nodes": "_trace",
     "__version__": "_api",
     **dict.fromkeys(_SCENE_TYPES, "scene_types"),
 }

@@ -51,4 +51,5 @@ from juggler._probe import Probe as Probe
 from juggler._progress import Progress as Progress
 from juggler._pyvista import from_pyvista as from_pyvista
 from juggler._renderer import Renderer as Renderer
+from juggler._trace import trace_nodes as trace_nodes
 from juggler._view import View as View, view as view

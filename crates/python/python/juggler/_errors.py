@@ -6,12 +6,13 @@ class Problem:
 
     `path` leads to the value (`objects[0].shape.sphere.radius`), `severity` is "error" or
     "warning", and `file`, `line` and `column` are `None` unless the scene was read from a file.
+    `made_at` is the line of code that made the part, if `juggler.trace_nodes` was on.
     """
 
-    _fields = ("path", "message", "help", "severity", "file", "line", "column")
+    _fields = ("path", "message", "help", "severity", "file", "line", "column", "made_at")
     __slots__ = _fields
 
-    def __init__(self, path, message, help=None, severity="error", file=None, line=None, column=None):
+    def __init__(self, path, message, help=None, severity="error", file=None, line=None, column=None, made_at=None):
         self.path = path
         self.message = message
         self.help = help
@@ -19,6 +20,7 @@ class Problem:
         self.file = file
         self.line = line
         self.column = column
+        self.made_at = made_at
 
     def _values(self):
         return tuple(getattr(self, name) for name in self._fields)
@@ -40,7 +42,8 @@ class Problem:
         place = f"{self.file}:{self.line}:{self.column}: " if self.file else ""
         path = f"{self.path}: " if self.path else ""
         help = f"; {self.help}" if self.help else ""
-        return f"{place}{path}{self.message}{help}"
+        made = f"; made at {self.made_at}" if self.made_at else ""
+        return f"{place}{path}{self.message}{help}{made}"
 
 
 def problems_from_json(text):

@@ -6,6 +6,7 @@ class Problem:
 
     `path` leads to the value (`objects[0].shape.sphere.radius`), `severity` is "error" or
     "warning", and `file`, `line` and `column` are `None` unless the scene was read from a file.
+    `made_at` is the line of code that made the part, if `juggler.trace_nodes` was on.
     """
 
     path: str
@@ -15,6 +16,7 @@ class Problem:
     file: str | None
     line: int | None
     column: int | None
+    made_at: str | None
 
 class SceneError(ValueError):
     """The scene has mistakes, all of which are in `problems`."""

@@ -136,7 +136,10 @@ def _restore(cls, fields):
 class Node:
     """Part of a scene: a shape, a material, a camera, the whole scene."""
 
-    __slots__ = ()
+    # File and line of the code that made the node, while nodes are traced.
+    __slots__ = ("_made_at",)
+    # Finds that line; `None` while nodes are not traced.
+    _find_place = None
     __match_args__ = ()
     __signature__ = _Signature()
     # Fields, in the order of the scene format.
@@ -162,6 +165,7 @@ class Node:
         cls.__match_args__ = (*cls._positional, *keywords)
 
     def __init__(self, *arguments, **fields):
+        self._made_at = None if self._find_place is None else self._find_place()
         if len(arguments) > len(self._positional):
             raise TypeError(self._too_many(len(arguments)))
         for name, value in zip(self._positional, arguments):
@@ -214,6 +218,13 @@ class Node:
     def __reduce__(self):
         fields = ((name, getattr(self, name)) for name in self._fields)
         return _restore, (type(self), {name: value for name, value in fields if value is not None})
+
+    def _value_of(self, key):
+        """Value of the field with this key of the scene format; `None` if there is none."""
+        for name in self._fields:
+            if self._keys.get(name, name) == key:
+                return getattr(self, name)
+        return None
 
     def replace(self, **changes):
         """Returns a copy with other values of some fields; `None` removes a field."""

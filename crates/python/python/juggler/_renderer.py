@@ -3,6 +3,7 @@
 from juggler import _native
 from juggler._image import Image
 from juggler._scene import bytes_of, native_scene, to_json, warn
+from juggler._trace import Explained
 
 
 class Renderer:
@@ -30,7 +31,9 @@ class Renderer:
         if own_camera:
             del settings["camera"]
         _native.check_settings(settings)
-        self._native = _native.Renderer(native_scene(scene, bool(settings.get("lenient"))), settings)
+        native = native_scene(scene, bool(settings.get("lenient")))
+        with Explained(scene):
+            self._native = _native.Renderer(native, settings)
         self._settings = settings
         self._color_maps = _color_maps(scene)
         if own_camera:

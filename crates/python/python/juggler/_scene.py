@@ -6,9 +6,6 @@ import sys
 from juggler import _native
 from juggler._node import Node
 
-# File name of a scene that is no file.
-_UNNAMED = "<scene>"
-
 
 def native_scene(scene, lenient=False):
     """Returns the scene of a file, a built-in name, a dict, or an object with `to_dict`."""
@@ -19,12 +16,12 @@ def native_scene(scene, lenient=False):
     if not isinstance(scene, dict) and not hasattr(scene, "to_dict"):
         kind = type(scene).__name__
         raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
-    # A scene that was loaded from a file names its files relative to the folder of that file.
-    folder = getattr(scene, "_folder", None)
     lenient = lenient or getattr(scene, "_lenient", False)
-    name = None if folder is None else os.path.join(folder, _UNNAMED)
     text, assets = to_json(scene)
-    return _native.Scene.from_json(text, lenient, name, assets)
+    from juggler._trace import Explained
+
+    with Explained(scene):
+        return _native.Scene.from_json(text, lenient, None, assets)
 
 
 def to_json(value):

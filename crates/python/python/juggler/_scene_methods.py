@@ -46,8 +46,10 @@ class SceneMethods(Node):
     def check(self):
         """Returns the warnings of the scene as texts. Raises a `SceneError` with all its mistakes."""
         from ._scene import native_scene
+        from ._trace import Explained
 
-        return [message.removeprefix("warning: ") for message in native_scene(self).check()]
+        with Explained(self):
+            return [message.removeprefix("warning: ") for message in native_scene(self).check()]
 
     def save(self, path):
         """Saves the scene with its animation as a scene file, and its assets beside it."""
