@@ -3,12 +3,16 @@
 import json
 import os
 import pathlib
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 import zlib
+
+# A shell without job control lets commands in the background, and all that they start, ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # The program, built with the same source.
