@@ -211,6 +211,7 @@ pub const SCENE: &str = r#"{
 const TRI: &str = r#"//! Triangles as text: nine numbers each.
 
 use crate::format::{MeshFormat, MeshFormatInfo};
+use crate::pieces::PieceReader;
 use crate::sampling::{Counts, FileSampler};
 use crate::{MeshErrorKind, MeshFile, MeshLimits};
 use juggler_math::Vec3;
@@ -229,7 +230,7 @@ impl MeshFormat for Tri {
         false
     }
 
-    fn read(&self, bytes: &[u8], _limits: &MeshLimits, _piece: usize) -> Result<MeshFile, MeshErrorKind> {
+    fn read(&self, bytes: &[u8], _limits: &MeshLimits, _pieces: PieceReader<'_>) -> Result<MeshFile, MeshErrorKind> {
         let words = String::from_utf8_lossy(bytes);
         let numbers: Vec<f32> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let mut mesh = MeshData::default();
