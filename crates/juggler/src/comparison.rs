@@ -1,5 +1,6 @@
 //! Comparison of two images: error metrics, and a test of whether noise explains the difference.
 
+use crate::image::of_pixels;
 use crate::{Error, RenderedImage, SAMPLES, estimate};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_film::{Merge, MergeGoal, RenderDescription};
@@ -45,7 +46,7 @@ impl ComparedImage {
         };
         let estimate = variance.map(|variance| noisy_image([width, height], &pixels, &variance, &samples));
         Self {
-            image: image([width, height], pixels),
+            image: of_pixels([width, height], pixels),
             estimate,
             is_tone_mapped: false,
             is_denoised: rendered.aovs().denoiser().is_some(),
@@ -65,7 +66,7 @@ impl ComparedImage {
             Ok::<(), Error>(())
         })?;
         let Rect { width, height, .. } = region;
-        let (image, metadata) = (image([width, height], pixels), metadata.clone());
+        let (image, metadata) = (of_pixels([width, height], pixels), metadata.clone());
         Ok(Self { image, estimate: Some(estimate), is_tone_mapped: false, is_denoised: false, metadata })
     }
 
@@ -86,11 +87,6 @@ impl ComparedImage {
 /// Whether a file is a partial render, by its first bytes.
 pub fn is_partial_render(path: &Path) -> bool {
     regular::first_bytes(path, 12).is_ok_and(|start| juggler_film::is_partial_render(&start))
-}
-
-/// Image of these pixels; black if their number is wrong.
-fn image([width, height]: [u32; 2], pixels: Vec<Rgb>) -> Image {
-    Image::from_pixels(width, height, pixels).unwrap_or_else(|| Image::filled(width, height, Rgb::BLACK))
 }
 
 fn text<'m>(metadata: &'m [(String, String)], key: &str) -> Option<&'m str> {

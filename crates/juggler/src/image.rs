@@ -3,7 +3,7 @@
 use crate::Error;
 use juggler_imaging::tone::Quantizer;
 use juggler_imaging::{Header, ImageFormat, Tone};
-use juggler_math::Image;
+use juggler_math::{Image, Rgb};
 use std::path::Path;
 
 /// Extension methods of a finished [`Image`].
@@ -57,10 +57,14 @@ impl ImageExt for Image {
     }
 }
 
+/// Image of these pixels, row by row from the top; black if their number is wrong.
+pub(crate) fn of_pixels([width, height]: [u32; 2], pixels: Vec<Rgb>) -> Image {
+    Image::from_pixels(width, height, pixels).unwrap_or_else(|| Image::filled(width, height, Rgb::BLACK))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_math::Rgb;
 
     #[test]
     fn levels_follow_the_srgb_curve() {

@@ -4,6 +4,7 @@ mod denoised;
 mod encode;
 
 use crate::denoise::DenoiserInput;
+use crate::image::of_pixels;
 use crate::{AovSet, Error, Limit, Picture, RenderStats};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Rect, Tile};
 use juggler_film::counts::SampleCountStats;
@@ -64,9 +65,7 @@ impl RenderedImage {
 
     /// Converts to the linear pixels alone.
     pub fn into_image(self) -> Image {
-        let [width, height] = self.size();
-        // A rendered image has a pixel for each place.
-        Image::from_pixels(width, height, self.pixels).unwrap_or_else(|| Image::filled(width, height, Rgb::BLACK))
+        of_pixels(self.size(), self.pixels)
     }
 
     /// Width and height in pixels.
