@@ -109,6 +109,25 @@ class Meshes(Folder):
         self.assertEqual(renderer.render().hash, self.hash(self.mesh(positions=moved)))
         self.assertIn("geometry", renderer.changed)
 
+    def test_arrays_in_dicts_are_assets(self):
+        from juggler._scene import to_json
+
+        color = np.array([(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)], "u1")
+        members = {"positions": self.positions, "triangles": self.triangles, "attributes": {"color": color}}
+        material = color_of("color").to_dict()
+        typed = shown(self.mesh(attributes={"color": color}), color_of("color"))
+        in_typed = shown({"mesh": members}, material)
+        plain = {**shown("sphere").to_dict(), "objects": [{"shape": {"mesh": members}, "material": material}]}
+        part = {"mesh": {**members, "attributes": {"color": color, "part": jg.PerFace(np.array([0.2, 0.9]))}}}
+        for scene in (in_typed, plain, shown(part, material), {"version": 1, **plain}):
+            self.assertEqual(jg.render(scene).hash, jg.render(typed).hash)
+            self.assertEqual(len(to_json(scene)[1]), 1)
+        renderer = jg.Renderer(shown("sphere"))
+        renderer["objects[0]"] = {"shape": {"mesh": members}, "material": material}
+        self.assertEqual(renderer.render().hash, jg.render(typed).hash)
+        with self.assertRaisesRegex(jg.SceneError, "did you mean `triangles`"):
+            jg.render(shown({"mesh": {"positions": self.positions, "triangle": self.triangles}}))
+
     def test_morph_targets_are_arrays(self):
         target = self.positions + np.array([0, 0.5, 0.5], "f4")
         lists = shapes.Mesh(
@@ -165,7 +184,10 @@ class Meshes(Folder):
             ({"triangles": self.triangles.astype("i8") - 1}, "not -1"),
             ({"triangles": self.triangles.astype("i8") + 2**32}, "not 4294967299"),
             ({"triangles": self.triangles + 1}, "is 4, but there are only 4 positions"),
-            ({"positions": np.ma.masked_less(self.positions, 0)}, "`positions` of shapes.Mesh has masked numbers"),
+            (
+                {"positions": np.ma.masked_less(self.positions, 0)},
+                "`positions` of shapes.Mesh has masked numbers",
+            ),
             ({"positions": nan}, r"positions\[2\]"),
             ({"normals": self.normals[:2]}, "one entry per position"),
             (
@@ -268,6 +290,17 @@ class Pictures(Folder):
         )
         linear = jg.render(self.scene(array, color_space="linear"), integrator="albedo", samples=1)
         np.testing.assert_allclose(linear.color[11, 12], (0, 0, 188 / 255), atol=1e-3)
+
+    def test_arrays_in_dicts_are_images(self):
+        texels = np.arange(24, dtype="u1").reshape(2, 4, 3) * 10
+        shown_by = {}
+        for name, texture in (
+            ("class", textures.Image(array=texels)),
+            ("dict", {"image": {"array": texels}}),
+        ):
+            scene = shown("sphere", {"diffuse": {"reflectance": "photo"}}, textures={"photo": texture})
+            shown_by[name] = jg.render(scene).hash
+        self.assertEqual(shown_by["dict"], shown_by["class"])
 
     def test_an_environment_is_an_array(self):
         sky = np.full((4, 8, 3), (0.1, 0.4, 0.9), "f4")

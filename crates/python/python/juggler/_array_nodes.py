@@ -145,6 +145,21 @@ class ArrayInstances(_ArrayNode):
         return members
 
 
+def part_of(module, name, members):
+    """The part of a scene with these members; `None` if they have no arrays, or are not those of the part."""
+    from ._arrays import is_array
+
+    attributes = members.get("attributes")
+    values = [*members.values(), *(attributes.values() if isinstance(attributes, dict) else ())]
+    if not any(is_array(value) or isinstance(value, PerFace) for value in values):
+        return None
+    from importlib import import_module
+
+    part = getattr(import_module(f"juggler.{module}"), name)
+    # The reader of scenes names unknown members.
+    return part(**members) if all(member in part._fields for member in members) else None
+
+
 def _row(matrix):
     """The 12 numbers of an affine map, of a matrix with 3 or 4 rows."""
     if not isinstance(matrix, list):

@@ -6,6 +6,14 @@ the scene format's default applies.
 
 _PLAIN = frozenset({bool, float, int, str, type(None)})
 
+# Modules and classes of the parts of a scene that hold arrays, by their keys.
+_PARTS_WITH_ARRAYS = {
+    "mesh": ("shapes", "Mesh"),
+    "instances": ("scene_types", "Instances"),
+    "image": ("textures", "Image"),
+    "environment": ("backgrounds", "Environment"),
+}
+
 # Arrays with more numbers than this are not written out by `repr`.
 _MAX_SHOWN = 64
 
@@ -28,12 +36,22 @@ def plain(value, collect=None):
     if isinstance(value, (list, tuple)):
         return [plain(item, collect) for item in value]
     if isinstance(value, dict):
-        return {_key(key): plain(item, collect) for key, item in value.items()}
+        return {_key(key): _member(key, item, collect) for key, item in value.items()}
     if hasattr(value, "tolist"):
         is_scalar = getattr(value, "ndim", 1) == 0
         found = None if collect is None or is_scalar else collect(value)
         return value.tolist() if found is None else found
     return _other(value, collect)
+
+
+def _member(key, value, collect):
+    """Converts a member of a dict. Arrays that a part of a scene holds are collected as those of its class."""
+    if collect is None or type(value) is not dict or key not in _PARTS_WITH_ARRAYS:
+        return plain(value, collect)
+    from ._array_nodes import part_of
+
+    part = part_of(*_PARTS_WITH_ARRAYS[key], value)
+    return plain(value, collect) if part is None else part._members(collect)
 
 
 def _key(key):

@@ -4,7 +4,7 @@ import os
 import sys
 
 from juggler import _native
-from juggler._node import Node
+from juggler._node import Node, plain
 
 
 def native_scene(scene, lenient=False):
@@ -32,7 +32,10 @@ def to_json(value):
 
     collect = Collector()
     try:
-        text = json.dumps(value, default=lambda value: _plain(value, collect), allow_nan=False)
+        try:
+            text = json.dumps(value, default=lambda value: _plain(value, collect), allow_nan=False)
+        except _ArraysOfDicts:
+            text = json.dumps(plain(value, collect), allow_nan=False)
         return text, list(collect.assets.items())
     except (ValueError, RecursionError) as error:
         from juggler._errors import SceneError
@@ -61,10 +64,16 @@ def to_dict(native):
     return json.loads(native.to_json(), object_hook=in_place_of_assets)
 
 
+class _ArraysOfDicts(Exception):
+    """Raised for an array in a dict, so that the dict is read as the part of a scene that it describes."""
+
+
 def _plain(value, collect):
     """Returns a value that JSON has, for one that it does not have."""
     if isinstance(value, Node):
         return value.to_json(collect)
+    if getattr(value, "ndim", 0) > 0 or hasattr(value, "to_json"):
+        raise _ArraysOfDicts
     for method in ("to_dict", "tolist", "__fspath__"):
         if hasattr(value, method):
             return getattr(value, method)()
