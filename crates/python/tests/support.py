@@ -11,6 +11,9 @@ import tempfile
 import unittest
 import zlib
 
+import juggler as jg
+from juggler import Object, Scene, cameras, lights, materials, shapes, textures
+
 # A shell without job control lets commands in the background, and all that they start, ignore Ctrl-C.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -51,6 +54,24 @@ def small_scene(**more):
         ],
         **more,
     }
+
+
+def typed_scene():
+    """Two objects over a tiled floor, as in the documentation."""
+    return Scene(
+        render=jg.RenderSettings(size=(32, 18), samples=4),
+        camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
+        textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
+        materials={
+            "floor": materials.Phong(diffuse="tiles"),
+            "gold": materials.Conductor(metal="gold", roughness=0.2),
+        },
+        lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
+        objects=[
+            Object(shapes.Plane(), material="floor"),
+            Object(shapes.Sphere(), material="gold").translate(0, 1, 0),
+        ],
+    )
 
 
 def program(*words):

@@ -152,7 +152,9 @@ class Executors(Folder):
         def lose(number, answer):
             raise cluster.WorkerLost(f"node {number} is gone")
 
-        with self.assertRaisesRegex(cluster.ClusterError, r"task \d+ \(tile.* lost 3 times: .*WorkerLost: node"):
+        with self.assertRaisesRegex(
+            cluster.ClusterError, r"task \d+ \(tile.* lost 3 times: .*WorkerLost: node"
+        ):
             self.rendered(lose)
 
     def test_answers_of_another_image_stop_the_render(self):
@@ -212,22 +214,30 @@ class Executors(Folder):
         package = pickle.loads(pickle.dumps((Package(scene).manifest, Package(scene).blobs)))
         (folder / "a.obj").unlink()
         renderer = jg.Renderer(unpack(*package))
-        self.assertEqual((renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint))
+        self.assertEqual(
+            (renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint)
+        )
 
     @needs_numpy
     def test_arrays_travel_with_the_scene(self):
         scene = small_scene()
         uvs = np.array([(0, 0), (1, 0), (0, 1)], "f4")
         mesh = shapes.Mesh(positions=np.eye(3, dtype="f4"), triangles=np.array([(0, 1, 2)]), uvs=uvs)
-        instances = Instances(positions=np.array([(0, 0, 1), (1, 0, 1)]), attributes={"heat": np.array([1, 2])})
+        instances = Instances(
+            positions=np.array([(0, 0, 1), (1, 0, 1)]), attributes={"heat": np.array([1, 2])}
+        )
         wood = textures.Image(array=np.arange(12, dtype="u1").reshape(2, 2, 3) * 20)
-        scene["objects"].append(Object(mesh, material=materials.Diffuse(reflectance=wood), instances=instances))
+        scene["objects"].append(
+            Object(mesh, material=materials.Diffuse(reflectance=wood), instances=instances)
+        )
         expected = jg.render(scene)
         package = Package(scene)
         self.assertEqual(len(package.manifest["assets"]), 3)
         self.assertEqual(package.key({}), Package(scene).key({}))
         renderer = jg.Renderer(unpack(*pickle.loads(pickle.dumps((package.manifest, package.blobs)))))
-        self.assertEqual((renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint))
+        self.assertEqual(
+            (renderer.render().hash, renderer.fingerprint), (expected.hash, expected.fingerprint)
+        )
 
     def test_meshes_and_models_are_scenes(self):
         path = self.folder / "a.obj"
@@ -375,7 +385,9 @@ class Dealing(unittest.TestCase):
 class Commands(unittest.TestCase):
     def test_scripts_name_scene_shards_and_settings(self):
         script = cluster.commands("my scene.json", shards=40, samples=64, size=(320, 180), aovs=["depth"])
-        self.assertIn("render 'my scene.json' --aov=depth --samples=64 --size=320x180 --shard auto/40", script)
+        self.assertIn(
+            "render 'my scene.json' --aov=depth --samples=64 --size=320x180 --shard auto/40", script
+        )
         self.assertIn("#SBATCH --array=0-39", script)
         self.assertIn("juggler merge 'my scene'-{0..39}.jfilm -o 'my scene.png'", script)
         for system in ("hyperqueue", "ssh"):
@@ -398,7 +410,9 @@ class Commands(unittest.TestCase):
 
 class Imports(unittest.TestCase):
     def test_ray_is_loaded_by_its_class_alone(self):
-        code = "import sys, juggler\nassert 'juggler.cluster' not in sys.modules\nimport juggler.cluster as c\n"
+        code = (
+            "import sys, juggler\nassert 'juggler.cluster' not in sys.modules\nimport juggler.cluster as c\n"
+        )
         code += "c.Ray()\nassert 'ray' not in sys.modules and 'numpy' not in sys.modules"
         self.assertEqual(python(code).stderr, "")
 

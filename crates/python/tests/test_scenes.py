@@ -6,26 +6,8 @@ import pickle
 import unittest
 
 import juggler as jg
-from juggler import Object, Scene, cameras, lights, materials, shapes, textures
-from support import SMALL, Folder, small_scene
-
-
-def typed_scene():
-    """Two objects over a tiled floor, as in the documentation."""
-    return Scene(
-        render=jg.RenderSettings(size=(64, 36), samples=4),
-        camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
-        textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
-        materials={
-            "floor": materials.Phong(diffuse="tiles"),
-            "gold": materials.Conductor(metal="gold", roughness=0.2),
-        },
-        lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
-        objects=[
-            Object(shapes.Plane(), material="floor"),
-            Object(shapes.Sphere(), material="gold").translate(0, 1, 0),
-        ],
-    )
+from juggler import Object, Scene, lights, materials, shapes
+from support import SMALL, Folder, small_scene, typed_scene
 
 
 class TypedScenes(Folder):
@@ -42,7 +24,8 @@ class TypedScenes(Folder):
         scene = typed_scene()
         self.assertEqual(scene.check(), [])
         scene = scene.replace(
-            lights=[lights.Point(intensity=-1)], objects=[Object(shapes.Sphere(radius="wide"), material="gld")]
+            lights=[lights.Point(intensity=-1)],
+            objects=[Object(shapes.Sphere(radius="wide"), material="gld")],
         )
         with self.assertRaises(jg.SceneError) as caught:
             scene.check()
@@ -68,7 +51,11 @@ class TypedScenes(Folder):
         mixed["objects"].append(Object(shapes.Sphere(radius=0.3), material="gold").translate(1, 0.3, 1))
         plain = small_scene()
         plain["objects"].append(
-            {"shape": {"sphere": {"radius": 0.3}}, "material": "gold", "transform": [{"translate": [1, 0.3, 1]}]}
+            {
+                "shape": {"sphere": {"radius": 0.3}},
+                "material": "gold",
+                "transform": [{"translate": [1, 0.3, 1]}],
+            }
         )
         self.assertEqual(jg.render(mixed, **SMALL).hash, jg.render(plain, **SMALL).hash)
 
@@ -95,9 +82,12 @@ class Tracing(unittest.TestCase):
 
     def test_a_part_without_a_class_has_the_line_of_the_part_around_it(self):
         jg.trace_nodes(True)
-        scene = Scene(materials={"odd name": {"diffuse": {"reflectance": "=1 +"}}}, objects=[Object(shapes.Plane())])
+        material = {"diffuse": {"reflectance": "=1 +"}}
+        scene = Scene(materials={"odd name": material}, objects=[Object(shapes.Plane())])
         line = inspect.currentframe().f_lineno - 1
-        self.assertEqual({problem.made_at for problem in self.problems(scene).problems}, {f"{__file__}:{line}"})
+        self.assertEqual(
+            {problem.made_at for problem in self.problems(scene).problems}, {f"{__file__}:{line}"}
+        )
 
     def test_nothing_is_traced_at_first(self):
         error = self.problems(Scene(objects=[Object(shapes.Sphere(radius=-1))]))

@@ -5,27 +5,10 @@ import os
 import shutil
 
 import juggler as jg
-from juggler import Object, Scene, cameras, lights, materials, shapes, textures
-from support import ROOT, Folder, needs_numpy, numpy, small_scene
+from juggler import Object, Scene, materials, shapes, textures
+from support import ROOT, Folder, needs_numpy, numpy, small_scene, typed_scene
 
 SMALL = {"size": (32, 18)}
-
-
-def typed_scene():
-    return Scene(
-        render=jg.RenderSettings(size=(32, 18), samples=4),
-        camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
-        textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
-        materials={
-            "floor": materials.Phong(diffuse="tiles"),
-            "gold": materials.Conductor(metal="gold", roughness=0.2),
-        },
-        lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
-        objects=[
-            Object(shapes.Plane(), material="floor"),
-            Object(shapes.Sphere(), material="gold").translate(0, 1, 0),
-        ],
-    )
 
 
 class Tasks(Folder):
@@ -44,7 +27,9 @@ class Tasks(Folder):
         ]
         images[0].save("robot.png")
         self.assertEqual(len({image.hash for image in images}), 3)
-        self.assertEqual(sorted(path.name for path in self.folder.glob("*.png")), ["juggler.png", "robot.png"])
+        self.assertEqual(
+            sorted(path.name for path in self.folder.glob("*.png")), ["juggler.png", "robot.png"]
+        )
         [model] = jg.models("robot.glb")
         self.assertEqual(model["variants"], ["Tangerine", "Lagoon"])
         self.assertEqual([clip["name"] for clip in model["clips"]], ["Wave", "Idle"])
@@ -63,7 +48,11 @@ class Tasks(Folder):
     @needs_numpy
     def test_3_arrays(self):
         v = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], "f8")
-        f, n, uv = numpy.array([(0, 1, 2)]), numpy.array([(0, 0, 1)] * 3), numpy.array([(0, 0), (1, 0), (0, 1)])
+        f, n, uv = (
+            numpy.array([(0, 1, 2)]),
+            numpy.array([(0, 0, 1)] * 3),
+            numpy.array([(0, 0), (1, 0), (0, 1)]),
+        )
         c, ids = numpy.full((3, 3), 200, "u1"), numpy.array([7])
         attributes = {"color": c, "part": jg.PerFace(ids)}
         mesh = shapes.Mesh(positions=v, triangles=f, normals=n, uvs=uv, attributes=attributes)
@@ -128,7 +117,9 @@ class Tasks(Folder):
         self.assertGreater(c.p, 0.01)
         self.assertLess(c.flip, 0.2)
         self.assertLess(c.rmse, 0.2)
-        self.assertIn("variance", jg.compare(jg.render(small_scene()), jg.render(small_scene(), seed=5)).reason)
+        self.assertIn(
+            "variance", jg.compare(jg.render(small_scene()), jg.render(small_scene(), seed=5)).reason
+        )
 
     def test_9_probe(self):
         p = jg.Renderer(typed_scene()).probe(16, 9)

@@ -1,6 +1,6 @@
 """Tests of the typed classes. They need no native module:
 
-    PYTHONPATH=crates/python/python python3 -m unittest discover crates/python/tests
+PYTHONPATH=crates/python/python python3 -m unittest discover crates/python/tests
 """
 
 import copy
@@ -59,7 +59,10 @@ class Classes(unittest.TestCase):
         for cls in classes():
             with self.subTest(cls):
                 node = cls(**{name: 1 for name in cls._required})
-                self.assertEqual(len(node.to_dict().get(cls._kind, node.to_dict())), len(cls._required) + len(cls._constants))
+                self.assertEqual(
+                    len(node.to_dict().get(cls._kind, node.to_dict())),
+                    len(cls._required) + len(cls._constants),
+                )
                 if cls._required:
                     with self.assertRaisesRegex(TypeError, f"needs `{cls._required[0]}`"):
                         cls()
@@ -87,7 +90,9 @@ class Classes(unittest.TestCase):
     def test_no_field_hides_a_method(self):
         for cls in classes():
             bases = [(base, getattr(base, "_fields", ())) for base in cls.__mro__[1:]]
-            methods = {name for base, fields in bases for name in vars(base) if name not in fields} - {"__slots__"}
+            methods = {name for base, fields in bases for name in vars(base) if name not in fields} - {
+                "__slots__"
+            }
             self.assertFalse(methods & set(cls._fields), cls)
 
     def test_signatures_name_all_fields(self):
@@ -100,13 +105,24 @@ class Classes(unittest.TestCase):
 
 class Nodes(unittest.TestCase):
     def test_json_form(self):
-        sphere = Object(shapes.Sphere(radius=0.5), material="gold").translate(0, 1, 0).rotate("y", 30).scale(2)
+        sphere = (
+            Object(shapes.Sphere(radius=0.5), material="gold").translate(0, 1, 0).rotate("y", 30).scale(2)
+        )
         scene = Scene(
             render=RenderSettings(size=(640, 360), integrator=integrators.Path(max_depth=8)),
             cameras={"main": cameras.Perspective(eye=[0, 2, 6])},
-            materials={"gold": materials.Conductor(metal="gold", roughness=InputProduct(texture="scratches", factor=0.2))},
+            materials={
+                "gold": materials.Conductor(
+                    metal="gold", roughness=InputProduct(texture="scratches", factor=0.2)
+                )
+            },
             lights=(lights.Point(position=(-4, 7, 5), intensity="=70 + 5"),),
-            objects=[sphere, Object(chain=Chain(from_=ControlSphere((0, 0, 0), 1), to=ControlSphere((1, 0, 0), 1), count=3))],
+            objects=[
+                sphere,
+                Object(
+                    chain=Chain(from_=ControlSphere((0, 0, 0), 1), to=ControlSphere((1, 0, 0), 1), count=3)
+                ),
+            ],
         )
         expected = """{
           "version": 1,
@@ -232,7 +248,10 @@ class Arrays(unittest.TestCase):
         self.assertEqual(cameras.Perspective(eye=row), cameras.Perspective(eye=(1, 2, 3)))
         self.assertEqual(shapes.Sphere(radius=scalar).to_dict(), {"sphere": {"radius": 0.5}})
         self.assertEqual(eval(repr(shapes.Sphere(radius=scalar)), NAMES), shapes.Sphere(radius=0.5))
-        self.assertEqual(repr(shapes.Mesh(positions=Array([], (999, 3)))), "shapes.Mesh(positions=<Array of shape (999, 3)>)")
+        self.assertEqual(
+            repr(shapes.Mesh(positions=Array([], (999, 3)))),
+            "shapes.Mesh(positions=<Array of shape (999, 3)>)",
+        )
         self.assertEqual(Instances(positions=range(3)).to_dict(), {"positions": [0, 1, 2]})
 
     def test_values_of_attributes_become_lists(self):
@@ -272,10 +291,14 @@ class Arrays(unittest.TestCase):
         except ImportError:
             self.skipTest("NumPy is not installed")
         eye = numpy.array([0, 2, 6], dtype=numpy.float32)
-        camera = cameras.Perspective(eye=eye, vertical_fov_degrees=numpy.float32(40), fit_aspect=numpy.bool_(True))
+        camera = cameras.Perspective(
+            eye=eye, vertical_fov_degrees=numpy.float32(40), fit_aspect=numpy.bool_(True)
+        )
         self.assertEqual(camera, cameras.Perspective(eye=(0, 2, 6), vertical_fov_degrees=40, fit_aspect=True))
         self.assertEqual(eval(repr(camera), NAMES), camera)
-        self.assertEqual(Object("sphere").matrix(numpy.eye(4)).to_dict()["transform"][0]["matrix"][:5], [1, 0, 0, 0, 0])
+        self.assertEqual(
+            Object("sphere").matrix(numpy.eye(4)).to_dict()["transform"][0]["matrix"][:5], [1, 0, 0, 0, 0]
+        )
         self.assertEqual(pickle.loads(pickle.dumps(camera)), camera)
 
 

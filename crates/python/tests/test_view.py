@@ -23,7 +23,10 @@ class Viewer(unittest.TestCase):
 
     def test_remote_notebooks_show_the_picture(self):
         settings = {"size": (16, 9), "samples": 1, "time": None}
-        with jg.View(small_scene(), {}) as view, unittest.mock.patch.dict(os.environ, {"SSH_CONNECTION": "1"}):
+        with (
+            jg.View(small_scene(), {}) as view,
+            unittest.mock.patch.dict(os.environ, {"SSH_CONNECTION": "1"}),
+        ):
             view._settings = {name: value for name, value in settings.items() if value is not None}
             self.assertIn("data:image/png;base64", view._repr_html_())
 

@@ -1,6 +1,6 @@
 """Uses of the classes that type checkers accept, and the types that they infer.
 
-    pyright --project crates/python/tests/typed
+pyright --project crates/python/tests/typed
 """
 
 from concurrent.futures import ProcessPoolExecutor
@@ -21,9 +21,15 @@ scene = Scene(
     render=jg.RenderSettings(size=(640, 360), samples=64),
     camera=cameras.Perspective(eye=(1.6, 2.6, 7), look_at=(0, 0.75, 0), vertical_fov_degrees=27),
     textures={"tiles": textures.Checker(size=1.2, even="#b8ae9c", odd="#34404c")},
-    materials={"floor": materials.Phong(diffuse="tiles"), "gold": materials.Conductor(metal="gold", roughness=0.2)},
+    materials={
+        "floor": materials.Phong(diffuse="tiles"),
+        "gold": materials.Conductor(metal="gold", roughness=0.2),
+    },
     lights=[lights.Point(position=(-4, 7, 5), intensity=75)],
-    objects=[Object(shapes.Plane(), material="floor"), Object(shapes.Sphere(), material="gold").translate(0, 1, 0)],
+    objects=[
+        Object(shapes.Plane(), material="floor"),
+        Object(shapes.Sphere(), material="gold").translate(0, 1, 0),
+    ],
 )
 assert_type(scene.replace(render=scene.render.replace(samples=256)), Scene)
 scene.camera.replace(eye=(0, 2, 6))
