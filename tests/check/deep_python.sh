@@ -18,10 +18,11 @@ shipped_wheel() { echo "$programs"/deep/wheel/*.whl; }
 # Builds the wheel that is shipped, with the license texts of all that it links, and checks it. Zig
 # links it with the C library of 2018.
 deep_python_wheel() {
-  python_with wheel maturin==1.16.0 ziglang==0.17.1 || return 0
+  python_with wheel maturin==1.16.0 ziglang==0.17.1 zopflipy==1.14 || return 0
   "$python" tests/python/licenses.py crates/python/licenses
   PATH=$(realpath -s "${python%/*}"):$PATH build_wheel "$programs/deep/wheel" \
     --manifest-path crates/python/Cargo.toml --locked --zig --compatibility manylinux_2_28 > /dev/null
+  "$python" tests/python/pack.py "$(shipped_wheel)"
   "$python" tests/python/wheel.py "$(shipped_wheel)"
 }
 

@@ -72,14 +72,19 @@ def standard_library():
 
 def third_party(found):
     """All texts, each once, after the packages to which it applies."""
-    packages_of = {}
+    packages_of, texts = {}, {}
     for package, files in found.items():
         for path in files:
             text = "\n".join(line.rstrip() for line in path.read_text(errors="replace").splitlines()).strip()
-            packages_of.setdefault(text, []).append(package)
+            # Texts whose spaces alone differ are one text.
+            words = " ".join(text.split())
+            packages_of.setdefault(words, []).append(package)
+            texts.setdefault(words, text)
     line = "=" * 80
+    # Texts that resemble each other stand side by side, where they compress well.
+    alike = sorted(packages_of, key=lambda words: re.sub(r"\W+", " ", words).lower())
     return "".join(
-        f"{line}\n{chr(10).join(names)}\n{line}\n\n{text}\n\n" for text, names in packages_of.items()
+        f"{line}\n{chr(10).join(packages_of[words])}\n{line}\n\n{texts[words]}\n\n" for words in alike
     )
 
 
