@@ -58,6 +58,7 @@ impl Scene {
     /// assert_eq!(unknown.to_string(), "the scene has no `object`; did you mean `objects`?");
     /// ```
     pub fn value_at(&self, path: &Path) -> Result<Value, UnknownPath> {
+        let path = &self.stored_path(path, path.steps().len());
         let Some(Step::Key(section)) = path.steps().first() else {
             return match path.steps().first() {
                 None => Ok(self.to_value()),
@@ -82,6 +83,21 @@ impl Scene {
             at.push(step.clone());
         }
         Ok(node.to_json())
+    }
+
+    /// Path of the value to which `path` leads through a texture that was written inline: such a
+    /// texture is one of the section `textures`, named by its pointer. Only the first `most` steps of
+    /// `path` may be that pointer.
+    pub(crate) fn stored_path(&self, path: &Path, most: usize) -> Path {
+        let steps = path.steps();
+        for length in (1..=most.min(steps.len())).rev() {
+            let (place, rest) = steps.split_at(length);
+            let pointer = place.iter().fold(Path::root(), with_step).pointer();
+            if self.description.textures.contains_key(&pointer) {
+                return rest.iter().fold(Path::root().key("textures").key(pointer), with_step);
+            }
+        }
+        path.clone()
     }
 
     /// Describes that `node`, which is at `at`, has no such step.
@@ -109,6 +125,11 @@ impl Scene {
     }
 }
 
+fn with_step(mut path: Path, step: &Step) -> Path {
+    path.push(step.clone());
+    path
+}
+
 fn keys(node: &Node) -> Vec<String> {
     node.members().map(|(key, _)| key.clone()).collect()
 }
@@ -132,6 +153,23 @@ mod tests {
         assert_eq!(value("/objects/1/shape/sphere/radius").unwrap(), json!(1.0));
         assert_eq!((value("title").unwrap(), value("render.size[1]").unwrap()), (json!("two"), json!(8)));
         assert_eq!(value("objects").unwrap().as_array().map(Vec::len), Some(2));
+    }
+
+    #[test]
+    fn paths_lead_through_textures_that_are_written_inline() {
+        let text = r##"{"version": 1, "objects": [{"shape": "sphere", "material": {"diffuse": {"reflectance":
+            {"checker": {"size": 2, "even": {"checker": {"size": 3}}}}}}}]}"##;
+        let scene = Scene::from_json(text, "scene.json").unwrap();
+        let value = |scene: &Scene, path: &str| scene.value_at(&Path::parse(path).unwrap()).unwrap();
+        let reflectance = "objects[0].material.diffuse.reflectance";
+        assert_eq!(value(&scene, &format!("{reflectance}.checker.size")), json!(2.0));
+        assert_eq!(value(&scene, &format!("{reflectance}.checker.even.checker.size")), json!(3.0));
+        assert_eq!(value(&scene, reflectance)["checker"]["size"], json!(2.0));
+        let pointer = "/objects/0/material/diffuse/reflectance";
+        let edited = scene.with_value(&format!("{pointer}/checker/even/checker/size"), json!(5)).unwrap();
+        assert_eq!(value(&edited, &format!("{reflectance}.checker.even.checker.size")), json!(5.0));
+        let plain = edited.with_value(pointer, json!("#fff")).unwrap();
+        assert_eq!(value(&plain, "objects[0].material.diffuse.reflectance"), json!([1.0, 1.0, 1.0]));
     }
 
     #[test]
