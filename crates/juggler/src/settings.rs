@@ -7,6 +7,7 @@ use juggler_camera::sampler::SamplerKind;
 use juggler_imaging::{Primaries, Tone, ToneCurveKind, WhiteBalance};
 use juggler_integrator::{AnyIntegrator, IntegratorKind};
 use juggler_render::StopCriterion;
+use juggler_scene::compile::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::model::find_camera;
 use juggler_scene::{IntegratorChoice, Scene};
@@ -16,6 +17,9 @@ use std::ops::RangeInclusive;
 const MAX_SAMPLES_NOISE: u32 = 1 << 16;
 /// Default maximum number of samples per pixel under a time limit.
 const MAX_SAMPLES_TIME: u32 = 1 << 24;
+
+/// Maximum exposure in photographic stops, up or down.
+const MAX_STOPS: f32 = 64.0;
 
 /// Stop condition of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -152,6 +156,7 @@ impl Settings {
     /// `render.integrator`.
     pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
         self.limit.check()?;
+        self.check_ranges()?;
         render.size = self.size.unwrap_or(render.size);
         render.samples = self.samples.unwrap_or(self.limit.max_samples(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);
@@ -176,6 +181,39 @@ impl Settings {
         Ok(())
     }
 
+    /// Fails for numbers out of the ranges of the scene format.
+    fn check_ranges(&self) -> Result<(), Error> {
+        if let Some([width, height]) = self.size {
+            let edges = 1..=MAX_EDGE;
+            if !edges.contains(&width) || !edges.contains(&height) {
+                let message = format!("width and height are 1 to {MAX_EDGE} pixels, not {width} and {height}");
+                return Err(Error::setting("size", message));
+            }
+            let pixels = u64::from(width) * u64::from(height);
+            if pixels > MAX_PIXELS {
+                return Err(Error::setting("size", format!("an image has at most {MAX_PIXELS} pixels, not {pixels}")));
+            }
+        }
+        if let Some(samples) = self.samples.filter(|samples| !(1..=MAX_SAMPLES).contains(samples)) {
+            return Err(Error::setting("samples", format!("a pixel has 1 to {MAX_SAMPLES} samples, not {samples}")));
+        }
+        if let Some([open, close]) = self.shutter
+            && !(open <= close && open.abs() <= MAX_SHUTTER && close.abs() <= MAX_SHUTTER)
+        {
+            let message = format!(
+                "the shutter must open before it closes, both within {MAX_SHUTTER} frames; found {open} to {close}"
+            );
+            return Err(Error::setting("shutter", message));
+        }
+        match self.exposure_stops {
+            Some(stops) if !(-MAX_STOPS..=MAX_STOPS).contains(&stops) => {
+                let message = format!("the exposure is -{MAX_STOPS} to {MAX_STOPS} stops, not {stops}");
+                Err(Error::setting("exposure", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Returns width and height, in pixels.
     pub fn size_of(&self, scene: &Scene) -> [u32; 2] {
         self.size.unwrap_or(scene.description.render.size)
@@ -195,6 +233,9 @@ impl Settings {
             return Ok(crop);
         }
         let Rect { x, y, width: w, height: h } = crop;
+        if w == 0 || h == 0 {
+            return Err(Error::setting("crop", format!("a crop of {w}x{h} pixels has none")));
+        }
         let message = format!("the crop {x},{y},{w},{h} reaches beyond the picture of {width}x{height} pixels");
         Err(Error::setting("crop", message))
     }
@@ -250,6 +291,30 @@ mod tests {
         let own = Settings { integrator: Some(IntegratorKind::Classic), max_depth: Some(3), ..Settings::default() };
         let expected = Classic { min_weight: 0.5, max_depth: 3, ..Classic::default() };
         assert_eq!(own.apply(&scene()).unwrap().description.render.integrator, Some(expected.into()));
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let with = |change: fn(&mut Settings)| {
+            let mut settings = Settings::default();
+            change(&mut settings);
+            match settings.apply(&scene()) {
+                Err(Error::Settings { setting, .. }) => setting,
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(with(|settings| settings.size = Some([0, 4])), "size");
+        assert_eq!(with(|settings| settings.size = Some([4, 65_537])), "size");
+        assert_eq!(with(|settings| settings.size = Some([65_536, 65_536])), "size");
+        assert_eq!(with(|settings| settings.samples = Some(0)), "samples");
+        assert_eq!(with(|settings| settings.samples = Some(MAX_SAMPLES + 1)), "samples");
+        assert_eq!(with(|settings| settings.shutter = Some([0.5, 0.0])), "shutter");
+        assert_eq!(with(|settings| settings.shutter = Some([0.0, f64::NAN])), "shutter");
+        assert_eq!(with(|settings| settings.shutter = Some([0.0, 1001.0])), "shutter");
+        assert_eq!(with(|settings| settings.exposure_stops = Some(64.5)), "exposure");
+        assert_eq!(with(|settings| settings.exposure_stops = Some(f32::NAN)), "exposure");
+        let most = Settings { size: Some([65_536, 32_768]), samples: Some(MAX_SAMPLES), ..Settings::default() };
+        assert!(most.apply(&scene()).is_ok());
     }
 
     #[test]
