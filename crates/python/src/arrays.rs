@@ -44,6 +44,15 @@ impl AttributeBytes {
     }
 }
 
+/// Number of digits of the digest in the name of arrays.
+const NAME_DIGITS: usize = 16;
+
+/// Whether the package gave this name to the arrays of a mesh.
+pub fn is_name_of_arrays(name: &str) -> bool {
+    let digits = name.strip_prefix("mesh-").and_then(|name| name.strip_suffix(".ply"));
+    digits.is_some_and(|digits| digits.len() == NAME_DIGITS && digits.bytes().all(|digit| digit.is_ascii_hexdigit()))
+}
+
 /// Arrays or bytes that a scene names in place of a file. It never changes.
 #[pyclass(frozen, eq, hash, module = "juggler._native")]
 #[derive(Clone, PartialEq)]
@@ -160,7 +169,7 @@ impl Asset {
             },
             _ => ("file", "bin"),
         };
-        format!("{kind}-{}.{ending}", self.digest().get(..16).unwrap_or_default())
+        format!("{kind}-{}.{ending}", self.digest().get(..NAME_DIGITS).unwrap_or_default())
     }
 
     /// Members of a mesh or of instances in the scene format, as JSON; `None` for other assets.

@@ -1,5 +1,6 @@
 //! Exceptions, which the Python module `juggler._errors` defines.
 
+use crate::arrays::is_name_of_arrays;
 use crate::scene::UNNAMED;
 use juggler::Error;
 use juggler::film::{AddError, PartialRenderError, ResumeError};
@@ -161,7 +162,7 @@ fn text(problems: &Problems) -> String {
     if problems.list().iter().any(is_of_file) {
         return problems.render(false);
     }
-    problems.list().iter().map(line).collect::<Vec<_>>().join("\n")
+    problems.list().iter().map(|problem| line(&own(problem))).collect::<Vec<_>>().join("\n")
 }
 
 /// A problem without an excerpt of the scene's text.
@@ -178,12 +179,25 @@ fn is_of_file(problem: &Problem) -> bool {
     problem.file.as_ref().is_some_and(|file| !file.ends_with(UNNAMED))
 }
 
-/// The problems as a list of `juggler.Problem`.
-fn list<'py>(py: Python<'py>, problems: &Problems) -> PyResult<Bound<'py, PyAny>> {
-    let own = |problem: &Problem| match is_of_file(problem) {
+/// The problem as it concerns the package: without a place in text that nobody wrote, and without the
+/// name under which the package keeps the arrays of a mesh.
+fn own(problem: &Problem) -> Problem {
+    let mut own = match is_of_file(problem) {
         true => problem.clone(),
         false => Problem { file: None, line: None, column: None, ..problem.clone() },
     };
+    let parts =
+        problem.message.strip_prefix('`').and_then(|message| message.split_once("` contains an invalid mesh: "));
+    if let Some((path, (_, wrong))) =
+        problem.path.strip_suffix(".file").zip(parts.filter(|(name, _)| is_name_of_arrays(name)))
+    {
+        (own.path, own.message) = (path.to_owned(), format!("the mesh is invalid: {wrong}"));
+    }
+    own
+}
+
+/// The problems as a list of `juggler.Problem`.
+fn list<'py>(py: Python<'py>, problems: &Problems) -> PyResult<Bound<'py, PyAny>> {
     let problems: Vec<Problem> = problems.list().iter().map(own).collect();
     let json = serde_json::to_string(&problems).unwrap_or_default();
     py.import("juggler._errors")?.getattr("problems_from_json")?.call1((json,))

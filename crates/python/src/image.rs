@@ -134,8 +134,12 @@ impl Image {
         match aov {
             "object_id" => Some((0..names.entries).map(|entry| names.object(entry)).collect()),
             "material_id" => {
-                let count = names.materials.last().map_or(0, |(id, _)| id.0.saturating_add(1));
-                Some((0..count).map(|id| names.material(id)).collect())
+                // A material without a name has its index; those that the image shows are enough.
+                let named = names.materials.last().map_or(0, |(id, _)| id.0.saturating_add(1));
+                let layer = self.image.layers().find(|(layer, _)| layer.name == aov);
+                let channels = layer.map_or(&[][..], |(_, channels)| channels);
+                let shown = channels.iter().flatten().fold(0.0, |most: f32, id| most.max(*id)) as u32;
+                Some((0..named.max(shown)).map(|id| names.material(id)).collect())
             }
             _ => None,
         }

@@ -148,15 +148,15 @@ impl<T: Send + 'static> Task<T> {
         threads: usize,
         work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static,
     ) -> PyResult<Self> {
-        let pool = threads::pool(py, threads, Use::Render)?;
-        Ok(Self::start_on(&pool, work))
+        Ok(Self::start_on(&threads::pool(py, threads, Use::Render)?, work))
     }
 
-    fn start_on(pool: &ThreadPool, work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static) -> Self {
+    fn start_on(pool: &Arc<ThreadPool>, work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static) -> Self {
         let (monitor, (sender, receiver)) = (Arc::new(Monitor::default()), mpsc::channel());
-        let shared = Arc::clone(&monitor);
+        let (shared, busy) = (Arc::clone(&monitor), Arc::clone(pool));
         pool.spawn(move || {
             let result = catch_unwind(AssertUnwindSafe(|| work(&shared)));
+            drop(busy);
             // The task may have been abandoned.
             drop(sender.send(result.unwrap_or_else(|panic| Err(Fault::Panic(panic_message(panic.as_ref()))))));
         });

@@ -22,10 +22,17 @@ pub enum Use {
     Short,
 }
 
-/// Pools by process, use and number of threads. A process that is forked makes its own, since only
-/// the thread that forks lives on in it. The lock is held only while the interpreter is attached,
-/// and therefore by no other thread when `os.fork` is called.
-static POOLS: Mutex<BTreeMap<(u32, Use, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
+/// Pools by process, use and number of threads.
+type Pools = BTreeMap<(u32, Use, usize), Vec<Arc<ThreadPool>>>;
+
+/// Maximum number of pools of one kind. More work than that shares them.
+const MAX_POOLS: usize = 8;
+
+/// Pools, each for one work at a time, since the tasks of two works in one pool hinder each other. A
+/// process that is forked makes its own, since only the thread that forks lives on in it. The lock is
+/// held only while the interpreter is attached, and therefore by no other thread when `os.fork` is
+/// called.
+static POOLS: Mutex<Pools> = Mutex::new(Pools::new());
 
 /// Number of threads to use: `requested`, that of the environment, or one per core that the process
 /// may use.
@@ -49,16 +56,22 @@ pub fn thread_count(requested: Option<usize>) -> PyResult<usize> {
     }
 }
 
-/// Pool of this many threads. It is kept for the next call.
+/// Pool of this many threads. It is kept for the next call, and busy as long as the result lives.
 pub fn pool(_: Python<'_>, threads: usize, purpose: Use) -> PyResult<Arc<ThreadPool>> {
     silence_panics();
     let key = (std::process::id(), purpose, threads);
     // No Python code runs while the lock is held.
     let found = {
         let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-        match pools.get(&key) {
-            Some(pool) => Ok(Arc::clone(pool)),
-            None => new_pool(threads).map(|pool| Arc::clone(pools.entry(key).or_insert(Arc::new(pool)))),
+        let pools = pools.entry(key).or_default();
+        // The table itself holds one reference.
+        match pools.iter().min_by_key(|pool| Arc::strong_count(pool)) {
+            Some(pool) if Arc::strong_count(pool) == 1 || pools.len() >= MAX_POOLS => Ok(Arc::clone(pool)),
+            _ => new_pool(threads).map(|pool| {
+                let pool = Arc::new(pool);
+                pools.push(Arc::clone(&pool));
+                pool
+            }),
         }
     };
     found.map_err(|error| settings_error("threads", format!("cannot start {threads} threads: {error}")))

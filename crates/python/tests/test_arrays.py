@@ -202,6 +202,15 @@ class Meshes(Folder):
             with self.subTest(message), self.assertRaisesRegex(jg.SceneError, message):
                 jg.render(shown(self.mesh(**fields)))
 
+    def test_wrong_numbers_are_those_of_the_mesh(self):
+        self.positions[2, 1] = np.nan
+        with self.assertRaises(jg.SceneError) as caught:
+            self.hash(self.mesh())
+        (problem,) = caught.exception.problems
+        self.assertEqual(problem.path, "objects[0].shape.mesh")
+        self.assertTrue(problem.message.startswith("the mesh is invalid: `positions[2][1]` must be"))
+        self.assertEqual(str(caught.exception), f"{problem.path}: {problem.message}")
+
     def test_empty_arrays(self):
         empty = shapes.Mesh(positions=np.zeros((0, 3)), triangles=np.zeros((0, 3), "i8"))
         plain = shapes.Mesh(positions=[], triangles=[])

@@ -42,6 +42,38 @@ class Renderers(unittest.TestCase):
         with self.assertRaises(jg.SceneError):
             renderer["materials.gold.conductor.roughness"] = "rough"
 
+    def test_paths_lead_through_textures_of_a_material(self):
+        checker = {"diffuse": {"reflectance": {"checker": {"size": 1, "even": "#ff0000"}}}}
+        scene = small_scene()
+        scene["objects"][1]["material"] = checker
+        renderer = jg.Renderer(scene)
+        before = renderer.render().hash
+        path = "objects[1].material.diffuse.reflectance"
+        self.assertEqual(renderer[f"{path}.checker.size"], 1)
+        self.assertEqual(renderer[path]["checker"]["size"], 1)
+        renderer[f"{path}.checker.size"] = 0.3
+        checker["diffuse"]["reflectance"]["checker"]["size"] = 0.3
+        self.assertEqual(renderer.render().hash, jg.render(scene).hash)
+        self.assertNotEqual(renderer.render().hash, before)
+        with self.assertRaisesRegex(KeyError, "did you mean `size`"):
+            renderer[f"{path}.checker.sise"] = 2
+        renderer[path] = "#ffffff"
+        checker["diffuse"]["reflectance"] = "#ffffff"
+        self.assertEqual(renderer.render().hash, jg.render(scene).hash)
+
+    def test_a_long_render_does_not_block_others(self):
+        long = jg.Renderer("juggler", size=(320, 180), samples=100_000).submit()
+        try:
+            start = time.monotonic()
+            self.assertEqual(jg.render(small_scene()).hash, jg.render(small_scene(), threads=1).hash)
+            renderer = jg.Renderer(small_scene())
+            self.assertTrue(renderer.fingerprint)
+            self.assertIn("pixel", str(renderer.probe(16, 9)))
+            self.assertLess(time.monotonic() - start, 20)
+            self.assertFalse(long.done())
+        finally:
+            long.cancel()
+
     def test_cameras_are_replaced(self):
         renderer = jg.Renderer(small_scene())
         before = renderer.render()

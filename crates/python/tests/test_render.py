@@ -155,6 +155,16 @@ class Images(unittest.TestCase):
             image["uv"]
 
     @needs_numpy
+    def test_materials_without_names_have_an_index(self):
+        scene = small_scene()
+        for entry, level in zip(scene["objects"], (0.2, 0.7)):
+            entry["material"] = {"diffuse": {"reflectance": level}}
+        image = jg.render(scene, aovs=["material_id"])
+        shown = {image.names["material_id"][number] for number in numpy.unique(image["material_id"])}
+        self.assertEqual(len(shown), len(numpy.unique(image["material_id"])))
+        self.assertTrue(all(name is None or name for name in shown))
+
+    @needs_numpy
     def test_camera_matrices_project_points(self):
         image = jg.render(small_scene(), aovs=["position", "depth"])
         K, R, t = image.camera.opencv
@@ -261,6 +271,13 @@ class Scenes(Folder):
             ("max_memory", "lots"),
             ("aovs", ["depht"]),
             ("shutter", (1, 0)),
+            ("shutter", (0, 1e9)),
+            ("size", (0, 9)),
+            ("size", (10**6, 10**6)),
+            ("samples", 0),
+            ("exposure", 1000),
+            ("exposure", float("nan")),
+            ("crop", (0, 0, 0, 9)),
         ]
         for name, value in cases:
             with self.assertRaises(jg.SettingsError, msg=name):
