@@ -30,7 +30,7 @@ def plot(image, colorbar, scale_bar, title, label, ax):
 
 
 def _maps(image, colorbar):
-    if not colorbar:
+    if colorbar is None or colorbar is False:
         return []
     if colorbar is not True:
         from ._sci import maps_of

@@ -345,14 +345,13 @@ def _creased(made, degrees):
 def maps_of(objects):
     """The different color maps of objects, in their order."""
     maps = []
-    for one in objects or ():
+    for one in () if objects is None else objects:
         if isinstance(one, ColorMap):
             found = [one]
         else:
             material = getattr(one, "material", None)
-            color = getattr(material, "reflectance", None) or getattr(material, "color", None)
-            color = color or getattr(material, "base_color", None)
-            found = [color] if isinstance(color, ColorMap) else []
+            colors = (getattr(material, name, None) for name in ("reflectance", "color", "base_color"))
+            found = [color for color in colors if isinstance(color, ColorMap)]
             found += maps_of(getattr(one, "objects", None))
         for color_map in found:
             key = (color_map.colors(), tuple(color_map.clim), color_map.label)

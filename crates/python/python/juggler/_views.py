@@ -45,11 +45,11 @@ def _unit(a):
 
 def _view(view, up):
     """Direction to the camera, and direction of the picture's top."""
-    if up not in _AXES:
+    if not isinstance(up, str) or up not in _AXES:
         raise SceneError(f'`up` is "x", "y" or "z", not {up!r}')
-    if view == "isometric":
-        return _unit((1, 1, 1)), _AXES[up]
     if isinstance(view, str):
+        if view == "isometric":
+            return _unit((1, 1, 1)), _AXES[up]
         if len(view) != 2 or view[0] not in "+-" or view[1] not in _AXES:
             raise SceneError(
                 f'`view` is "isometric", "+x", "-x", "+y", "-y", "+z", "-z" or a direction, not {view!r}'
