@@ -107,7 +107,7 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(front(squares).to_uint8()[15, 3].tolist(), [128] * 3)
 
     def test_faces_without_a_value_have_their_color(self):
-        for missing in (math.nan, math.inf, 1e300):
+        for missing in (math.nan, math.inf):
             obj = sci.surface(CORNERS, FACES, values=[0, missing, 0, 0], nan="#ff0000", clim=(0, 1))
             self.assertEqual(len(obj.objects), 2)
             image = front(obj).to_uint8()

@@ -43,5 +43,44 @@ class Colors(unittest.TestCase):
             sci.camera(box, up=np.array([0, 1, 0]))
 
 
+@needs_numpy
+class Ranges(unittest.TestCase):
+    BASE = (0, 1, 0.25, 0.6)
+
+    def shown(self, values, **options):
+        camera = sci.camera(((0, 0, 0), (1, 1, 0)), view="+z", parallel=True, margin=1)
+        obj = sci.surface(CORNERS, FACES, values=values, **options)
+        scene = Scene(camera=camera, objects=[obj])
+        return jg.render(scene, size=(12, 12), samples=1, **sci.flat())
+
+    def test_values_of_any_offset_and_scale_have_their_colors(self):
+        base = np.array(self.BASE)
+        expected = self.shown(base)
+        for values in (base + 1e6, base + 1.7e9, base * 1e300, (2 * base - 1) * 1.7e308, base * 1e-300):
+            for clim in (None, (values.min(), values.max())):
+                image = self.shown(values, clim=clim)
+                np.testing.assert_allclose(image.color, expected.color, atol=1e-5)
+                # Color bars have the units of the values.
+                self.assertEqual(image._color_maps[0].clim, (values.min(), values.max()))
+        spheres = [
+            sci.spheres([(0.5, 0.5, 0)] * 4, 0.4, values=values, clim=(values[0], values[1]))
+            for values in (base, base + 1.7e9)
+        ]
+        self.assertEqual(*(jg.render(Scene(objects=[one]), size=(8, 8)).hash for one in spheres))
+
+    def test_values_far_beyond_the_limits_have_the_last_color(self):
+        image = self.shown([1e300, 1e39, 1e300, 5], clim=(0, 1)).to_uint8()
+        self.assertEqual(image[6, 6].tolist(), [0xFD, 0xE7, 0x25])
+
+    def test_one_value_everywhere_has_the_middle_color(self):
+        expected = self.shown([0] * 4).to_uint8()[6, 6].tolist()
+        for value in (5, 1.7e9, 1e300, -1.797e308):
+            self.assertEqual(self.shown([value] * 4).to_uint8()[6, 6].tolist(), expected)
+
+    def test_ordinary_values_keep_their_units(self):
+        obj = sci.surface(CORNERS, FACES, values=self.BASE, clim=(0, 5))
+        self.assertEqual(np.asarray(obj.shape.attributes["value"]).tolist(), np.float32(self.BASE).tolist())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,6 +1,7 @@
 """Scientific pictures: surfaces, spheres, arrows and tubes colored by values."""
 
 import math
+import sys
 
 from . import _arrays, _color_maps, materials, shapes, textures
 from ._array_nodes import PerFace
@@ -10,23 +11,26 @@ from .scene_types import Instances, Object
 
 # Name of the attribute that color maps show.
 _VALUE = "value"
+# Greatest number of an attribute.
+_MAX_VALUE = 1e18
 
 
 class ColorMap(textures.Ramp):
     """Color ramp over the values of a mesh or of instances, from the value `clim[0]` to `clim[1]`.
 
-    `cmap` is the name of a color map, or a list of its colors.
+    `cmap` is the name of a color map, or a list of its colors. With `normalized`, the input is 0 at
+    `clim[0]` and 1 at `clim[1]`, instead of the values themselves.
     """
 
-    __slots__ = ("clim", "cmap", "label")
-    _unwritten = ("cmap", "clim", "label")
+    __slots__ = ("clim", "cmap", "label", "normalized")
+    _unwritten = ("cmap", "clim", "label", "normalized")
 
     def colors(self):
         """The colors of the map, evenly spaced, as "#rrggbb"."""
         return _color_maps.colors(self.cmap)
 
     def _members(self, collect):
-        low, high = self.clim
+        low, high = (0.0, 1.0) if self.normalized else self.clim
         colors = self.colors()
         step = (high - low) / (len(colors) - 1)
         stops = [{"position": low + step * index, "color": color} for index, color in enumerate(colors)]
@@ -37,13 +41,32 @@ def _limits(values, clim, label):
     """The values at both ends of the color map."""
     if clim is None:
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
-        if low == high:
-            low, high = low - 0.5, high + 0.5
-        return low, high
+        return (low, high) if low < high else _around(low)
     low, high = (float(limit) for limit in clim)
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise SceneError(f"`clim` of {label} must be two finite numbers, the lower first, not {clim}")
     return low, high
+
+
+def _around(value):
+    """Limits around the value that all points have."""
+    half = max(0.5, abs(value) * 1e-12)
+    return max(value - half, -sys.float_info.max), min(value + half, sys.float_info.max)
+
+
+def _are_resolved(clim):
+    """Whether float32 numbers between the limits have at least 16 bits of precision."""
+    largest = max(map(abs, clim))
+    return clim[1] - clim[0] >= largest / 256 and 1e-30 < largest < _MAX_VALUE
+
+
+def _normalized(values, clim):
+    """Values as float64, 0 and 1 at the limits."""
+    low, high = clim
+    # The difference of the limits may overflow.
+    scale = 1.0 if math.isfinite(high - low) else 0.25
+    low = low * scale
+    return (values * scale - low) / (high * scale - low)
 
 
 class _Values:
@@ -55,13 +78,18 @@ class _Values:
         if values.dtype.kind not in "biuf" or values.ndim != 1:
             raise SceneError(f"`values` of {label} must be an array of shape (n,) of numbers")
         values = values.astype("f8")
+        self.finite = np.isfinite(values)
+        clim = _limits(values[self.finite], clim, label)
+        values = np.where(self.finite, values, clim[0])
+        # The renderer has float32 numbers, which may be too coarse for the values.
+        normalized = None if _are_resolved(clim) else True
         with np.errstate(over="ignore"):
-            self.finite = np.isfinite(values.astype("f4"))
-        self.clim = _limits(values[self.finite], clim, label)
-        self.values = np.where(self.finite, values, self.clim[0]).astype("f4")
+            values = _normalized(values, clim) if normalized else values
+        self.values = np.clip(values, -_MAX_VALUE, _MAX_VALUE).astype("f4")
         cmap = cmap if isinstance(cmap, str) and _color_maps.is_own(cmap) else _color_maps.colors(cmap)
         attribute = textures.Attribute(_VALUE, channel="r")
-        self.material = material(ColorMap(cmap=cmap, clim=self.clim, input=attribute), lit)
+        shown = ColorMap(cmap=cmap, clim=clim, input=attribute, normalized=normalized)
+        self.material = material(shown, lit)
         self.missing = material(nan, lit)
 
 

@@ -26,18 +26,21 @@ color_maps: tuple[str, ...]
 class ColorMap(textures.Ramp):
     """Color ramp over the values of a mesh or of instances, from the value `clim[0]` to `clim[1]`.
 
-    `cmap` is the name of a color map, or a list of its colors.
+    `cmap` is the name of a color map, or a list of its colors. With `normalized`, the input is 0 at
+    `clim[0]` and 1 at `clim[1]`, instead of the values themselves.
     """
 
     cmap: Any
     clim: Any
     label: Any
+    normalized: Any
     def __init__(
         self,
         *,
         cmap: str | Sequence[str],
         clim: Sequence[float],
         label: str | None = None,
+        normalized: bool | None = None,
         input: t.NumberInput | None = None,
     ) -> None: ...
     def colors(self) -> list[str]:
