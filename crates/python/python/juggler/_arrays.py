@@ -119,6 +119,20 @@ def values(value, label):
     return array.shape[1], kind, _contiguous(array, kind)
 
 
+def stored(value, kind, label):
+    """Numbers of the type u8, u16 or f32 of the scene format."""
+    array = _array(value, label)
+    if kind == "f32":
+        return _contiguous(array, "f4")
+    most = 255 if kind == "u8" else 65535
+    if array.size:
+        ends = (array.dtype,) if array.dtype.kind not in "iu" else (int(array.min()), int(array.max()))
+        wrong = [end for end in ends if not isinstance(end, int) or not 0 <= end <= most]
+        if wrong:
+            raise SceneError(f"{label} must be whole numbers from 0 to {most}, not {wrong[0]}")
+    return _contiguous(array, "u1" if kind == "u8" else "u2")
+
+
 def texels(value, label):
     """Texels of shape (height, width) or (height, width, channels): size, channels, type and array."""
     array = _array(value, label)

@@ -5,7 +5,7 @@ from juggler import _native
 from . import _arrays
 from ._array_nodes import WIDTHS, PerFace
 from ._errors import SceneError
-from ._node import Node
+from ._node import Node, suggestion
 
 
 def restore(kind, *arguments):
@@ -36,6 +36,9 @@ class Collector:
 class _Arrays:
     """Arrays of one part of a scene: fields, and attributes by name."""
 
+    # Keys of attributes in the form of the scene format.
+    _attribute_keys = ()
+
     def __init__(self, label, fields, attributes):
         self.label = label
         self.fields = fields
@@ -64,39 +67,55 @@ class _Arrays:
         return [(name, *self._attribute(name, value)) for name, value in self.attributes.items()]
 
     def _attribute(self, name, value):
+        if not isinstance(name, str):
+            raise SceneError(f"names of attributes of {self.label} are strings, not {name!r}")
         label = f"the attribute `{name}` of {self.label}"
         face = isinstance(value, PerFace)
         if isinstance(value, Node):
-            value = value.to_dict()
-        if hasattr(value, "keys"):
-            face = value.get("domain") == "face"
+            fields = ((field, getattr(value, field)) for field in value._fields)
+            value = {field: found for field, found in fields if found is not None}
+        if not _arrays.is_array(value) and hasattr(value, "keys"):
+            face = _is_of_faces(label, value, self._attribute_keys)
             value = _described(label, value)
         channels, kind, array = _arrays.values(_values(value), label)
         return face, channels, kind, _arrays.as_bytes(array)
 
 
+def _is_of_faces(label, attribute, keys):
+    """Whether an attribute in the form of the scene format, which has these keys, belongs to faces."""
+    for key in attribute.keys():
+        if key not in keys:
+            raise SceneError(f"{label} has no `{key}`{suggestion(str(key), keys)}")
+    domain = attribute.get("domain")
+    if domain is not None and not (isinstance(domain, str) and domain in ("vertex", "face")):
+        raise SceneError(f'`domain` of {label} is "vertex" or "face", not {domain!r}')
+    return domain == "face"
+
+
 def _described(label, attribute):
     """Values of an attribute in the form of the scene format, whose arrays may be lists."""
     data, channels = attribute.get("data"), attribute.get("channels")
-    kinds = {"u8": "uint8", "u16": "uint16", "f32": "float32"}
-    if (
-        not hasattr(data, "keys")
-        or len(data) != 1
-        or next(iter(data)) not in kinds
-        or channels not in (1, 2, 3, 4)
-    ):
+    kind = next(iter(data), None) if hasattr(data, "keys") and len(data) == 1 else None
+    is_count = hasattr(channels, "__index__") and not (
+        _arrays.is_array(channels) or isinstance(channels, bool)
+    )
+    if kind not in ("u8", "u16", "f32") or not is_count or not 1 <= channels <= 4:
         raise SceneError(
             f"{label} must be an array, or have `channels` from 1 to 4 and `data` of u8, u16 or f32"
         )
-    ((kind, numbers),) = data.items()
-    array = _arrays.numpy().asarray(numbers, kinds[kind]).reshape(-1)
-    if len(array) % channels:
-        raise SceneError(f"{label} has {len(array)} numbers, not a multiple of its {channels} channels")
+    channels = int(channels)
+    array = _arrays.stored(data[kind], kind, f"`{kind}` of {label}")
+    if array.ndim != 1 and array.shape[1:] != (channels,):
+        raise SceneError(f"`{kind}` of {label} must be numbers in a row; its shape is {array.shape}")
+    if array.size % channels:
+        raise SceneError(f"{label} has {array.size} numbers, not a multiple of its {channels} channels")
     return array.reshape(-1, channels)
 
 
 class MeshArrays(_Arrays):
     """Arrays of a mesh."""
+
+    _attribute_keys = ("domain", "channels", "data")
 
     def asset(self):
         """The asset."""
@@ -109,6 +128,8 @@ class MeshArrays(_Arrays):
 
 class InstanceArrays(_Arrays):
     """Arrays of instances."""
+
+    _attribute_keys = ("channels", "data")
 
     def asset(self):
         """The asset."""
