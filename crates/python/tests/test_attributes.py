@@ -48,7 +48,7 @@ class Described(unittest.TestCase):
             (described([70000] * 4, "u16"), "whole numbers from 0 to 65535, not 70000"),
             (described([0] * 4, domain="fac"), f'`domain` of {attribute} is "vertex" or "face", not \'fac\''),
             (described([0] * 4, foo=1), f"{attribute} has no `foo`"),
-            (described([0] * 4, domian="face"), f"{attribute} has no `domian`; did you mean `domain`?"),
+            (described([0] * 4, domains="face"), f"{attribute} has no `domains`; did you mean `domain`?"),
             (described(np.ma.masked_equal(np.arange(4.0), 2)), f"`f32` of {attribute} has masked numbers"),
             (jg.MeshAttribute(1, {"f32": np.ma.masked_equal(np.arange(4.0), 2)}), "has masked numbers"),
             (described(np.arange(4) * 1j), f"`f32` of {attribute} must be an array of real numbers"),

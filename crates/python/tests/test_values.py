@@ -43,6 +43,86 @@ class Colors(unittest.TestCase):
             sci.camera(box, up=np.array([0, 1, 0]))
 
 
+class Table:
+    """Array of two dimensions that behaves as a `DataFrame` of pandas."""
+
+    def __init__(self, rows):
+        self.rows = np.asarray(rows)
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.rows, dtype)
+
+    def __eq__(self, other):
+        return Table(self.rows == np.asarray(other))
+
+    def all(self):
+        return Table(self.rows.all(axis=0))
+
+    def __bool__(self):
+        raise ValueError("the truth value of a Table is ambiguous")
+
+    def __iter__(self):
+        return iter(self.keys())
+
+    def __len__(self):
+        return len(self.rows)
+
+    def __getitem__(self, key):
+        return Column(self.rows[:, key])
+
+    def keys(self):
+        return range(self.rows.shape[1])
+
+    def to_json(self, path=None):
+        raise ValueError("invalid file path")
+
+    shape = property(lambda self: self.rows.shape)
+    ndim = property(lambda self: self.rows.ndim)
+
+
+class Column(Table):
+    """Array of one dimension that behaves as a `Series` of pandas."""
+
+    def keys(self):
+        return range(len(self.rows))
+
+    def tolist(self):
+        return self.rows.tolist()
+
+
+@needs_numpy
+class Tables(unittest.TestCase):
+    def mesh(self, kind, heat=(0, 1, 2, 3)):
+        return shapes.Mesh(positions=kind(CORNERS), triangles=kind(FACES), attributes={"heat": kind(heat)})
+
+    def pandas(self):
+        try:
+            import pandas
+        except ImportError:
+            return []
+        return [lambda rows: (pandas.DataFrame if np.ndim(rows) == 2 else pandas.Series)(rows)]
+
+    def test_tables_are_arrays(self):
+        kinds = [lambda rows: (Table if np.ndim(rows) == 2 else Column)(rows), *self.pandas()]
+        expected = self.mesh(np.array)
+        for kind in kinds:
+            mesh = self.mesh(kind)
+            self.assertEqual(hash_of(Object(mesh)), hash_of(Object(expected)))
+            self.assertEqual(mesh.to_dict(), expected.to_dict())
+            self.assertEqual(mesh, self.mesh(kind))
+            self.assertEqual(Object(mesh), Object(expected))
+            self.assertNotEqual(mesh, self.mesh(kind, (0, 1, 2, 4)))
+            self.assertNotEqual(mesh, mesh.replace(positions=kind(CORNERS[:3])))
+            self.assertIn("positions=[[0, 0, 0], ", repr(mesh))
+            self.assertEqual(sci.camera(kind([(0, 0, 0), (1, 2, 3)])), sci.camera([(0, 0, 0), (1, 2, 3)]))
+            color = Object(shapes.Sphere(), material=materials.Diffuse(reflectance=kind([0.8, 0.2, 0.1])))
+            self.assertTrue(hash_of(color))
+            with self.assertRaisesRegex(
+                jg.SceneError, r"reflectance\[0\]: expected a number, found an array"
+            ):
+                hash_of(color.replace(material=materials.Diffuse(reflectance=kind([[0.8], [0.2], [0.1]]))))
+
+
 @needs_numpy
 class Ranges(unittest.TestCase):
     BASE = (0, 1, 0.25, 0.6)

@@ -4,7 +4,7 @@ A part refers to its arrays. They are copied when the scene is given to the rend
 is saved: a `Renderer` has its own copy, which later changes of the arrays do not reach.
 """
 
-from ._node import Node, Unfit, plain, same
+from ._node import Node, Unfit, plain, resembles_array, same
 
 
 class PerFace:
@@ -55,7 +55,7 @@ WIDTHS = {
 
 def _is_values(value):
     """Whether an attribute is given by its values alone."""
-    return isinstance(value, (PerFace, list, tuple, range)) or hasattr(value, "tolist")
+    return isinstance(value, (PerFace, list, tuple, range)) or resembles_array(value)
 
 
 def _attribute_lists(value):

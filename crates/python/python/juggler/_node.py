@@ -37,11 +37,25 @@ def plain(value, collect=None):
         return [plain(item, collect) for item in value]
     if isinstance(value, dict):
         return {_key(key): _member(key, item, collect) for key, item in value.items()}
-    if hasattr(value, "tolist"):
+    if resembles_array(value):
         is_scalar = getattr(value, "ndim", 1) == 0
         found = None if collect is None or is_scalar else collect(value)
-        return value.tolist() if found is None else found
+        return lists_of(value) if found is None else found
     return _other(value, collect)
+
+
+def resembles_array(value):
+    """Whether a value is an array or a number of a library. Tables of pandas have no `tolist`."""
+    return hasattr(value, "tolist") or hasattr(type(value), "__array__")
+
+
+def lists_of(array):
+    """The numbers of an array as nested lists."""
+    if hasattr(array, "tolist"):
+        return array.tolist()
+    from ._arrays import numpy
+
+    return numpy().asarray(array).tolist()
 
 
 def _member(key, value, collect):
@@ -87,14 +101,14 @@ def shown(value):
         return f"({', '.join(map(shown, value))}{',' if len(value) == 1 else ''})"
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {shown(item)}' for key, item in value.items())}}}"
-    if hasattr(value, "tolist"):
+    if resembles_array(value):
         shape = tuple(getattr(value, "shape", None) or ())
         count = 1
         for length in shape:
             count *= length
         if count > _MAX_SHOWN:
             return f"<{type(value).__name__} of shape {shape}>"
-        return repr(value.tolist())
+        return repr(lists_of(value))
     if isinstance(value, Node) or type(value) in _PLAIN:
         return repr(value)
     try:
@@ -108,8 +122,11 @@ def same(mine, yours):
     if mine is yours:
         return True
     if hasattr(type(mine), "__array__") and type(mine) is type(yours):
-        same_shape = getattr(mine, "shape", None) == getattr(yours, "shape", None)
-        return same_shape and bool((mine == yours).all())
+        from ._arrays import numpy
+
+        # Comparisons of pandas need equal labels.
+        mine, yours = map(numpy().asarray, (mine, yours))
+        return mine.shape == yours.shape and bool((mine == yours).all())
     return plain(mine, _compared) == plain(yours, _compared)
 
 
@@ -119,7 +136,7 @@ def _compared(arrays):
     return (
         None
         if array is None
-        else (getattr(array, "shape", None), str(getattr(array, "dtype", "")), array.tolist())
+        else (getattr(array, "shape", None), str(getattr(array, "dtype", "")), lists_of(array))
     )
 
 

@@ -4,6 +4,7 @@ import math
 
 from . import cameras, shapes
 from ._errors import SceneError
+from ._node import lists_of, resembles_array
 from ._sci import material
 from .scene_types import Object
 
@@ -20,7 +21,8 @@ def box(bounds):
     if isinstance(bounds, (list, tuple)) and bounds and all(isinstance(one, Object) for one in bounds):
         return Object(objects=list(bounds)).bounds
     try:
-        low, high = ([float(number) for number in corner] for corner in bounds)
+        corners = lists_of(bounds) if resembles_array(bounds) else bounds
+        low, high = ([float(number) for number in corner] for corner in corners)
     except (TypeError, ValueError):
         raise SceneError(
             "`bounds` is a pair of corners, such as `object.bounds`, an object or a list of objects"
