@@ -184,7 +184,7 @@ class Nodes(unittest.TestCase):
             "shapes.Sphere().replace(raduis=1)": "shapes.Sphere has no `raduis`; did you mean `radius`?",
             "Chain(**{'from': 1})": "Chain has no `from`; did you mean `from_`?",
             "animate.Along()": "animate.Along needs `path` and `at`",
-            "Object(shapes.Sphere(radius={1})).to_dict()": "`shape` of Object: `radius` of shapes.Sphere: a set cannot be part of a scene",
+            "Object(shapes.Sphere(radius={1})).to_dict()": "`shape` of Object: `radius` of shapes.Sphere: an object of the type set cannot be part of a scene",
             "Scene(materials={1: 2}).to_dict()": "`materials` of Scene: the key 1 is not a string",
         }
         for code, message in cases.items():

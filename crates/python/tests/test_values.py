@@ -1,6 +1,10 @@
 """Values of other libraries, and of wrong types, in every place of the package."""
 
 import unittest
+from collections import UserDict
+from decimal import Decimal
+from fractions import Fraction
+from types import MappingProxyType
 
 import juggler as jg
 from juggler import Object, Scene, materials, sci, shapes
@@ -121,6 +125,72 @@ class Tables(unittest.TestCase):
                 jg.SceneError, r"reflectance\[0\]: expected a number, found an array"
             ):
                 hash_of(color.replace(material=materials.Diffuse(reflectance=kind([[0.8], [0.2], [0.1]]))))
+
+
+class Unusual(unittest.TestCase):
+    def test_every_kind_of_number_is_read(self):
+        numbers = [Decimal("0.5"), Fraction(1, 2)]
+        if np:
+            numbers += [np.longdouble(0.5), np.float16(0.5), np.array(0.5, "longdouble")]
+        expected = hash_of(Object(shapes.Sphere(radius=0.5)))
+        for number in numbers:
+            for obj in (Object(shapes.Sphere(radius=number)), {"shape": {"sphere": {"radius": number}}}):
+                scene = {"version": 1, "objects": [obj]}
+                self.assertEqual(jg.render(scene, size=(8, 8), samples=1).hash, expected)
+                self.assertEqual(hash_of(obj), expected)
+
+    @needs_numpy
+    def test_arrays_of_long_numbers_are_read(self):
+        color = np.array([0.5, 0.25, 0.75], "longdouble")
+        for obj in (
+            Object(shapes.Sphere(), material=materials.Diffuse(reflectance=color)),
+            {"shape": "sphere", "material": {"diffuse": {"reflectance": color}}},
+        ):
+            expected = {"shape": "sphere", "material": {"diffuse": {"reflectance": color.tolist()}}}
+            self.assertEqual(hash_of(obj), hash_of(expected))
+
+    def test_every_mapping_is_a_dict(self):
+        expected = hash_of({"shape": {"sphere": {"radius": 0.5}}})
+        for kind in (MappingProxyType, UserDict):
+            obj = kind({"shape": kind({"sphere": kind({"radius": 0.5})})})
+            self.assertEqual(hash_of(obj), expected)
+            scene = kind({"version": 1, "objects": [obj]})
+            self.assertEqual(jg.render(scene, size=(8, 8), samples=1).hash, expected)
+            if np:
+                mesh = kind(
+                    {"positions": np.array(CORNERS), "triangles": FACES, "attributes": kind({"a": [1] * 4})}
+                )
+                self.assertEqual(
+                    hash_of({"shape": kind({"mesh": mesh})}), hash_of(Object(shapes.Mesh(**mesh)))
+                )
+
+    def test_scenes_that_contain_themselves_are_refused(self):
+        own = Object(shapes.Sphere())
+        own.objects = [own]
+        cyclic = {"shape": "sphere"}
+        cyclic["objects"] = [cyclic]
+        deep = Object(shapes.Sphere())
+        for _ in range(400):
+            deep = Object(objects=[deep])
+        for obj in (own, cyclic, deep):
+            for scene in (Scene(objects=[obj]), {"version": 1, "objects": [obj]}):
+                with self.assertRaisesRegex(
+                    jg.SceneError, "contains itself, or its parts are nested too deeply"
+                ):
+                    jg.render(scene)
+
+    def test_other_values_are_refused(self):
+        for value in (object(), {1}, b"a", 1j, print):
+            message = f"an object of the type {type(value).__name__} cannot be part of a scene"
+            for scene in (
+                Scene(objects=[Object(shapes.Sphere(radius=value))]),
+                {"version": 1, "objects": [{"shape": {"sphere": {"radius": value}}}]},
+            ):
+                with self.assertRaisesRegex(jg.SceneError, message):
+                    jg.render(scene)
+        for key in (1, (1, 2)):
+            with self.assertRaisesRegex(jg.SceneError, r"`objects` of Scene: the key .* is not a string"):
+                jg.render(Scene(objects=[{"shape": {key: {}}}]))
 
 
 @needs_numpy

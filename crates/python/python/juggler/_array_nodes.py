@@ -150,7 +150,8 @@ def part_of(module, name, members):
     from ._arrays import is_array
 
     attributes = members.get("attributes")
-    values = [*members.values(), *(attributes.values() if isinstance(attributes, dict) else ())]
+    names = attributes.keys() if hasattr(attributes, "keys") else ()
+    values = [*members.values(), *(attributes[name] for name in names)]
     if not any(is_array(value) or isinstance(value, PerFace) for value in values):
         return None
     from importlib import import_module

@@ -51,6 +51,10 @@ def resembles_array(value):
 
 def lists_of(array):
     """The numbers of an array as nested lists."""
+    dtype = getattr(array, "dtype", None)
+    if getattr(dtype, "kind", "") == "f" and dtype.itemsize > 8:
+        # `tolist` would keep numbers of more than 64 bits, which JSON does not have.
+        array = array.astype("f8")
     if hasattr(array, "tolist"):
         return array.tolist()
     from ._arrays import numpy
@@ -60,8 +64,10 @@ def lists_of(array):
 
 def _member(key, value, collect):
     """Converts a member of a dict. Arrays that a part of a scene holds are collected as those of its class."""
-    if collect is None or type(value) is not dict or key not in _PARTS_WITH_ARRAYS:
+    is_part = collect is not None and isinstance(key, str) and key in _PARTS_WITH_ARRAYS
+    if not is_part or isinstance(value, Node) or not hasattr(value, "keys"):
         return plain(value, collect)
+    value = {key: value[key] for key in value.keys()}
     from ._array_nodes import part_of
 
     part = part_of(*_PARTS_WITH_ARRAYS[key], value)
@@ -87,9 +93,9 @@ def _other(value, collect):
     if hasattr(value, "__float__"):
         return float(value)
     if isinstance(value, (bytes, bytearray, set, frozenset)) or not hasattr(value, "__len__"):
-        raise Unfit(f"a {type(value).__name__} cannot be part of a scene")
+        raise Unfit(f"an object of the type {type(value).__name__} cannot be part of a scene")
     if hasattr(value, "keys"):
-        return {_key(key): plain(value[key], collect) for key in value.keys()}
+        return plain({key: value[key] for key in value.keys()}, collect)
     return [plain(item, collect) for item in value]
 
 

@@ -204,7 +204,7 @@ def _color_maps(scene):
         return ()
     from juggler._sci import maps_of
 
-    objects = scene.get("objects") if isinstance(scene, dict) else getattr(scene, "objects", None)
+    objects = scene.get("objects") if hasattr(scene, "get") else getattr(scene, "objects", None)
     return tuple(maps_of(objects))
 
 

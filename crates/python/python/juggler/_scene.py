@@ -4,7 +4,7 @@ import os
 import sys
 
 from juggler import _native
-from juggler._node import Node, plain
+from juggler._node import Node, Unfit, lists_of, plain, resembles_array
 
 
 def native_scene(scene, lenient=False):
@@ -13,7 +13,7 @@ def native_scene(scene, lenient=False):
         return scene
     if isinstance(scene, (str, os.PathLike)):
         return _native.Scene.named(os.fspath(scene), lenient)
-    if not isinstance(scene, dict) and not hasattr(scene, "to_dict"):
+    if not hasattr(scene, "keys") and not hasattr(scene, "to_dict"):
         kind = type(scene).__name__
         raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
     lenient = lenient or getattr(scene, "_lenient", False)
@@ -34,16 +34,22 @@ def to_json(value):
     try:
         try:
             text = json.dumps(value, default=lambda value: _plain(value, collect), allow_nan=False)
-        except _ArraysOfDicts:
-            text = json.dumps(plain(value, collect), allow_nan=False)
-        return text, list(collect.assets.items())
-    except (ValueError, RecursionError) as error:
-        from juggler._errors import SceneError
+        except (_ArraysOfDicts, TypeError):
+            text = json.dumps(plain(value, collect), default=plain, allow_nan=False)
+    except (ValueError, RecursionError, Unfit) as error:
+        raise _mistake(error) from None
+    return text, list(collect.assets.items())
 
-        if isinstance(error, SceneError):
-            raise
-        reason = str(error).split(":")[0]
-        raise SceneError(f"the scene cannot be written as JSON: {reason}") from None
+
+def _mistake(error):
+    """The `SceneError` of an error while the text of a scene is written."""
+    from juggler._errors import SceneError
+
+    if isinstance(error, (SceneError, Unfit)):
+        return error if isinstance(error, SceneError) else SceneError(str(error))
+    if isinstance(error, RecursionError) or str(error).startswith("Circular reference"):
+        return SceneError("the scene contains itself, or its parts are nested too deeply")
+    return SceneError(f"the scene cannot be written as JSON: {str(error).split(':')[0]}")
 
 
 def to_dict(native):
@@ -74,10 +80,11 @@ def _plain(value, collect):
         return value.to_json(collect)
     if getattr(value, "ndim", 0) > 0 or hasattr(value, "to_json"):
         raise _ArraysOfDicts
-    for method in ("to_dict", "tolist", "__fspath__"):
-        if hasattr(value, method):
-            return getattr(value, method)()
-    raise TypeError(f"a scene cannot hold an object of the type {type(value).__name__}")
+    if hasattr(value, "to_dict"):
+        return value.to_dict()
+    if hasattr(value, "keys"):
+        return {key: value[key] for key in value.keys()}
+    return lists_of(value) if resembles_array(value) else plain(value, collect)
 
 
 def bytes_of(size):
