@@ -1,5 +1,6 @@
 """Values of other libraries, and of wrong types, in every place of the package."""
 
+import math
 import unittest
 from collections import UserDict
 from decimal import Decimal
@@ -191,6 +192,55 @@ class Unusual(unittest.TestCase):
         for key in (1, (1, 2)):
             with self.assertRaisesRegex(jg.SceneError, r"`objects` of Scene: the key .* is not a string"):
                 jg.render(Scene(objects=[{"shape": {key: {}}}]))
+
+
+class NotFinite(unittest.TestCase):
+    def test_the_path_of_the_first_number_is_named(self):
+        nan, inf = math.nan, math.inf
+        ball = Object(shapes.Sphere())
+        for obj, path, number in (
+            (Object(shapes.Sphere(radius=nan)), "objects[1].shape.sphere.radius", "nan"),
+            ({"shape": {"sphere": {"radius": -inf}}}, "objects[1].shape.sphere.radius", "-inf"),
+            (ball.translate(0, inf, nan), "objects[1].transform[0].translate[1]", "inf"),
+            (ball.replace(material={"my part": nan}), 'objects[1].material["my part"]', "nan"),
+            (
+                ball.replace(material={"phong": {"diffuse": Decimal("nan")}}),
+                "objects[1].material.phong.diffuse",
+                "nan",
+            ),
+        ):
+            for scene in (Scene(objects=[ball, obj]), {"version": 1, "objects": [{"shape": "sphere"}, obj]}):
+                with self.subTest(path), self.assertRaises(jg.SceneError) as caught:
+                    jg.render(scene)
+                message = f"expected a finite number, found {number}"
+                self.assertEqual(str(caught.exception), f"{path}: {message}")
+                self.assertEqual(caught.exception.problems, [jg.Problem(path, message)])
+
+    def test_edits_name_the_path(self):
+        renderer = jg.Renderer({"version": 1, "objects": [{"shape": "sphere"}]})
+        path = "objects[0].shape.sphere.radius"
+        with self.assertRaisesRegex(jg.SceneError, r"^objects\[0\].shape.sphere.radius: expected a finite"):
+            renderer[path] = math.nan
+        with self.assertRaisesRegex(jg.SceneError, r"eye\[1\]: expected a finite number, found inf"):
+            renderer.camera = renderer.camera.replace(eye=(0, math.inf, 0))
+
+    def test_the_line_of_the_code_is_named(self):
+        jg.trace_nodes()
+        try:
+            scene = Scene(objects=[Object(shapes.Sphere(radius=math.nan))])
+        finally:
+            jg.trace_nodes(False)
+        with self.assertRaisesRegex(jg.SceneError, r"found nan; made at .*test_values.py:\d+$"):
+            jg.render(scene)
+
+    @needs_numpy
+    def test_numbers_of_arrays_are_named(self):
+        obj = sci.spheres([(0, 0, 0)], math.nan)
+        with self.assertRaisesRegex(jg.SceneError, r"objects\[0\].shape.sphere.radius: expected a finite"):
+            hash_of(obj)
+        color = Object(shapes.Sphere(), material=materials.Diffuse(reflectance=np.array([0, math.nan, 0])))
+        with self.assertRaisesRegex(jg.SceneError, r"diffuse.reflectance\[1\]: expected a finite"):
+            hash_of(color)
 
 
 @needs_numpy

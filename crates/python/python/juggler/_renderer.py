@@ -57,7 +57,7 @@ class Renderer:
         return json.loads(self._native.value(path))
 
     def __setitem__(self, path, value):
-        self._native.set_value(path, *to_json(value))
+        self._native.set_value(path, *to_json(value, path))
 
     def __delitem__(self, path):
         self._native.set_value(path, "null")
@@ -80,7 +80,8 @@ class Renderer:
 
     @camera.setter
     def camera(self, camera):
-        self._native.set_value(self._native.camera_path(), *to_json(camera))
+        path = self._native.camera_path()
+        self._native.set_value(path, *to_json(camera, path))
 
     @property
     def frame(self):

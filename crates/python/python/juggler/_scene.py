@@ -1,5 +1,6 @@
 """Scenes and values in the forms that users give them."""
 
+import math
 import os
 import sys
 
@@ -17,15 +18,18 @@ def native_scene(scene, lenient=False):
         kind = type(scene).__name__
         raise TypeError(f"a scene is a file, the name of a built-in scene, a dict or a Scene, not {kind}")
     lenient = lenient or getattr(scene, "_lenient", False)
-    text, assets = to_json(scene)
     from juggler._trace import Explained
 
     with Explained(scene):
+        text, assets = to_json(scene)
         return _native.Scene.from_json(text, lenient, None, assets)
 
 
-def to_json(value):
-    """Returns the JSON of a value of a scene, and the assets that it names, with their names."""
+def to_json(value, path=""):
+    """Returns the JSON of a value of a scene, and the assets that it names, with their names.
+
+    `path` leads to the value in its scene, for messages.
+    """
     import json
 
     from ._assets import Collector
@@ -37,6 +41,8 @@ def to_json(value):
         except (_ArraysOfDicts, TypeError):
             text = json.dumps(plain(value, collect), default=plain, allow_nan=False)
     except (ValueError, RecursionError, Unfit) as error:
+        if str(error).startswith("Out of range float"):
+            error = _not_finite(plain(value, collect), path) or error
         raise _mistake(error) from None
     return text, list(collect.assets.items())
 
@@ -50,6 +56,31 @@ def _mistake(error):
     if isinstance(error, RecursionError) or str(error).startswith("Circular reference"):
         return SceneError("the scene contains itself, or its parts are nested too deeply")
     return SceneError(f"the scene cannot be written as JSON: {str(error).split(':')[0]}")
+
+
+def _not_finite(value, path):
+    """The error about the first number of a value in JSON form that is not finite; `None` without one."""
+    if isinstance(value, float) and not math.isfinite(value):
+        from juggler._errors import Problem, SceneError
+
+        problem = Problem(path, f"expected a finite number, found {value}")
+        return SceneError(str(problem), [problem])
+    if isinstance(value, dict):
+        members = ((_step(path, key), member) for key, member in value.items())
+    elif isinstance(value, list):
+        members = ((f"{path}[{index}]", member) for index, member in enumerate(value))
+    else:
+        return None
+    return next(filter(None, (_not_finite(member, of) for of, member in members)), None)
+
+
+def _step(path, key):
+    """Path of a member, as messages of the renderer write it."""
+    import json
+
+    if key and key.isascii() and key.replace("_", "a").replace("-", "a").isalnum():
+        return f"{path}.{key}" if path else key
+    return f"{path}[{json.dumps(key, ensure_ascii=False)}]"
 
 
 def to_dict(native):
