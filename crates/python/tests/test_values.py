@@ -8,7 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 
 import juggler as jg
-from juggler import Object, Scene, materials, sci, shapes
+from juggler import Object, Scene, materials, sci, shapes, textures
 from support import needs_numpy, numpy as np
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
@@ -192,6 +192,48 @@ class Unusual(unittest.TestCase):
         for key in (1, (1, 2)):
             with self.assertRaisesRegex(jg.SceneError, r"`objects` of Scene: the key .* is not a string"):
                 jg.render(Scene(objects=[{"shape": {key: {}}}]))
+
+
+@needs_numpy
+class Texels(unittest.TestCase):
+    ROWS = ((0.25, 0.5), (0.75, 1.0))
+
+    def hash(self, texture):
+        sections = {"objects": [{"shape": "sphere", "material": {"diffuse": {"reflectance": texture}}}]}
+        hashes = {
+            jg.render(scene, size=(8, 8), samples=1).hash
+            for scene in (Scene(**sections), {"version": 1, **sections})
+        }
+        self.assertEqual(len(hashes), 1)
+        return hashes.pop()
+
+    def test_texels_in_dicts_may_be_lists(self):
+        rows = list(map(list, self.ROWS))
+        expected = self.hash(textures.Image(array=np.array(rows)))
+        for array in (rows, np.array(rows)):
+            self.assertEqual(self.hash({"image": {"array": array}}), expected)
+
+    def test_mistakes_beside_texels_are_named(self):
+        for array in (np.array(self.ROWS), list(map(list, self.ROWS))):
+            for texture, message in (
+                ({"array": array, "color_space_": "srgb"}, "no `color_space_`; did you mean `color_space`?"),
+                (
+                    {"array": array, "file": "a.png"},
+                    "textures.Image has `file` and `array`; give one of them",
+                ),
+                ({"array": [[[0] * 5]]}, "`array` of textures.Image must be an array of shape"),
+            ):
+                with self.subTest(message), self.assertRaises(jg.SceneError) as caught:
+                    self.hash({"image": texture})
+                self.assertIn(message, str(caught.exception))
+        both = textures.Image(array=np.array(self.ROWS), file="a.png")
+        with self.assertRaisesRegex(jg.SceneError, "has `file` and `array`"):
+            self.hash(both)
+
+    def test_other_parts_may_have_the_name_of_a_part_with_texels(self):
+        scene = {"version": 1, "materials": {"image": {"diffuse": {}}}, "textures": {"array": "checker"}}
+        scene["objects"] = [{"shape": "sphere", "material": "image"}]
+        self.assertTrue(jg.render(scene, size=(8, 8), samples=1).hash)
 
 
 class NotFinite(unittest.TestCase):

@@ -4,7 +4,7 @@ A part refers to its arrays. They are copied when the scene is given to the rend
 is saved: a `Renderer` has its own copy, which later changes of the arrays do not reach.
 """
 
-from ._node import Node, Unfit, plain, resembles_array, same
+from ._node import Node, Unfit, plain, resembles_array, same, suggestion
 
 
 class PerFace:
@@ -152,13 +152,18 @@ def part_of(module, name, members):
     attributes = members.get("attributes")
     names = attributes.keys() if hasattr(attributes, "keys") else ()
     values = [*members.values(), *(attributes[name] for name in names)]
-    if not any(is_array(value) or isinstance(value, PerFace) for value in values):
+    if "array" not in members and not any(is_array(value) or isinstance(value, PerFace) for value in values):
         return None
     from importlib import import_module
 
     part = getattr(import_module(f"juggler.{module}"), name)
-    # The reader of scenes names unknown members.
-    return part(**members) if all(member in part._fields for member in members) else None
+    if all(member in part._fields for member in members):
+        return part(**members)
+    # The reader of scenes names unknown members, but knows no arrays of texels.
+    if "array" in members and "array" in part._fields:
+        wrong = next(member for member in members if member not in part._fields)
+        raise Unfit(f"{part._label()} has no `{wrong}`{suggestion(str(wrong), part._fields)}")
+    return None
 
 
 def _row(matrix):

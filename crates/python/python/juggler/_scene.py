@@ -38,6 +38,9 @@ def to_json(value, path=""):
     try:
         try:
             text = json.dumps(value, default=lambda value: _plain(value, collect), allow_nan=False)
+            # Lists may be the texels of an image.
+            if '"array": ' in text:
+                raise _ArraysOfDicts
         except (_ArraysOfDicts, TypeError):
             text = json.dumps(plain(value, collect), default=plain, allow_nan=False)
     except (ValueError, RecursionError, Unfit) as error:
