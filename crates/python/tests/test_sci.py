@@ -3,6 +3,7 @@
 import math
 import pickle
 import unittest
+import warnings
 
 import juggler as jg
 from juggler import Object, Scene, sci, shapes
@@ -117,6 +118,13 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(front(masked).to_uint8()[15, 15].tolist(), [255, 0, 0])
         none = sci.surface(CORNERS, FACES, values=[math.nan] * 4, nan="#00ff00")
         self.assertEqual(front(none).to_uint8()[5, 5].tolist(), [0, 255, 0])
+
+    def test_flat_warns_of_objects_without_lighting(self):
+        with self.assertWarnsRegex(jg.SceneWarning, "`lit=False`.* use one of the two"):
+            front(Object(objects=[sci.surface(CORNERS, FACES, lit=False)]))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            front(sci.surface(CORNERS, FACES))
 
     def test_one_value_everywhere(self):
         obj = sci.surface(CORNERS, FACES, values=[3, 3, 3, 3])

@@ -36,6 +36,8 @@ class Renderer:
             self._native = _native.Renderer(native, settings)
         self._settings = settings
         self._color_maps = _color_maps(scene)
+        if settings.get("integrator") == "albedo":
+            _warn_of_unlit(scene)
         if own_camera:
             self.camera = camera
 
@@ -197,16 +199,39 @@ class Renderer:
         return result
 
 
-def _color_maps(scene):
-    """Color maps of `juggler.sci` in a scene."""
+def _objects(scene):
+    """Objects of a scene that may be those of `juggler.sci`."""
     import sys
 
     if "juggler._sci" not in sys.modules:
         return ()
+    objects = scene.get("objects") if hasattr(scene, "get") else getattr(scene, "objects", None)
+    return () if objects is None else objects
+
+
+def _color_maps(scene):
+    """Color maps of `juggler.sci` in a scene."""
+    objects = _objects(scene)
+    if not len(objects):
+        return ()
     from juggler._sci import maps_of
 
-    objects = scene.get("objects") if hasattr(scene, "get") else getattr(scene, "objects", None)
     return tuple(maps_of(objects))
+
+
+def _warn_of_unlit(scene):
+    """Warns of objects without lighting, which have no albedo."""
+    objects = _objects(scene)
+    if not len(objects):
+        return
+    from juggler._sci import has_unlit
+
+    if has_unlit(objects):
+        warn(
+            [
+                "objects without lighting (`lit=False`) are black in renders with sci.flat(); use one of the two"
+            ]
+        )
 
 
 def _restore(text, name, settings, frame, assets=(), color_maps=()):

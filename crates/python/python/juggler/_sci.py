@@ -370,19 +370,26 @@ def _creased(made, degrees):
     return made.replace(shape=made.shape.replace(crease_angle_degrees=degrees))
 
 
+def _with_children(objects):
+    """Objects and all objects inside them."""
+    for one in () if objects is None else objects:
+        yield one
+        yield from _with_children(getattr(one, "objects", None))
+
+
 def maps_of(objects):
     """The different color maps of objects, in their order."""
-    maps = []
-    for one in () if objects is None else objects:
-        if isinstance(one, ColorMap):
-            found = [one]
-        else:
-            material = getattr(one, "material", None)
-            colors = (getattr(material, name, None) for name in ("reflectance", "color", "base_color"))
-            found = [color for color in colors if isinstance(color, ColorMap)]
-            found += maps_of(getattr(one, "objects", None))
-        for color_map in found:
-            key = (color_map.colors(), tuple(color_map.clim), color_map.label)
-            if key not in [known for known, _ in maps]:
-                maps.append((key, color_map))
-    return [color_map for _, color_map in maps]
+    maps = {}
+    for one in _with_children(objects):
+        material = getattr(one, "material", None)
+        colors = (getattr(material, name, None) for name in ("reflectance", "color", "base_color"))
+        for color_map in (one, *colors):
+            if isinstance(color_map, ColorMap):
+                key = tuple(color_map.colors()), tuple(color_map.clim), color_map.label
+                maps.setdefault(key, color_map)
+    return list(maps.values())
+
+
+def has_unlit(objects):
+    """Whether one of the objects, or of those inside them, is shown without lighting."""
+    return any(isinstance(getattr(one, "material", None), materials.Unlit) for one in _with_children(objects))

@@ -126,6 +126,7 @@ def axes(bounds, *, radius=None, colors=("#c02020", "#20a020", "#2040d0")):
 
 def flat():
     """Settings of `juggler.render` for exact colors without light and shadow:
-    `juggler.render(scene, **juggler.sci.flat())`.
+    `juggler.render(scene, **juggler.sci.flat())`. Objects with `lit=False` have exact colors without
+    these settings, and are black with them.
     """
     return {"integrator": "albedo", "tone": "srgb", "dither": False}

@@ -150,5 +150,6 @@ def axes(
 
 def flat() -> dict[str, Any]:
     """Settings of `juggler.render` for exact colors without light and shadow:
-    `juggler.render(scene, **juggler.sci.flat())`.
+    `juggler.render(scene, **juggler.sci.flat())`. Objects with `lit=False` have exact colors without
+    these settings, and are black with them.
     """
