@@ -8,7 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 
 import juggler as jg
-from juggler import Object, Scene, materials, sci, shapes, textures
+from juggler import Instances, Object, Scene, materials, sci, shapes, textures
 from support import needs_numpy, numpy as np
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
@@ -234,6 +234,49 @@ class Texels(unittest.TestCase):
         scene = {"version": 1, "materials": {"image": {"diffuse": {}}}, "textures": {"array": "checker"}}
         scene["objects"] = [{"shape": "sphere", "material": "image"}]
         self.assertTrue(jg.render(scene, size=(8, 8), samples=1).hash)
+
+
+@needs_numpy
+class Missing(unittest.TestCase):
+    def test_masked_numbers_are_refused(self):
+        radii = np.ma.masked_equal([1.0, 2, 3, 4], 2)
+        with self.assertRaisesRegex(jg.SceneError, "`radii` of sci.spheres has masked numbers"):
+            sci.spheres(CORNERS, radii)
+        with self.assertRaisesRegex(jg.SceneError, "line 0: its radius has masked numbers"):
+            sci.tubes(CORNERS, radii)
+        color = np.zeros((4, 4, 3))
+        for fields in (
+            {"color": np.ma.masked_equal(color + (1, 2, 3), 2)},
+            {"color": color, "depth": np.ma.masked_equal(np.ones((4, 4)), 1)},
+        ):
+            name = list(fields)[-1]
+            with self.assertRaisesRegex(jg.SettingsError, f"`{name}` has masked numbers") as caught:
+                jg.denoise(**fields)
+            self.assertEqual(caught.exception.setting, name)
+        with self.assertRaisesRegex(jg.SettingsError, "`color` must be an array of real numbers"):
+            jg.denoise(color * 1j)
+
+    def test_colors_of_instances_are_finite(self):
+        colors = np.ones((4, 4))
+        for number in (math.nan, math.inf):
+            colors[2, 1] = number
+            for name in ("colors", "end_colors"):
+                many = Instances(positions=np.array(CORNERS), **{"colors": np.ones((4, 4)), name: colors})
+                with self.assertRaisesRegex(
+                    jg.SceneError, f"`{name}` of Instances must be finite numbers; it has {number} in row 2"
+                ):
+                    hash_of(Object(shapes.Sphere(), instances=many))
+
+    def test_texels_without_a_number_give_a_warning(self):
+        for kind in ("f2", "f4", "f8"):
+            texels = np.ones((4, 6, 3), kind)
+            texels[1, 2] = texels[3, 3, 0] = math.nan
+            material = materials.Diffuse(reflectance=textures.Image(array=texels))
+            with self.assertWarnsRegex(
+                jg.SceneWarning, "`array` of textures.Image: 2 pixels are no numbers"
+            ) as caught:
+                hash_of(Object(shapes.Sphere(), material=material))
+            self.assertEqual(caught.filename, __file__)
 
 
 class NotFinite(unittest.TestCase):

@@ -36,7 +36,7 @@ def has_numbers(value):
         return False
 
 
-def _array(value, label):
+def real_array(value, label):
     """The NumPy array of a value, of any type of real numbers."""
     np = numpy()
     if np.ma.is_masked(value):
@@ -75,7 +75,7 @@ def as_bytes(array):
 
 def _shaped(value, label, width):
     """An array of shape (n, width)."""
-    array = _array(value, label)
+    array = real_array(value, label)
     if array.size == 0:
         return array.reshape(0, width)
     if array.ndim != 2 or array.shape[1] != width:
@@ -86,6 +86,17 @@ def _shaped(value, label, width):
 def floats(value, label, width):
     """An array of shape (n, width) as float32. Numbers of 64 bits are rounded."""
     return _contiguous(_shaped(value, label, width), "f4")
+
+
+def colors(value, label, width):
+    """An array of shape (n, width) of finite numbers as float32."""
+    np = numpy()
+    array = floats(value, label, width)
+    wrong = np.argwhere(~np.isfinite(array))
+    if len(wrong):
+        row, column = wrong[0]
+        raise SceneError(f"{label} must be finite numbers; it has {array[row, column]} in row {row}")
+    return array
 
 
 def indices(value, label, width):
@@ -106,7 +117,7 @@ def values(value, label):
 
     uint8 and uint16 stay, and stand for 0 to 1; all other numbers become float32.
     """
-    array = _array(value, label)
+    array = real_array(value, label)
     if array.size == 0:
         array = array.reshape(0, array.shape[1] if array.ndim == 2 and 1 <= array.shape[1] <= 4 else 1)
     if array.ndim == 1:
@@ -121,7 +132,7 @@ def values(value, label):
 
 def stored(value, kind, label):
     """Numbers of the type u8, u16 or f32 of the scene format."""
-    array = _array(value, label)
+    array = real_array(value, label)
     if kind == "f32":
         return _contiguous(array, "f4")
     most = 255 if kind == "u8" else 65535
@@ -135,7 +146,7 @@ def stored(value, kind, label):
 
 def texels(value, label):
     """Texels of shape (height, width) or (height, width, channels): size, channels, type and array."""
-    array = _array(value, label)
+    array = real_array(value, label)
     shape = tuple(array.shape)
     if array.ndim not in (2, 3) or array.ndim == 3 and not 1 <= shape[2] <= 4:
         raise SceneError(
@@ -152,7 +163,7 @@ def texels(value, label):
 
 def rows(value, label):
     """Affine maps of shape (n, 3, 4), (n, 4, 4), (n, 12) or (n, 16) as 12 numbers each, row by row."""
-    array = _array(value, label)
+    array = real_array(value, label)
     if array.size == 0:
         return _contiguous(array.reshape(0, 12), "f4")
     if array.ndim == 3 and array.shape[1:] in ((3, 4), (4, 4)):
@@ -172,7 +183,7 @@ def scales(value, label):
     """
     if isinstance(value, (list, tuple)) and any(hasattr(item, "__len__") for item in value):
         value = [item if hasattr(item, "__len__") else (item, item, item) for item in value]
-    array = _array(value, label)
+    array = real_array(value, label)
     if array.ndim == 1:
         return "uniform_scales", _contiguous(array, "f4")
     if array.ndim != 2 or array.shape[1] != 3:

@@ -14,10 +14,13 @@ def restore(kind, *arguments):
 
 
 class Collector:
-    """Makes the assets of a scene while its text is written; `assets` has them by name."""
+    """Makes the assets of a scene while its text is written; `assets` has them by name, and
+    `warnings` what they do not show.
+    """
 
     def __init__(self):
         self.assets = {}
+        self.warnings = []
         # Names by the identity of the arrays, and the arrays, which keep their identity so.
         self._names = {}
 
@@ -28,6 +31,7 @@ class Collector:
         key = arrays.key()
         if key not in self._names:
             asset = arrays.asset()
+            self.warnings += arrays.warnings
             self.assets[asset.name] = asset
             self._names[key] = asset.name, arrays
         return self._names[key][0]
@@ -38,6 +42,7 @@ class _Arrays:
 
     # Keys of attributes in the form of the scene format.
     _attribute_keys = ()
+    warnings = ()
 
     def __init__(self, label, fields, attributes):
         self.label = label
@@ -141,7 +146,8 @@ class InstanceArrays(_Arrays):
             elif name == "scales":
                 name, array = _arrays.scales(value, label)
             else:
-                array = _arrays.floats(value, label, WIDTHS[name])
+                convert = _arrays.colors if name in ("colors", "end_colors") else _arrays.floats
+                array = convert(value, label, WIDTHS[name])
             arrays[name] = _arrays.as_bytes(array)
         attributes = self._attributes()
         faces = [name for name, face, *_ in attributes if face]
@@ -162,6 +168,7 @@ class TexelArray:
     def __init__(self, label, array):
         self.label = label
         self.array = array
+        self.warnings = []
 
     def key(self):
         """The identity of the array."""
@@ -169,5 +176,11 @@ class TexelArray:
 
     def asset(self):
         """The asset."""
-        size, channels, kind, array = _arrays.texels(self.array, f"`array` of {self.label}")
+        label = f"`array` of {self.label}"
+        size, channels, kind, array = _arrays.texels(self.array, label)
+        np = _arrays.numpy()
+        if kind in ("f2", "f4") and np.isnan(array).any():
+            count = int(np.isnan(array).reshape(*size[::-1], -1).any(axis=2).sum())
+            found = "1 pixel is no number (NaN)" if count == 1 else f"{count} pixels are no numbers (NaN)"
+            self.warnings = [f"{label}: {found}, which is shown as 0"]
         return _native.Asset.texels(size, channels, kind, _arrays.as_bytes(array))

@@ -28,14 +28,13 @@ def denoise(color, *, albedo=None, normal=None, depth=None, denoiser="own"):
 
 
 def _floats(name, values):
+    from juggler import _arrays
+    from juggler._errors import SceneError
+
     try:
-        import numpy
-    except ImportError:
-        raise ImportError("arrays need NumPy: pip install numpy") from None
-    try:
-        return numpy.asarray(values, dtype=numpy.float32)
-    except (TypeError, ValueError) as error:
-        raise _settings_error(name, f"`{name}` must be an array of numbers: {error}") from None
+        return _arrays.real_array(values, f"`{name}`").astype("float32")
+    except SceneError as error:
+        raise _settings_error(name, str(error)) from None
 
 
 def _feature(name, values, shape):

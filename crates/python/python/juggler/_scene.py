@@ -47,6 +47,7 @@ def to_json(value, path=""):
         if str(error).startswith("Out of range float"):
             error = _not_finite(plain(value, collect), path) or error
         raise _mistake(error) from None
+    warn(collect.warnings)
     return text, list(collect.assets.items())
 
 

@@ -235,7 +235,7 @@ def spheres(
     if not len(centers):
         raise SceneError(f"`centers` of {label} is empty")
     each = np.ndim(radii) != 0
-    scales = np.asarray(radii).astype("f4") if each else None
+    scales = _arrays.real_array(radii, f"`radii` of {label}").astype("f4") if each else None
     if each and scales.shape != (len(centers),):
         raise SceneError(
             f"`radii` of {label} must be a number or have {len(centers)} of them, not the shape {scales.shape}"
@@ -349,7 +349,10 @@ def _tube(line, radius, values, sides, start, label):
     kept = np.concatenate([[True], step > 0]) if len(line) else np.zeros(0, bool)
     if kept.sum() < 2:
         raise SceneError(f"{label} has no two different points")
-    points, wide = line[kept], np.broadcast_to(np.asarray(radius, "f8"), len(line))[kept]
+    radius = _arrays.real_array(radius, f"{label}: its radius").astype("f8")
+    if radius.shape not in ((), (len(line),)):
+        raise SceneError(f"{label} has {len(line)} points, but its radii have the shape {radius.shape}")
+    points, wide = line[kept], np.broadcast_to(radius, len(line))[kept]
     positions = np.concatenate([rings(points, wide, sides), points[[0, -1]]])
     ends = start + len(points) * sides
     closed = caps(start, ends, len(points), sides)
