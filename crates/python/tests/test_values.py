@@ -320,7 +320,7 @@ class NotFinite(unittest.TestCase):
 
     @needs_numpy
     def test_numbers_of_arrays_are_named(self):
-        obj = sci.spheres([(0, 0, 0)], math.nan)
+        obj = Object(shapes.Sphere(radius=np.float32("nan")))
         with self.assertRaisesRegex(jg.SceneError, r"objects\[0\].shape.sphere.radius: expected a finite"):
             hash_of(obj)
         color = Object(shapes.Sphere(), material=materials.Diffuse(reflectance=np.array([0, math.nan, 0])))

@@ -196,10 +196,14 @@ def colors(cmap):
         cmap = _of_matplotlib(cmap)
     if callable(cmap):
         return [_hexadecimal(cmap(index / 255)) for index in range(256)]
-    found = [color if isinstance(color, str) else _hexadecimal(color) for color in cmap]
-    if len(found) < 2:
-        from ._errors import SceneError
+    from ._errors import SceneError
 
+    try:
+        found = [color if isinstance(color, str) else _hexadecimal(color) for color in cmap]
+    except (TypeError, ValueError):
+        known = "the name of a color map, a color map of matplotlib or a list of colors"
+        raise SceneError(f"`cmap` is {known}, not {cmap!r}") from None
+    if len(found) < 2:
         raise SceneError("a color map has at least two colors")
     return found
 

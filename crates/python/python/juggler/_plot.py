@@ -33,7 +33,7 @@ def _maps(image, colorbar):
     if colorbar is None or colorbar is False:
         return []
     if colorbar is not True:
-        from ._sci import maps_of
+        from ._values import maps_of
 
         maps = maps_of([colorbar])
         if not maps:

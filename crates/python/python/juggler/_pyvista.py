@@ -4,7 +4,7 @@ import math
 
 from . import _arrays, backgrounds, cameras, lights, materials, sci, shapes
 from ._interop import colors_of, points, scene_of, segments, warn_of
-from ._sci import material as _sci_material
+from ._values import material as _sci_material
 from .scene_types import Object
 
 

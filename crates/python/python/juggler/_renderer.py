@@ -203,7 +203,7 @@ def _objects(scene):
     """Objects of a scene that may be those of `juggler.sci`."""
     import sys
 
-    if "juggler._sci" not in sys.modules:
+    if "juggler._values" not in sys.modules:
         return ()
     objects = scene.get("objects") if hasattr(scene, "get") else getattr(scene, "objects", None)
     return () if objects is None else objects
@@ -214,7 +214,7 @@ def _color_maps(scene):
     objects = _objects(scene)
     if not len(objects):
         return ()
-    from juggler._sci import maps_of
+    from juggler._values import maps_of
 
     return tuple(maps_of(objects))
 
@@ -224,7 +224,7 @@ def _warn_of_unlit(scene):
     objects = _objects(scene)
     if not len(objects):
         return
-    from juggler._sci import has_unlit
+    from juggler._values import has_unlit
 
     if has_unlit(objects):
         warn(

@@ -1,101 +1,13 @@
 """Scientific pictures: surfaces, spheres, arrows and tubes colored by values."""
 
 import math
-import sys
 
-from . import _arrays, _color_maps, materials, shapes, textures
+from . import _arrays, shapes
 from ._array_nodes import PerFace
 from ._errors import SceneError
 from ._glyphs import arrow, caps, frames, ring_faces, rings
+from ._values import VALUE, Values, material, number
 from .scene_types import Instances, Object
-
-# Name of the attribute that color maps show.
-_VALUE = "value"
-# Greatest number of an attribute.
-_MAX_VALUE = 1e18
-
-
-class ColorMap(textures.Ramp):
-    """Color ramp over the values of a mesh or of instances, from the value `clim[0]` to `clim[1]`.
-
-    `cmap` is the name of a color map, or a list of its colors. With `normalized`, the input is 0 at
-    `clim[0]` and 1 at `clim[1]`, instead of the values themselves.
-    """
-
-    __slots__ = ("clim", "cmap", "label", "normalized")
-    _unwritten = ("cmap", "clim", "label", "normalized")
-
-    def colors(self):
-        """The colors of the map, evenly spaced, as "#rrggbb"."""
-        return _color_maps.colors(self.cmap)
-
-    def _members(self, collect):
-        low, high = (0.0, 1.0) if self.normalized else self.clim
-        colors = self.colors()
-        step = (high - low) / (len(colors) - 1)
-        stops = [{"position": low + step * index, "color": color} for index, color in enumerate(colors)]
-        return {"stops": stops, **super()._members(collect)}
-
-
-def _limits(values, clim, label):
-    """The values at both ends of the color map."""
-    if clim is None:
-        low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
-        return (low, high) if low < high else _around(low)
-    low, high = (float(limit) for limit in clim)
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise SceneError(f"`clim` of {label} must be two finite numbers, the lower first, not {clim}")
-    return low, high
-
-
-def _around(value):
-    """Limits around the value that all points have."""
-    half = max(0.5, abs(value) * 1e-12)
-    return max(value - half, -sys.float_info.max), min(value + half, sys.float_info.max)
-
-
-def _are_resolved(clim):
-    """Whether float32 numbers between the limits have at least 16 bits of precision."""
-    largest = max(map(abs, clim))
-    return clim[1] - clim[0] >= largest / 256 and 1e-30 < largest < _MAX_VALUE
-
-
-def _normalized(values, clim):
-    """Values as float64, 0 and 1 at the limits."""
-    low, high = clim
-    # The difference of the limits may overflow.
-    scale = 1.0 if math.isfinite(high - low) else 0.25
-    low = low * scale
-    return (values * scale - low) / (high * scale - low)
-
-
-class _Values:
-    """Values with their color map."""
-
-    def __init__(self, values, label, cmap, clim, nan, lit):
-        np = _arrays.numpy()
-        values = _arrays.unmasked(values)
-        if values.dtype.kind not in "biuf" or values.ndim != 1:
-            raise SceneError(f"`values` of {label} must be an array of shape (n,) of numbers")
-        values = values.astype("f8")
-        self.finite = np.isfinite(values)
-        clim = _limits(values[self.finite], clim, label)
-        values = np.where(self.finite, values, clim[0])
-        # The renderer has float32 numbers, which may be too coarse for the values.
-        normalized = None if _are_resolved(clim) else True
-        with np.errstate(over="ignore"):
-            values = _normalized(values, clim) if normalized else values
-        self.values = np.clip(values, -_MAX_VALUE, _MAX_VALUE).astype("f4")
-        cmap = cmap if isinstance(cmap, str) and _color_maps.is_own(cmap) else _color_maps.colors(cmap)
-        attribute = textures.Attribute(_VALUE, channel="r")
-        shown = ColorMap(cmap=cmap, clim=clim, input=attribute, normalized=normalized)
-        self.material = material(shown, lit)
-        self.missing = material(nan, lit)
-
-
-def material(color, lit=True):
-    """Material of one color, or of a texture: diffuse, or without lighting."""
-    return materials.Diffuse(reflectance=color) if lit else materials.Unlit(color=color)
 
 
 def _parts(parts, name):
@@ -107,8 +19,7 @@ def _parts(parts, name):
 
 def _triangles(faces, label):
     """Triangles of an array of triangles or quadrilaterals."""
-    np = _arrays.numpy()
-    array = np.asarray(faces)
+    array = _arrays.real_array(faces, label)
     if array.ndim == 2 and array.shape[1] == 4:
         # The two triangles of a face follow each other.
         array = array[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
@@ -139,8 +50,8 @@ def surface(
     np = _arrays.numpy()
     label = "sci.surface"
     vertices = _arrays.floats(vertices, f"`vertices` of {label}", 3)
-    count = len(faces)
     triangles = _triangles(faces, f"`faces` of {label}")
+    count = len(faces)
     if not len(triangles):
         raise SceneError(f"`faces` of {label} is empty")
     if int(triangles.max()) >= len(vertices):
@@ -161,7 +72,7 @@ def surface(
     if values is None:
         return Object(mesh(triangles), material=material(color, lit), name=name)
     on_faces = isinstance(values, PerFace)
-    shown = _Values(values.values if on_faces else values, label, cmap, clim, nan, lit)
+    shown = Values(values.values if on_faces else values, label, cmap, clim, nan, lit)
     on_faces = _are_of_faces(len(shown.values), len(vertices), count, on_faces, label)
     if on_faces:
         repeats = len(triangles) // count
@@ -174,7 +85,7 @@ def surface(
         every = whole.all()
         parts.append(
             Object(
-                mesh(triangles if every else triangles[whole], {_VALUE: attribute}), material=shown.material
+                mesh(triangles if every else triangles[whole], {VALUE: attribute}), material=shown.material
             )
         )
     if not whole.all():
@@ -200,13 +111,13 @@ def _instances(shape, count, values, label, options, place):
     np = _arrays.numpy()
     if values is None:
         return Object(shape, instances=place(slice(None), {}), material=material(color, lit), name=name)
-    shown = _Values(values, label, cmap, clim, nan, lit)
+    shown = Values(values, label, cmap, clim, nan, lit)
     if len(shown.values) != count:
         raise SceneError(f"`values` of {label} must have {count} numbers, it has {len(shown.values)}")
     parts = []
     if shown.finite.any():
         where = slice(None) if shown.finite.all() else np.flatnonzero(shown.finite)
-        instances = place(where, {"attributes": {_VALUE: shown.values[where]}})
+        instances = place(where, {"attributes": {VALUE: shown.values[where]}})
         parts.append(Object(shape, instances=instances, material=shown.material))
     if not shown.finite.all():
         missing = np.flatnonzero(~shown.finite)
@@ -240,7 +151,7 @@ def spheres(
         raise SceneError(
             f"`radii` of {label} must be a number or have {len(centers)} of them, not the shape {scales.shape}"
         )
-    shape = shapes.Sphere() if each else shapes.Sphere(radius=float(radii))
+    shape = shapes.Sphere() if each else shapes.Sphere(radius=number(radii, f"`radii` of {label}"))
 
     def place(where, attributes):
         return Instances(positions=centers[where], scales=scales[where] if each else None, **attributes)
@@ -281,14 +192,19 @@ def arrows(
         if values != "length":
             raise SceneError(f'`values` of {label} is an array or "length", not {values!r}')
         values = lengths
-    elif values is not None and len(values) != len(starts):
-        raise SceneError(f"`values` of {label} must have {len(starts)} numbers, it has {len(values)}")
-    matrices = frames(vectors[seen].astype("f8"), starts[seen], lengths[seen] * scale)
+    elif values is not None:
+        values = _arrays.unmasked(values)
+        if values.shape != starts.shape[:1]:
+            raise SceneError(
+                f"`values` of {label} must have {len(starts)} numbers, not the shape {values.shape}"
+            )
+    sizes = lengths[seen] * number(scale, f"`scale` of {label}")
+    matrices = frames(vectors[seen].astype("f8"), starts[seen], sizes)
 
     def place(where, attributes):
         return Instances(matrices=matrices[where], **attributes)
 
-    values = None if values is None else _arrays.unmasked(values)[seen]
+    values = None if values is None else values[seen]
     return _instances(arrow(), len(matrices), values, label, (cmap, clim, nan, color, lit, name), place)
 
 
@@ -311,6 +227,8 @@ def tubes(
     """
     np = _arrays.numpy()
     label = "sci.tubes"
+    if not (hasattr(sides, "__index__") and sides >= 3):
+        raise SceneError(f"`sides` of {label} must be a whole number from 3, not {sides!r}")
     several = isinstance(lines, (list, tuple)) and len(lines) > 0 and np.ndim(lines[0]) == 2
     lines = [
         _arrays.floats(line, f"`lines` of {label}", 3).astype("f8")
@@ -319,6 +237,8 @@ def tubes(
     values = values if several or values is None else [values]
     radii = radius if several and isinstance(radius, (list, tuple)) else [radius] * len(lines)
     for name_of, found in (("radius", radii), ("values", values)):
+        if found is not None and not hasattr(found, "__len__"):
+            raise SceneError(f"`{name_of}` of {label} is an array, or a list of arrays for a list of lines")
         if found is not None and len(found) != len(lines):
             raise SceneError(f"`{name_of}` of {label} is for {len(found)} lines; there are {len(lines)}")
     parts, start = [], 0
@@ -352,6 +272,8 @@ def _tube(line, radius, values, sides, start, label):
     radius = _arrays.real_array(radius, f"{label}: its radius").astype("f8")
     if radius.shape not in ((), (len(line),)):
         raise SceneError(f"{label} has {len(line)} points, but its radii have the shape {radius.shape}")
+    if not (radius >= 0).all():
+        raise SceneError(f"{label}: its radius must be 0 or more")
     points, wide = line[kept], np.broadcast_to(radius, len(line))[kept]
     positions = np.concatenate([rings(points, wide, sides), points[[0, -1]]])
     ends = start + len(points) * sides
@@ -359,10 +281,12 @@ def _tube(line, radius, values, sides, start, label):
     faces = np.concatenate([start + ring_faces(len(points), sides), *closed])
     if values is None:
         return positions, faces, None
-    found = _arrays.unmasked(values).astype("f8")
+    found = _arrays.unmasked(values)
     if found.shape != (len(line),):
         raise SceneError(f"{label} has {len(line)} points, but its values have the shape {found.shape}")
-    found = found[kept]
+    if found.dtype.kind not in "biuf":
+        raise SceneError(f"{label}: its values must be numbers")
+    found = found[kept].astype("f8")
     return positions, faces, np.concatenate([np.repeat(found, sides), found[[0, -1]]])
 
 
@@ -371,28 +295,3 @@ def _creased(made, degrees):
     if made.objects is not None:
         return made.replace(objects=[_creased(part, degrees) for part in made.objects])
     return made.replace(shape=made.shape.replace(crease_angle_degrees=degrees))
-
-
-def _with_children(objects):
-    """Objects and all objects inside them."""
-    for one in () if objects is None else objects:
-        yield one
-        yield from _with_children(getattr(one, "objects", None))
-
-
-def maps_of(objects):
-    """The different color maps of objects, in their order."""
-    maps = {}
-    for one in _with_children(objects):
-        material = getattr(one, "material", None)
-        colors = (getattr(material, name, None) for name in ("reflectance", "color", "base_color"))
-        for color_map in (one, *colors):
-            if isinstance(color_map, ColorMap):
-                key = tuple(color_map.colors()), tuple(color_map.clim), color_map.label
-                maps.setdefault(key, color_map)
-    return list(maps.values())
-
-
-def has_unlit(objects):
-    """Whether one of the objects, or of those inside them, is shown without lighting."""
-    return any(isinstance(getattr(one, "material", None), materials.Unlit) for one in _with_children(objects))

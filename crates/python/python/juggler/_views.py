@@ -5,7 +5,7 @@ import math
 from . import cameras, shapes
 from ._errors import SceneError
 from ._node import lists_of, resembles_array
-from ._sci import material
+from ._values import material, number
 from .scene_types import Object
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -29,6 +29,8 @@ def box(bounds):
         ) from None
     if len(low) != 3 or len(high) != 3 or not all(a <= b for a, b in zip(low, high)):
         raise SceneError(f"`bounds` is the least and the greatest corner of a box, not {bounds}")
+    if not all(map(math.isfinite, (*low, *high))):
+        raise SceneError(f"`bounds` must be finite numbers, not {bounds}")
     return low, high
 
 
@@ -61,8 +63,11 @@ def _view(view, up):
         if view[1] != up:
             return direction, _AXES[up]
         return direction, tuple(sign * x for x in _TOPS[up])
-    direction = tuple(float(x) for x in view)
-    if len(direction) != 3 or not _dot(direction, direction) > 0:
+    try:
+        direction = tuple(float(x) for x in view)
+    except (TypeError, ValueError):
+        direction = ()
+    if len(direction) != 3 or not 0 < _dot(direction, direction) < math.inf:
         raise SceneError(f"`view` as a direction has three numbers that are not all 0, not {view!r}")
     direction = _unit(direction)
     top = _AXES[up] if abs(_dot(direction, _AXES[up])) < 0.999 else _TOPS[up]
@@ -73,10 +78,12 @@ def camera(bounds, view="isometric", *, up="y", parallel=False, fov_degrees=30, 
     """A camera that sees all of a box from the side of `view`: "isometric", "+x", "-x", ..., or the
     direction from the box to the camera.
 
-    `bounds` is a pair of corners, an object or a list of objects, and `up` is the vertical axis. With
-    `parallel`, rays are parallel, so that lengths can be compared (`Image.plot(scale_bar=...)`).
+    `bounds` is a pair of corners, an object or a list of objects, and `up` is the vertical axis. A
+    view from above, such as `view="+z", up="z"`, has y at the picture's top, or -z if `up` is "y".
+    With `parallel`, rays are parallel, so that lengths can be compared (`Image.plot(scale_bar=...)`).
     `margin` is the factor on the size of the view.
     """
+    margin, fov_degrees = number(margin, "`margin`"), number(fov_degrees, "`fov_degrees`")
     low, high = box(bounds)
     direction, top = _view(view, up)
     center = [(a + b) / 2 for a, b in zip(low, high)]
@@ -107,6 +114,8 @@ def axes(bounds, *, radius=None, colors=("#c02020", "#20a020", "#2040d0")):
 
     `radius` is 1/200 of the box's diagonal by default.
     """
+    if len(colors) != 3:
+        raise SceneError(f"`colors` of sci.axes is three colors, not {colors!r}")
     low, high = box(bounds)
     lengths = [b - a for a, b in zip(low, high)]
     diagonal = math.sqrt(_dot(lengths, lengths))

@@ -6,7 +6,8 @@ juggler.render(scene).plot(colorbar=True)
 """
 
 from ._color_maps import NAMES as color_maps
-from ._sci import ColorMap, arrows, spheres, surface, tubes
+from ._sci import arrows, spheres, surface, tubes
+from ._values import ColorMap
 from ._views import axes, camera, flat
 
 __all__ = ["ColorMap", "arrows", "axes", "camera", "color_maps", "flat", "spheres", "surface", "tubes"]

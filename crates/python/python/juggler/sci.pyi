@@ -132,8 +132,9 @@ def camera(
     """A camera that sees all of a box from the side of `view`: "isometric", "+x", "-x", ..., or the
     direction from the box to the camera.
 
-    `bounds` is a pair of corners, an object or a list of objects, and `up` is the vertical axis. With
-    `parallel`, rays are parallel, so that lengths can be compared (`Image.plot(scale_bar=...)`).
+    `bounds` is a pair of corners, an object or a list of objects, and `up` is the vertical axis. A
+    view from above, such as `view="+z", up="z"`, has y at the picture's top, or -z if `up` is "y".
+    With `parallel`, rays are parallel, so that lengths can be compared (`Image.plot(scale_bar=...)`).
     `margin` is the factor on the size of the view.
     """
 
