@@ -7,7 +7,7 @@ the scene format's default applies.
 _PLAIN = frozenset({bool, float, int, str, type(None)})
 
 # Modules and classes of the parts of a scene that hold arrays, by their keys.
-_PARTS_WITH_ARRAYS = {
+PARTS_WITH_ARRAYS = {
     "mesh": ("shapes", "Mesh"),
     "instances": ("scene_types", "Instances"),
     "image": ("textures", "Image"),
@@ -64,13 +64,13 @@ def lists_of(array):
 
 def _member(key, value, collect):
     """Converts a member of a dict. Arrays that a part of a scene holds are collected as those of its class."""
-    is_part = collect is not None and isinstance(key, str) and key in _PARTS_WITH_ARRAYS
+    is_part = collect is not None and isinstance(key, str) and key in PARTS_WITH_ARRAYS
     if not is_part or isinstance(value, Node) or not hasattr(value, "keys"):
         return plain(value, collect)
     value = {key: value[key] for key in value.keys()}
     from ._array_nodes import part_of
 
-    part = part_of(*_PARTS_WITH_ARRAYS[key], value)
+    part = part_of(*PARTS_WITH_ARRAYS[key], value)
     return plain(value, collect) if part is None else part._members(collect)
 
 

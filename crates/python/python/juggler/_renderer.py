@@ -59,10 +59,12 @@ class Renderer:
         return json.loads(self._native.value(path))
 
     def __setitem__(self, path, value):
-        self._native.set_value(path, *to_json(value, path))
+        from juggler._edits import set_value
+
+        set_value(self._native, path, value)
 
     def __delitem__(self, path):
-        self._native.set_value(path, "null")
+        self[path] = None
 
     def __contains__(self, path):
         try:

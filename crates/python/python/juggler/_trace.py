@@ -6,7 +6,7 @@ from . import _node
 from ._errors import SceneError
 
 # Steps of a path: `name`, `["any name"]` or `[index]`.
-_STEP = r'\.?([^.\[\]"]+)|\["((?:[^"\\]|\\.)*)"\]|\[(\d+)\]'
+STEP = r'\.?([^.\[\]"]+)|\["((?:[^"\\]|\\.)*)"\]|\[(\d+)\]'
 
 
 def trace_nodes(on=True):
@@ -60,7 +60,7 @@ def made_at(scene, path):
     import re
 
     value, found = scene, None
-    for name, quoted, index in re.findall(_STEP, path):
+    for name, quoted, index in re.findall(STEP, path):
         found = getattr(value, "_made_at", None) or found
         value = _member(value, name or quoted, index)
     return getattr(value, "_made_at", None) or found
