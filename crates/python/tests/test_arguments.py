@@ -27,7 +27,13 @@ class Arguments(unittest.TestCase):
             *((lambda n=n: sci.tubes(line, sides=n), "whole number from 3, not") for n in (2, 3.5, "8")),
             *((lambda c=c: surface(**values, clim=c), "`clim` of sci.surface") for c in (5, (0, 1, 2), "ab")),
             *((lambda c=c: surface(**values, cmap=c), "`cmap` is the name of") for c in (3, None, [1, 2])),
-            (lambda: sci.ColorMap(cmap="gray", clim=5).to_dict(), "`clim` of sci.ColorMap must be two"),
+            *(
+                (
+                    lambda c=c: sci.ColorMap(cmap="gray", clim=c).to_dict(),
+                    "`clim` of sci.ColorMap must be two",
+                )
+                for c in (5, None)
+            ),
             (lambda: surface(values=3), r"`values` of sci.surface must be an array of shape \(n,\)"),
             (lambda: sci.surface(CORNERS, 3), "`faces` of sci.surface must be an array of shape"),
             (lambda: sci.surface(CORNERS, np.ma.masked_equal(FACES, 3)), "`faces` .* has masked numbers"),

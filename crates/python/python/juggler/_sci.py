@@ -195,9 +195,8 @@ def arrows(
     elif values is not None:
         values = _arrays.unmasked(values)
         if values.shape != starts.shape[:1]:
-            raise SceneError(
-                f"`values` of {label} must have {len(starts)} numbers, not the shape {values.shape}"
-            )
+            shape = values.shape
+            raise SceneError(f"`values` of {label} must have {len(starts)} numbers, not the shape {shape}")
     sizes = lengths[seen] * number(scale, f"`scale` of {label}")
     matrices = frames(vectors[seen].astype("f8"), starts[seen], sizes)
 
@@ -236,11 +235,8 @@ def tubes(
     ]
     values = values if several or values is None else [values]
     radii = radius if several and isinstance(radius, (list, tuple)) else [radius] * len(lines)
-    for name_of, found in (("radius", radii), ("values", values)):
-        if found is not None and not hasattr(found, "__len__"):
-            raise SceneError(f"`{name_of}` of {label} is an array, or a list of arrays for a list of lines")
-        if found is not None and len(found) != len(lines):
-            raise SceneError(f"`{name_of}` of {label} is for {len(found)} lines; there are {len(lines)}")
+    _check_count(radii, lines, f"`radius` of {label}")
+    _check_count(values, lines, f"`values` of {label}")
     parts, start = [], 0
     for index, line in enumerate(lines):
         found = None if values is None else values[index]
@@ -259,6 +255,16 @@ def tubes(
         name=name,
     )
     return _creased(made, 60)
+
+
+def _check_count(found, lines, label):
+    """Raises an error unless there is one array for each line, or nothing."""
+    if found is None:
+        return
+    if not hasattr(found, "__len__"):
+        raise SceneError(f"{label} is an array, or a list of arrays for a list of lines")
+    if len(found) != len(lines):
+        raise SceneError(f"{label} is for {len(found)} lines; there are {len(lines)}")
 
 
 def _tube(line, radius, values, sides, start, label):

@@ -47,8 +47,8 @@ def number(value, label):
 
 
 def _limits(values, clim, label):
-    """The values at both ends of the color map."""
-    if clim is None:
+    """The values at both ends of the color map, of those that it shows unless `clim` states them."""
+    if clim is None and values is not None:
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
         return (low, high) if low < high else _around(low)
     try:
