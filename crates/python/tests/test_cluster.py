@@ -5,6 +5,10 @@ import multiprocessing
 import os
 import pickle
 import random
+import signal
+import subprocess
+import sys
+import time
 import types
 import unittest
 import unittest.mock
@@ -13,11 +17,30 @@ import juggler as jg
 from juggler import Instances, Object, cluster, materials, shapes, textures
 from juggler._cluster import dealer as dealing
 from juggler._cluster import worker
+from juggler._cluster.executor import ExecutorPool
+from juggler._cluster.mark import Ended, Mark, watch
 from juggler._cluster.package import Package, unpack
-from support import Folder, needs_numpy, needs_program, program_hash, python, small_scene
+from support import Folder, environment, needs_numpy, needs_program, program_hash, python, small_scene
 from support import numpy as np
 
 SIZE = {"size": (64, 36), "samples": 16}
+
+
+# Renders for minutes in threads or processes until Ctrl-C comes.
+ENDLESS = """
+import concurrent.futures as futures, multiprocessing, signal, sys
+import juggler.cluster
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    context = multiprocessing.get_context("spawn")
+    with futures.ThreadPoolExecutor(2) if sys.argv[1] == "threads" else futures.ProcessPoolExecutor(
+        2, mp_context=context
+    ) as pool:
+        juggler.cluster.render(
+            "juggler", pool, size=(256, 144), samples=100000, progress=lambda p: print(p.share, flush=True)
+        )
+"""
 
 
 def leave(job, package, units):
@@ -115,6 +138,57 @@ class Executors(Folder):
         settings = {"size": (16, 16), "samples": 256}
         self.assertEqual(self.rendered(workers=4, **settings).hash, jg.render("juggler", **settings).hash)
         self.assertGreater(self.toy.tasks, 4)
+
+    def test_many_samples_are_split_whatever_travels(self):
+        for settings in (
+            {"aovs": ["albedo", "depth", "object_id", "variance"], "denoise": True},
+            {"preview": True},
+            {"noise": 0.01},
+        ):
+            settings = {"size": (40, 24), "samples": 250, **settings}
+            plain = {name: value for name, value in settings.items() if name != "preview"}
+            with unittest.mock.patch("juggler._cluster.dealer._FIRST_COST", 100):
+                self.assertEqual(self.rendered(**settings), jg.render("juggler", **plain))
+            if "noise" not in settings:
+                self.assertGreater(self.toy.tasks, 12)
+
+    def test_ctrl_c_ends_tasks_that_have_begun(self):
+        script = self.folder / "endless.py"
+        script.write_text(ENDLESS)
+        for kind in ("threads", "processes"):
+            words = [sys.executable, str(script), kind]
+            pipe = subprocess.PIPE
+            with subprocess.Popen(words, env=environment(), stdout=pipe, stderr=pipe, text=True) as process:
+                while float(process.stdout.readline() or 1) == 0:
+                    pass
+                start = time.monotonic()
+                process.send_signal(signal.SIGINT)
+                _, errors = process.communicate(timeout=60)
+            self.assertIn("KeyboardInterrupt", errors)
+            self.assertLess(time.monotonic() - start, 8, kind)
+
+    def test_jobs_leave_no_mark(self):
+        with unittest.mock.patch("tempfile.tempdir", str(self.folder)):
+            self.rendered()
+            self.assertEqual(list(self.folder.iterdir()), [])
+        mark = Mark()
+        self.assertIsNone(watch(("another machine", "no file")))
+        check = watch(mark.place)
+        check("rendering", 0.5)
+        mark.remove()
+        self.assertRaises(Ended, check)
+        self.assertRaises(Ended, watch, mark.place)
+
+    def test_workers_that_do_not_see_the_mark_help(self):
+        def unseen(mark):
+            if mark.place is not None:
+                os.remove(mark.place[1])
+
+        prepare = ExecutorPool.prepare
+        with unittest.mock.patch.object(
+            ExecutorPool, "prepare", lambda pool, job: (unseen(job.mark), prepare(pool, job))
+        ):
+            self.assertEqual(self.rendered().hash, self.expected)
 
     def test_lost_work_is_done_again(self):
         lost = []
@@ -283,6 +357,8 @@ class Executors(Folder):
         seen = []
         self.rendered(progress=seen.append, samples=64)
         self.assertTrue(all(progress.workers == 2 and 0 <= progress.share <= 1 for progress in seen))
+        self.assertEqual({progress.stage for progress in seen}, {"rendering"})
+        self.assertEqual(seen[-1].share, 1)
         self.assertEqual(seen[-1].image.size, (64, 36))
         with self.assertRaisesRegex(LookupError, "stop"):
             self.rendered(progress=unittest.mock.Mock(side_effect=LookupError("stop")), samples=64)
@@ -316,6 +392,9 @@ class Executors(Folder):
             images = list(cluster.frames("chess-opening", range(count), toy, 2, **settings))
             self.assertEqual([image.hash for image in images], expected)
             self.assertEqual([image.frame for image in images], list(range(count)))
+        seen = []
+        list(cluster.frames("chess-opening", range(3), Toy(), 2, progress=seen.append, **settings))
+        self.assertEqual((seen[-1].stage, seen[-1].share), ("rendering", 1))
 
     def test_processes_are_workers(self):
         context = multiprocessing.get_context("spawn")
@@ -353,6 +432,23 @@ class Dealing(unittest.TestCase):
             dealer = dealing.Dealer([self.UNITS], 1)
             dealer.done(dealer.next(), seconds)
             self.assertEqual(len(dealer.next().units), expected, seconds)
+
+    def test_first_tasks_are_small_whatever_the_samples(self):
+        units = [(tile, 8, 100_000, 256 * 99_992) for tile in range(3)]
+        dealer = dealing.Dealer([units], 2, block=16)
+        first, second = dealer.next(), dealer.next()
+        self.assertEqual(first.units, [(0, 8, 1024)])
+        self.assertEqual(second.units, [(0, 1024, 2048)])
+        self.assertEqual(second.cost, 1 << 18)
+        dealer.done(first, 1.0)
+        dealer.done(second, 1.0)
+        while (task := dealer.next()) is not None:
+            self.assertLessEqual(task.cost, 31 << 18, "thirty seconds")
+            dealer.done(task, task.cost / (1 << 18))
+            if task.units[-1][2] == 100_000:
+                continue
+            self.assertEqual(task.units[-1][2] % 16, 0)
+        self.assertAlmostEqual(dealer._remaining, 0)
 
     def test_rounds_follow_each_other(self):
         self.assertEqual(dealing.rounds_of(100, True), [(0, 16), (16, 64), (64, 100)])

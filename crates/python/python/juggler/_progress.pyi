@@ -1,11 +1,15 @@
 from typing import Literal
 
 class Progress:
-    """Progress of a render: `stage` ("build" or "render"), `share` (0 to 1), `seconds` so far,
-    `seconds_left` (`None` if unknown), and `samples` of all pixels so far.
+    """Progress of a render: `stage` ("reading", "preparing", "building" or "rendering"), `share` of
+    this stage (0 to 1), `seconds` so far, `seconds_left` (`None` if unknown), and `samples` of all
+    pixels so far.
+
+    Meshes and pictures are prepared; then the world is built. The share may decrease while a stage
+    finds more work.
     """
 
-    stage: Literal["build", "render"]
+    stage: Literal["reading", "preparing", "building", "rendering"]
     share: float
     seconds: float
     seconds_left: float | None

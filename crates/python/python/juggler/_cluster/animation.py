@@ -5,6 +5,7 @@ import time
 
 from juggler._cluster.dealer import Dealer
 from juggler._cluster.driver import Driver
+from juggler._cluster.mark import Mark
 from juggler._errors import SettingsError
 from juggler._progress import display
 
@@ -28,24 +29,25 @@ class FrameDriver(Driver):
         units = [(index, float(frame), 1) for index, frame in enumerate(self._all)]
         with display(job.progress, live=False) as shown:
             try:
+                job.mark = Mark()
                 self._pool.prepare(job)
                 self._description = job.description(self._pool.threads)
                 self._dealer = Dealer([units], self._pool.count())
                 while self._next < len(self._all):
                     self._step()
+                    self._show(shown, start)
                     while self._next in self._finished:
                         yield self._finished.pop(self._next)
                         self._next += 1
-                    self._show(shown, start)
             finally:
-                self._pool.stop()
+                self._stop()
 
     def _show(self, shown, start):
         if not shown.callback:
             return
         seconds, share = time.monotonic() - start, (self._next + len(self._finished)) / len(self._all)
         left = seconds * (1 - share) / share if share else None
-        shown.callback("render", share, seconds, left, 0)
+        shown.callback("rendering", share, seconds, left, 0)
 
     def _may_deal(self):
         return len(self._finished) < _AHEAD * max(1, self._pool.count())

@@ -1,7 +1,8 @@
 """Dealing of units of work to workers of unknown speed.
 
 Tasks are dealt in guided sizes (Polychronopoulos and Kuck 1987): each takes a share of what remains,
-so that all workers end at about the same time. The first answers calibrate the sizes.
+so that all workers end at about the same time. The first answers calibrate the sizes. Units with more
+samples than a task may have are split.
 """
 
 import time
@@ -10,6 +11,10 @@ import time
 _SHARE = 4
 # Share of the whole work of a task before the first answer.
 _FIRST_SHARE = 64
+# Maximum cost of a task before the first answer, in samples of pixels: a second of work or so.
+_FIRST_COST = 1 << 18
+# Samples of a block. Units may be split where a block ends, and the pixels stay the same to the bit.
+BLOCK = 16
 # Seconds that a task takes at least and at most.
 _SHORTEST = 0.5
 _LONGEST = 30.0
@@ -44,12 +49,15 @@ class Task:
 
 
 class Dealer:
-    """Deals the units of `rounds`, lists of units with their costs, one round after the other."""
+    """Deals the units of `rounds`, lists of units with their costs, one round after the other. With
+    `block`, the samples of a unit may be split at multiples of this number.
+    """
 
-    def __init__(self, rounds, workers, share=_SHARE):
+    def __init__(self, rounds, workers, share=_SHARE, block=None):
         self._rounds = [list(reversed(units)) for units in rounds if units]
         self._remaining = self._total = sum(cost for units in rounds for *_, cost in units)
         self._share = share
+        self._block = block
         self._count = 0
         self._lost = []
         self._running = []
@@ -131,7 +139,7 @@ class Dealer:
         workers, speed = max(self.workers, 1), self.speed()
         guided = self._remaining / (self._share * workers)
         if speed is None:
-            return min(guided, self._total / (_FIRST_SHARE * workers))
+            return min(guided, self._total / (_FIRST_SHARE * workers), _FIRST_COST)
         return min(max(guided, speed * _SHORTEST), speed * _LONGEST)
 
     def _cut(self):
@@ -141,6 +149,7 @@ class Dealer:
         if not self._rounds:
             return None
         queue, size, units, cost = self._rounds[0], self._size(), [], 0
+        self._split(queue, size)
         while queue and (not units or cost + queue[-1][-1] <= size):
             *unit, own = queue.pop()
             units.append(tuple(unit))
@@ -149,12 +158,26 @@ class Dealer:
         self._count += 1
         return Task(self._count, units, cost)
 
+    def _split(self, queue, size):
+        """Splits the next unit of a queue if it costs more than `size`."""
+        if self._block is None or queue[-1][-1] <= size:
+            return
+        tile, start, end, cost = queue.pop()
+        pixels = cost // (end - start)
+        blocks = max(1, int(size / (pixels * self._block)))
+        # A checkpoint may end within a block.
+        middle = start - start % self._block + blocks * self._block
+        if middle < end:
+            queue.append((tile, middle, end, pixels * (end - middle)))
+            end = middle
+        queue.append((tile, start, end, pixels * (end - start)))
+
 
 def rounds_of(samples, preview):
     """Ranges of samples that are dealt one after the other: all, or short ones first for a preview."""
     if not preview:
         return [(0, samples)]
-    ends = [0, 16]
+    ends = [0, BLOCK]
     while ends[-1] < samples:
         ends.append(ends[-1] * 4)
     return [(start, min(end, samples)) for start, end in zip(ends, ends[1:])]

@@ -14,8 +14,9 @@ import os
 import time
 import warnings
 
-from juggler._cluster.dealer import Dealer, rounds_of
+from juggler._cluster.dealer import BLOCK, Dealer, rounds_of
 from juggler._cluster.errors import ClusterError
+from juggler._cluster.mark import Mark
 from juggler._cluster.package import Package
 from juggler._cluster.worker import version
 from juggler._errors import FileError, SettingsError
@@ -72,6 +73,8 @@ class Job:
         self.settings = _portable(settings)
         self.is_adaptive = settings.get("noise") is not None
         self.start, self.saved, self.ledger = time.monotonic(), time.monotonic(), None
+        # Exists while the job goes on.
+        self.mark = None
 
     def description(self, threads=None):
         """What workers need to know, beside the package."""
@@ -86,6 +89,7 @@ class Job:
             "settings": settings,
             "frame": float(self.frame),
             "fingerprint": fingerprint,
+            "mark": None if self.mark is None else self.mark.place,
         }
 
     def open(self):
@@ -106,7 +110,9 @@ class Job:
         """Deals what the film lacks."""
         rounds = rounds_of(self.ledger.samples(), self.preview)
         units = [self.ledger.missing(samples, workers) for samples in rounds]
-        return Dealer(units, workers, share=8 if self.is_adaptive else 4)
+        # The noise of all samples of a tile decides whether it needs more.
+        block = None if self.is_adaptive else BLOCK
+        return Dealer(units, workers, share=8 if self.is_adaptive else 4, block=block)
 
     def save(self):
         """Saves the checkpoint, if there is one."""
@@ -151,6 +157,7 @@ class Driver:
         """Yields the image so far once a second where it is shown, and the whole image at last."""
         job = self._job
         try:
+            job.mark = Mark()
             self._pool.prepare(job)
             job.open()
             self._description = job.description(self._pool.threads)
@@ -167,11 +174,19 @@ class Driver:
                     yield Image(job.ledger.snapshot())
                 if job.checkpoint is not None and now - job.saved >= job.every:
                     job.save()
+            if shown.callback:
+                self._report(shown)
         finally:
-            self._pool.stop()
+            self._stop()
             job.save()
         yield Image(job.ledger.develop())
         job.ledger.close()
+
+    def _stop(self):
+        """Gives up all work, also that which has begun on this machine."""
+        if self._job.mark is not None:
+            self._job.mark.remove()
+        self._pool.stop()
 
     def _progress(self):
         """What the display calls: a function of the user gets the number of workers, too."""
@@ -189,7 +204,7 @@ class Driver:
         share, samples = self._job.ledger.progress()
         seconds = time.monotonic() - self._job.start
         left = seconds * (1 - share) / share if share > 0 else None
-        shown.callback("render", share, seconds, left, samples)
+        shown.callback("rendering", share, seconds, left, samples)
 
     def _is_done(self):
         """Whether the film is complete. If all tasks are done and samples are missing nonetheless, they
@@ -228,7 +243,12 @@ class Driver:
             raise answer["error"]
         if kind == "refused":
             raise ClusterError(f"the worker {name} cannot help: {answer['error']}")
-        if task is None:
+        if kind == "cancelled":
+            # The worker does not see the mark of this job.
+            self._description = {**self._description, "mark": None}
+            if task is not None:
+                self._dealer.again(task)
+        elif task is None:
             self._greet(answer)
         elif kind == "unknown":
             self._dealer.again(task)

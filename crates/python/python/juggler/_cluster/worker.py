@@ -8,6 +8,8 @@ import time
 import traceback
 from collections import OrderedDict
 
+from juggler._cluster.mark import Ended, watch
+
 # Number of scenes whose worlds a worker keeps.
 _KEPT = 2
 
@@ -33,6 +35,7 @@ def work(job, package, units):
     - "done": `data` has the bytes of the partial render, and `seconds` the time that it took. Without
       units, the worker only builds the world. Units that are frames have `images`.
     - "unknown": the worker needs the package, which is a pair of manifest and contents or `None`.
+    - "cancelled": the job has ended, or the worker does not see its mark.
     - "refused": the worker does not fit, for the reason in `error`.
     - "failed": `error` is the exception.
 
@@ -41,6 +44,8 @@ def work(job, package, units):
     answer = {"name": identity(), "kind": "done"}
     try:
         return {**answer, **_render(job, package, units)}
+    except Ended:
+        return {**answer, "kind": "cancelled"}
     except Exception as error:
         return {**answer, "kind": "failed", "error": _portable(error)}
 
@@ -48,7 +53,7 @@ def work(job, package, units):
 def _render(job, package, units):
     if job["version"] != version():
         return {"kind": "refused", "error": f"it has Juggler {version()}, not {job['version']}"}
-    start = time.monotonic()
+    start, callback = time.monotonic(), watch(job.get("mark"))
     renderer = _renderer(job, package)
     if renderer is None:
         return {"kind": "unknown"}
@@ -61,12 +66,12 @@ def _render(job, package, units):
     if job["kind"] == "frames":
         from juggler import Image
 
-        images = [(index, Image(renderer._native.render(frame=frame))) for index, frame in units]
+        images = [(index, Image(renderer._native.render(callback, frame=frame))) for index, frame in units]
         return {"images": images, "seconds": time.monotonic() - built}
     if not units:
         fingerprint = renderer._native.fingerprint(job["frame"])
         return {"data": None, "fingerprint": fingerprint, "seconds": time.monotonic() - start}
-    data = renderer._native.render_units(units, job["frame"])
+    data = renderer._native.render_units(units, job["frame"], callback)
     return {"data": data, "build": built - start, "seconds": time.monotonic() - built}
 
 
