@@ -20,7 +20,7 @@ class PartialRender(bytes):
         return super().__new__(cls, data)
 
     def __repr__(self):
-        share = self.description["shard"]
+        share = self.description["share"]
         return f"<juggler.PartialRender {share['index']} of {share['count']}, {len(self)} bytes>"
 
     __str__ = __repr__
