@@ -41,8 +41,8 @@ def render_movie(scene, path, frames=None, **settings):
     """Renders frames of an animation as a movie, whose format the ending of `path` selects: .mp4,
     .webp, .apng or .gif.
 
-    `frames` is a range; all frames by default. An interrupted movie goes on when the same call is
-    repeated.
+    `frames` is a range, or a list of consecutive frames; all frames by default. An interrupted movie
+    goes on when the same call is repeated.
     """
     from juggler._movie import render_movie
 

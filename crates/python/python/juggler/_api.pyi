@@ -25,13 +25,16 @@ def frames(scene: SceneLike, frames: Iterable[float], **settings: Unpack[Setting
     """Renders frames of an animation one after the other, and yields each `Image`."""
 
 def render_movie(
-    scene: SceneLike, path: str | PathLike[str], frames: range | None = None, **settings: Unpack[Settings]
+    scene: SceneLike,
+    path: str | PathLike[str],
+    frames: Iterable[float] | None = None,
+    **settings: Unpack[Settings],
 ) -> None:
     """Renders frames of an animation as a movie, whose format the ending of `path` selects: .mp4,
     .webp, .apng or .gif.
 
-    `frames` is a range; all frames by default. An interrupted movie goes on when the same call is
-    repeated.
+    `frames` is a range, or a list of consecutive frames; all frames by default. An interrupted movie
+    goes on when the same call is repeated.
     """
 
 def models(scene: SceneLike) -> list[dict[str, Any]]:

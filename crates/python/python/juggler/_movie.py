@@ -1,13 +1,25 @@
 """Movies, which the program renders in a process of its own."""
 
+import json
 import os
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 
 from juggler import _native
 from juggler._errors import Cancelled, FileError, SettingsError
-from juggler._scene import native_scene, to_json
+from juggler._files import file_name
+from juggler._progress import display
+from juggler._scene import native_scene, to_json, warn
+
+# Number after that of the last frame that a movie may have.
+_END_OF_FRAMES = 2**32 - 1
+# Endings of files.
+_ENDINGS = (".mp4", ".webp", ".apng", ".gif")
+# Seconds in which the program notices a signal, and in which it saves what it has.
+_PATIENCE = 0.3
+_SAVING_SECONDS = 30.0
 
 # Flags of the program for the settings whose values need no conversion.
 _FLAGS = {
@@ -74,33 +86,144 @@ def _source(scene, native):
         yield "-", native.to_json() if native is scene else to_json(scene)[0]
 
 
+def frames_of(frames):
+    """Returns the range of frames that a range, a list or an array of consecutive frames selects."""
+    try:
+        numbers = frames if isinstance(frames, range) else [_whole(frame) for frame in frames]
+        chosen = range(numbers[0], numbers[0] + len(numbers))
+        if numbers in (chosen, list(chosen)) and 0 <= chosen.start and chosen.stop <= _END_OF_FRAMES:
+            return chosen
+    except (TypeError, ValueError, LookupError, OverflowError):
+        pass
+    message = "`frames` of a movie are consecutive frames from 0 on, such as range(0, 30)"
+    raise SettingsError(f"{message}, not {frames!r}", "frames")
+
+
+def _whole(frame):
+    number = int(frame)
+    if number != frame:
+        raise ValueError
+    return number
+
+
+def file_of(path):
+    """Returns the name of the file of a movie, whose ending must be that of one."""
+    name = file_name(path)
+    if not name.lower().endswith(_ENDINGS):
+        message = f"`{name}` is no movie: the ending must be one of {' '.join(_ENDINGS)}"
+        raise SettingsError(message, "path")
+    return name
+
+
+class _Messages:
+    """Messages of the program on its standard error: progress is shown, the others are kept."""
+
+    def __init__(self, callback):
+        self._callback = callback
+        self._start = time.monotonic()
+        # Samples of a frame.
+        self._samples = 0
+        self._others = []
+
+    def read(self, stream):
+        """Reads all messages until the program ends."""
+        for line in stream:
+            if line.startswith("{"):
+                self._show(json.loads(line))
+            else:
+                self._others.append(line)
+
+    def _show(self, event):
+        number, count = event.get("frame", 1), event.get("frames", 1)
+        if event["event"] == "start":
+            width, height = event["size"]
+            self._samples = width * height * (event["samples"] or 0)
+            self.show((number - 1) / count, None, count)
+        elif event["event"] == "progress":
+            left = event.get("film_eta_seconds", event["eta_seconds"])
+            self.show(event.get("film_fraction", event["fraction"]), left, count)
+
+    def show(self, share, left, count):
+        """Shows the share of all frames."""
+        if self._callback:
+            seconds = time.monotonic() - self._start
+            self._callback("rendering", share, seconds, left, round(share * count * self._samples))
+
+    def warnings(self):
+        """Warnings of the program."""
+        return [line.strip() for line in self._others if line.startswith("warning: ")]
+
+    def error(self):
+        """Text of the error with which the program ended."""
+        text = "".join(line for line in self._others if not line.startswith("warning: ")).strip()
+        return text.removeprefix("error: ").removesuffix("For more information, try '--help'.").rstrip()
+
+
+def _run(words, text, messages):
+    """Runs the program with a text as its input, and returns its exit status."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+    pipe, nothing = subprocess.PIPE, subprocess.DEVNULL
+    with subprocess.Popen(
+        words,
+        stdin=nothing if text is None else pipe,
+        stdout=nothing,
+        stderr=pipe,
+        env=environment,
+        encoding="utf-8",
+    ) as process:
+        try:
+            if text is not None:
+                try:
+                    process.stdin.write(text)
+                    process.stdin.close()
+                except BrokenPipeError:
+                    # The program has refused a flag.
+                    pass
+            messages.read(process.stderr)
+            return process.wait()
+        except BaseException:
+            _interrupt(process)
+            raise
+
+
+def _interrupt(process):
+    """Ends the program, which saves what it has."""
+    import signal
+
+    ends = (
+        process.terminate if os.name == "nt" else lambda: process.send_signal(signal.SIGINT),
+        process.kill,
+    )
+    # Ctrl-C on a terminal has reached the program, too, and a second signal would end it at once.
+    for seconds, end in zip((_PATIENCE, _SAVING_SECONDS), ends):
+        try:
+            process.wait(seconds)
+            return
+        except subprocess.TimeoutExpired:
+            end()
+
+
 def render_movie(scene, path, frames, settings):
     """Renders a movie, see `juggler.render_movie`."""
     if getattr(scene, "_lenient", False):
         settings = {**settings, "lenient": True}
-    plain = {name: value for name, value in settings.items() if name != "max_memory"}
+    plain = {name: value for name, value in settings.items() if name not in ("max_memory", "progress")}
     _native.check_settings(plain)
-    words = [sys.executable, "-m", "juggler", "render"]
+    path = file_of(path)
     # The exceptions of a wrong scene are better than the program's messages.
     native = native_scene(scene, bool(settings.get("lenient")))
-    words += [f"--output={os.fspath(path)}", *_flags(settings)]
-    if frames is not None:
-        frames = range(frames.start, frames.stop, frames.step)
-        if frames.step != 1 or not frames:
-            message = f"the frames of a movie are a range like range(0, 30), not {frames!r}"
-            raise SettingsError(message, "frames")
-        words.append(f"--frames={frames.start}..{frames.stop}")
-    words.append("--quiet" if not settings.get("progress") else "--progress=bar")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    errors = None if settings.get("progress") else subprocess.PIPE
-    with _source(scene, native) as (word, text):
-        done = subprocess.run(
-            [*words, word], input=text, text=True, stderr=errors, env=environment, check=False
-        )
-    message = (done.stderr or "").strip().removeprefix("error: ")
-    if done.returncode == 2:
-        raise SettingsError(message)
-    if done.returncode in (130, 143, -2, -15):
-        raise Cancelled(message or "the movie was interrupted; the same call goes on with it")
-    if done.returncode:
-        raise FileError(message)
+    chosen = range(native.animation()[0]) if frames is None else frames_of(frames)
+    words = [sys.executable, "-m", "juggler", "render", f"--output={path}", *_flags(settings)]
+    words += [f"--frames={chosen.start}..{chosen.stop}", "--progress=json"]
+    with display(settings.get("progress"), live=False) as shown, _source(scene, native) as (word, text):
+        messages = _Messages(shown.callback)
+        status = _run([*words, word], text, messages)
+        if status == 0:
+            messages.show(1.0, 0.0, len(chosen))
+    warn(messages.warnings())
+    if status == 2:
+        raise SettingsError(messages.error())
+    if status in (130, 143, -2, -15):
+        raise Cancelled(messages.error() or "the movie was interrupted; the same call goes on with it")
+    if status:
+        raise FileError(messages.error())

@@ -127,9 +127,10 @@ class Ray:
         self,
         scene: SceneLike,
         path: str | PathLike[str],
-        frames: range | None = None,
+        frames: Iterable[float] | None = None,
         **settings: Unpack[Settings],
     ) -> None:
         """Renders frames of an animation as a movie, whose format the ending of `path` selects. `frames`
-        is a range; all frames by default. An interrupted movie goes on when the same call is repeated.
+        is a range, or a list of consecutive frames; all frames by default. An interrupted movie goes on when
+        the same call is repeated.
         """

@@ -6,7 +6,7 @@ import time
 from juggler._cluster.dealer import Dealer
 from juggler._cluster.driver import Driver
 from juggler._cluster.mark import Mark
-from juggler._errors import SettingsError
+from juggler._movie import file_of, frames_of
 from juggler._progress import display
 
 # Frames that may be finished, for each worker, before the first of them is taken.
@@ -80,10 +80,8 @@ def render_movie(pool, job, path, frames):
     from juggler import _native
 
     count, frames_per_second = job.package.native.animation()
-    frames = range(count) if frames is None else frames
-    if not isinstance(frames, range) or frames.step != 1 or not frames:
-        raise SettingsError(f"the frames of a movie are a range like range(0, 30), not {frames!r}")
-    path = os.fspath(path)
+    frames = range(count) if frames is None else frames_of(frames)
+    path = file_of(path)
     folder = path + ".frames"
     os.makedirs(folder, exist_ok=True)
     mark = os.path.join(folder, "render")

@@ -300,7 +300,8 @@ class Ray:
 
     def render_movie(self, scene, path, frames=None, **settings):
         """Renders frames of an animation as a movie, whose format the ending of `path` selects. `frames`
-        is a range; all frames by default. An interrupted movie goes on when the same call is repeated.
+        is a range, or a list of consecutive frames; all frames by default. An interrupted movie goes on when
+        the same call is repeated.
         """
         from juggler._cluster.animation import render_movie
 
