@@ -7,6 +7,8 @@ from juggler import _native
 
 # Greatest width of a preview in a notebook, in pixels.
 _PREVIEW_WIDTH = 1600
+# Names of AOVs in other programs that were looked up, and those of the package.
+_foreign_names = {}
 
 
 def array(data, type_name, shape):
@@ -22,7 +24,7 @@ class Image:
     """Rendered image, with linear pixels and AOVs.
 
     `img.color` is an array of shape (height, width, 3), `img["depth"]` or `img.aovs["depth"]` that
-    of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
+    of an AOV; `img.keys()` are the names. Equal bits have an equal `hash`, which is `film.hash` of the program.
     """
 
     __slots__ = ("__weakref__", "_arrays", "_color_maps", "_native")
@@ -75,6 +77,16 @@ class Image:
         if name == "color":
             return self.color
         return self.aovs[name]
+
+    def __contains__(self, name):
+        return name == "color" or name in self.aovs
+
+    def __iter__(self):
+        return iter(self.keys())
+
+    def keys(self):
+        """Names of the arrays of the image: "color", and those of its AOVs."""
+        return ["color", *self.aovs]
 
     @property
     def names(self):
@@ -132,8 +144,8 @@ class Image:
         self._native.save(os.fspath(path))
 
     def to_uint8(self, tone=None, exposure=None):
-        """Levels from 0 to 255 as an image file has them, with another tone curve or exposure in
-        stops if given, and without dithering: an array of shape (height, width, 3).
+        """Levels from 0 to 255 as an image file without dithering has them (`dither=False`), with
+        another tone curve or exposure in stops if given: an array of shape (height, width, 3).
         """
         width, height = self.size
         return array(self._native.to_rgb8(tone, exposure), "uint8", (height, width, 3))
@@ -181,17 +193,21 @@ class Layers(Mapping):
         return {name: (channels, is_index) for name, channels, is_index in self._image._native.layers()}
 
     def __getitem__(self, name):
-        arrays = self._image._arrays
+        arrays, known = self._image._arrays, self._all()
+        name = _own_name(name, known)
+        if name not in known:
+            raise KeyError(_unknown(name, known))
         if name not in arrays:
-            known = self._all()
-            if name not in known:
-                raise KeyError(_unknown(name, known))
             channels, is_index = known[name]
             width, height = self._image.size
             shape = (height, width) if channels == 1 else (height, width, channels)
             data = self._image._native.layer(name)
             arrays[name] = array(data, "int32" if is_index else "float32", shape)
         return arrays[name]
+
+    def __contains__(self, name):
+        known = self._all()
+        return _own_name(name, known) in known
 
     def __iter__(self):
         return iter(self._all())
@@ -203,9 +219,34 @@ class Layers(Mapping):
         return f"<AOVs {', '.join(self) or 'none'}>"
 
 
+def _own_name(name, known):
+    """Returns the name of an AOV for one that other programs use, such as "planar_depth" for "Z"."""
+    if not isinstance(name, str) or name in known:
+        return name
+    names = _aovs_of(name)
+    return names[0] if len(names) == 1 else name
+
+
+def _aovs_of(name):
+    """Names of the AOVs that a render with `aovs=[name]` has; none if there is no such AOV."""
+    if name not in _foreign_names:
+        from juggler._errors import SettingsError
+        from juggler._renderer import Renderer
+
+        try:
+            empty = {"version": 1, "objects": []}
+            image = Renderer(empty, size=(1, 1), samples=1, aovs=[name], threads=1).render(progress=False)
+            _foreign_names[name] = list(image.aovs)
+        except SettingsError:
+            return []
+    return _foreign_names[name]
+
+
 def _unknown(name, known):
     has = f"it has {', '.join(known)}" if known else "it has none"
-    return f"the image has no AOV {name!r}, {has}; render it with aovs=[{name!r}]"
+    is_aov = isinstance(name, str) and _aovs_of(name)
+    help = f"; render it with aovs=[{name!r}]" if is_aov else ""
+    return f"the image has no AOV {name!r}, {has}{help}"
 
 
 def _restore(state, color_maps=()):

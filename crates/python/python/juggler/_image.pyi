@@ -1,4 +1,4 @@
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from typing import Any, Literal
 
@@ -13,10 +13,14 @@ class Image:
     """Rendered image, with linear pixels and AOVs.
 
     `img.color` is an array of shape (height, width, 3), `img["depth"]` or `img.aovs["depth"]` that
-    of an AOV. Equal bits have an equal `hash`, which is `film.hash` of the program.
+    of an AOV; `img.keys()` are the names. Equal bits have an equal `hash`, which is `film.hash` of the program.
     """
 
     def __getitem__(self, name: str) -> NDArray[Any]: ...
+    def __contains__(self, name: object) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def keys(self) -> list[str]:
+        """Names of the arrays of the image: "color", and those of its AOVs."""
     def __eq__(self, other: object) -> bool: ...
     def __hash__(self) -> int: ...
     def plot(
@@ -79,6 +83,6 @@ class Image:
     def save(self, path: str | PathLike[str]) -> None:
         """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
     def to_uint8(self, tone: str | None = None, exposure: float | None = None) -> NDArray[numpy.uint8]:
-        """Levels from 0 to 255 as an image file has them, with another tone curve or exposure in
-        stops if given, and without dithering: an array of shape (height, width, 3).
+        """Levels from 0 to 255 as an image file without dithering has them (`dither=False`), with
+        another tone curve or exposure in stops if given: an array of shape (height, width, 3).
         """

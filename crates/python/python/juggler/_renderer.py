@@ -1,5 +1,7 @@
 """Renderer of a scene that is edited and rendered again."""
 
+from contextlib import contextmanager
+
 from juggler import _native
 from juggler._image import Image
 from juggler._scene import bytes_of, native_scene, to_json, warn
@@ -56,12 +58,14 @@ class Renderer:
         """Value at a path, as messages print it, or at a JSON pointer."""
         import json
 
-        return json.loads(self._native.value(path))
+        with _plain_key_errors(path):
+            return json.loads(self._native.value(path))
 
     def __setitem__(self, path, value):
         from juggler._edits import set_value
 
-        set_value(self._native, path, value)
+        with _plain_key_errors(path):
+            set_value(self._native, path, value)
 
     def __delitem__(self, path):
         self[path] = None
@@ -85,7 +89,8 @@ class Renderer:
     @camera.setter
     def camera(self, camera):
         path = self._native.camera_path()
-        self._native.set_value(path, *to_json(camera, path))
+        if camera is not None or path in self:
+            self._native.set_value(path, *to_json(camera, path))
 
     @property
     def frame(self):
@@ -199,6 +204,16 @@ class Renderer:
     def _warned(self, result):
         warn(self._native.take_warnings())
         return result
+
+
+@contextmanager
+def _plain_key_errors(path):
+    """Removes the suggestion of a member that is known but absent."""
+    try:
+        yield
+    except KeyError as error:
+        message = error.args[0].removesuffix(f"; did you mean `{path}`?")
+        raise KeyError(message) from None
 
 
 def _objects(scene):
