@@ -1,59 +1,138 @@
-"""Wrong arguments of the functions for scientific pictures."""
+"""Arguments that are wrong, each with an error that says what is expected."""
 
 import math
+import os
 import unittest
 
 import juggler as jg
-from juggler import sci
-from support import needs_numpy, numpy as np
-from test_sci import CORNERS, FACES
+from juggler import Scene, cluster
+from support import SMALL, Folder, needs_numpy, numpy, small_scene
+
+# A name of a file that Linux allows and that is no UTF-8.
+NOT_UTF8 = "\udc80"
 
 
-@needs_numpy
-class Arguments(unittest.TestCase):
-    def test_wrong_arguments_are_named(self):
-        line, box = CORNERS[:3], ((0, 0, 0), (1, 1, 1))
-        values = {"values": [1, 2, 3, 4]}
+class Settings(unittest.TestCase):
+    def refused(self, setting, act, message="must be"):
+        with self.assertRaisesRegex(jg.SettingsError, message) as caught:
+            act()
+        self.assertEqual(caught.exception.setting, setting)
 
-        def surface(**options):
-            return sci.surface(CORNERS, FACES, **options)
+    def test_numbers_out_of_range(self):
+        renderer = jg.Renderer(small_scene(), **SMALL)
+        self.refused("x", lambda: renderer.probe(-1, 0), "`x` must be at least 0, not -1")
+        self.refused("y", lambda: renderer.probe(0, 1 << 40), "at most")
+        for name in ("depth", "branches", "brightest"):
+            self.refused(name, lambda name=name: renderer.probe(0, 0, **{name: -1}))
+        self.refused("index", lambda: renderer.render_shard(-1, 3))
+        self.refused("count", lambda: renderer.render_shard(0, 0))
+        for every in (math.nan, -1, -math.inf):
+            self.refused("every", lambda every=every: renderer.progressive(every=every))
+            self.refused(
+                "checkpoint_every",
+                lambda every=every: cluster.render("juggler", Executor(), 1, checkpoint_every=every),
+            )
+        with self.assertRaisesRegex(TypeError, r"`x` must be a whole number, not 0\.5"):
+            renderer.probe(0.5, 0)
+        with self.assertRaisesRegex(TypeError, "`every` must be a number of seconds, not 'x'"):
+            renderer.progressive(every="x")
 
-        for call, message in (
-            (lambda: sci.tubes(line, -1), "line 0: its radius must be 0 or more"),
-            (lambda: sci.tubes(line, "x"), "line 0: its radius must be an array of real numbers"),
-            (lambda: sci.tubes(line, [1, 2]), "line 0 has 3 points, but its radii have the shape"),
-            (lambda: sci.tubes(line, values=["a"] * 3), "line 0: its values must be numbers"),
-            (lambda: sci.tubes([line, line], values=3), "`values` of sci.tubes is an array, or a list"),
-            *((lambda n=n: sci.tubes(line, sides=n), "whole number from 3, not") for n in (2, 3.5, "8")),
-            *((lambda c=c: surface(**values, clim=c), "`clim` of sci.surface") for c in (5, (0, 1, 2), "ab")),
-            *((lambda c=c: surface(**values, cmap=c), "`cmap` is the name of") for c in (3, None, [1, 2])),
-            *(
-                (
-                    lambda c=c: sci.ColorMap(cmap="gray", clim=c).to_dict(),
-                    "`clim` of sci.ColorMap must be two",
-                )
-                for c in (5, None)
-            ),
-            (lambda: surface(values=3), r"`values` of sci.surface must be an array of shape \(n,\)"),
-            (lambda: sci.surface(CORNERS, 3), "`faces` of sci.surface must be an array of shape"),
-            (lambda: sci.surface(CORNERS, np.ma.masked_equal(FACES, 3)), "`faces` .* has masked numbers"),
-            *(
-                (lambda r=r: sci.spheres(line, r), "`radii` of .* a finite number")
-                for r in ("x", None, math.nan)
-            ),
-            (lambda: sci.arrows(line, line, values=3), r"must have 3 numbers, not the shape \(\)"),
-            (lambda: sci.arrows(line, line, scale="x"), "`scale` of sci.arrows must be a finite number"),
-            (lambda: sci.camera(((0, 0, 0), (1, math.inf, 1))), "`bounds` must be finite"),
-            *(
-                (lambda v=v: sci.camera(box, v), "`view` as a direction")
-                for v in (5, "abc".split(), (1, 0, math.inf))
-            ),
-            (lambda: sci.camera(box, margin="x"), "`margin` must be a finite number"),
-            (lambda: sci.camera(box, fov_degrees=None), "`fov_degrees` must be a finite number"),
-            (lambda: sci.axes(box, colors=("#ff0000",)), "`colors` of sci.axes is three colors"),
+    def test_progress_is_a_function_or_a_switch(self):
+        renderer = jg.Renderer(small_scene(), **SMALL)
+        for progress in (1, "x", []):
+            for act in (
+                lambda progress: jg.Renderer("juggler", progress=progress),
+                lambda progress: renderer.render(progress=progress),
+                lambda progress: renderer.render_shard(0, 2, progress=progress),
+                lambda progress: jg.render_movie("juggler", "a.gif", progress=progress),
+                lambda progress: cluster.render("juggler", Executor(), 1, progress=progress),
+            ):
+                with self.assertRaisesRegex(TypeError, "`progress` must be a function, True, False or None"):
+                    act(progress)
+
+    def test_one_setting_selects_the_frame(self):
+        self.refused("at", lambda: jg.render("juggler", frame=1, at=0.5, **SMALL), "one of them")
+        self.assertEqual(jg.Renderer("juggler", frame=1, at=None, **SMALL).frame, 1)
+        for name in ("frame", "at"):
+            self.refused(name, lambda name=name: jg.frames("juggler", range(2), **{name: 1}), "cannot act")
+            self.refused(
+                name,
+                lambda name=name: cluster.frames("juggler", [1], Executor(), 1, **{name: 1}),
+                "cannot act",
+            )
+
+    def test_frames_check_their_arguments_at_the_call(self):
+        self.refused("sampels", lambda: jg.frames("juggler", range(2), sampels=7), "did you mean")
+        self.refused(
+            "sampels", lambda: cluster.frames("juggler", [1], Executor(), 1, sampels=7), "did you mean"
+        )
+        with self.assertRaisesRegex(
+            TypeError, r"`frames` are numbers of frames, such as range\(0, 30\), not 3"
         ):
-            with self.subTest(message), self.assertRaisesRegex(jg.SceneError, message):
-                call()
+            jg.frames("juggler", 3)
+        self.assertEqual(list(jg.frames("juggler", [])), [])
+
+
+class Executor:
+    """Executor that does nothing."""
+
+    def submit(self, function, *arguments):
+        raise AssertionError("no work was expected")
+
+
+class Types(Folder):
+    def test_scenes_are_no_classes(self):
+        for act in (jg.render, jg.Renderer, lambda scene: jg.render_movie(scene, "a.gif")):
+            with self.assertRaisesRegex(TypeError, r"`Scene\(\.\.\.\)`, not the class"):
+                act(Scene)
+
+    @needs_numpy
+    def test_objects_of_other_kinds(self):
+        for value in (None, 3, "x"):
+            with self.assertRaisesRegex(TypeError, "from_meshio takes a mesh of meshio"):
+                jg.from_meshio(value)
+        with self.assertRaisesRegex(TypeError, "images of Juggler or files are compared, not ndarray"):
+            jg.compare(numpy.zeros((2, 2, 3)), numpy.zeros((2, 2, 3)))
+        with self.assertRaisesRegex(TypeError, "a PartialRender, its bytes or a file, not int"):
+            jg.merge([1])
+
+    def test_a_single_partial_render_is_merged(self):
+        renderer = jg.Renderer(small_scene(), **SMALL)
+        whole = renderer.render_shard(0, 1)
+        whole.save(self.folder / "a.jfilm")
+        for one in (whole, bytes(whole), self.folder / "a.jfilm", str(self.folder / "a.jfilm")):
+            self.assertEqual(jg.merge(one).hash, renderer.render().hash)
+        with self.assertRaisesRegex(jg.MergeError, "still to do"):
+            jg.merge(renderer.render_shard(0, 2))
+
+    def test_names_of_files_are_bytes_too(self):
+        image = jg.render(small_scene(), **SMALL)
+        for save, name in ((image.save, "a.png"), (Scene(objects=[]).save, "a.json")):
+            save(os.fsencode(self.folder / name))
+            self.assertTrue((self.folder / name).exists())
+            with self.assertRaisesRegex(TypeError, "expected str, bytes or os.PathLike object, not int"):
+                save(3)
+        Scene.load(os.fsencode(self.folder / "a.json"))
+        path = os.fsencode(self.folder / "a.png")
+        self.assertTrue(jg.compare(path, path).same_bits)
+
+    def test_names_of_files_are_utf8(self):
+        image = jg.render(small_scene(), **SMALL)
+        shard = jg.Renderer(small_scene(), **SMALL).render_shard(0, 1)
+        for act, ending in (
+            (jg.render, ".json"),
+            (image.save, ".png"),
+            (Scene(objects=[]).save, ".json"),
+            (Scene.load, ".json"),
+            (shard.save, ".jfilm"),
+            (jg.PartialRender.open, ".jfilm"),
+            (jg.merge, ".jfilm"),
+            (lambda name: jg.compare(image, name), ".png"),
+            (lambda name: jg.render_movie("juggler", name), ".gif"),
+            (lambda name: cluster.render("juggler", Executor(), 1, checkpoint=name), ".jfilm"),
+        ):
+            with self.assertRaisesRegex(jg.FileError, r"must be UTF-8, not b'.*\\x80"):
+                act(NOT_UTF8 + ending)
 
 
 if __name__ == "__main__":

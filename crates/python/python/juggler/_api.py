@@ -27,12 +27,15 @@ def render(scene, **settings):
 
 def frames(scene, frames, **settings):
     """Renders frames of an animation one after the other, and yields each `Image`."""
+    from juggler._arguments import numbers_of_frames
     from juggler._renderer import Renderer
 
-    renderer = None
+    frames = numbers_of_frames(frames, settings)
+    return _images(Renderer(scene, **settings), frames)
+
+
+def _images(renderer, frames):
     for frame in frames:
-        if renderer is None:
-            renderer = Renderer(scene, **{**settings, "frame": frame})
         renderer.frame = frame
         yield renderer.render()
 

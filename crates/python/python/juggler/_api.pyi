@@ -26,7 +26,7 @@ def frames(scene: SceneLike, frames: Iterable[float], **settings: Unpack[Setting
 
 def render_movie(
     scene: SceneLike,
-    path: str | PathLike[str],
+    path: bytes | str | PathLike[str],
     frames: Iterable[float] | None = None,
     **settings: Unpack[Settings],
 ) -> None:

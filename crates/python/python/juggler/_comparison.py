@@ -51,10 +51,15 @@ def compare(image, reference, *, significance=0.01, flip=True):
     The test whether noise explains the difference needs two images that are rendered with
     `aovs=["variance"]` and different seeds.
     """
+    from juggler._files import file_name
     from juggler._image import Image
 
     def native(image):
-        return image._native if isinstance(image, Image) else os.fspath(image)
+        if isinstance(image, Image):
+            return image._native
+        if isinstance(image, (str, bytes, os.PathLike)):
+            return file_name(image)
+        raise TypeError(f"images of Juggler or files are compared, not {type(image).__name__}")
 
     return Comparison(_native.compare(native(image), native(reference), significance, flip))
 

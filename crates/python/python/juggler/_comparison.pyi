@@ -27,8 +27,8 @@ class Comparison:
         """Perceived difference of each pixel: an array of shape (height, width)."""
 
 def compare(
-    image: Image | str | PathLike[str],
-    reference: Image | str | PathLike[str],
+    image: Image | bytes | str | PathLike[str],
+    reference: Image | bytes | str | PathLike[str],
     *,
     significance: float = 0.01,
     flip: bool = True,

@@ -1,9 +1,9 @@
 """Rendered images."""
 
-import os
 from _collections_abc import Mapping
 
 from juggler import _native
+from juggler._files import file_name
 
 # Greatest width of a preview in a notebook, in pixels.
 _PREVIEW_WIDTH = 1600
@@ -141,7 +141,7 @@ class Image:
 
     def save(self, path):
         """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
-        self._native.save(os.fspath(path))
+        self._native.save(file_name(path))
 
     def to_uint8(self, tone=None, exposure=None):
         """Levels from 0 to 255 as an image file without dithering has them (`dither=False`), with

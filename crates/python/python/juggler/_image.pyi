@@ -80,7 +80,7 @@ class Image:
         them: they keep edges and textures sharp. A render with `denoise=` knows more of the noise and
         gives a sharper image; such an image stays as it is.
         """
-    def save(self, path: str | PathLike[str]) -> None:
+    def save(self, path: bytes | str | PathLike[str]) -> None:
         """Saves the image to a file, whose ending selects the format. An EXR file has the AOVs."""
     def to_uint8(self, tone: str | None = None, exposure: float | None = None) -> NDArray[numpy.uint8]:
         """Levels from 0 to 255 as an image file without dithering has them (`dither=False`), with

@@ -1,9 +1,8 @@
 """Scenes from the objects of other libraries. None of them is imported: their attributes are read."""
 
-import os
-
 from . import _arrays, backgrounds, cameras, materials, shapes, textures
 from ._errors import SceneError
+from ._files import file_name
 from .scene_types import InputProduct, Instances, Object, Scene
 
 
@@ -306,6 +305,8 @@ def from_meshio(mesh, *, values=None, cmap="viridis", clim=None, nan="#808080"):
     """
     from . import sci
 
+    if not hasattr(mesh, "points") or not hasattr(mesh, "cells"):
+        raise TypeError(f"from_meshio takes a mesh of meshio, not {type(mesh).__name__}")
     np = _arrays.numpy()
     positions = np.asarray(mesh.points, "f8")
     if positions.ndim == 2 and positions.shape[1] == 2:
@@ -364,11 +365,11 @@ def from_gltf(path, *, variant=None, animation=None, scene=None, at=None, lenien
 
     fields = {"variant": variant, "animation": animation, "scene": scene, "at": at, **fields}
     fields = {name: value for name, value in fields.items() if value is not None}
-    loaded = Scene.load(os.fspath(path), lenient=lenient)
+    loaded = Scene.load(path, lenient=lenient)
     objects = [dict(one) for one in loaded.objects or ()]
     models = [one for one in objects if "model" in one]
     if not models:
-        raise SceneError(f"`{os.fspath(path)}` is no model; `Scene.load` reads other files")
+        raise SceneError(f"`{file_name(path)}` is no model; `Scene.load` reads other files")
     for one in models:
         one["model"] = Model(**{**one["model"], **fields})
     loaded.objects = objects

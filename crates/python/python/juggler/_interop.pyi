@@ -31,7 +31,7 @@ def from_meshio(
     """
 
 def from_gltf(
-    path: str | PathLike[str],
+    path: bytes | str | PathLike[str],
     *,
     variant: str | int | None = None,
     animation: str | int | None = None,

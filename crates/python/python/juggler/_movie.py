@@ -8,9 +8,10 @@ import time
 from contextlib import contextmanager
 
 from juggler import _native
+from juggler._arguments import source
 from juggler._errors import Cancelled, FileError, SettingsError
 from juggler._files import file_name
-from juggler._progress import display
+from juggler._progress import checked, display
 from juggler._scene import native_scene, to_json, warn
 
 # Number after that of the last frame that a movie may have.
@@ -205,17 +206,18 @@ def _interrupt(process):
 
 def render_movie(scene, path, frames, settings):
     """Renders a movie, see `juggler.render_movie`."""
+    scene = source(scene)
     if getattr(scene, "_lenient", False):
         settings = {**settings, "lenient": True}
     plain = {name: value for name, value in settings.items() if name not in ("max_memory", "progress")}
     _native.check_settings(plain)
-    path = file_of(path)
+    progress, path = checked(settings.get("progress")), file_of(path)
     # The exceptions of a wrong scene are better than the program's messages.
     native = native_scene(scene, bool(settings.get("lenient")))
     chosen = range(native.animation()[0]) if frames is None else frames_of(frames)
     words = [sys.executable, "-m", "juggler", "render", f"--output={path}", *_flags(settings)]
     words += [f"--frames={chosen.start}..{chosen.stop}", "--progress=json"]
-    with display(settings.get("progress"), live=False) as shown, _source(scene, native) as (word, text):
+    with display(progress, live=False) as shown, _source(scene, native) as (word, text):
         messages = _Messages(shown.callback)
         status = _run([*words, word], text, messages)
         if status == 0:

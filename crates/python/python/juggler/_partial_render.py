@@ -3,6 +3,7 @@
 import os
 
 from juggler import _native
+from juggler._files import file_name
 
 
 class PartialRender(bytes):
@@ -31,11 +32,11 @@ class PartialRender(bytes):
     @classmethod
     def open(cls, path):
         """Reads a `.jfilm` file."""
-        return cls(_native.PartialRender.open(os.fspath(path)).bytes())
+        return cls(_native.PartialRender.open(file_name(path)).bytes())
 
     def save(self, path):
         """Writes a `.jfilm` file."""
-        _native.PartialRender(bytes(self)).save(os.fspath(path))
+        _native.PartialRender(bytes(self)).save(file_name(path))
 
     @property
     def description(self):
@@ -47,17 +48,22 @@ class PartialRender(bytes):
 
 def native(partial_render):
     """Returns the partial render of a file or of bytes."""
+    if not isinstance(partial_render, (str, os.PathLike, bytes, bytearray, memoryview)):
+        kind = type(partial_render).__name__
+        raise TypeError(f"a partial render is a PartialRender, its bytes or a file, not {kind}")
     if isinstance(partial_render, (str, os.PathLike)):
-        return _native.PartialRender.open(os.fspath(partial_render))
+        return _native.PartialRender.open(file_name(partial_render))
     return _native.PartialRender(bytes(partial_render))
 
 
 def merge(partial_renders):
     """Joins partial renders, or `.jfilm` files, to the whole image, with the bits of an undivided
-    render.
+    render. A single one may be given without a list.
     """
     from juggler._image import Image
 
+    if isinstance(partial_renders, (str, os.PathLike, bytes, bytearray, memoryview)):
+        partial_renders = [partial_renders]
     return Image(_native.merge([native(one) for one in partial_renders]))
 
 

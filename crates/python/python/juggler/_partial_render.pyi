@@ -13,15 +13,17 @@ class PartialRender(bytes):
 
     def __new__(cls, data: bytes | bytearray | memoryview) -> Self: ...
     @classmethod
-    def open(cls, path: str | PathLike[str]) -> Self:
+    def open(cls, path: bytes | str | PathLike[str]) -> Self:
         """Reads a `.jfilm` file."""
-    def save(self, path: str | PathLike[str]) -> None:
+    def save(self, path: bytes | str | PathLike[str]) -> None:
         """Writes a `.jfilm` file."""
     @property
     def description(self) -> dict[str, Any]:
         """What is rendered, and which share of it: a dict."""
 
-def merge(partial_renders: Iterable[bytes | str | PathLike[str]]) -> Image:
+def merge(
+    partial_renders: Iterable[bytes | str | PathLike[str]] | bytes | str | PathLike[str],
+) -> Image:
     """Joins partial renders, or `.jfilm` files, to the whole image, with the bits of an undivided
-    render.
+    render. A single one may be given without a list.
     """

@@ -85,11 +85,18 @@ class Bar(Display):
             self._stream.flush()
 
 
+def checked(progress):
+    """Returns the argument `progress` of a render if `display` knows it."""
+    if progress is None or isinstance(progress, bool) or callable(progress):
+        return progress
+    raise TypeError(f"`progress` must be a function, True, False or None, not {progress!r}")
+
+
 def display(progress, live=True):
     """Returns the display that `progress` selects: a function, True, False, or `None` for a bar on
     a terminal and a growing image in a notebook.
     """
-    if callable(progress):
+    if callable(checked(progress)):
         return Callback(progress)
     if progress is None or progress is True:
         shell = notebook_shell()

@@ -3,7 +3,10 @@
 from contextlib import contextmanager
 
 from juggler import _native
+from juggler._arguments import seconds, source, whole
+from juggler._errors import SettingsError
 from juggler._image import Image
+from juggler._progress import checked
 from juggler._scene import bytes_of, native_scene, to_json, warn
 from juggler._trace import Explained
 
@@ -23,7 +26,8 @@ class Renderer:
     __slots__ = ("__weakref__", "_color_maps", "_native", "_progress", "_settings")
 
     def __init__(self, scene, **settings):
-        self._progress = settings.pop("progress", None)
+        scene = source(scene)
+        self._progress = checked(settings.pop("progress", None))
         if "max_memory" in settings:
             settings["max_memory"] = bytes_of(settings["max_memory"])
         if getattr(scene, "_lenient", False):
@@ -33,6 +37,8 @@ class Renderer:
         if own_camera:
             del settings["camera"]
         _native.check_settings(settings)
+        if settings.get("frame") is not None and settings.get("at") is not None:
+            raise SettingsError("`frame` and `at` (seconds) select the same thing: give one of them", "at")
         native = native_scene(scene, bool(settings.get("lenient")))
         with Explained(scene):
             self._native = _native.Renderer(native, settings)
@@ -143,6 +149,9 @@ class Renderer:
         """Renders better and better images: yields one each `every` seconds, at last the one that
         `render` returns. A loop that is left ends the render.
         """
+        return self._steps(seconds("every", every))
+
+    def _steps(self, every):
         steps = self._native.progressive(every)
         try:
             for image in steps:
@@ -173,6 +182,7 @@ class Renderer:
         from juggler._partial_render import PartialRender
         from juggler._progress import display
 
+        count, index = whole("count", count, 1), whole("index", index, 0)
         with display(self._progress if progress is None else progress, live=False) as shown:
             shard = self._native.render_shard(index, count, shown.callback)
         return self._warned(PartialRender(shard.bytes()))
@@ -196,7 +206,10 @@ class Renderer:
         """Explains the pixel in column `x` and row `y`, counted from 0 at the top left."""
         from juggler._probe import Probe
 
-        return self._warned(Probe(*self._native.probe((x, y), depth, branches, brightest)))
+        pixel = (whole("x", x, 0), whole("y", y, 0))
+        detail = {"depth": depth, "branches": branches, "brightest": brightest}
+        detail = (whole(name, value, 0) for name, value in detail.items())
+        return self._warned(Probe(*self._native.probe(pixel, *detail)))
 
     def _image(self, native):
         return Image(native, self._color_maps)

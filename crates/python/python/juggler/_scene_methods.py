@@ -1,7 +1,6 @@
 """Methods of scenes that need the renderer."""
 
-import os
-
+from ._files import file_name
 from ._node import Node
 
 
@@ -37,7 +36,7 @@ class SceneMethods(Node):
 
         from ._scene import native_scene
 
-        scene = native_scene(os.fspath(path), lenient)
+        scene = native_scene(file_name(path), lenient)
         sections = json.loads(scene.to_json_here())
         made = cls(**{name: value for name, value in sections.items() if name in cls.__match_args__})
         made._lenient = lenient
@@ -55,7 +54,7 @@ class SceneMethods(Node):
         """Saves the scene with its animation as a scene file, and its assets beside it."""
         from ._scene import native_scene
 
-        native_scene(self).save(os.fspath(path))
+        native_scene(self).save(file_name(path))
 
     def models(self):
         """Returns a description of each model of the scene, as `juggler.models` does."""

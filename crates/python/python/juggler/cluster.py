@@ -39,10 +39,12 @@ def frames(scene, frames, executor, workers=None, **settings):
     """Renders frames of an animation on the workers of an executor, and yields each `Image` in order. The
     arguments are those of `render`.
     """
+    from juggler._arguments import numbers_of_frames
     from juggler._cluster.animation import images
     from juggler._cluster.executor import ExecutorPool
 
-    yield from images(ExecutorPool(executor, workers), Job(scene, settings), frames)
+    frames = numbers_of_frames(frames, settings)
+    return images(ExecutorPool(executor, workers), Job(scene, settings), frames)
 
 
 def commands(scene, shards=16, system="slurm", output=None, **settings):

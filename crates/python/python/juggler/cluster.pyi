@@ -46,7 +46,7 @@ def render(
     executor: Executor,
     workers: int | None = None,
     *,
-    checkpoint: str | PathLike[str] | None = None,
+    checkpoint: bytes | str | PathLike[str] | None = None,
     checkpoint_every: float = 60.0,
     preview: bool = False,
     **settings: Unpack[Settings],
@@ -109,7 +109,7 @@ class Ray:
         self,
         scene: SceneLike,
         *,
-        checkpoint: str | PathLike[str] | None = None,
+        checkpoint: bytes | str | PathLike[str] | None = None,
         checkpoint_every: float = 60.0,
         preview: bool = False,
         **settings: Unpack[Settings],
@@ -126,7 +126,7 @@ class Ray:
     def render_movie(
         self,
         scene: SceneLike,
-        path: str | PathLike[str],
+        path: bytes | str | PathLike[str],
         frames: Iterable[float] | None = None,
         **settings: Unpack[Settings],
     ) -> None:

@@ -10,18 +10,19 @@ A driver works over a pool of workers with these methods:
 - `stop()`: gives up all work.
 """
 
-import os
 import time
 import warnings
 
+from juggler._arguments import seconds, source
 from juggler._cluster.dealer import BLOCK, Dealer, rounds_of
 from juggler._cluster.errors import ClusterError
 from juggler._cluster.mark import Mark
 from juggler._cluster.package import Package
 from juggler._cluster.worker import version
 from juggler._errors import FileError, SettingsError
+from juggler._files import file_name
 from juggler._image import Image
-from juggler._progress import Progress, display
+from juggler._progress import Progress, checked, display
 from juggler._renderer import Renderer
 from juggler._scene import warn
 
@@ -57,7 +58,8 @@ class Job:
     """Render of one image."""
 
     def __init__(self, scene, settings, checkpoint=None, checkpoint_every=60.0, preview=False):
-        self.progress = settings.pop("progress", None)
+        scene = source(scene)
+        self.progress = checked(settings.pop("progress", None))
         if settings.get("time") is not None:
             raise SettingsError("`time` acts on one machine only; give `samples` or `noise`")
         by_samples_alone = not any(settings.get(name) for name in ("aovs", "denoise", "noise"))
@@ -66,7 +68,8 @@ class Job:
             raise SettingsError(
                 message.format(next(n for n in ("aovs", "denoise", "noise") if settings.get(n)))
             )
-        self.checkpoint, self.every, self.preview = checkpoint, float(checkpoint_every), preview
+        self.checkpoint = None if checkpoint is None else file_name(checkpoint)
+        self.every, self.preview = seconds("checkpoint_every", checkpoint_every), preview
         self.package = Package(scene, bool(settings.get("lenient")))
         self.renderer = Renderer(self.package.native, **settings)
         self.frame, self.kind = self.renderer.frame, "still"
@@ -100,7 +103,7 @@ class Job:
         self.ledger = self.renderer._native.ledger()
         warn(self.renderer._native.take_warnings())
         if self.checkpoint is not None:
-            damage = self.ledger.resume(os.fspath(self.checkpoint))
+            damage = self.ledger.resume(self.checkpoint)
             if damage:
                 warnings.warn(
                     f"{damage}; continuing from the previous checkpoint", RuntimeWarning, stacklevel=4

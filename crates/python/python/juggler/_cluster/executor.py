@@ -3,6 +3,7 @@
 import os
 import time
 
+from juggler._arguments import whole
 from juggler._cluster.worker import work
 
 # Bytes of packages that travel with each task; larger ones travel when a worker asks for them.
@@ -23,12 +24,8 @@ class ExecutorPool:
     def __init__(self, executor, workers=None):
         if not callable(getattr(executor, "submit", None)):
             raise TypeError(f"an executor has a method `submit`; {type(executor).__name__} has none")
-        if workers is not None and workers < 1:
-            from juggler._errors import SettingsError
-
-            raise SettingsError(f"`workers` must be at least 1, not {workers}")
         self._executor = executor
-        self._given = workers
+        self._given = None if workers is None else whole("workers", workers, 1)
         self._is_dask = type(executor).__module__.split(".")[0] == "distributed"
         self._futures = []
         self._package = self._dask_package = None

@@ -294,9 +294,11 @@ class Ray:
 
     def frames(self, scene, frames, **settings):
         """Renders frames of an animation, and yields each `Image` in order."""
+        from juggler._arguments import numbers_of_frames
         from juggler._cluster.animation import images
 
-        yield from images(self._open_pool(), Job(scene, settings), frames)
+        frames = numbers_of_frames(frames, settings)
+        return images(self._open_pool(), Job(scene, settings), frames)
 
     def render_movie(self, scene, path, frames=None, **settings):
         """Renders frames of an animation as a movie, whose format the ending of `path` selects. `frames`
