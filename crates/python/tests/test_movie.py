@@ -10,7 +10,7 @@ import unittest.mock
 
 import juggler as jg
 from juggler._movie import frames_of
-from support import SMALL, Folder, environment, needs_numpy, numpy, python
+from support import ROOT, SMALL, Folder, environment, needs_numpy, numpy, python
 
 
 class Movies(Folder):
@@ -58,6 +58,12 @@ class Movies(Folder):
             str(self.folder / "c.gif"),
         )
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
+    def test_the_clip_decides_how_many_frames_a_movie_has(self):
+        words = []
+        with unittest.mock.patch("juggler._movie._run", lambda all, *_: words.extend(all) or 0):
+            jg.render_movie(ROOT / "scenes/models/robot.glb", self.folder / "a.gif", animation="Idle")
+        self.assertIn("--frames=..", words)
 
     def test_ctrl_c_ends_a_movie(self):
         code = "import juggler, signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)\n"

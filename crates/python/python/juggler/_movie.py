@@ -122,7 +122,7 @@ class _Messages:
     def __init__(self, callback):
         self._callback = callback
         self._start = time.monotonic()
-        # Samples of a frame.
+        # Samples of all frames.
         self._samples = 0
         self._others = []
 
@@ -138,17 +138,17 @@ class _Messages:
         number, count = event.get("frame", 1), event.get("frames", 1)
         if event["event"] == "start":
             width, height = event["size"]
-            self._samples = width * height * (event["samples"] or 0)
-            self.show((number - 1) / count, None, count)
+            self._samples = count * width * height * (event["samples"] or 0)
+            self.show((number - 1) / count, None)
         elif event["event"] == "progress":
             left = event.get("film_eta_seconds", event["eta_seconds"])
-            self.show(event.get("film_fraction", event["fraction"]), left, count)
+            self.show(event.get("film_fraction", event["fraction"]), left)
 
-    def show(self, share, left, count):
+    def show(self, share, left):
         """Shows the share of all frames."""
         if self._callback:
             seconds = time.monotonic() - self._start
-            self._callback("rendering", share, seconds, left, round(share * count * self._samples))
+            self._callback("rendering", share, seconds, left, round(share * self._samples))
 
     def warnings(self):
         """Warnings of the program."""
@@ -214,14 +214,15 @@ def render_movie(scene, path, frames, settings):
     progress, path = checked(settings.get("progress")), file_of(path)
     # The exceptions of a wrong scene are better than the program's messages.
     native = native_scene(scene, bool(settings.get("lenient")))
-    chosen = range(native.animation()[0]) if frames is None else frames_of(frames)
+    # With all frames, a file `.webp` is a movie, too. The clip of a model decides how many there are.
+    chosen = ".." if frames is None else "{0.start}..{0.stop}".format(frames_of(frames))
     words = [sys.executable, "-m", "juggler", "render", f"--output={path}", *_flags(settings)]
-    words += [f"--frames={chosen.start}..{chosen.stop}", "--progress=json"]
+    words += [f"--frames={chosen}", "--progress=json"]
     with display(progress, live=False) as shown, _source(scene, native) as (word, text):
         messages = _Messages(shown.callback)
         status = _run([*words, word], text, messages)
         if status == 0:
-            messages.show(1.0, 0.0, len(chosen))
+            messages.show(1.0, 0.0)
     warn(messages.warnings())
     if status == 2:
         raise SettingsError(messages.error())

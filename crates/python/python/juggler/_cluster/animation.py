@@ -79,7 +79,8 @@ def render_movie(pool, job, path, frames):
     """Renders frames as a movie, see `juggler.cluster.Ray.render_movie`."""
     from juggler import _native
 
-    count, frames_per_second = job.package.native.animation()
+    # The clip of a model decides how many frames there are.
+    count, frames_per_second = job.renderer._native.scene().animation()
     frames = range(count) if frames is None else frames_of(frames)
     path = file_of(path)
     folder = path + ".frames"
