@@ -142,12 +142,22 @@ class Renderers(unittest.TestCase):
         with self.assertRaises(asyncio.TimeoutError):
             asyncio.run(limited())
 
+    def test_the_last_progress_of_short_renders_has_the_share_1(self):
+        seen = []
+        renderer = jg.Renderer("juggler", size=(32, 18), samples=2, progress=seen.append)
+        renderer.render()
+        shard = renderer.render_shard(0, 1)
+        renderer.extend(shard, samples=4)
+        self.assertEqual([progress.share for progress in seen if progress.share == 1], [1, 1, 1])
+        self.assertEqual((seen[-1].stage, seen[-1].samples), ("rendering", 4 * 32 * 18))
+
     def test_progress_is_reported(self):
         seen = []
         start = time.monotonic()
         jg.render("juggler", size=(320, 180), samples=4096, time=0.7, progress=seen.append)
-        self.assertTrue(2 <= len(seen) <= 10 * (time.monotonic() - start) + 1, len(seen))
+        self.assertTrue(2 <= len(seen) <= 10 * (time.monotonic() - start) + 2, len(seen))
         self.assertTrue(all(0 <= progress.share <= 1 for progress in seen) and seen[-1].stage == "rendering")
+        self.assertEqual(seen[-1].share, 1)
         self.assertLess(seen[-1].seconds_left, 0.7)
 
     def test_errors_of_callbacks_cancel(self):

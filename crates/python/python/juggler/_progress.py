@@ -1,6 +1,7 @@
 """Progress of renders."""
 
 import sys
+import time
 
 # Seconds after which a bar appears.
 _DELAY = 1.0
@@ -14,7 +15,7 @@ class Progress:
     pixels so far.
 
     Meshes and pictures are prepared; then the world is built. The share may decrease while a stage
-    finds more work.
+    finds more work. The last progress of a complete render has the share 1.
     """
 
     _fields = ("stage", "share", "seconds", "seconds_left", "samples")
@@ -49,6 +50,9 @@ class Display:
     def __enter__(self):
         return self
 
+    def finish(self, image=None):
+        """Notes that the render is done, and its image if there is one."""
+
     def __exit__(self, *error):
         return None
 
@@ -57,7 +61,23 @@ class Callback(Display):
     """Calls a function with each progress."""
 
     def __init__(self, function):
-        self.callback = lambda *values: function(Progress(*values))
+        self._function = function
+        self._start = time.monotonic()
+        self._samples = 0
+
+    def callback(self, *values):
+        """Calls the function with the values of a `Progress`."""
+        progress = Progress(*values)
+        self._samples = progress.samples
+        self._function(progress)
+
+    def finish(self, image=None):
+        """Calls the function with the share 1, which the renderer does not report."""
+        samples = self._samples
+        if image is not None:
+            width, height = image.size
+            samples = round(image.stats["samples"] * width * height)
+        self.callback("rendering", 1.0, time.monotonic() - self._start, 0.0, samples)
 
 
 class Bar(Display):

@@ -6,7 +6,7 @@ class Progress:
     pixels so far.
 
     Meshes and pictures are prepared; then the world is built. The share may decrease while a stage
-    finds more work.
+    finds more work. The last progress of a complete render has the share 1.
     """
 
     stage: Literal["reading", "preparing", "building", "rendering"]

@@ -143,7 +143,9 @@ class Renderer:
         with display(progress) as shown:
             if shown.is_live:
                 return self._warned(shown.follow(self.progressive(every=0.25)))
-            return self._warned(self._image(self._native.render(shown.callback)))
+            image = self._image(self._native.render(shown.callback))
+            shown.finish(image)
+        return self._warned(image)
 
     def progressive(self, every=0.5):
         """Renders better and better images: yields one each `every` seconds, at last the one that
@@ -185,6 +187,7 @@ class Renderer:
         count, index = whole("count", count, 1), whole("index", index, 0)
         with display(self._progress if progress is None else progress, live=False) as shown:
             shard = self._native.render_shard(index, count, shown.callback)
+            shown.finish()
         return self._warned(PartialRender(shard.bytes()))
 
     def extend(self, partial_render, samples=None, progress=None):
@@ -199,8 +202,9 @@ class Renderer:
             renderer = Renderer(self._native.scene(), **{**self._settings, "samples": samples})
             renderer.frame = self.frame
         with display(self._progress if progress is None else progress, live=False) as shown:
-            image = renderer._native.extend(native(partial_render), shown.callback)
-        return renderer._warned(self._image(image))
+            image = self._image(renderer._native.extend(native(partial_render), shown.callback))
+            shown.finish(image)
+        return renderer._warned(image)
 
     def probe(self, x, y, *, depth=5, branches=5, brightest=5):
         """Explains the pixel in column `x` and row `y`, counted from 0 at the top left."""
