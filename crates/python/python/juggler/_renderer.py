@@ -38,7 +38,7 @@ class Renderer:
             del settings["camera"]
         _native.check_settings(settings)
         if settings.get("frame") is not None and settings.get("at") is not None:
-            raise SettingsError("`frame` and `at` (seconds) select the same thing: give one of them", "at")
+            raise SettingsError("`frame` and `at` (seconds) both select the frame; give one of them", "at")
         native = native_scene(scene, bool(settings.get("lenient")))
         with Explained(scene):
             self._native = _native.Renderer(native, settings)
