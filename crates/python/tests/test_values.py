@@ -179,6 +179,13 @@ class Unusual(unittest.TestCase):
                     jg.SceneError, "contains itself, or its parts are nested too deeply"
                 ):
                     jg.render(scene)
+        nested = math.inf
+        for _ in range(600):
+            nested = [nested]
+        with self.assertRaisesRegex(
+            jg.SceneError, "nested too deeply|must be a finite number|expected a finite"
+        ):
+            jg.render({"version": 1, "objects": nested})
 
     def test_other_values_are_refused(self):
         for value in (object(), {1}, b"a", 1j, print):

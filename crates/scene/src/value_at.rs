@@ -58,7 +58,11 @@ impl Scene {
     /// assert_eq!(unknown.to_string(), "the scene has no `object`; did you mean `objects`?");
     /// ```
     pub fn value_at(&self, path: &Path) -> Result<Value, UnknownPath> {
-        let path = &self.stored_path(path, path.steps().len());
+        self.stored_value_at(&self.stored_path(path, path.steps().len()))
+    }
+
+    /// The value at a path, where a texture that was written inline is its name.
+    fn stored_value_at(&self, path: &Path) -> Result<Value, UnknownPath> {
         let Some(Step::Key(section)) = path.steps().first() else {
             return match path.steps().first() {
                 None => Ok(self.to_value()),
@@ -92,8 +96,12 @@ impl Scene {
         let steps = path.steps();
         for length in (1..=most.min(steps.len())).rev() {
             let (place, rest) = steps.split_at(length);
-            let pointer = place.iter().fold(Path::root(), with_step).pointer();
-            if self.description.textures.contains_key(&pointer) {
+            let place = place.iter().fold(Path::root(), with_step);
+            let pointer = place.pointer();
+            // A value that replaced the texture hides it.
+            let stored = || self.stored_value_at(&self.stored_path(&place, length - 1));
+            let is_texture = || stored().is_ok_and(|value| value == pointer.as_str());
+            if self.description.textures.contains_key(&pointer) && is_texture() {
                 return rest.iter().fold(Path::root().key("textures").key(pointer), with_step);
             }
         }

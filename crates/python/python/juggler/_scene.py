@@ -45,7 +45,10 @@ def to_json(value, path=""):
             text = json.dumps(plain(value, collect), default=plain, allow_nan=False)
     except (ValueError, RecursionError, Unfit) as error:
         if str(error).startswith("Out of range float"):
-            error = _not_finite(plain(value, collect), path) or error
+            try:
+                error = _not_finite(plain(value, collect), path) or error
+            except RecursionError as deeper:
+                error = deeper
         raise _mistake(error) from None
     warn(collect.warnings)
     return text, list(collect.assets.items())
