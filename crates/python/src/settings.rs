@@ -79,6 +79,7 @@ impl RenderSettings {
                 read.set(&name, &value)?;
             }
         }
+        read.settings.check_ranges().map_err(convert)?;
         Ok(read)
     }
 

@@ -33,9 +33,11 @@ impl Scene {
     }
 
     fn set(&mut self, pointer: &str, value: Value) -> Result<(), Vec<Finding>> {
-        let path = Path::from_pointer(pointer);
-        let path = self.stored_path(&path, path.steps().len().saturating_sub(1));
-        let pointer = &path.pointer();
+        let given = Path::from_pointer(pointer);
+        let path = self.stored_path(&given, given.steps().len().saturating_sub(1));
+        let stored = path.pointer();
+        // Messages show what was given.
+        let pointer = if path == given { pointer } else { &stored };
         let section = match path.steps().first() {
             Some(Step::Key(section)) => section.clone(),
             _ => String::new(),
