@@ -134,7 +134,7 @@ impl Image {
         match aov {
             "object_id" => Some((0..names.entries).map(|entry| names.object(entry)).collect()),
             "material_id" => {
-                // A material without a name has its index; those that the image shows are enough.
+                // A material without a name is called by its index, up to the last material that the image shows.
                 let named = names.materials.last().map_or(0, |(id, _)| id.0.saturating_add(1));
                 let layer = self.image.layers().find(|(layer, _)| layer.name == aov);
                 let channels = layer.map_or(&[][..], |(_, channels)| channels);
