@@ -10,6 +10,12 @@ pub enum FilmAov {
     /// Fraction of the pixel that hits a surface; second channel, number of samples that are not
     /// finite; third channel, number of clamped samples.
     Coverage,
+    /// Weights of the samples by what their camera rays see, from which alpha follows: red, objects;
+    /// green, the hidden background, also through glass; blue, shadow catchers.
+    Alpha,
+    /// Luminance of the shadow catchers that camera rays see, times the filter weight: red, with all
+    /// objects; green, without those that take light from them.
+    ShadowCatcher,
     /// Albedo of the first hit.
     Albedo,
     /// Unit shading normal of the first hit, in world space.

@@ -138,6 +138,14 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LOOK", value_parser = value::look, hide_short_help = true)]
     pub look: Option<DisplayLook>,
 
+    /// Hide the background and write alpha
+    ///
+    /// The background's light stays. PNG, WebP, EXR and APNG files store alpha; GIF stores whether
+    /// it is at least one half. Colors are straight in PNG, WebP and APNG, and multiplied by alpha in
+    /// EXR.
+    #[arg(long)]
+    pub transparent: bool,
+
     /// AOVs to write: albedo,normal,depth and others, or all
     ///
     /// Others include light_groups and crypto_object; the names that Blender, Arnold and V-Ray use

@@ -114,7 +114,8 @@ impl From<ImageError> for Failure {
             ImageError::UnknownFormat { .. }
             | ImageError::ReadOnly { .. }
             | ImageError::Dimensions { .. }
-            | ImageError::Primaries { .. } => Self::Invalid(message),
+            | ImageError::Primaries { .. }
+            | ImageError::Transparency { .. } => Self::Invalid(message),
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
         }

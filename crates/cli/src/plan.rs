@@ -21,6 +21,7 @@ use crate::target::Target;
 use crate::value::FrameRange;
 use juggler::film::shard::{self, FrameShard};
 use juggler::imaging::Options;
+use juggler::scene::Scene;
 use juggler::{Limit, Settings, by_name};
 use std::ops::Range;
 use std::time::Duration;
@@ -159,12 +160,15 @@ impl Plan {
         }
     }
 
-    /// Whether the picture needs a film in memory instead of being written row by row.
-    pub fn needs_film(&self, frame_output: &FrameOutput) -> bool {
+    /// Whether the picture of a scene needs a film in memory instead of being written row by row.
+    pub fn needs_film(&self, scene: &Scene, frame_output: &FrameOutput) -> bool {
         let is_kept = self.output_kind == OutputKind::PartialRender
             || frame_output.checkpoint.is_some()
             || self.settings.limit != Limit::Samples;
-        is_kept || !self.settings.aovs.is_empty() || self.settings.denoiser.is_some()
+        is_kept
+            || !self.settings.aovs.is_empty()
+            || self.settings.denoiser.is_some()
+            || self.settings.transparent_of(scene)
     }
 
     /// Whether existing pictures are kept if the same command made them from the same scene.
@@ -278,6 +282,7 @@ fn settings(args: &RenderArgs, output_kind: OutputKind) -> Result<Settings, Fail
         white_balance: args.white_balance,
         primaries: args.primaries,
         dither: args.dither,
+        transparent: args.transparent.then_some(true),
         ..args.view.settings()?
     })
 }

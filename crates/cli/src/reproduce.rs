@@ -25,6 +25,7 @@ pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {
         shutter,
         seed,
         crop,
+        transparent,
         aovs: _,
         denoiser: _,
         curve: _,
@@ -47,6 +48,7 @@ pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {
     words.flag("--shutter", shutter.map(|[open, close]| format!("{open}..{close}")));
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
+    words.switch("--transparent", *transparent == Some(true));
     words.tone(&plan.settings);
     words.layers(&plan.settings);
     words.encoding(plan.options());
@@ -101,6 +103,12 @@ impl CommandLine {
         self.flag("--look", Some(look.name()).filter(|_| look != DisplayLook::Plain));
         self.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
         self.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
+    }
+
+    fn switch(&mut self, name: &str, is_given: bool) {
+        if is_given {
+            self.0.push_str(&format!(" {name}"));
+        }
     }
 
     fn flag(&mut self, name: &str, value: Option<impl Display>) {

@@ -188,7 +188,7 @@ fn pictures(name: &str) -> Vec<Vec<u8>> {
         let header = Header { options, metadata: metadata.clone(), crop, ..Header::new(19, 18) };
         let memory = Shared::default();
         let mut writer = writer(format, Destination::seekable("memory", memory.clone()), &header).ok()?;
-        writer.write_rows(image.pixels()).ok()?;
+        writer.write_rows(image.pixels().into()).ok()?;
         writer.finish().ok()?;
         Some(memory.with(|memory| memory.get_ref().clone()))
     });

@@ -60,7 +60,7 @@ fn tone(pixels: &[Rgb]) {
 fn write(format: ImageFormat, header: &Header, pixels: &[Rgb]) -> Result<u64, ImageError> {
     let counter = Counter::default();
     let mut rows = writer(format, Destination::seekable("counter", counter.clone()), header)?;
-    rows.write_rows(pixels)?;
+    rows.write_rows(pixels.into())?;
     rows.finish()?;
     Ok(counter.0.load(Ordering::Relaxed))
 }

@@ -1,6 +1,6 @@
 //! Errors of image and movie files.
 
-use crate::{ImageFormat, Primaries};
+use crate::{DisplayLook, ImageFormat, Primaries};
 use std::io;
 
 /// Why an image could not be written, read or compared. `file` is the file as the user named it.
@@ -149,6 +149,18 @@ pub enum ImageError {
         format: ImageFormat,
         /// Primaries of the tone settings.
         primaries: Primaries,
+    },
+    /// The format or its display look cannot store alpha.
+    #[error(
+        "a {format} file{} cannot be transparent; use .png, .webp or .exr{}, or a background",
+        if *look == DisplayLook::Plain { String::new() } else { format!(" with the display look `{}`", look.name()) },
+        if *look == DisplayLook::Plain { "" } else { " without a look" }
+    )]
+    Transparency {
+        /// Format of the file.
+        format: ImageFormat,
+        /// Display look of the file.
+        look: DisplayLook,
     },
     /// The caller passed incomplete rows, too many rows or too few.
     #[error("{given} pixels given, but {expected} expected")]

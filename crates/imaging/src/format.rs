@@ -127,6 +127,11 @@ impl ImageFormat {
         matches!(self, Self::Png | Self::Exr | Self::Hdr)
     }
 
+    /// Whether written files can store alpha.
+    pub fn stores_alpha(self) -> bool {
+        matches!(self, Self::Png | Self::Webp | Self::Exr)
+    }
+
     /// Longest side of an image in pixels.
     pub fn longest_side(self) -> u32 {
         match self {
@@ -165,13 +170,14 @@ impl ImageFormat {
             // A block of 16 rows as floats, planes and compressed; the offset table; for pipes the
             // whole file.
             Self::Exr => {
-                let pixel = if header.options.exr_depth == SampleDepth::Half { 6 } else { 12 };
+                let sample = if header.options.exr_depth == SampleDepth::Half { 2 } else { 4 };
+                let pixel = sample * if header.transparent { 4 } else { 3 };
                 let pipe = if seekable { 0 } else { whole(pixel).saturating_mul(2) };
-                (width * 16 * (12 + pixel * 6)).saturating_add(height * 24).saturating_add(pipe)
+                (width * 16 * (16 + pixel * 6)).saturating_add(height * 24).saturating_add(pipe)
             }
             Self::Hdr => width * 16,
-            // 8-bit pixels with and without alpha, and the growing output.
-            Self::Webp => whole(3 + 4 + 8).saturating_add(width * 64),
+            // 8-bit pixels, a copy of them with alpha, and the growing output.
+            Self::Webp => whole(4 + 4 + 8).saturating_add(width * 64),
             Self::Pfm => (width * 24).saturating_add(if seekable { 0 } else { whole(24) }),
             // These are not written.
             Self::Tiff | Self::Tga | Self::Bmp | Self::Gif => 0,

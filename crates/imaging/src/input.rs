@@ -2,8 +2,9 @@
 //! files, which begin with no magic number.
 
 use crate::codec::{self, ImageInfo, Source};
-use crate::{ImageError, ImageFormat, regular};
-use juggler_math::Image;
+use crate::raster::{decode_raster, inspect_raster};
+use crate::{ImageError, ImageFormat, RasterLayout, regular};
+use juggler_math::{Image, PixelRows, Rgb};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -37,6 +38,40 @@ pub fn read(path: &Path) -> Result<Image, ImageError> {
 /// Reads an image as linear RGB within the given limits.
 pub fn read_within(path: &Path, limits: &Limits) -> Result<Image, ImageError> {
     decode(&path.display().to_string(), open(path)?, limits)
+}
+
+/// Image with alpha.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlphaImage {
+    /// Linear RGB, multiplied by alpha.
+    pub colors: Image,
+    /// Alpha of the pixels, 0 to 1, row by row from the top; `None` if the file has none.
+    pub alpha: Option<Vec<f32>>,
+}
+
+impl AlphaImage {
+    /// All pixels, row by row from the top.
+    pub fn rows(&self) -> PixelRows<'_> {
+        PixelRows { colors: self.colors.pixels(), alpha: self.alpha.as_deref() }
+    }
+}
+
+/// Reads an image of any supported format with its alpha, within the default limits. Colors are
+/// linear RGB; straight ones, which all formats but EXR store, are multiplied by alpha.
+pub fn read_with_alpha(path: &Path) -> Result<AlphaImage, ImageError> {
+    let RasterLayout { format, width, height, channels, .. } = inspect_raster(path)?;
+    if !matches!(channels, 2 | 4) {
+        return Ok(AlphaImage { colors: read(path)?, alpha: None });
+    }
+    let raster = decode_raster(&path.display().to_string(), open(path)?, &Limits::default())?;
+    let alpha = raster.alpha().unwrap_or_default();
+    let mut pixels: Vec<Rgb> = raster.to_pixels();
+    if format != ImageFormat::Exr {
+        pixels.iter_mut().zip(&alpha).for_each(|(pixel, alpha)| *pixel = *pixel * *alpha);
+    }
+    // The number of samples is checked above.
+    let colors = Image::from_pixels(width, height, pixels).unwrap_or_else(|| Image::filled(width, height, Rgb::BLACK));
+    Ok(AlphaImage { colors, alpha: Some(alpha) })
 }
 
 /// Reads an image from bytes; `file` names them in messages.

@@ -47,7 +47,7 @@ pub use error::ImageError;
 pub use exr_windows::{CropFrame, ExrWindows, PixelWindow};
 pub use flip::Flip;
 pub use format::ImageFormat;
-pub use input::{Limits, decode, inspect, read, read_within};
+pub use input::{AlphaImage, Limits, decode, inspect, read, read_with_alpha, read_within};
 pub use look::DisplayLook;
 pub use output::{Destination, create, to_memory, to_standard_output, write_image};
 pub use raster::{Raster, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster};

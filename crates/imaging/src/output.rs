@@ -2,7 +2,7 @@
 
 use crate::atomic::{AtomicFile, is_device_or_pipe};
 use crate::{Header, ImageError, ImageFormat, RowWriter, writer};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows};
 use std::fs::File;
 use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -83,7 +83,7 @@ impl Seek for BufferedPipe {
 /// (`/dev/null`) and named pipes are written directly.
 pub fn create(path: &Path, format: ImageFormat, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
-    header.check_primaries(format)?;
+    header.check(format)?;
     let (destination, file) = whole_file(path)?;
     let name = destination.name().to_owned();
     let rows = writer(format, destination, header)?;
@@ -122,12 +122,16 @@ pub fn to_standard_output(format: ImageFormat, header: &Header) -> Result<Box<dy
 /// assert!(bytes.starts_with(b"\x89PNG"));
 /// # Ok::<(), juggler_imaging::ImageError>(())
 /// ```
-pub fn to_memory(format: ImageFormat, header: &Header, pixels: &[Rgb]) -> Result<Vec<u8>, ImageError> {
+pub fn to_memory<'a>(
+    format: ImageFormat,
+    header: &Header,
+    pixels: impl Into<PixelRows<'a>>,
+) -> Result<Vec<u8>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
-    header.check_primaries(format)?;
+    header.check(format)?;
     let bytes = SharedBytes::default();
     let mut rows = writer(format, Destination::seekable("memory", bytes.clone()), header)?;
-    rows.write_rows(pixels)?;
+    rows.write_rows(pixels.into())?;
     rows.finish()?;
     Ok(std::mem::take(bytes.lock().get_mut()))
 }
@@ -161,7 +165,7 @@ impl Seek for SharedBytes {
 /// Writes a complete image.
 pub fn write_image(rows: Box<dyn RowWriter>, image: &Image) -> Result<(), ImageError> {
     let mut rows = rows;
-    rows.write_rows(image.pixels())?;
+    rows.write_rows(image.pixels().into())?;
     rows.finish()
 }
 
@@ -173,7 +177,7 @@ struct WholeFile {
 }
 
 impl RowWriter for WholeFile {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
         self.rows.write_rows(rows)
     }
 

@@ -24,6 +24,18 @@ pub struct Raster {
 }
 
 impl Raster {
+    /// Alpha of the pixels, 0 to 1; `None` if the file has none. Values that are not finite count as
+    /// 0.
+    pub fn alpha(&self) -> Option<Vec<f32>> {
+        let channels = usize::from(self.layout.channels);
+        let limited = |value: f32| if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
+        matches!(channels, 2 | 4).then(|| match &self.samples {
+            RasterSamples::Bytes(levels) => alphas(levels, channels, |level| f32::from(level) / 255.0),
+            RasterSamples::Words(levels) => alphas(levels, channels, |level| f32::from(level) / 65_535.0),
+            RasterSamples::Floats(values) => alphas(values, channels, limited),
+        })
+    }
+
     /// Linear RGB pixels with sRGB primaries. Gray becomes equal channels; alpha is ignored.
     pub fn to_pixels(&self) -> Vec<Rgb> {
         let RasterLayout { channels, to_srgb, .. } = self.layout;
@@ -50,6 +62,11 @@ impl Raster {
         codec::convert_primaries(&mut pixels, to_srgb);
         pixels
     }
+}
+
+/// Alpha of pixels of 2 or 4 channels, by the value of a sample.
+fn alphas<T: Copy>(samples: &[T], channels: usize, value: impl Fn(T) -> f32) -> Vec<f32> {
+    samples.chunks_exact(channels).filter_map(|pixel| pixel.last().copied()).map(value).collect()
 }
 
 /// Colors of pixels whose samples have these linear values.

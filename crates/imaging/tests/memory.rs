@@ -36,7 +36,7 @@ fn writers_keep_to_the_memory_they_ask_for() {
             false => Destination::stream("pipe", std::io::sink()),
         };
         let mut writer = writer(format, destination, &header).unwrap();
-        (0..18).for_each(|_| writer.write_rows(&rows).unwrap());
+        (0..18).for_each(|_| writer.write_rows((&rows).into()).unwrap());
         writer.finish().unwrap();
         let (used, declared) = (peak() - before, format.memory_needed(&header, seekable));
         assert!(used <= declared, "{format}: took {used} bytes more, declared {declared}");

@@ -43,9 +43,9 @@ impl Integrator for AmbientOcclusion {
         );
     }
 
-    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
+    fn escape(&self, world: &World, ray: &Ray, _path: &PathState, output: &mut VertexOutput) {
         output.record_miss(ray);
-        output.add(Rgb::WHITE, LightGroup::REST);
+        output.add(if world.hides_background() { Rgb::BLACK } else { Rgb::WHITE }, LightGroup::REST);
     }
 }
 

@@ -25,6 +25,9 @@ pub struct AovRecord {
     groups: Vec<Option<usize>>,
     /// Plane that receives all light.
     color: Option<usize>,
+    /// Planes of [`FilmAov::Alpha`] and [`FilmAov::ShadowCatcher`].
+    alpha: Option<usize>,
+    shadow_catcher: Option<usize>,
     /// Filter weight of each sample.
     weights: Vec<f32>,
     /// Whether the denoising features of each sample are recorded.
@@ -50,6 +53,8 @@ impl AovRecord {
             }
         }
         let color = aovs.index_of(FilmAov::HalfFeature(DenoisingFeature::Color));
+        let alpha = aovs.index_of(FilmAov::Alpha);
+        let shadow_catcher = aovs.index_of(FilmAov::ShadowCatcher);
         let camera = camera.filter(|_| aovs.index_of(FilmAov::PlanarDepth).is_some()).cloned();
         let aovs = aovs.clone();
         Self {
@@ -59,6 +64,8 @@ impl AovRecord {
             path_kinds,
             groups,
             color,
+            alpha,
+            shadow_catcher,
             weights: Vec::new(),
             has_features: Vec::new(),
             planes: Vec::new(),
@@ -80,6 +87,12 @@ impl AovRecord {
         self.has_features.resize(self.weights.len(), false);
         self.planes.clear();
         self.planes.resize(self.weights.len() * self.aovs.planes.len(), Rgb::BLACK);
+        // Camera rays see objects unless they reach the background.
+        if let Some(plane) = self.alpha {
+            for slot in 0..self.weights.len() {
+                self.add(slot, Some(plane), Rgb::new(self.weights[slot], 0.0, 0.0));
+            }
+        }
         self.hit_ids.clear();
         if self.aovs.masks {
             self.hit_ids.resize(self.weights.len(), HitIds::EMPTY);
@@ -158,6 +171,32 @@ impl AovRecord {
         }
     }
 
+    /// Records that a camera ray reached the hidden background, also through glass, with the
+    /// throughput `beta`, which contains the filter weight.
+    fn record_transparency(&mut self, slot: usize, beta: Rgb) {
+        let transmitted = self.filtered_luminance(slot, beta);
+        self.add(slot, self.alpha, Rgb::new(-transmitted, transmitted, 0.0));
+    }
+
+    /// Records that a camera ray reached a shadow catcher, likewise.
+    pub fn record_shadow_catcher(&mut self, slot: usize, beta: Rgb) {
+        let caught = self.filtered_luminance(slot, beta);
+        self.add(slot, self.alpha, Rgb::new(-caught, 0.0, caught));
+    }
+
+    /// Records the radiance of the shadow catchers of a sample, with all objects and without those
+    /// that take light from them.
+    pub fn record_caught_light(&mut self, slot: usize, lit: Rgb, unoccluded: Rgb) {
+        self.add(slot, self.shadow_catcher, Rgb::new(lit.luminance(), unoccluded.luminance(), 0.0));
+    }
+
+    /// Luminance of a throughput that contains the filter weight: exactly the weight if nothing
+    /// attenuates the ray.
+    fn filtered_luminance(&self, slot: usize, beta: Rgb) -> f32 {
+        let weight = self.weights[slot];
+        if weight == 0.0 { 0.0 } else { weight * (beta / weight).luminance() }
+    }
+
     /// Records denoising features: the first surface that is not specular, with the throughput
     /// `weight` of the specular path to it.
     fn record_features(&mut self, slot: usize, weight: Rgb, hit: &SurfaceHit) {
@@ -216,7 +255,11 @@ impl VertexOutput<'_> {
     /// Records that the ray left the world.
     pub fn record_miss(&mut self, ray: &Ray) {
         let slot = self.path.slot as usize;
-        if let Some(record) = self.buffers.record.as_mut().filter(|_| self.path.is_camera_ray()) {
+        let Some(record) = &mut self.buffers.record else { return };
+        if self.path.history.sees_backdrop {
+            record.record_transparency(slot, self.beta);
+        }
+        if self.path.is_camera_ray() {
             record.record_miss(slot, ray);
         }
     }

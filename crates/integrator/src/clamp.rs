@@ -35,7 +35,7 @@ impl PathKind {
 }
 
 /// Limits applied to the samples of a pass.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ClampState {
     limits: Clamp,
     /// Absolute filter weight of each sample, since limits apply to radiance before filtering.

@@ -179,13 +179,15 @@ pub struct AovSet {
     film_aovs: FilmAovs,
     names: Names,
     denoiser: Option<Denoiser>,
+    transparent: bool,
     /// Number of channels of all AOVs.
     channels: usize,
 }
 
 impl AovSet {
-    /// Selects the film AOVs for the AOVs and the denoiser of a scene with these names.
-    pub fn new(aovs: &[Aov], denoiser: Option<Denoiser>, names: &Names) -> Self {
+    /// Selects the film AOVs for the AOVs and the denoiser of a scene with these names, and for the
+    /// alpha of a `transparent` picture.
+    pub fn new(aovs: &[Aov], denoiser: Option<Denoiser>, names: &Names, transparent: bool) -> Self {
         let aovs: Vec<Aov> = Aov::ALL.into_iter().filter(|aov| aovs.contains(aov)).collect();
         let mut planes: Vec<FilmAov> = Vec::new();
         let mut known = HashSet::new();
@@ -194,15 +196,16 @@ impl AovSet {
             let half = (denoiser == Some(Denoiser::Own)).then_some(FilmAov::HalfFeature(feature));
             whole.into_iter().chain(half)
         });
+        let alpha = transparent.then_some([FilmAov::Alpha, FilmAov::ShadowCatcher]);
         let needed = aovs.iter().flat_map(|aov| aov.needs(names));
-        for aov in needed.chain(features.filter(|_| denoiser.is_some())) {
+        for aov in alpha.into_iter().flatten().chain(needed).chain(features.filter(|_| denoiser.is_some())) {
             if known.insert(aov) {
                 planes.push(aov);
             }
         }
         let masks = aovs.iter().any(|aov| aov.needs_masks());
         let names = if aovs.is_empty() { Names::default() } else { names.clone() };
-        let mut set = Self { film_aovs: FilmAovs { planes, masks }, aovs, names, denoiser, channels: 0 };
+        let mut set = Self { film_aovs: FilmAovs { planes, masks }, aovs, names, denoiser, transparent, channels: 0 };
         set.channels = set.aovs.iter().map(|aov| set.channels_of(*aov)).sum();
         set
     }
@@ -227,6 +230,11 @@ impl AovSet {
     /// Returns the denoiser whose features the film stores.
     pub fn denoiser(&self) -> Option<Denoiser> {
         self.denoiser
+    }
+
+    /// Returns whether the picture is transparent, so that the film stores alpha.
+    pub fn is_transparent(&self) -> bool {
+        self.transparent
     }
 
     /// Returns whether there are neither AOVs nor film AOVs.
@@ -261,8 +269,9 @@ impl AovSet {
             return AovDescription::default();
         }
         let denoiser = self.denoiser.map(|denoiser| format!("{DENOISED}{}", denoiser.name()));
+        let transparent = self.transparent.then(|| TRANSPARENT.to_owned());
         AovDescription {
-            requested: self.aovs.iter().map(|aov| aov.name().to_owned()).chain(denoiser).collect(),
+            requested: self.aovs.iter().map(|aov| aov.name().to_owned()).chain(denoiser).chain(transparent).collect(),
             planes: self.film_aovs.planes.len() as u32,
             masks: self.film_aovs.masks,
             entries: self.names.entries,
@@ -283,9 +292,11 @@ impl AovSet {
             light_groups: description.light_groups.clone(),
         };
         let denoiser = description.requested.iter().find_map(|name| name.strip_prefix(DENOISED)).map(Denoiser::by_name);
-        let names_of_aovs = description.requested.iter().filter(|name| !name.starts_with(DENOISED));
+        let transparent = description.requested.iter().any(|name| name == TRANSPARENT);
+        let is_aov = |name: &&String| !name.starts_with(DENOISED) && *name != TRANSPARENT;
+        let names_of_aovs = description.requested.iter().filter(is_aov);
         let aovs: Vec<Aov> = names_of_aovs.map(|name| Aov::by_name(name)).collect::<Result<_, _>>()?;
-        let set = Self::new(&aovs, denoiser.transpose()?, &names);
+        let set = Self::new(&aovs, denoiser.transpose()?, &names, transparent);
         if set.film_aovs.planes.len() as u32 != description.planes || set.film_aovs.masks != description.masks {
             return Err(Error::setting("aovs", "the AOVs of the partial render differ from its description"));
         }
@@ -295,7 +306,7 @@ impl AovSet {
     /// Returns the header of an EXR file with the AOVs, and with the rendered image if
     /// `with_picture`.
     pub fn file_header(&self, header: &Header, with_picture: bool) -> LayeredHeader {
-        let picture = with_picture.then(|| LayerHeader::beauty(header.options.exr_depth));
+        let picture = with_picture.then(|| LayerHeader::beauty(header));
         LayeredHeader::new(header, picture.into_iter().chain(self.headers()).collect())
     }
 
@@ -344,3 +355,5 @@ impl AovSet {
 
 /// Prefix of a denoiser's name in the description of a partial render.
 const DENOISED: &str = "denoised:";
+/// Mark of a transparent picture among the AOVs of a partial render.
+const TRANSPARENT: &str = "transparent";

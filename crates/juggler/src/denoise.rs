@@ -50,6 +50,8 @@ pub struct DenoiserInput {
     albedo: [Vec<Rgb>; 2],
     normal: [Vec<Vec3>; 2],
     depth: [Vec<f32>; 2],
+    /// Alpha, which is not denoised; empty if the picture is opaque.
+    alpha: Vec<f32>,
 }
 
 /// Sums of a pixel over both halves of its samples, with their numbers of samples.
@@ -67,7 +69,8 @@ impl DenoiserInput {
         let area = region.area() as usize;
         let black = || [vec![Rgb::BLACK; area], vec![Rgb::BLACK; area]];
         let none = || [vec![Vec3::ZERO; area], vec![Vec3::ZERO; area]];
-        Self { region, color: black(), albedo: black(), normal: none(), depth: [vec![0.0; area], vec![0.0; area]] }
+        let depth = [vec![0.0; area], vec![0.0; area]];
+        Self { region, color: black(), albedo: black(), normal: none(), depth, alpha: Vec::new() }
     }
 
     /// Adds the pixels of a tile whose film stored the features.
@@ -76,6 +79,10 @@ impl DenoiserInput {
         let place = |aov| set.film_aovs().index_of(aov);
         let plane_count = set.film_aovs().planes.len();
         let (pixels, region) = (tile.pixels(), self.region);
+        if let Some(alpha) = set.alpha(&pixels, std::slice::from_ref(tile)) {
+            self.alpha.resize(region.area() as usize, 0.0);
+            pixels.copy_into(&alpha, &region, &mut self.alpha);
+        }
         let sum = |pixel: usize, aov: Option<usize>| {
             let plane = aov.and_then(|aov| aov_sums.planes.get(pixel * plane_count + aov));
             plane.copied().unwrap_or(Rgb::BLACK)
@@ -118,14 +125,14 @@ impl DenoiserInput {
         control: &Control,
     ) -> Result<Option<Denoised>, Error> {
         let size = [self.region.width, self.region.height];
-        match with {
+        let mut denoised = match with {
             Denoiser::Own => {
                 let features = Features {
                     albedo: Some(self.albedo.each_ref().map(Vec::as_slice)),
                     normal: Some(self.normal.each_ref().map(Vec::as_slice)),
                     depth: Some(self.depth.each_ref().map(Vec::as_slice)),
                 };
-                own(size, self.color.each_ref().map(Vec::as_slice), features, control)
+                own(size, self.color.each_ref().map(Vec::as_slice), features, control)?
             }
             Denoiser::Oidn => {
                 let both = |halves: &[Vec<Rgb>; 2]| -> Vec<Rgb> {
@@ -135,10 +142,20 @@ impl DenoiserInput {
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
                 let features = PixelFeatures { albedo: Some(&albedo), normal: Some(&normal), depth: None };
-                open_image_denoise(size, &color, &features, library).map(Some)
+                Some(open_image_denoise(size, &color, &features, library)?)
             }
+        };
+        if let Some(denoised) = &mut denoised {
+            hide_transparent(&mut denoised.pixels, Some(&self.alpha));
         }
+        Ok(denoised)
     }
+}
+
+/// Blackens pixels with an alpha of 0, on which a denoiser may have spread the light of others.
+pub(crate) fn hide_transparent(pixels: &mut [Rgb], alpha: Option<&[f32]>) {
+    let transparent = pixels.iter_mut().zip(alpha.unwrap_or_default()).filter(|(_, alpha)| **alpha == 0.0);
+    transparent.for_each(|(pixel, _)| *pixel = Rgb::BLACK);
 }
 
 /// Noisy pixels in linear light, row by row from the top.

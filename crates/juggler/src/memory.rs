@@ -158,9 +158,7 @@ impl Memory {
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),
             in_bands: true,
-            film_aovs: AovSet::new(&settings.aovs, settings.denoiser, &Names::from_scene(&scene.description))
-                .film_aovs()
-                .clone(),
+            film_aovs: film_aovs(scene, settings),
         })
     }
 
@@ -255,6 +253,12 @@ impl Memory {
 /// and cylinders, that they become.
 pub fn solids_bytes(solids: u64) -> u64 {
     if solids == 0 { 0 } else { PROGRAM.saturating_add(solids.saturating_mul(SOLID.saturating_add(INSTANCE))) }
+}
+
+/// AOVs that the film of a scene with these settings stores.
+fn film_aovs(scene: &Scene, settings: &Settings) -> FilmAovs {
+    let names = Names::from_scene(&scene.description);
+    AovSet::new(&settings.aovs, settings.denoiser, &names, settings.transparent_of(scene)).film_aovs().clone()
 }
 
 fn scene_bytes(needs: &Needs) -> u64 {

@@ -8,7 +8,7 @@ use juggler_film::shard::{Units, Work, WorkUnit};
 use juggler_film::{Chunk, PartialRender, PartialRenderWriter};
 use juggler_imaging::layered::LayeredWriter;
 use juggler_imaging::{Header, Options, RowWriter};
-use juggler_math::Rgb;
+use juggler_math::{PixelRows, Rgb};
 use juggler_render::{Cancelled, Control};
 use std::ops::Range;
 
@@ -45,17 +45,35 @@ impl Picture {
         matches!(self.limit(), Limit::Time { .. }) || juggler_render::is_finished(film, self.limit().stop())
     }
 
-    /// Passes the pixel rows of a film to `rows`, from top to bottom, and returns their hash and
-    /// mean.
-    pub fn develop<E>(&self, film: &Film, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<FilmSummary, E> {
+    /// Passes the pixel rows of a film to `rows`, from top to bottom, with alpha if the picture is
+    /// transparent, and returns their hash and mean.
+    pub fn develop<E>(&self, film: &Film, mut rows: impl FnMut(PixelRows) -> Result<(), E>) -> Result<FilmSummary, E> {
         let [width, height] = self.size();
         let mut digest = FilmDigest::new(width, height);
-        film.develop(|band: &[Rgb]| {
+        let (tiling, mut number) = (film.tiling(), 0);
+        film.develop(|colors: &[Rgb]| {
+            let alpha = self.alpha_of_band(film, tiling, number);
+            number += 1;
+            let band = PixelRows { colors, alpha: alpha.as_deref() };
             digest.update(band);
             rows(band)
         })?;
         digest.add_clamped(film.clamped());
         Ok(digest.finish())
+    }
+
+    /// Returns alpha of the pixels of a film's band of tiles; `None` if the picture is opaque.
+    fn alpha_of_band(&self, film: &Film, tiling: Tiling, number: u64) -> Option<Vec<f32>> {
+        let band = self.aovs().is_transparent().then(|| tiling.bands().nth(number as usize))??;
+        let tiles = tiling.tiles_of_band(number).filter_map(|number| film.copy_of_tile(number));
+        self.aovs().alpha(&band, &tiles.collect::<Vec<Tile>>())
+    }
+
+    /// Returns alpha of all pixels of a film, row by row; `None` if the picture is opaque.
+    pub fn alpha(&self, film: &Film) -> Option<Vec<f32>> {
+        let bands = 0..u64::from(film.tiling().rows());
+        let alpha: Option<Vec<_>> = bands.map(|number| self.alpha_of_band(film, film.tiling(), number)).collect();
+        alpha.map(|bands| bands.concat()).filter(|_| self.aovs().is_transparent())
     }
 
     /// Returns whether the integrator clamps contributions.
@@ -77,6 +95,8 @@ impl Picture {
         for (row, band) in (0..).zip(tiling.bands()) {
             let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..band.area() as usize));
+            let alpha = rows.and_then(|_| self.aovs().alpha(&band, &tiles));
+            let rows = rows.map(|colors| PixelRows { colors, alpha: alpha.as_deref() });
             writer.write_rows(&self.aovs().band_values(&band, &tiles, rows))?;
         }
         Ok(writer.finish()?)

@@ -88,6 +88,12 @@ impl Picture {
         let camera_keys = picture.compiled.camera_keys.clone();
         picture.scene_fingerprint = self.scene_fingerprint.with_view(scene, view.camera, camera_keys);
         picture.fingerprint = OnceLock::new();
+        if view.render.transparent != self.aovs.is_transparent() {
+            let (aovs, transparent) = (&self.aovs, view.render.transparent);
+            let set = AovSet::new(aovs.selected(), aovs.denoiser(), &self.compiled.names, transparent);
+            picture.aovs = Arc::new(set);
+        }
+        picture.compiled = picture.compiled.with_hidden_background(view.render.transparent);
         picture.compiled.settings = view.render;
         if integrator != *self.integrator() {
             picture.compiled.integrator = IntegratorChoice { integrator, reason: IntegratorReason::Settings };
@@ -214,7 +220,9 @@ impl Picture {
         }
         let (viewpoint, corner) = (self.viewpoint(), [self.region.x, self.region.y]);
         let crop = CropFrame::new(self.frame_size(), corner, [width, height]);
-        Header { tone: self.tone.clone(), options, metadata, viewpoint, crop, ..Header::new(width, height) }
+        let transparent = self.aovs.is_transparent();
+        let tone = self.tone.clone();
+        Header { tone, options, transparent, metadata, viewpoint, crop, ..Header::new(width, height) }
     }
 
     /// Returns the AOVs.
@@ -251,7 +259,8 @@ impl Picture {
         }
     }
 
-    /// Renders and passes finished rows to `rows`, from the top; memory holds one band at a time.
+    /// Renders and passes finished rows to `rows`, from the top, without alpha; memory holds one band
+    /// at a time.
     pub fn render<E: From<Cancelled>>(
         &self,
         scheduler: Scheduler,
@@ -271,13 +280,14 @@ impl Picture {
         })
     }
 
-    /// Renders to the destination of `writer`.
+    /// Renders to the destination of `writer`, without alpha. A transparent picture needs a film:
+    /// [`Picture::write_film`].
     pub fn write(&self, mut writer: Box<dyn RowWriter>, control: &Control) -> Result<RenderStats, Error> {
         let start = Instant::now();
         let mut write = Duration::ZERO;
         let film = self.render(Scheduler::default(), control, |rows| {
             let start = Instant::now();
-            writer.write_rows(rows)?;
+            writer.write_rows(rows.into())?;
             write += start.elapsed();
             Ok::<(), Error>(())
         })?;
@@ -289,8 +299,8 @@ impl Picture {
         Ok(RenderStats { film, samples, rays: control.rays(), render, denoise, write })
     }
 
-    /// Renders the samples of each pixel into memory. A noise or time limit, a denoiser and AOVs do
-    /// not act here, but in [`Picture::render_in_memory`].
+    /// Renders the samples of each pixel into memory. A noise or time limit, a denoiser, AOVs and alpha
+    /// do not act here, but in [`Picture::render_in_memory`].
     pub fn render_image(&self, control: &Control) -> Result<Image, Cancelled> {
         let [width, height] = self.size();
         let mut image = Image::filled(width, height, Rgb::BLACK);

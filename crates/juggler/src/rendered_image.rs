@@ -9,9 +9,9 @@ use crate::{AovSet, Error, Limit, Picture, RenderStats};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Rect, Tile};
 use juggler_film::counts::SampleCountStats;
 use juggler_film::{Merge, RenderDescription, Stop, counts};
-use juggler_imaging::layered::{LayerHeader, LayeredWriter};
+use juggler_imaging::layered::{self, LayerHeader, LayeredWriter};
 use juggler_imaging::{Header, ImageFormat, Options, Tone};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 use juggler_render::{Cancelled, Control, RayCounts};
 use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -33,6 +33,8 @@ pub struct RenderedImage {
     pub header: Header,
     /// Linear pixels, row by row from the top, denoised if the settings say so.
     pixels: Vec<Rgb>,
+    /// Alpha of the pixels, by which they are multiplied; `None` if the image is opaque.
+    alpha: Option<Vec<f32>>,
     /// AOVs with the names of objects, materials and light groups.
     aovs: AovSet,
     /// Channels of the AOVs, in the order of [`AovSet::headers`].
@@ -48,19 +50,32 @@ impl RenderedImage {
     pub fn from_parts(
         header: Header,
         pixels: Vec<Rgb>,
+        alpha: Option<Vec<f32>>,
         aovs: AovSet,
         channels: Vec<Vec<f32>>,
         stats: RenderStats,
     ) -> Option<Self> {
         let count = header.width as usize * header.height as usize;
-        let is_whole = pixels.len() == count && channels.len() == aovs.channels();
-        let image = Self { header, pixels, aovs, channels, stats };
+        let has_alpha = alpha.as_ref().is_none_or(|alpha| alpha.len() == count);
+        let is_whole = pixels.len() == count && has_alpha && channels.len() == aovs.channels();
+        let image = Self { header, pixels, alpha, aovs, channels, stats };
         (is_whole && image.channels.iter().all(|channel| channel.len() == count)).then_some(image)
     }
 
-    /// Linear pixels, row by row from the top: an array of shape (height, width).
+    /// Linear pixels, row by row from the top: an array of shape (height, width). Those of a
+    /// transparent image are multiplied by alpha.
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
+    }
+
+    /// Alpha of the pixels, 0 to 1, in the same order; `None` if the image is opaque.
+    pub fn alpha(&self) -> Option<&[f32]> {
+        self.alpha.as_deref()
+    }
+
+    /// Pixels with their alpha.
+    pub fn pixel_rows(&self) -> PixelRows<'_> {
+        PixelRows { colors: &self.pixels, alpha: self.alpha() }
     }
 
     /// Converts to the linear pixels alone.
@@ -100,12 +115,13 @@ impl RenderedImage {
         let format = ImageFormat::from_path(path)?;
         if format == ImageFormat::Exr && !self.aovs.selected().is_empty() {
             let mut writer = LayeredWriter::create(path, &self.aovs.file_header(&self.header, true))?;
-            let color = (0..3).map(|channel| self.pixels.iter().map(|pixel| pixel.to_array()[channel]).collect());
-            writer.write_rows(&color.chain(self.channels.iter().cloned()).collect::<Vec<Vec<f32>>>())?;
+            let mut channels = layered::channels(self.pixel_rows());
+            channels.extend_from_slice(&self.channels);
+            writer.write_rows(&channels)?;
             return Ok(writer.finish()?);
         }
         let mut writer = juggler_imaging::create(path, format, &self.header)?;
-        writer.write_rows(&self.pixels)?;
+        writer.write_rows(self.pixel_rows())?;
         Ok(writer.finish()?)
     }
 
@@ -116,7 +132,8 @@ impl RenderedImage {
     pub fn from_partial_renders(merge: &Merge, library: Option<&Path>, control: &Control) -> Result<Self, Error> {
         let start = Instant::now();
         let (description, aovs) = (merge.description(), AovSet::from_description(&merge.description().aovs)?);
-        let (header, samples) = merged_header(merge)?;
+        let (mut header, samples) = merged_header(merge)?;
+        header.transparent = aovs.is_transparent();
         let mut parts = Parts::new(&aovs, description.region);
         let mut summary = merge.tile_rows(|band, tiles, rows| {
             if control.is_cancelled() {
@@ -125,24 +142,26 @@ impl RenderedImage {
             parts.add(&aovs, band, tiles, rows);
             Ok(())
         })?;
-        let Parts { pixels, channels, denoiser_input } = parts;
+        let Parts { pixels, alpha, channels, denoiser_input } = parts;
         let denoise = Instant::now();
         let denoised = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?;
         let (render, denoise) = (denoise - start, denoised.as_ref().map_or(Duration::ZERO, |_| denoise.elapsed()));
         let pixels = denoised.unwrap_or(pixels);
-        if denoiser_input.is_some() {
-            let FilmSummary { hash, mean, .. } = digest(&pixels, description.region);
+        if denoiser_input.is_some() || alpha.is_some() {
+            let rows = PixelRows { colors: &pixels, alpha: alpha.as_deref() };
+            let FilmSummary { hash, mean, .. } = digest(rows, description.region);
             summary = FilmSummary { hash, mean, ..summary };
         }
         let (rays, write) = (RayCounts::default(), Duration::ZERO);
         let stats = RenderStats { film: summary, samples, rays, render, denoise, write };
-        Ok(Self { header, pixels, aovs, channels, stats })
+        Ok(Self { header, pixels, alpha, aovs, channels, stats })
     }
 }
 
 /// Contents of an image that are collected band by band.
 struct Parts {
     pixels: Vec<Rgb>,
+    alpha: Option<Vec<f32>>,
     channels: Vec<Vec<f32>>,
     denoiser_input: Option<DenoiserInput>,
 }
@@ -150,11 +169,13 @@ struct Parts {
 impl Parts {
     fn new(aovs: &AovSet, region: Rect) -> Self {
         let denoiser_input = aovs.denoiser().map(|_| DenoiserInput::new(region));
-        Self { pixels: Vec::new(), channels: vec![Vec::new(); aovs.channels()], denoiser_input }
+        let alpha = aovs.is_transparent().then(Vec::new);
+        Self { pixels: Vec::new(), alpha, channels: vec![Vec::new(); aovs.channels()], denoiser_input }
     }
 
     fn add(&mut self, aovs: &AovSet, band: &Rect, tiles: &[Tile], rows: &[Rgb]) {
         self.pixels.extend_from_slice(rows);
+        self.alpha.iter_mut().for_each(|alpha| alpha.extend(aovs.alpha(band, tiles).into_iter().flatten()));
         let values = aovs.band_values(band, tiles, None);
         self.channels.iter_mut().zip(values).for_each(|(channel, values)| channel.extend(values));
         if let Some(input) = &mut self.denoiser_input {
@@ -191,7 +212,7 @@ fn merged_header(merge: &Merge) -> Result<(Header, SampleCountStats), Error> {
 }
 
 /// Hash and mean of the pixels of a region.
-fn digest(pixels: &[Rgb], region: Rect) -> FilmSummary {
+fn digest(pixels: PixelRows, region: Rect) -> FilmSummary {
     let mut digest = FilmDigest::new(region.width, region.height);
     digest.update(pixels);
     digest.finish()
@@ -221,7 +242,7 @@ impl Picture {
         let (denoise, write) = (Duration::ZERO, Duration::ZERO);
         let stats = RenderStats { film, samples, rays: control.rays(), render, denoise, write };
         let (header, aovs) = (self.file_header(Options::default()), self.aovs().clone());
-        Ok(RenderedImage { header, pixels, aovs, channels: Vec::new(), stats })
+        Ok(RenderedImage { header, pixels, alpha: None, aovs, channels: Vec::new(), stats })
     }
 
     /// Renders into a film as [`Picture::render_film`] does, and ends the render at its time limit.
@@ -255,15 +276,14 @@ impl Picture {
         let (render, start) = (render + start.elapsed(), Instant::now());
         let denoised = denoise_pixels(self.aovs(), parts.denoiser_input.as_ref(), library, control)?;
         let denoise = denoised.as_ref().map_or(Duration::ZERO, |_| start.elapsed());
-        let pixels = denoised.unwrap_or(parts.pixels);
-        Ok(self.image_of_film(film, pixels, parts.channels, [render, denoise], control))
+        let parts = Parts { pixels: denoised.unwrap_or(parts.pixels), ..parts };
+        Ok(self.image_of_film(film, parts, [render, denoise], control))
     }
 
     /// The image that a film holds so far, without denoising; other threads may add samples
     /// meanwhile. `render` is the time that its samples took.
     pub fn snapshot(&self, film: &Film, render: Duration, control: &Control) -> RenderedImage {
-        let Parts { pixels, channels, .. } = self.collect(film);
-        self.image_of_film(film, pixels, channels, [render, Duration::ZERO], control)
+        self.image_of_film(film, self.collect(film), [render, Duration::ZERO], control)
     }
 
     /// Collects pixels, channels and the denoiser's input from a film.
@@ -284,19 +304,19 @@ impl Picture {
     fn image_of_film(
         &self,
         film: &Film,
-        pixels: Vec<Rgb>,
-        channels: Vec<Vec<f32>>,
+        parts: Parts,
         [render, denoise]: [Duration; 2],
         control: &Control,
     ) -> RenderedImage {
+        let Parts { pixels, alpha, channels, .. } = parts;
         let mut digest = FilmDigest::new(self.region().width, self.region().height);
-        digest.update(&pixels);
+        digest.update(PixelRows { colors: &pixels, alpha: alpha.as_deref() });
         digest.add_clamped(film.clamped());
         let (samples, rays) = (SampleCountStats::from_film(film), control.rays());
         let stats = RenderStats { film: digest.finish(), samples, rays, render, denoise, write: Duration::ZERO };
         let mut header = self.file_header(Options::default());
         self.add_sample_counts(film, &mut header);
-        RenderedImage { header, pixels, aovs: self.aovs().clone(), channels, stats }
+        RenderedImage { header, pixels, alpha, aovs: self.aovs().clone(), channels, stats }
     }
 
     /// Header of the image file with the tone settings among the metadata, unless all have their

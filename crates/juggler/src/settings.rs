@@ -104,6 +104,8 @@ pub struct Settings {
     pub seed: Option<u64>,
     /// Region to render, in pixels; `None` renders the whole image.
     pub crop: Option<Rect>,
+    /// Whether the background is transparent.
+    pub transparent: Option<bool>,
     /// Tone curve, with default parameters, for files that do not store linear radiance.
     pub curve: Option<ToneCurveKind>,
     /// Exposure in photographic stops, for such files; each stop doubles the brightness.
@@ -160,6 +162,7 @@ impl Settings {
         render.samples = self.samples.unwrap_or(self.limit.max_samples(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);
         render.seed = self.seed.unwrap_or(render.seed);
+        render.transparent = self.transparent.unwrap_or(render.transparent);
         let own = render.integrator.as_ref().map(IntegratorKind::from);
         if let Some(kind) = self.integrator.filter(|kind| Some(*kind) != own) {
             render.integrator = Some(kind.into());
@@ -222,6 +225,11 @@ impl Settings {
     /// Returns the number of samples per pixel, or their maximum.
     pub fn samples_of(&self, scene: &Scene) -> u32 {
         self.samples.unwrap_or(self.limit.max_samples(scene.description.render.samples))
+    }
+
+    /// Returns whether the background is transparent.
+    pub fn transparent_of(&self, scene: &Scene) -> bool {
+        self.transparent.unwrap_or(scene.description.render.transparent)
     }
 
     /// Returns the rendered region of an image of this size. Fails if the crop reaches beyond it.

@@ -188,14 +188,16 @@ pub fn encode_movie(py: Python<'_>, path: String, frames: Vec<String>, frames_pe
             if monitor.control.is_cancelled() {
                 return Err(Cancelled.into());
             }
-            let image = imaging::read(Path::new(frame))?;
+            let image = imaging::read_with_alpha(Path::new(frame))?;
+            let [width, height] = [image.colors.width(), image.colors.height()];
             let count = u32::try_from(frames.len()).unwrap_or(u32::MAX);
-            let header = AnimationHeader::new(image.width(), image.height(), count, frames_per_second);
+            let header = AnimationHeader::new(width, height, count, frames_per_second);
+            let header = AnimationHeader { transparent: image.alpha.is_some(), ..header };
             let writer = match &mut writer {
                 Some(writer) => writer,
                 none => none.insert(imaging::create_animation(Path::new(&path), format, &header)?),
             };
-            writer.write_frame(image.pixels())?;
+            writer.write_frame(image.rows())?;
         }
         writer.map_or(Ok(()), |writer| Ok(writer.finish()?))
     })

@@ -142,6 +142,7 @@ pub fn of_image(error: &ImageError) -> PyErr {
         ImageError::UnknownFormat { .. } | ImageError::ReadOnly { .. } => settings_error("path", message),
         ImageError::Dimensions { .. } | ImageError::SizesDiffer { .. } => settings_error("size", message),
         ImageError::Primaries { .. } => settings_error("primaries", message),
+        ImageError::Transparency { .. } => settings_error("transparent", message),
         _ => file_error(&message, None),
     }
 }

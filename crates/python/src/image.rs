@@ -107,6 +107,12 @@ impl Image {
         words(py, pixels.len() * 3, pixels.iter().flat_map(|pixel| pixel.to_array()).map(f32::to_ne_bytes))
     }
 
+    /// Alpha: a number of 32 bits for each pixel; `None` for an opaque image.
+    fn alpha<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let alpha = self.image.alpha();
+        alpha.map(|alpha| words(py, alpha.len(), alpha.iter().map(|value| value.to_ne_bytes()))).transpose()
+    }
+
     /// Layers of the AOVs: name, number of channels, and whether its numbers are integers.
     fn layers(&self) -> Vec<(String, usize, bool)> {
         self.image
@@ -218,6 +224,7 @@ impl Image {
         all.set_item("rays", (camera, shadow, secondary, not_finite))?;
         all.set_item("seconds", [stats.render, stats.denoise, stats.write].map(|time| time.as_secs_f64()))?;
         all.set_item("pixels", self.pixels(py)?)?;
+        all.set_item("alpha", self.alpha(py)?)?;
         let channels = self.image.layers().flat_map(|(_, channels)| channels);
         let channels =
             channels.map(|channel| words(py, channel.len(), channel.iter().map(|value| value.to_ne_bytes())));
@@ -246,7 +253,9 @@ impl Image {
         let pixels = floats(&item::<Vec<u8>>(state, "pixels")?);
         let pixels = pixels.as_chunks::<3>().0.iter().map(|pixel| Rgb::from(*pixel)).collect();
         let channels = item::<Vec<Vec<u8>>>(state, "channels")?.iter().map(|bytes| floats(bytes)).collect();
-        let image = RenderedImage::from_parts(header, pixels, aovs, channels, stats).ok_or_else(broken)?;
+        let alpha = item::<Option<Vec<u8>>>(state, "alpha")?.map(|bytes| floats(&bytes));
+        let header = Header { transparent: alpha.is_some(), ..header };
+        let image = RenderedImage::from_parts(header, pixels, alpha, aovs, channels, stats).ok_or_else(broken)?;
         Ok(Self::new(image, item(state, "frame")?))
     }
 }
@@ -269,6 +278,7 @@ fn thumbnail(image: &RenderedImage, name: &str) -> Result<RenderedImage, Error> 
     let made = RenderedImage::from_parts(
         Header::new(width, height),
         pixels,
+        None,
         AovSet::default(),
         Vec::new(),
         image.stats().clone(),

@@ -30,6 +30,7 @@ const NAMES: &[&str] = &[
     "white_balance",
     "primaries",
     "dither",
+    "transparent",
     "variant",
     "animation",
     "model_scene",
@@ -118,6 +119,7 @@ impl RenderSettings {
                 let [x, y, width, height] = read(name, value, "(left, top, width, height) in pixels")?;
                 settings.crop = Some(Rect { x, y, width, height });
             }
+            "transparent" => settings.transparent = Some(read(name, value, "True or False")?),
             "aovs" => settings.aovs = aovs(value)?,
             "denoise" => settings.denoiser = denoiser(value)?,
             // The package handles the others.

@@ -48,6 +48,7 @@ class Hashes(unittest.TestCase):
             ({"frame": 7, "shutter": (0, 0.5)}, ["--frame", "7", "--shutter", "0..0.5"]),
             ({"crop": (5, 3, 20, 10), "max_depth": 2}, ["--crop", "5,3,20,10", "--max-depth", "2"]),
             ({"aovs": ["albedo", "depth"]}, ["--aov", "albedo,depth"]),
+            ({"transparent": True}, ["--transparent"]),
         ]
         for settings, flags in cases:
             settings = {"size": (32, 18), "samples": 4, **settings}
@@ -335,6 +336,27 @@ class Scenes(Folder):
             self.skipTest("Pillow is not installed")
         with Image.open(self.folder / "a.png") as saved:
             self.assertTrue(numpy.array_equal(numpy.asarray(saved), image.to_uint8()))
+
+    def test_transparent_images_have_alpha(self):
+        scene = small_scene()
+        image = jg.render(scene, transparent=True, **SMALL)
+        width, height = image.size
+        self.assertEqual((image.alpha.shape, image.alpha.dtype), ((height, width), numpy.float32))
+        self.assertTrue(0 <= image.alpha.min() < image.alpha.max() <= 1)
+        self.assertFalse(image.color[image.alpha == 0].any())
+        self.assertNotEqual(image.hash, jg.render(scene, **SMALL).hash)
+        self.assertIsNone(jg.render(scene, **SMALL).alpha)
+        again = pickle.loads(pickle.dumps(image))
+        self.assertEqual((again, again.hash), (image, image.hash))
+        self.assertTrue(numpy.array_equal(again.alpha, image.alpha))
+        merged = jg.merge([jg.Renderer(scene, transparent=True, **SMALL).render_shard(index, 3) for index in range(3)])
+        self.assertEqual(merged.hash, image.hash)
+        self.assertTrue(numpy.array_equal(merged.alpha, image.alpha))
+        with self.assertRaisesRegex((ValueError, OSError), "a JPEG file cannot be transparent"):
+            image.save(self.folder / "a.jpg")
+        image.save(self.folder / "a.png")
+        # Bit 2 of the color type in the head of a PNG file is alpha.
+        self.assertEqual((self.folder / "a.png").read_bytes()[25], 6)
 
     def test_cameras_can_be_removed(self):
         renderer = jg.Renderer(small_scene(), **SMALL)

@@ -13,13 +13,17 @@ use super::tile_samples::TileSamples;
 use super::{Cancelled, Control, Job, RayCounts, Work};
 use juggler_camera::film::{ClampedRadiance, PixelSamples, Rect, Tile, is_counted};
 use juggler_integrator::{
-    AovRecord, BentShadowRay, ClampState, PathBuffers, PathKind, PathState, Queue, ShadowQueue, VertexOutput,
+    AovRecord, BentShadowRay, ClampState, Integrator, PathBuffers, PathKind, PathState, Queue, ShadowQueue,
+    VertexOutput,
 };
 use juggler_math::{Ray, Rgb};
-use juggler_world::{ShadowMode, Vertex, WorldHit};
+use juggler_world::{ShadowMode, Vertex, World, WorldHit};
 use std::ops::Range;
 
 mod inspect;
+mod shadow_catchers;
+
+use shadow_catchers::{catch, hits_shadow_catcher};
 
 pub use inspect::{InspectedSample, LightContribution, PathVertex, inspect};
 
@@ -38,14 +42,32 @@ pub struct Engine<'j> {
     job: &'j Job<'j>,
     /// Initial state of camera paths.
     start: PathStart,
-    /// Whether vertices receive ray differentials, for texture filtering.
-    has_ray_differentials: bool,
+    shading: VertexShading<'j>,
     hits: Vec<WorldHit>,
     transmittance: Vec<Rgb>,
     buffers: PathBuffers,
     stack: Vec<Queue>,
     spare: Vec<Queue>,
     rays: RayCounts,
+    /// World that rays are traced in: that of the job, except for paths from shadow catchers.
+    world: &'j World,
+    /// Rays that reached shadow catchers; `None` while these are surfaces as others.
+    caught: Option<Queue>,
+}
+
+/// Shading of vertices by an integrator.
+#[derive(Clone, Copy)]
+struct VertexShading<'j> {
+    integrator: &'j dyn Integrator,
+    /// Whether vertices receive ray differentials, for texture filtering.
+    has_ray_differentials: bool,
+}
+
+impl<'j> VertexShading<'j> {
+    fn new(job: &Job<'j>) -> Self {
+        let has_ray_differentials = job.world.has_image_textures() || job.integrator.filters_textures();
+        Self { integrator: job.integrator, has_ray_differentials }
+    }
 }
 
 impl<'j> Engine<'j> {
@@ -53,7 +75,7 @@ impl<'j> Engine<'j> {
         Self {
             job,
             start: path_start(job),
-            has_ray_differentials: job.world.has_image_textures() || job.integrator.filters_textures(),
+            shading: VertexShading::new(job),
             hits: Vec::new(),
             transmittance: Vec::new(),
             buffers: PathBuffers {
@@ -64,6 +86,8 @@ impl<'j> Engine<'j> {
             stack: Vec::new(),
             spare: Vec::new(),
             rays: RayCounts::default(),
+            world: job.world,
+            caught: job.world.unoccluded().map(|_| Queue::default()),
         }
     }
 
@@ -126,6 +150,12 @@ impl<'j> Engine<'j> {
             record.begin(weights());
         }
         self.stack.push(camera);
+        self.trace(control)?;
+        self.trace_shadow_catchers(control)
+    }
+
+    /// Traces all rays on the stack, and those that continue.
+    fn trace(&mut self, control: &Control) -> Result<(), Cancelled> {
         while let Some(queue) = self.stack.pop() {
             if control.is_cancelled() {
                 return Err(self.cancelled());
@@ -139,6 +169,7 @@ impl<'j> Engine<'j> {
     fn cancelled(&mut self) -> Cancelled {
         let PathBuffers { shadows, bent, pending, next, .. } = &mut self.buffers;
         self.stack.clear();
+        self.caught.iter_mut().for_each(Queue::clear);
         next.clear();
         bent.clear();
         *pending = 0;
@@ -161,10 +192,10 @@ impl<'j> Engine<'j> {
     fn nearest(&mut self, queue: &mut Queue) {
         self.hits.resize(queue.len(), WorldHit::NONE);
         if queue.from_camera {
-            self.job.world.closest_packet(&mut queue.rays, &mut self.hits);
+            self.world.closest_packet(&mut queue.rays, &mut self.hits);
         } else {
             self.rays.secondary += queue.len() as u64;
-            self.job.world.closest_batch(&mut queue.rays, &mut self.hits);
+            self.world.closest_batch(&mut queue.rays, &mut self.hits);
         }
     }
 
@@ -175,7 +206,14 @@ impl<'j> Engine<'j> {
             if control.is_cancelled() {
                 return i;
             }
-            shade_ray(self.job, self.has_ray_differentials, &mut self.buffers, ray, path, hit);
+            match &mut self.caught {
+                Some(caught) if hits_shadow_catcher(self.world, path, hit) => {
+                    catch(caught, &mut self.buffers, ray, path);
+                }
+                _ => {
+                    shade_ray(self.world, self.shading, &mut self.buffers, ray, path, hit);
+                }
+            }
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
             if last_of_slot && self.buffers.next.len() + self.buffers.pending > MAX_QUEUED_RAYS {
                 return i + 1;
@@ -195,12 +233,12 @@ impl<'j> Engine<'j> {
             self.transmittance.resize(queue.rays.len(), Rgb::BLACK);
             let (rays, transmittance) = (&queue.rays, &mut self.transmittance);
             match mode {
-                ShadowMode::Physical if self.job.world.attenuates_shadows() => {
+                ShadowMode::Physical if self.world.attenuates_shadows() => {
                     let inside = queue.contributions.iter().map(|contribution| contribution.interiors);
-                    self.job.world.transmittance_inside(rays, inside, transmittance);
+                    self.world.transmittance_inside(rays, inside, transmittance);
                 }
-                _ if number < last => self.job.world.transmittance_packet(rays, mode, transmittance),
-                _ => self.job.world.transmittance_batch(rays, mode, transmittance),
+                _ if number < last => self.world.transmittance_packet(rays, mode, transmittance),
+                _ => self.world.transmittance_batch(rays, mode, transmittance),
             }
             for (contribution, transmittance) in queue.contributions.iter().zip(transmittance) {
                 let (slot, mut more) = (usize::from(contribution.slot), contribution.radiance * *transmittance);
@@ -228,7 +266,7 @@ impl<'j> Engine<'j> {
             }
             self.rays.shadow += rays.len() as u64;
             self.transmittance.resize(rays.len(), Rgb::BLACK);
-            self.job.world.transmittance_batch(&rays, ShadowMode::Physical, &mut self.transmittance);
+            self.world.transmittance_batch(&rays, ShadowMode::Physical, &mut self.transmittance);
             let mut transmittance = self.transmittance.iter();
             open.retain(|bent| {
                 bent.segments.len() <= segment
@@ -281,14 +319,14 @@ impl<'j> Engine<'j> {
 /// world.
 #[inline(always)]
 fn shade_ray(
-    job: &Job,
-    has_ray_differentials: bool,
+    world: &World,
+    shading: VertexShading,
     buffers: &mut PathBuffers,
     ray: &Ray,
     path: &PathState,
     hit: &WorldHit,
 ) -> Option<Vertex> {
-    let Job { world, integrator, .. } = job;
+    let VertexShading { integrator, has_ray_differentials } = shading;
     let mut output = VertexOutput::new(buffers, path, ray.t_max - ray.t_min);
     if !hit.is_some() {
         integrator.escape(world, ray, path, &mut output);

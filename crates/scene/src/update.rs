@@ -40,7 +40,8 @@ impl Scene {
             let (cameras, camera_keys, findings) = compile::cameras_of(description, &tracks, &earlier.bounds);
             let settings = (*self.description.render).clone();
             let integrator = self.integrator_choice();
-            Some((Compiled { cameras, camera_keys, settings, integrator, ..earlier.clone() }, findings))
+            let hidden = earlier.clone().with_hidden_background(settings.transparent);
+            Some((Compiled { cameras, camera_keys, settings, integrator, ..hidden }, findings))
         } else if !self.has_models() && !before.has_models() && self.has_objects(before, &change) {
             compile::with_shading(description, &tracks, Files { control, ..files }, earlier)
         } else {

@@ -8,7 +8,7 @@ use crate::status::{Stage, Status};
 use crate::subject::Subject;
 use juggler::Picture;
 use juggler::camera::film::Film;
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -74,21 +74,28 @@ impl Snapshot {
 
     /// Passes the rows of the displayed image to `rows`, from the top: denoised if so displayed,
     /// else from the film, with the preview where it has no samples.
-    pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
-        if let Some(pixels) = &self.denoised {
+    pub fn develop<E>(&self, mut rows: impl FnMut(PixelRows) -> Result<(), E>) -> Result<(), E> {
+        if let Some(colors) = &self.denoised {
+            let alpha = self.film.as_ref().and_then(|film| self.picture().alpha(film));
+            let pixels = PixelRows { colors, alpha: alpha.as_deref() };
             return pixels.chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
         }
         let (size, preview, gains) = (self.picture().size(), &self.preview, self.subject.gains());
         let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| preview.at([x, y], size)).collect() };
-        let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows(&row(y))) };
+        let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows((&row(y)).into())) };
         for (number, band) in (0..).zip(film.tiling().bands()) {
             let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
+            // The preview is opaque.
+            let aovs = self.picture().aovs();
+            let mut alpha = aovs.is_transparent().then(|| vec![1.0; pixels.len()]);
             for tile in film.tiling().tiles_of_band(number).filter_map(|tile| film.tile(tile as usize)) {
                 if tile.samples_per_pixel() > 0 {
                     tile.pixels().copy_into(&self.subject.light(&tile, &gains), &band, &mut pixels);
+                    let own = aovs.alpha(&tile.pixels(), std::slice::from_ref(&*tile));
+                    own.iter().zip(&mut alpha).for_each(|(own, all)| tile.pixels().copy_into(own, &band, all));
                 }
             }
-            rows(&pixels)?;
+            rows(PixelRows { colors: &pixels, alpha: alpha.as_deref() })?;
         }
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! The page's side: assembles the workers' tiles into an image for display, hashing and saving.
 
-use crate::pixel_rects::PixelRects;
+use crate::pixel_rects::{PIXEL_VALUES, PixelRects};
 use juggler::camera::film::{FilmDigest, Rect, TILE_EDGE, Tiling};
 use juggler::imaging::output::Destination;
 use juggler::imaging::{Header, ImageFormat, Tone, writer};
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use juggler_session::screen::DisplayTransform;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -19,41 +19,52 @@ pub struct RenderInfo {
     pub samples: u32,
     /// Conversion from linear radiance to the display and to files.
     pub tone: Tone,
+    /// Whether the image has alpha.
+    pub transparent: bool,
     /// Metadata of the image file.
     pub metadata: Vec<(String, String)>,
 }
 
-/// Framebuffer with linear radiance and its display pixels.
+/// Framebuffer with linear radiance, its alpha, and its display pixels over black.
 #[derive(Default)]
 struct Framebuffer {
     size: [u32; 2],
     radiance: Vec<Rgb>,
+    alpha: Vec<f32>,
     rgba: Vec<u8>,
 }
 
 impl Framebuffer {
     fn new([width, height]: [u32; 2]) -> Self {
         let pixels = width as usize * height as usize;
-        Self { size: [width, height], radiance: vec![Rgb::BLACK; pixels], rgba: [0, 0, 0, 255].repeat(pixels) }
+        let (radiance, alpha) = (vec![Rgb::BLACK; pixels], vec![1.0; pixels]);
+        Self { size: [width, height], radiance, alpha, rgba: [0, 0, 0, 255].repeat(pixels) }
     }
 
     /// Copies a rectangle of pixels; parts outside of the image are ignored.
     fn copy_rect(&mut self, pixels: Rect, radiance: &[f32], transform: &DisplayTransform) {
         let [width, height] = self.size.map(|edge| edge as usize);
         let (x, columns) = (pixels.x as usize, pixels.width as usize);
-        for (y, row) in (pixels.y as usize..height).zip(radiance.chunks_exact(3 * columns.max(1))) {
+        for (y, row) in (pixels.y as usize..height).zip(radiance.chunks_exact(PIXEL_VALUES * columns.max(1))) {
             let place = y * width + x..y * width + (x + columns).min(width);
-            let (Some(own), Some(rgba)) =
-                (self.radiance.get_mut(place.clone()), self.rgba.get_mut(4 * place.start..4 * place.end))
-            else {
+            let (Some(colors), Some(alphas), Some(rgba)) = (
+                self.radiance.get_mut(place.clone()),
+                self.alpha.get_mut(place.clone()),
+                self.rgba.get_mut(4 * place.start..4 * place.end),
+            ) else {
                 return;
             };
-            for ((own, new), rgba) in own.iter_mut().zip(row.as_chunks().0).zip(rgba.as_chunks_mut::<4>().0) {
-                let [r, g, b] = *new;
-                *own = Rgb::new(r, g, b);
-                *rgba = transform.rgba(*own);
+            let own = colors.iter_mut().zip(alphas).zip(rgba.as_chunks_mut::<4>().0);
+            for (((color, own_alpha), rgba), [r, g, b, alpha]) in own.zip(row.as_chunks::<PIXEL_VALUES>().0) {
+                (*color, *own_alpha) = (Rgb::new(*r, *g, *b), *alpha);
+                *rgba = transform.rgba(*color);
             }
         }
+    }
+
+    /// All pixels, with alpha if the image has it.
+    fn rows(&self, transparent: bool) -> PixelRows<'_> {
+        PixelRows { colors: &self.radiance, alpha: transparent.then_some(&self.alpha) }
     }
 
     fn redisplay(&mut self, transform: &DisplayTransform) {
@@ -165,7 +176,7 @@ impl Compositor {
     pub fn hash(&self) -> Option<String> {
         let [width, height] = self.info.size;
         let mut digest = FilmDigest::new(width, height);
-        digest.update(&self.film.radiance);
+        digest.update(self.film.rows(self.info.transparent));
         self.is_finished().then(|| digest.finish().hash)
     }
 
@@ -173,13 +184,13 @@ impl Compositor {
     /// `juggler render`.
     pub fn png(&self) -> Result<Vec<u8>, String> {
         let [width, height] = self.info.size;
-        let RenderInfo { tone, metadata, .. } = self.info.clone();
-        let header = Header { tone, metadata, ..Header::new(width, height) };
+        let RenderInfo { tone, transparent, metadata, .. } = self.info.clone();
+        let header = Header { tone, transparent, metadata, ..Header::new(width, height) };
         let bytes = SharedBuffer::default();
         let failed = |error: juggler::imaging::ImageError| error.to_string();
         let mut rows =
             writer(ImageFormat::Png, Destination::stream("the picture", bytes.clone()), &header).map_err(failed)?;
-        rows.write_rows(&self.film.radiance).map_err(failed)?;
+        rows.write_rows(self.film.rows(transparent)).map_err(failed)?;
         rows.finish().map_err(failed)?;
         Ok(bytes.take())
     }
@@ -216,7 +227,8 @@ pub mod tests {
 
     fn info(samples: u32) -> String {
         let tone = Tone::default();
-        serde_json::to_string(&RenderInfo { size: [20, 17], samples, tone, metadata: Vec::new() }).unwrap()
+        serde_json::to_string(&RenderInfo { size: [20, 17], samples, tone, transparent: false, metadata: Vec::new() })
+            .unwrap()
     }
 
     fn rect(x: u32, y: u32, width: u32, height: u32, samples: u32, radiance: f32) -> PixelRects {

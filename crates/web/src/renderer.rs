@@ -116,7 +116,8 @@ fn change(subject: &mut Subject, edit: &Edit) -> Result<(), String> {
 /// Returns the description of a picture for the page.
 pub fn render_info(picture: &Picture) -> RenderInfo {
     let metadata = picture.header(Options::default()).metadata;
-    RenderInfo { size: picture.size(), samples: picture.samples(), tone: picture.tone().clone(), metadata }
+    let (tone, transparent) = (picture.tone().clone(), picture.aovs().is_transparent());
+    RenderInfo { size: picture.size(), samples: picture.samples(), tone, transparent, metadata }
 }
 
 fn worker_status(subject: &Subject) -> WorkerStatus {

@@ -4,7 +4,7 @@ use crate::pixel_rects::PixelRects;
 use crate::share::WorkerShare;
 use juggler::Picture;
 use juggler::camera::film::Film;
-use juggler::math::UVec2;
+use juggler::math::{PixelRows, UVec2};
 use juggler::render::{Control, Job, ProgressiveRender, StopCriterion, Work};
 use std::collections::BTreeSet;
 
@@ -73,7 +73,9 @@ impl WorkerFilm {
         // Collect the updated tiles
         let mut rects = PixelRects::default();
         for tile in changed.into_iter().filter_map(|place| self.film.tile(place)) {
-            rects.push(tile.pixels(), tile.samples_per_pixel(), &tile.means());
+            let alpha = picture.aovs().alpha(&tile.pixels(), std::slice::from_ref(&*tile));
+            let rows = PixelRows { colors: &tile.means(), alpha: alpha.as_deref() };
+            rects.push(tile.pixels(), tile.samples_per_pixel(), rows);
         }
         rects
     }
@@ -101,9 +103,10 @@ mod tests {
     use juggler::scene::Scene;
     use std::cell::Cell;
 
-    fn picture(samples: u32) -> Picture {
+    fn picture(samples: u32, transparent: bool) -> Picture {
         let scene = Scene::built_in("juggler").unwrap();
-        let settings = Settings { size: Some([70, 45]), samples: Some(samples), ..Settings::default() };
+        let (size, samples, transparent) = (Some([70, 45]), Some(samples), Some(transparent));
+        let settings = Settings { size, samples, transparent, ..Settings::default() };
         Picture::new(&scene, &settings).unwrap()
     }
 
@@ -115,8 +118,8 @@ mod tests {
 
     #[test]
     fn workers_together_render_the_film_of_the_program() {
-        let (picture, few) = (picture(21), picture(5));
-        for count in [1, 3] {
+        for (count, transparent) in [(1, false), (3, false), (2, true)] {
+            let (picture, few) = (picture(21, transparent), picture(5, transparent));
             let mut compositor = compositor_of(&picture);
             for share in (0..count).map(|index| WorkerShare { index, count }) {
                 let time = Cell::new(0.0);
@@ -140,7 +143,7 @@ mod tests {
 
     #[test]
     fn slices_keep_to_their_time() {
-        let picture = picture(400);
+        let picture = picture(400, false);
         let mut film = WorkerFilm::new(&picture, WorkerShare { index: 0, count: 1 });
         let time = Cell::new(0.0);
         // The clock advances by a millisecond per step.
@@ -158,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_coarse_frame_is_the_picture_in_larger_pixels() {
-        let picture = picture(1);
+        let picture = picture(1, false);
         let size = [35, 23];
         let whole = coarse(&picture, WorkerShare { index: 0, count: 1 }, size);
         let parts: Vec<PixelRects> =

@@ -10,6 +10,7 @@ use juggler_material::{MaterialId, MaterialTable, Shading, ShadingView, Textured
 use juggler_math::{Aabb, BuildControl, Cancelled, Ray, Rgb, Vec2, Vec3};
 use juggler_shape::Hit;
 use juggler_shape::surface::{Surface, Tangents};
+use shadow_catchers::ShadowCatchers;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -39,6 +40,7 @@ mod object;
 mod openings;
 mod reproject;
 mod scene_light;
+mod shadow_catchers;
 mod trace;
 mod world_shapes;
 
@@ -123,6 +125,8 @@ pub struct World {
     lights: Vec<SceneLight>,
     ambient: Rgb,
     background: AnyBackground,
+    hides_background: bool,
+    shadow_catchers: Option<ShadowCatchers>,
     emitters: Emitters,
     casters: Vec<CausticCaster>,
     contacts: Contacts,
@@ -174,7 +178,13 @@ impl World {
         background: AnyBackground,
         control: &BuildControl,
     ) -> Result<Self, Cancelled> {
-        Self::from_top_level(Arc::clone(&self.top), materials, lights, background, control)
+        let lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
+        let shadow_catchers = match &self.shadow_catchers {
+            None => None,
+            Some(all) => Some(all.with_shading(materials.clone(), lights.clone(), background.clone(), control)?),
+        };
+        let world = Self::from_top_level(Arc::clone(&self.top), materials, lights, background, control)?;
+        Ok(Self { shadow_catchers, ..world })
     }
 
     fn from_top_level(
@@ -196,19 +206,21 @@ impl World {
         let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
         lights.retain(|light| light.ambient.is_black());
-        let has_mesh_attributes = top.has_mesh_attributes;
-        let has_image_textures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lights.iter().any(SceneLight::moves);
         let shapes = EmissiveShape::collect(&top, &materials);
         let emitters = Emitters::new(&lights, shapes, &background, radius(&top.bounds()), control)?;
         let casters = CausticCaster::collect(&top, &materials);
         let contacts = Contacts::new(&top, &materials);
         Ok(Self {
+            has_image_textures: materials.textures().image_bytes() > 0,
+            has_mesh_attributes: top.has_mesh_attributes,
             top,
             materials,
             lights,
             ambient,
             background,
+            hides_background: false,
+            shadow_catchers: None,
             emitters,
             casters,
             contacts,
@@ -218,8 +230,6 @@ impl World {
             has_sheets,
             has_media,
             has_dispersion,
-            has_image_textures,
-            has_mesh_attributes,
             moves,
             labels: Labels::default(),
             has_groups: false,
@@ -231,7 +241,20 @@ impl World {
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.top = Arc::new(Arc::unwrap_or_clone(self.top).at_simd_level(level));
         self.emitters = self.emitters.with_simd_level(level);
+        self.shadow_catchers = self.shadow_catchers.map(|catchers| catchers.with_simd_level(level));
         self
+    }
+
+    /// Hides the background from camera rays, also through glass. Its light stays.
+    #[must_use]
+    pub fn with_hidden_background(self, hides_background: bool) -> Self {
+        Self { hides_background, ..self }
+    }
+
+    /// Whether camera rays see black in place of the background.
+    #[inline]
+    pub fn hides_background(&self) -> bool {
+        self.hides_background
     }
 
     /// Materials of all shapes.
@@ -268,7 +291,7 @@ impl World {
     /// `None` if they see the light itself.
     #[inline]
     pub fn backdrop(&self) -> Option<Rgb> {
-        self.background.visible_as()
+        if self.hides_background { Some(Rgb::BLACK) } else { self.background.visible_as() }
     }
 
     /// Whether anything moves while the shutter is open, so that the time of a ray matters.

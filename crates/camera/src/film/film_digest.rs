@@ -1,7 +1,7 @@
 //! Hash and mean of the film's linear pixels, updated row by row.
 
 use super::ClampedRadiance;
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
 
 /// Pixels per call of the hash function: enough for it to hash several chunks in parallel.
 const CHUNK_PIXELS: usize = 1 << 14;
@@ -18,7 +18,7 @@ pub struct FilmDigest {
 /// Result of a [`FilmDigest`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmSummary {
-    /// BLAKE3 hash of size and pixels, in hexadecimal. Pictures with the same bits have the same
+    /// BLAKE3 hash of size and pixels, with their alpha if they have any, in hexadecimal. Pictures with the same bits have the same
     /// hash.
     pub hash: String,
     /// Mean of the pixels, linear RGB.
@@ -46,16 +46,21 @@ impl FilmDigest {
     }
 
     /// Adds the next pixels.
-    pub fn update(&mut self, pixels: &[Rgb]) {
-        let mut bytes = Vec::with_capacity(CHUNK_PIXELS.min(pixels.len()) * size_of::<Rgb>());
+    pub fn update<'a>(&mut self, pixels: impl Into<PixelRows<'a>>) {
+        let pixels: PixelRows = pixels.into();
+        let mut bytes = Vec::with_capacity(CHUNK_PIXELS.min(pixels.len()) * 4 * size_of::<f32>());
         for chunk in pixels.chunks(CHUNK_PIXELS) {
             bytes.clear();
-            for pixel in chunk {
+            let mut alpha = chunk.alpha.into_iter().flatten();
+            for pixel in chunk.colors {
                 for (sum, channel) in self.sum.iter_mut().zip(pixel.to_array()) {
                     *sum += f64::from(channel);
                 }
                 let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = pixel.to_array().map(f32::to_le_bytes);
                 bytes.extend_from_slice(&[a, b, c, d, e, f, g, h, i, j, k, l]);
+                if let Some(alpha) = alpha.next() {
+                    bytes.extend_from_slice(&alpha.to_le_bytes());
+                }
             }
             self.hasher.update(&bytes);
         }
@@ -78,13 +83,14 @@ impl FilmDigest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler_math::Rgb;
 
     #[test]
     fn film_hash_covers_every_bit_and_ignores_chunking() {
         let pixels: Vec<Rgb> = (0..12).map(|i| Rgb::new(i as f32, 1.0, -0.0)).collect();
         let hash = |width: u32, height: u32, parts: &[&[Rgb]]| {
             let mut digest = FilmDigest::new(width, height);
-            parts.iter().for_each(|part| digest.update(part));
+            parts.iter().for_each(|part| digest.update(*part));
             digest.finish()
         };
         let whole = hash(4, 3, &[&pixels]);
@@ -94,5 +100,22 @@ mod tests {
         other[11].b = 0.0;
         assert_ne!(whole.hash, hash(4, 3, &[&other]).hash, "-0 and 0 are different bits");
         assert_eq!(whole.mean, [5.5, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn film_hash_covers_alpha() {
+        let colors = [Rgb::WHITE; 4];
+        let hash = |alpha: &[f32], piece: usize| {
+            let mut digest = FilmDigest::new(2, 2);
+            let rows = PixelRows { colors: &colors, alpha: Some(alpha) };
+            rows.chunks(piece).for_each(|rows| digest.update(rows));
+            digest.finish().hash
+        };
+        let alpha = [1.0, 1.0, 0.5, 1.0];
+        assert_eq!(hash(&alpha, 4), hash(&alpha, 1));
+        assert_ne!(hash(&alpha, 4), hash(&[1.0, 0.5, 1.0, 1.0], 4));
+        let mut opaque = FilmDigest::new(2, 2);
+        opaque.update(&colors);
+        assert_ne!(hash(&[1.0; 4], 4), opaque.finish().hash, "a picture with alpha is another picture");
     }
 }

@@ -23,7 +23,7 @@ use juggler::film::counts::SampleCountStats;
 use juggler::film::{self, MergeGoal, RenderDescription, Stop};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use juggler::render::Control;
 use juggler::{AovSet, Denoiser};
 use serde_json::json;
@@ -155,7 +155,48 @@ impl Merge {
         sample_counts: Option<SampleCountStats>,
         interrupts: &Interrupts,
     ) -> Result<FilmSummary, Failure> {
-        let Encoding { format, options } = encoding;
+        let Encoding { format, .. } = encoding;
+        let set = AovSet::from_description(&merge.description().aovs)?;
+        let header = self.header(merge, encoding, &set, sample_counts)?;
+        memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
+        let mut aov_writer = self.aov_writer(&set, &header)?;
+        let with_picture = aov_writer.as_ref().is_some_and(|(_, with_picture)| *with_picture);
+        let mut writer = match self.output.as_str() {
+            _ if with_picture => None,
+            STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
+            file => Some(imaging::create(Path::new(file), format, &header)?),
+        };
+        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
+        let (is_other, mut rest) = (denoised.is_some() || set.is_transparent(), denoised.as_deref());
+        let mut digest = FilmDigest::new(header.width, header.height);
+        let summary = merge.tile_rows(|band, tiles, rows| {
+            interrupts.check()?;
+            let colors = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
+            let alpha = set.alpha(band, tiles);
+            let rows = PixelRows { colors, alpha: alpha.as_deref() };
+            if is_other {
+                digest.update(rows);
+            }
+            if let Some((writer, with_picture)) = &mut aov_writer {
+                writer.write_rows(&set.band_values(band, tiles, with_picture.then_some(rows)))?;
+            }
+            Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
+        })?;
+        writer.map_or(Ok(()), |writer| writer.finish())?;
+        aov_writer.map_or(Ok(()), |(writer, _)| writer.finish())?;
+        console::warn_of_clamping(&header.clamped, &self.output, self.quiet);
+        let FilmSummary { hash, mean, .. } = if is_other { digest.finish() } else { summary.clone() };
+        Ok(FilmSummary { hash, mean, ..summary })
+    }
+
+    /// Header of the merged picture.
+    fn header(
+        &self,
+        merge: &film::Merge,
+        encoding: Encoding,
+        set: &AovSet,
+        sample_counts: Option<SampleCountStats>,
+    ) -> Result<Header, Failure> {
         let RenderDescription { region, tone, metadata, viewpoint, .. } = merge.description();
         let (mut metadata, viewpoint, crop) = (metadata.clone(), *viewpoint, merge.description().crop_frame());
         if let Some(sample_counts) = sample_counts {
@@ -167,34 +208,9 @@ impl Merge {
         if let Some(warning) = effect::ignored_tone_warning(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
             console::print_message(&warning);
         }
-        let header = Header { tone, options, metadata, viewpoint, crop, ..Header::new(region.width, region.height) };
-        let set = AovSet::from_description(&merge.description().aovs)?;
-        memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
-        let mut aov_writer = self.aov_writer(&set, &header)?;
-        let with_picture = aov_writer.as_ref().is_some_and(|(_, with_picture)| *with_picture);
-        let mut writer = match self.output.as_str() {
-            _ if with_picture => None,
-            STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
-            file => Some(imaging::create(Path::new(file), format, &header)?),
-        };
-        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
-        let mut rest = denoised.as_deref();
-        let summary = merge.tile_rows(|band, tiles, rows| {
-            interrupts.check()?;
-            let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
-            if let Some((writer, with_picture)) = &mut aov_writer {
-                writer.write_rows(&set.band_values(band, tiles, with_picture.then_some(rows)))?;
-            }
-            Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
-        })?;
-        writer.map_or(Ok(()), |writer| writer.finish())?;
-        aov_writer.map_or(Ok(()), |(writer, _)| writer.finish())?;
-        console::warn_of_clamping(&header.clamped, &self.output, self.quiet);
-        let Some(pixels) = denoised else { return Ok(summary) };
-        let mut digest = FilmDigest::new(region.width, region.height);
-        digest.update(&pixels);
-        let FilmSummary { hash, mean, .. } = digest.finish();
-        Ok(FilmSummary { hash, mean, ..summary })
+        let (options, transparent) = (encoding.options, set.is_transparent());
+        let size = Header::new(region.width, region.height);
+        Ok(Header { tone, options, transparent, metadata, viewpoint, crop, ..size })
     }
 
     /// Writer of the AOVs of the partial renders, and whether its file contains the picture too.

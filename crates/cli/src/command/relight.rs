@@ -13,7 +13,7 @@ use clap::Args;
 use juggler::camera::film::{Rect, Tile};
 use juggler::film::{self, MergeGoal, RenderDescription};
 use juggler::imaging::{self, Header, Tone};
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use juggler::{AovSet, MAX_GAIN};
 use std::path::Path;
 use std::time::Instant;
@@ -72,7 +72,8 @@ impl Relight {
         let mut metadata = metadata.clone();
         metadata.push(("Gain".to_owned(), self.gain.clone()));
         let (viewpoint, crop) = (*viewpoint, merge.description().crop_frame());
-        let header = Header { tone, options, metadata, viewpoint, crop, ..Header::new(region.width, region.height) };
+        let (transparent, size) = (set.is_transparent(), Header::new(region.width, region.height));
+        let header = Header { tone, options, transparent, metadata, viewpoint, crop, ..size };
         let interrupts = Interrupts::watch()?;
         let mut writer = match self.output.as_str() {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
@@ -80,7 +81,9 @@ impl Relight {
         };
         merge.tile_rows(|band, tiles, _| {
             interrupts.check()?;
-            Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
+            let alpha = set.alpha(band, tiles);
+            let colors = relit(&set, &gains, band, tiles);
+            Ok::<(), Failure>(writer.write_rows(PixelRows { colors: &colors, alpha: alpha.as_deref() })?)
         })?;
         writer.finish()?;
         console::warn_of_clamping(&header.clamped, &self.output, self.quiet);

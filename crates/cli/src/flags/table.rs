@@ -38,6 +38,8 @@ pub const FLAGS: &[Flag] = &[
     flag("primaries", OUTPUT),
     flag("dither", OUTPUT).only("on").idle(&[(Targets::PicturesWithoutDither, "is for 8-bit pictures without a display look; this {format} file is never dithered"), (Targets::Movies, "is for pictures; frames of a movie are never dithered")]),
     flag("look", OUTPUT).idle(&[(Targets::PicturesWithoutLook, "is for PNG, JPEG and WebP pictures; a {format} file stores linear radiance"), (Targets::PartialRenders, NOT_SUMS)]),
+    flag("transparent", OUTPUT).idle(&[(Targets::PicturesWithoutAlpha, "is for PNG, WebP and EXR pictures without a display look; this {format} file cannot be transparent"), (Targets::MoviesWithoutAlpha, "is for .webp, .apng and .gif movies; {format} cannot be transparent")])
+        .tip("--transparent hides the background and writes alpha", &["--alpha", "--rgba", "--transparent-background", "--film-transparent", "--no-background", "+ua"]),
     flag("aov", OUTPUT).idle(&[(Targets::Movies, "is for pictures, also numbered ones (-o 'frame_####.exr'), not for movies")])
         .tip("--aov LIST selects the AOVs to write", &["--passes", "--layers", "--channels"]),
     flag("denoise", OUTPUT),

@@ -16,6 +16,8 @@ pub enum Targets {
     PicturesWithoutLook,
     /// Pictures that are never dithered.
     PicturesWithoutDither,
+    /// Pictures that cannot be transparent.
+    PicturesWithoutAlpha,
     PartialRenders,
     AllButPartialRenders,
     Movies,
@@ -24,6 +26,8 @@ pub enum Targets {
     MoviesWithoutQuality,
     /// Movies whose format does not store how often they play.
     MoviesWithoutPlays,
+    /// Movies whose format cannot be transparent.
+    MoviesWithoutAlpha,
 }
 
 impl Targets {
@@ -40,12 +44,15 @@ impl Targets {
                 let options = picture.options;
                 !picture.format.is_tone_mapped() || options.look != DisplayLook::Plain || options.png_16_bit
             }),
+            Self::PicturesWithoutAlpha => picture
+                .is_some_and(|picture| !picture.format.stores_alpha() || picture.options.look != DisplayLook::Plain),
             Self::PartialRenders => target == Target::PartialRender,
             Self::AllButPartialRenders => target != Target::PartialRender,
             Self::Movies => matches!(target, Target::Movie(_)),
             Self::AllButMovies => !matches!(target, Target::Movie(_)),
             Self::MoviesWithoutQuality => matches!(target, Target::Movie(format) if !format.has_quality()),
             Self::MoviesWithoutPlays => matches!(target, Target::Movie(format) if !format.stores_play_count()),
+            Self::MoviesWithoutAlpha => matches!(target, Target::Movie(format) if !format.stores_alpha()),
         }
     }
 }

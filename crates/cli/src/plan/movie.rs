@@ -61,7 +61,7 @@ impl Movie {
         format!("{}/frame_####.jfilm", self.folder())
     }
 
-    /// Header of a movie of `frames` frames; `pace` is the scene's number of frames per second.
+    /// Header of an opaque movie of `frames` frames; `pace` is the scene's number of frames per second.
     pub fn header(&self, [width, height]: [u32; 2], frames: usize, pace: f64) -> AnimationHeader {
         AnimationHeader {
             width,
@@ -71,6 +71,7 @@ impl Movie {
             frames_per_second: self.frames_per_second.unwrap_or(pace),
             plays: self.plays,
             quality: self.quality,
+            transparent: false,
         }
     }
 

@@ -91,10 +91,10 @@ fn partial_renders_are_known_by_their_ending_and_keep_a_film() {
     assert_eq!(plan("a -o b --format jfilm").unwrap().output_kind, OutputKind::PartialRender);
     for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"] {
         let plan = plan(line).unwrap();
-        assert!(plan.needs_film(&plan.frame_outputs(1, 1.0).unwrap()[0]), "{line}");
+        assert!(plan.needs_film(&Scene::new(), &plan.frame_outputs(1, 1.0).unwrap()[0]), "{line}");
     }
     let plain = plan("a").unwrap();
-    assert!(!plain.needs_film(&plain.frame_outputs(1, 1.0).unwrap()[0]));
+    assert!(!plain.needs_film(&Scene::new(), &plain.frame_outputs(1, 1.0).unwrap()[0]));
     assert!(refused("a -o b.jfilm --bits 16").contains("--bits"));
     assert!(refused("a -o - --format jfilm").contains("standard output"));
     // The crop of a picture is its region; the crop of a partial render is a cut.

@@ -20,3 +20,4 @@ mod readme;
 mod serving;
 mod signals;
 mod statistics;
+mod transparency;

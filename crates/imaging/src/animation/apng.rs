@@ -6,8 +6,7 @@ use super::frame_time::duration;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::output::Destination;
-use crate::tone::Quantizer;
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
 use png::{BitDepth, ColorType, EncodingError};
 use std::io::Write;
 
@@ -22,7 +21,7 @@ impl Writer {
     pub fn new(destination: Destination, header: &AnimationHeader) -> Result<Self, ImageError> {
         let file = destination.name().to_owned();
         let encoder = encoder(destination, header).map_err(|error| failed(&file, error))?;
-        let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255));
+        let frames = Frames::new(header);
         Ok(Self { encoder, frames, file })
     }
 
@@ -41,7 +40,7 @@ fn encoder(
     header: &AnimationHeader,
 ) -> Result<png::Writer<Box<dyn Write + Send>>, EncodingError> {
     let mut encoder = png::Encoder::new(destination.into_stream(), header.width, header.height);
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(if header.transparent { ColorType::Rgba } else { ColorType::Rgb });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -53,7 +52,7 @@ fn encoder(
 }
 
 impl FrameWriter for Writer {
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
         let (rect, bytes) = self.frames.next(pixels);
         self.frame(rect, &bytes).map_err(|error| failed(&self.file, error))
     }

@@ -40,6 +40,15 @@ impl AnimationFormat {
         }
     }
 
+    /// Whether the format stores alpha, or one bit of it.
+    pub fn stores_alpha(self) -> bool {
+        match self {
+            Self::Apng | Self::Gif | Self::Webp => true,
+            #[cfg(feature = "av1")]
+            Self::Mp4 => false,
+        }
+    }
+
     /// Whether the format is lossy, so that [`AnimationHeader::quality`] applies.
     pub fn has_quality(self) -> bool {
         match self {
@@ -53,8 +62,8 @@ impl AnimationFormat {
     pub fn memory_needed(self, width: u32, height: u32) -> u64 {
         // Measured maxima in bytes per pixel: 23 lossless, 170 (plus 16 MiB) for AV1.
         let (bytes_per_pixel, fixed) = match self {
-            // Linear pixels, quantized pixels of two frames, compressed output.
-            Self::Apng | Self::Gif | Self::Webp => (36, 1 << 20),
+            // Linear pixels with alpha, quantized pixels of two frames, compressed output.
+            Self::Apng | Self::Gif | Self::Webp => (48, 1 << 20),
             // Lookahead and reference frames of the encoder, at several resolutions.
             #[cfg(feature = "av1")]
             Self::Mp4 => (200, 16 << 20),
@@ -66,7 +75,8 @@ impl AnimationFormat {
     ///
     /// # Errors
     ///
-    /// A message if the frame size, number of frames, frame rate or quality is out of range.
+    /// A message if the frame size, number of frames, frame rate or quality is out of range, or if the
+    /// format cannot be transparent.
     pub fn check(self, file: &str, header: &AnimationHeader) -> Result<(), ImageError> {
         let AnimationHeader { width, height, frames, frames_per_second, quality, .. } = *header;
         let side_lengths = self.side_lengths();
@@ -88,6 +98,12 @@ impl AnimationFormat {
             let message =
                 format!("{self} does not support {frames_per_second} frames per second, only {least} to {most}");
             return Err(refused(file, message));
+        }
+        if header.transparent && !self.stores_alpha() {
+            return Err(refused(
+                file,
+                format!("{self} cannot be transparent; use .webp, .apng or .gif, or a background"),
+            ));
         }
         if !(1..=100).contains(&quality) {
             return Err(refused(file, format!("its quality must be 1 to 100, it is {quality}")));

@@ -8,10 +8,9 @@ use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::look::bayer_offset;
 use crate::output::Destination;
-use crate::tone::Quantizer;
 use color_quant::NeuQuant;
-use gif::{EncodingError, Frame, Repeat};
-use juggler_math::Rgb;
+use gif::{DisposalMethod, EncodingError, Frame, Repeat};
+use juggler_math::PixelRows;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -24,10 +23,14 @@ const SPAN: i32 = 12;
 /// Approximate number of pixels that the network learns from.
 const TRAINING_PIXELS: usize = 200_000;
 
+/// Level from which a pixel of a transparent movie is opaque: an alpha of ½.
+const OPAQUE: u8 = 128;
+
 /// Streams frames into a GIF.
 pub(super) struct Writer {
     encoder: gif::Encoder<Box<dyn Write + Send>>,
     frames: Frames,
+    transparent: bool,
     file: String,
     /// Clock with ticks of 1/100 s.
     clock: Clock,
@@ -48,16 +51,23 @@ impl Writer {
             Ok(encoder)
         });
         let encoder = begun.map_err(|error| failed(&file, error))?;
-        let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255));
-        Ok(Self { encoder, frames, file, clock: Clock::new(100.0, header.frames_per_second) })
+        let clock = Clock::new(100.0, header.frames_per_second);
+        Ok(Self { encoder, frames: Frames::new(header), transparent: header.transparent, file, clock })
     }
 }
 
 impl FrameWriter for Writer {
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
-        let (rect, bytes) = self.frames.next(pixels);
-        let (palette, indices) = exact_palette(&bytes).unwrap_or_else(|| learned_palette(&rect, &bytes));
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
+        // Pixels of a transparent movie may vanish, so each of its frames replaces the canvas.
+        let (rect, bytes) = if self.transparent { self.frames.whole(pixels) } else { self.frames.next(pixels) };
+        let Indexed { palette, indices, transparent } = if self.transparent {
+            with_transparency(&rect, &bytes)
+        } else {
+            opaque(&rect, bytes.as_chunks().0, COLORS)
+        };
         let frame = Frame {
+            transparent,
+            dispose: if self.transparent { DisposalMethod::Background } else { DisposalMethod::Keep },
             delay: self.clock.tick().min(u64::from(u16::MAX)) as u16,
             left: rect.x as u16,
             top: rect.y as u16,
@@ -77,13 +87,43 @@ impl FrameWriter for Writer {
     }
 }
 
-/// Palette and indices of an image with at most 256 colors; `None` if it has more.
-fn exact_palette(bytes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
-    let pixels = bytes.as_chunks::<3>().0;
+/// Pixels as indices into a palette.
+struct Indexed {
+    /// Red, green and blue of each color.
+    palette: Vec<u8>,
+    indices: Vec<u8>,
+    /// Index of transparent pixels.
+    transparent: Option<u8>,
+}
+
+/// Indexes the opaque pixels of a rectangle, with at most `most` colors.
+fn opaque(rect: &ChangedRect, pixels: &[[u8; 3]], most: usize) -> Indexed {
+    let (palette, indices) = exact_palette(pixels, most).unwrap_or_else(|| learned_palette(rect, pixels, most));
+    Indexed { palette, indices, transparent: None }
+}
+
+/// Indexes pixels with alpha: the last color of the palette stands for transparent pixels, which
+/// have the color of an opaque pixel otherwise, so that they add none.
+fn with_transparency(rect: &ChangedRect, bytes: &[u8]) -> Indexed {
+    let pixels = bytes.as_chunks::<4>().0;
+    let is_opaque = |[.., alpha]: &[u8; 4]| *alpha >= OPAQUE;
+    let [r, g, b, _] = *pixels.iter().find(|pixel| is_opaque(pixel)).unwrap_or(&[0; 4]);
+    let color = |pixel: &[u8; 4]| if is_opaque(pixel) { [pixel[0], pixel[1], pixel[2]] } else { [r, g, b] };
+    let colors: Vec<[u8; 3]> = pixels.iter().map(color).collect();
+    let Indexed { mut palette, mut indices, .. } = opaque(rect, &colors, COLORS - 1);
+    let transparent = (palette.len() / 3) as u8;
+    palette.extend([0; 3]);
+    let hidden = indices.iter_mut().zip(pixels).filter(|(_, pixel)| !is_opaque(pixel));
+    hidden.for_each(|(index, _)| *index = transparent);
+    Indexed { palette, indices, transparent: Some(transparent) }
+}
+
+/// Palette and indices of an image with at most `most` colors; `None` if it has more.
+fn exact_palette(pixels: &[[u8; 3]], most: usize) -> Option<(Vec<u8>, Vec<u8>)> {
     let mut entries = BTreeMap::new();
     for pixel in pixels {
         let next = entries.len();
-        if *entries.entry(*pixel).or_insert(next) >= COLORS {
+        if *entries.entry(*pixel).or_insert(next) >= most {
             return None;
         }
     }
@@ -93,12 +133,11 @@ fn exact_palette(bytes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
     Some((palette.concat(), indices))
 }
 
-/// Learned palette and indices of the dithered pixels.
-fn learned_palette(rect: &ChangedRect, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
-    let pixels = bytes.as_chunks::<3>().0;
+/// Learned palette of `most` colors, and indices of the dithered pixels.
+fn learned_palette(rect: &ChangedRect, pixels: &[[u8; 3]], most: usize) -> (Vec<u8>, Vec<u8>) {
     let opaque: Vec<u8> = pixels.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
     let every = (pixels.len() / TRAINING_PIXELS).clamp(1, 10) as i32;
-    let network = NeuQuant::new(every, COLORS, &opaque);
+    let network = NeuQuant::new(every, most, &opaque);
     let (columns, mut indices) = (rect.width as usize, Vec::with_capacity(pixels.len()));
     // Reuse the previous index, since adjacent pixels often have the same color.
     let mut last = ([0; 3], network.index_of(&[0, 0, 0, 255]) as u8);

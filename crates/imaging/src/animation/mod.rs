@@ -14,7 +14,7 @@ pub use check::FRAME_RATES;
 use crate::output::{self, Destination};
 use crate::tone::Tone;
 use crate::{ImageError, atomic};
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
 use std::fmt;
 use std::path::Path;
 
@@ -98,19 +98,23 @@ pub struct AnimationHeader {
     pub plays: u16,
     /// Quality from 1 (smallest file) to 100 (best); lossless formats ignore it.
     pub quality: u8,
+    /// Whether the frames have alpha; GIF stores whether it is at least ½.
+    pub transparent: bool,
 }
 
 impl AnimationHeader {
     /// Creates a header for a movie in sRGB that loops forever, at quality 80.
     pub fn new(width: u32, height: u32, frames: u32, frames_per_second: f64) -> Self {
-        Self { width, height, tone: Tone::default(), frames, frames_per_second, plays: 0, quality: DEFAULT_QUALITY }
+        let (tone, quality) = (Tone::default(), DEFAULT_QUALITY);
+        Self { width, height, tone, frames, frames_per_second, plays: 0, quality, transparent: false }
     }
 }
 
 /// Encoder that takes frames in order.
 pub trait FrameWriter: Send {
-    /// Encodes the next frame, given all pixels in linear RGB, row by row from the top.
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError>;
+    /// Encodes the next frame, given all pixels in linear RGB, row by row from the top. Their alpha
+    /// counts if the movie is transparent.
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError>;
 
     /// Completes the file after the last frame; without this call the file is invalid.
     fn finish(self: Box<Self>) -> Result<(), ImageError>;
@@ -162,7 +166,7 @@ struct FrameCountCheck {
 }
 
 impl FrameWriter for FrameCountCheck {
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
         let given = pixels.len() as u64;
         if given != self.pixels {
             return Err(refused(&self.file, format!("a frame has {} pixels, not {given}", self.pixels)));
@@ -188,7 +192,7 @@ struct WholeFile {
 }
 
 impl FrameWriter for WholeFile {
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
         self.frames.write_frame(pixels)
     }
 

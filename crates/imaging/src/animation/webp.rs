@@ -5,13 +5,14 @@ use super::frame_time::Clock;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
-use crate::tone::Quantizer;
 use image_webp::{ColorType, WebPEncoder};
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
 use std::io::{self, SeekFrom, Write};
 
 /// VP8X flag of animated files.
 const ANIMATION: u8 = 2;
+/// VP8X flag of files with alpha.
+const ALPHA: u8 = 16;
 /// ANMF flag: the frame replaces the canvas instead of being blended.
 const NO_BLENDING: u8 = 2;
 /// Length of the RIFF header: `RIFF`, size, `WEBP`.
@@ -21,6 +22,7 @@ const RIFF: usize = 12;
 pub(super) struct Writer {
     bytes: Box<dyn WriteSeek>,
     frames: Frames,
+    color_type: ColorType,
     file: String,
     /// Clock with ticks of 1/1000 s.
     clock: Clock,
@@ -31,17 +33,19 @@ impl Writer {
         let file = destination.name().to_owned();
         let mut bytes = destination.into_seekable();
         begin(&mut bytes, header).map_err(|source| failed(&file, source))?;
-        let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255)).with_even_corners();
-        Ok(Self { bytes, frames, file, clock: Clock::new(1000.0, header.frames_per_second) })
+        let frames = Frames::new(header).with_even_corners();
+        let color_type = if header.transparent { ColorType::Rgba8 } else { ColorType::Rgb8 };
+        Ok(Self { bytes, frames, color_type, file, clock: Clock::new(1000.0, header.frames_per_second) })
     }
 }
 
 /// Writes everything before the frames.
 fn begin(bytes: &mut dyn WriteSeek, header: &AnimationHeader) -> io::Result<()> {
+    let flags = ANIMATION | if header.transparent { ALPHA } else { 0 };
     // The size follows at the end.
     bytes.write_all(b"RIFF\0\0\0\0WEBP")?;
     let (right, bottom) = (u24(header.width - 1), u24(header.height - 1));
-    bytes.write_all(&chunk(b"VP8X", &[&[ANIMATION, 0, 0, 0], &right, &bottom]))?;
+    bytes.write_all(&chunk(b"VP8X", &[&[flags, 0, 0, 0], &right, &bottom]))?;
     // Background color, which is never visible, and number of plays.
     bytes.write_all(&chunk(b"ANIM", &[&[255; 4], &header.plays.to_le_bytes()]))
 }
@@ -66,9 +70,9 @@ fn frame(rect: &ChangedRect, delay: u32, picture: &[u8]) -> Vec<u8> {
 }
 
 /// Compresses an image; returns the chunk with its pixels.
-fn encoded(rect: &ChangedRect, pixels: &[u8]) -> Result<Vec<u8>, image_webp::EncodingError> {
+fn encoded(rect: &ChangedRect, pixels: &[u8], color_type: ColorType) -> Result<Vec<u8>, image_webp::EncodingError> {
     let mut file = Vec::new();
-    WebPEncoder::new(&mut file).encode(pixels, rect.width, rect.height, ColorType::Rgb8)?;
+    WebPEncoder::new(&mut file).encode(pixels, rect.width, rect.height, color_type)?;
     Ok(file.split_off(RIFF))
 }
 
@@ -83,10 +87,10 @@ fn end(bytes: &mut dyn WriteSeek) -> io::Result<bool> {
 }
 
 impl FrameWriter for Writer {
-    fn write_frame(&mut self, pixels: &[Rgb]) -> Result<(), ImageError> {
+    fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
         let (rect, bytes) = self.frames.next(pixels);
-        let picture =
-            encoded(&rect, &bytes).map_err(|error| refused(&self.file, format!("encoding as WebP failed: {error}")))?;
+        let picture = encoded(&rect, &bytes, self.color_type)
+            .map_err(|error| refused(&self.file, format!("encoding as WebP failed: {error}")))?;
         let delay = self.clock.tick().min((1 << 24) - 1) as u32;
         let frame = frame(&rect, delay, &picture);
         self.bytes.write_all(&frame).map_err(|source| failed(&self.file, source))

@@ -15,7 +15,7 @@ use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::header::Header as ExrHeader;
 use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 pub(crate) use selection::Placement;
 use selection::Selection;
 use std::io::{self, BufRead, Read};
@@ -26,16 +26,15 @@ pub(super) struct Writer(layered::exr::Writer);
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
         let file = destination.name().to_owned();
-        let picture = LayeredHeader::new(header, vec![LayerHeader::beauty(header.options.exr_depth)]);
+        let picture = LayeredHeader::new(header, vec![LayerHeader::beauty(header)]);
         layered::exr::Writer::new(destination.into_seekable(), file, &picture).map(Self)
     }
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        let [red, green, blue] =
-            [0, 1, 2].map(|channel| rows.iter().map(|pixel| pixel.to_array()[channel]).collect::<Vec<_>>());
-        self.0.write_rows(&[&red, &green, &blue])
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
+        let channels = layered::channels(rows);
+        self.0.write_rows(&channels.iter().map(Vec::as_slice).collect::<Vec<_>>())
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {

@@ -8,7 +8,7 @@ use crate::ImageError;
 use crate::output::Destination;
 use crate::raster::RasterLayout;
 use crate::tone::{Chromaticities, Matrix};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 use std::io::{self, BufRead, Read, Write};
 
 /// Image widths for which rows can be run-length encoded.
@@ -42,8 +42,8 @@ impl Writer {
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        for row in rows.chunks_exact(self.width) {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
+        for row in rows.colors.chunks_exact(self.width) {
             self.row.clear();
             pack_row(row, &mut self.row);
             let written = self.bytes.write_all(&self.row);

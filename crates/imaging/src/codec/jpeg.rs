@@ -8,7 +8,7 @@ use crate::raster::{Raster, RasterSamples, TransferFunction};
 use crate::tone::LevelEncoder;
 use crate::{ImageError, ImageFormat};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows};
 use std::io::{Cursor, Read, Write};
 use zune_core::bytestream::ZByteReaderTrait;
 use zune_core::colorspace::ColorSpace;
@@ -43,7 +43,7 @@ impl Writer {
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
         self.levels.append(rows, &mut self.bytes);
         Ok(())
     }

@@ -20,14 +20,15 @@ use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Curve, Matrix, Srgb, Tone};
 use crate::{ClampCount, CropFrame, ExrWindows, ImageError, ImageFormat, Limits, Viewpoint};
 use juggler_math::message::excerpt;
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 use row_count::RowCountCheck;
 use std::io::{self, BufRead, Seek};
 
 /// Encoder that takes rows from top to bottom.
 pub trait RowWriter: Send {
-    /// Encodes one or more whole rows of linear RGB.
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError>;
+    /// Encodes one or more whole rows of linear RGB. Their alpha counts if the file is transparent
+    /// ([`Header::transparent`]).
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError>;
 
     /// Completes the file after the last row; without this call the file is invalid.
     fn finish(self: Box<Self>) -> Result<(), ImageError>;
@@ -44,6 +45,8 @@ pub struct Header {
     pub tone: Tone,
     /// Options of particular formats.
     pub options: Options,
+    /// Whether the file stores alpha: PNG and WebP with straight colors, EXR with premultiplied ones.
+    pub transparent: bool,
     /// Metadata as pairs of key and text, in order, such as program, fingerprint and seed. PNG, EXR
     /// and HDR store them.
     pub metadata: Vec<(String, String)>,
@@ -60,11 +63,16 @@ impl Header {
     pub fn new(width: u32, height: u32) -> Self {
         let (tone, options) = (Tone::default(), Options::default());
         let (crop, clamped) = (None, ClampCount::default());
-        Self { width, height, tone, options, metadata: Vec::new(), viewpoint: None, crop, clamped }
+        Self { width, height, tone, options, transparent: false, metadata: Vec::new(), viewpoint: None, crop, clamped }
     }
 
-    /// Checks that the format can store the tone's primaries; called before rendering.
-    pub fn check_primaries(&self, format: ImageFormat) -> Result<(), ImageError> {
+    /// Checks that the format can store the tone's primaries, and alpha if the image is transparent;
+    /// called before rendering.
+    pub fn check(&self, format: ImageFormat) -> Result<(), ImageError> {
+        let stores_alpha = format.stores_alpha() && self.options.look == DisplayLook::Plain;
+        if self.transparent && !stores_alpha {
+            return Err(ImageError::Transparency { format, look: self.options.look });
+        }
         let primaries = self.tone.primaries;
         let takes = match format {
             ImageFormat::Exr => true,
@@ -139,7 +147,7 @@ pub fn writer(
     header: &Header,
 ) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
-    header.check_primaries(format)?;
+    header.check(format)?;
     let inner = if format.supports_display_looks() {
         look::Writer::wrap(header, |header| encoder(format, destination, header))?
     } else {

@@ -4,7 +4,7 @@
 use super::{Header, ReadSeek, RowWriter, Source, quoted};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 use std::io::{self, BufRead, SeekFrom};
 
 /// Seeks to the place of each row, since the file stores rows from bottom to top.
@@ -45,8 +45,8 @@ impl Writer {
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        self.write(rows).map_err(|source| ImageError::Write { file: self.file.clone(), source })
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
+        self.write(rows.colors).map_err(|source| ImageError::Write { file: self.file.clone(), source })
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {

@@ -9,7 +9,7 @@ use crate::orientation::Orientation;
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Chromaticities, LevelEncoder, Matrix};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
 use std::io::{self, BufRead, Seek, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,12 +34,13 @@ impl Writer {
         let stream = stream(sink.clone(), header).map_err(|e| failed(&file, e))?;
         let levels =
             if is_16_bit { LevelEncoder::words(&header.tone) } else { LevelEncoder::bytes(&header.tone, header.width) };
+        let levels = levels.with_alpha(header.transparent);
         Ok(Self { stream, sink, levels, bytes: Vec::new(), file })
     }
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
         // Quantize in pieces of fixed size, so that the buffer stays small.
         for piece in rows.chunks(1 << 12) {
             self.bytes.clear();
@@ -97,7 +98,7 @@ impl Write for Sink {
 /// Writes everything before the pixels.
 fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, EncodingError> {
     let mut encoder = png::Encoder::new(sink, header.width, header.height);
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(if header.transparent { ColorType::Rgba } else { ColorType::Rgb });
     encoder.set_depth(if header.options.png_16_bit { BitDepth::Sixteen } else { BitDepth::Eight });
     encoder.set_compression(png::Compression::Fast);
     let primaries = header.tone.primaries;

@@ -2,7 +2,7 @@
 
 use super::{Header, RowWriter};
 use crate::ImageError;
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
 
 /// Checks that the encoder gets whole rows, as many as the header announces.
 pub(super) struct RowCountCheck {
@@ -20,7 +20,7 @@ impl RowCountCheck {
 }
 
 impl RowWriter for RowCountCheck {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
         let given = rows.len() as u64;
         if given > self.left || !given.is_multiple_of(self.width) {
             return Err(ImageError::Rows { expected: self.left.min(self.width), given });

@@ -7,7 +7,7 @@ use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::LevelEncoder;
 use crate::{ImageError, ImageFormat};
 use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
-use juggler_math::{Image, Rgb};
+use juggler_math::{Image, PixelRows};
 use std::io::{BufRead, Seek, Write};
 
 /// Maximum number of pixels per byte. The format itself has no limit, since a single color takes no
@@ -19,6 +19,7 @@ pub(super) struct Writer {
     destination: Destination,
     levels: LevelEncoder,
     size: (u32, u32),
+    color_type: ColorType,
     bytes: Vec<u8>,
 }
 
@@ -26,15 +27,16 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Self {
         Self {
             destination,
-            levels: LevelEncoder::bytes(&header.tone, header.width),
+            levels: LevelEncoder::bytes(&header.tone, header.width).with_alpha(header.transparent),
             size: (header.width, header.height),
-            bytes: Vec::with_capacity(header.pixels() as usize * 3),
+            color_type: if header.transparent { ColorType::Rgba8 } else { ColorType::Rgb8 },
+            bytes: Vec::with_capacity(header.pixels() as usize * if header.transparent { 4 } else { 3 }),
         }
     }
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
         self.levels.append(rows, &mut self.bytes);
         Ok(())
     }
@@ -43,7 +45,7 @@ impl RowWriter for Writer {
         let file = self.destination.name().to_owned();
         let mut bytes = self.destination.into_stream();
         let encoder = WebPEncoder::new(&mut bytes);
-        let encoded = encoder.encode(&self.bytes, self.size.0, self.size.1, ColorType::Rgb8);
+        let encoded = encoder.encode(&self.bytes, self.size.0, self.size.1, self.color_type);
         let encoded = encoded.and_then(|()| bytes.flush().map_err(EncodingError::IoError));
         encoded.map_err(|error| match error {
             EncodingError::IoError(source) => ImageError::Write { file, source },

@@ -132,13 +132,14 @@ impl LayerRows for Writer {
 impl Part {
     /// Buffers one row of the part's channels.
     fn take(&mut self, channels: &[&[f32]]) {
-        let (Some(matrix), [red, green, blue]) = (&self.primaries, channels) else {
+        let (Some(matrix), [red, green, blue, alpha @ ..]) = (&self.primaries, channels) else {
             return self.pending.iter_mut().zip(channels).for_each(|(pending, row)| pending.extend_from_slice(row));
         };
         for ((red, green), blue) in red.iter().zip(*green).zip(*blue) {
             let color = matrix.color(Rgb::new(*red, *green, *blue)).to_array();
             self.pending.iter_mut().zip(color).for_each(|(pending, value)| pending.push(value));
         }
+        self.pending.iter_mut().skip(3).zip(alpha).for_each(|(pending, row)| pending.extend_from_slice(row));
     }
 
     /// Number of buffered values that half floats cannot represent.

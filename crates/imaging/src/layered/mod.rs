@@ -10,6 +10,7 @@ mod read;
 use crate::atomic::AtomicFile;
 use crate::output::{WriteSeek, whole_file};
 use crate::{ClampCount, CropFrame, ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
+use juggler_math::PixelRows;
 use std::path::{Path, PathBuf};
 
 pub(crate) use read::read_channels;
@@ -27,7 +28,7 @@ pub struct LayerHeader {
     pub channels: Vec<String>,
     /// Sample type in an EXR file.
     pub depth: SampleDepth,
-    /// Whether the three channels are RGB with sRGB primaries, which EXR files convert to their
+    /// Whether the first three channels are RGB with sRGB primaries, which EXR files convert to their
     /// own.
     pub is_color: bool,
     /// Metadata for an EXR file, as pairs of key and text.
@@ -47,9 +48,12 @@ impl LayerHeader {
         Self { is_color: true, ..Self::new(name, &["R", "G", "B"]) }
     }
 
-    /// The rendered image itself, with channels `R`, `G` and `B`.
-    pub fn beauty(depth: SampleDepth) -> Self {
-        let channels = ["R", "G", "B"].map(str::to_owned).to_vec();
+    /// The rendered image itself, with channels `R`, `G` and `B`, and `A` if `header` says that the
+    /// image is transparent.
+    pub fn beauty(header: &Header) -> Self {
+        let names = if header.transparent { &["R", "G", "B", "A"][..] } else { &["R", "G", "B"] };
+        let channels = names.iter().map(|name| (*name).to_owned()).collect();
+        let depth = header.options.exr_depth;
         Self { name: "beauty".to_owned(), channels, depth, is_color: true, metadata: Vec::new() }
     }
 }
@@ -93,6 +97,13 @@ impl LayeredHeader {
             clamped: header.clamped.clone(),
         }
     }
+}
+
+/// Channels of the layer [`LayerHeader::beauty`]: red, green and blue of the pixels, and alpha if they
+/// have it.
+pub fn channels(rows: PixelRows) -> Vec<Vec<f32>> {
+    let color = |channel: usize| rows.colors.iter().map(|pixel| pixel.to_array()[channel]).collect();
+    (0..3).map(color).chain(rows.alpha.map(<[f32]>::to_vec)).collect()
 }
 
 /// Streams layers to one or several files, which replace their destinations when all are complete.

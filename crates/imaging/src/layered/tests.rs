@@ -1,13 +1,20 @@
 use super::*;
+use crate::Options;
 use ::exr::prelude::{ReadChannels, ReadLayers};
 
 fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
     let layers = names.iter().map(|(name, channels)| LayerHeader::new(name, channels));
-    let mut layers: Vec<LayerHeader> = std::iter::once(LayerHeader::beauty(SampleDepth::Half)).chain(layers).collect();
+    let mut layers: Vec<LayerHeader> = std::iter::once(half_beauty()).chain(layers).collect();
     layers[1].metadata.push(("cryptomatte/abcdefg/manifest".into(), "{}".into()));
     let metadata = vec![("Software".to_owned(), "Juggler".to_owned())];
     let header = Header { metadata, ..Header::new(5, 37) };
     LayeredHeader { compression: ExrCompression::Zip, ..LayeredHeader::new(&header, layers) }
+}
+
+/// Layer of an opaque picture in half floats.
+fn half_beauty() -> LayerHeader {
+    let options = Options { exr_depth: SampleDepth::Half, ..Options::default() };
+    LayerHeader::beauty(&Header { options, ..Header::new(1, 1) })
 }
 
 /// Channel name and values.

@@ -9,7 +9,7 @@ pub use ham::HamImage;
 use crate::codec::{Header, RowWriter};
 use crate::tone::{Curve, Quantizer, Srgb, Tone};
 use crate::{ImageError, ImageFormat};
-use juggler_math::Rgb;
+use juggler_math::{PixelRows, Rgb};
 
 /// Display look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,8 +71,8 @@ impl Writer {
 }
 
 impl RowWriter for Writer {
-    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        self.quantizer.append_bytes(rows, &mut self.bytes);
+    fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
+        self.quantizer.append_bytes(rows.colors, &mut self.bytes);
         Ok(())
     }
 
@@ -83,7 +83,7 @@ impl RowWriter for Writer {
         let light = |level: u8| linear[usize::from(level & 15)];
         for row in image.rows() {
             let row: Vec<Rgb> = row.map(|[r, g, b]| Rgb::new(light(r), light(g), light(b))).collect();
-            self.inner.write_rows(&row)?;
+            self.inner.write_rows((&row).into())?;
         }
         self.inner.finish()
     }

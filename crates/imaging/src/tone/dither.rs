@@ -7,7 +7,7 @@
 //! differs by less than one level, and values within 1/512 of a level always yield that level.
 
 use super::{Quantizer, Tone};
-use juggler_math::Rgb;
+use juggler_math::{PixelRows, Rgb};
 
 /// Steps per level.
 const STEPS: u16 = 256;
@@ -21,6 +21,8 @@ pub(crate) struct LevelEncoder {
     width: u64,
     /// Number of pixels processed.
     pixels_done: u64,
+    /// Whether a level of alpha follows those of each color.
+    has_alpha: bool,
 }
 
 enum Depth {
@@ -33,16 +35,51 @@ impl LevelEncoder {
     /// 8-bit levels for images of this width.
     pub fn bytes(tone: &Tone, width: u32) -> Self {
         let (top, depth) = if tone.dither { (255 * STEPS, Depth::Dithered) } else { (255, Depth::Bytes) };
-        Self { quantizer: Quantizer::new(tone, top), depth, width: u64::from(width.max(1)), pixels_done: 0 }
+        let (quantizer, width) = (Quantizer::new(tone, top), u64::from(width.max(1)));
+        Self { quantizer, depth, width, pixels_done: 0, has_alpha: false }
     }
 
     /// 16-bit levels, big-endian, without dithering.
     pub fn words(tone: &Tone) -> Self {
-        Self { quantizer: Quantizer::new(tone, u16::MAX), depth: Depth::Words, width: 1, pixels_done: 0 }
+        let quantizer = Quantizer::new(tone, u16::MAX);
+        Self { quantizer, depth: Depth::Words, width: 1, pixels_done: 0, has_alpha: false }
     }
 
-    /// Quantizes the next pixels to three levels each.
-    pub fn append(&mut self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
+    /// Adds a level of alpha to each pixel, whose color becomes straight.
+    pub fn with_alpha(self, has_alpha: bool) -> Self {
+        Self { has_alpha, ..self }
+    }
+
+    /// Number of levels of a pixel.
+    pub fn channels(&self) -> usize {
+        if self.has_alpha { 4 } else { 3 }
+    }
+
+    /// Quantizes the next pixels to three levels each, and one of alpha if there is any. Colors are
+    /// over black without it.
+    pub fn append(&mut self, rows: PixelRows, bytes: &mut Vec<u8>) {
+        if !self.has_alpha {
+            return self.append_colors(rows.colors, bytes);
+        }
+        let mut colors = Vec::new();
+        self.append_colors(&rows.straight(), &mut colors);
+        let mut alpha = rows.alpha.unwrap_or_default().iter();
+        let mut alpha = || alpha.next().map_or(1.0, |alpha| alpha.clamp(0.0, 1.0));
+        if matches!(self.depth, Depth::Words) {
+            for color in colors.chunks_exact(6) {
+                bytes.extend_from_slice(color);
+                bytes.extend(((alpha() * f32::from(u16::MAX)).round() as u16).to_be_bytes());
+            }
+        } else {
+            for color in colors.chunks_exact(3) {
+                bytes.extend_from_slice(color);
+                bytes.push((alpha() * f32::from(u8::MAX)).round() as u8);
+            }
+        }
+    }
+
+    /// Quantizes the colors of the next pixels.
+    fn append_colors(&mut self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
         match self.depth {
             Depth::Words => self.quantizer.append_words(pixels, bytes),
             Depth::Bytes => self.quantizer.append_bytes(pixels, bytes),
@@ -72,7 +109,7 @@ mod tests {
 
     fn bytes(tone: &Tone, width: u32, pixels: &[Rgb], piece: usize) -> Vec<u8> {
         let (mut levels, mut bytes) = (LevelEncoder::bytes(tone, width), Vec::new());
-        pixels.chunks(piece).for_each(|piece| levels.append(piece, &mut bytes));
+        pixels.chunks(piece).for_each(|piece| levels.append(piece.into(), &mut bytes));
         bytes
     }
 
@@ -130,6 +167,24 @@ mod tests {
         }
         let odd = [f32::NAN, f32::NEG_INFINITY, -3.0, f32::INFINITY, 7.0, 0.0].map(Rgb::splat);
         assert_eq!(bytes(&linear(), 6, &odd, 6), [0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 0, 0, 0]);
+    }
+
+    #[test]
+    fn alpha_has_levels_of_its_own_and_colors_become_straight() {
+        let colors = [0.5, 0.25, 0.7, 0.3].map(Rgb::splat);
+        let alpha = [1.0, 0.5, 0.0, f32::NAN];
+        let rows = PixelRows { colors: &colors, alpha: Some(&alpha) };
+        let encoded = |mut levels: LevelEncoder| {
+            let mut bytes = Vec::new();
+            rows.chunks(3).for_each(|rows| levels.append(rows, &mut bytes));
+            bytes
+        };
+        let flat = Tone { dither: false, ..linear() };
+        let bytes = encoded(LevelEncoder::bytes(&flat, 4).with_alpha(true));
+        assert_eq!(bytes, [128, 128, 128, 255, 128, 128, 128, 128, 0, 0, 0, 0, 0, 0, 0, 0]);
+        let words = encoded(LevelEncoder::words(&flat).with_alpha(true));
+        assert_eq!((words.len(), &words[6..8], &words[14..16]), (32, &[255, 255][..], &[128, 0][..]));
+        assert_eq!(encoded(LevelEncoder::bytes(&flat, 4))[3..6], [64; 3], "without alpha, colors are over black");
     }
 
     #[test]

@@ -27,7 +27,7 @@ fn frame(number: u32) -> Vec<Rgb> {
 fn write(format: AnimationFormat, header: &AnimationHeader) -> Vec<u8> {
     let file = Shared::default();
     let mut writer = animation_writer(format, Destination::seekable("memory", file.clone()), header).unwrap();
-    (0..header.frames).for_each(|number| writer.write_frame(&frame(number)).unwrap());
+    (0..header.frames).for_each(|number| writer.write_frame((&frame(number)).into()).unwrap());
     writer.finish().unwrap();
     file.bytes()
 }
@@ -114,7 +114,7 @@ fn few_colors_are_kept_as_they_are() {
     let header = AnimationHeader { width: 4, height: 2, ..header(1, 10.0, 0) };
     let mut writer = animation_writer(AnimationFormat::Gif, Destination::seekable("m", file.clone()), &header).unwrap();
     let colors = [0.0, 0.25, 0.5, 1.0].map(|v| Rgb::new(v, 1.0 - v, 0.3));
-    writer.write_frame(&[colors, colors].concat()).unwrap();
+    writer.write_frame((&[colors, colors].concat()).into()).unwrap();
     writer.finish().unwrap();
     let bytes = file.bytes();
     let mut options = gif::DecodeOptions::new();
@@ -134,7 +134,7 @@ fn frames_that_do_not_change_take_hardly_any_room() {
             let file = Shared::default();
             let destination = Destination::seekable("m", file.clone());
             let mut writer = animation_writer(format, destination, &header(frames, 25.0, 0)).unwrap();
-            (0..frames).for_each(|_| writer.write_frame(&frame(0)).unwrap());
+            (0..frames).for_each(|_| writer.write_frame((&frame(0)).into()).unwrap());
             writer.finish().unwrap();
             file.bytes().len()
         });
@@ -168,12 +168,12 @@ fn unsupported_animations_are_rejected_before_writing() {
         assert!(refuse(mp4, &AnimationHeader { quality: 0, ..header(1, 10.0, 0) }).contains("1 to 100"));
     }
     let mut writer = animation_writer(gif, Destination::stream("x.gif", io::sink()), &header(2, 10.0, 0)).unwrap();
-    assert!(writer.write_frame(&frame(0)[1..]).is_err(), "part of a frame");
-    writer.write_frame(&frame(0)).unwrap();
+    assert!(writer.write_frame(frame(0)[1..].into()).is_err(), "part of a frame");
+    writer.write_frame((&frame(0)).into()).unwrap();
     assert!(writer.finish().unwrap_err().to_string().contains("1 of its frames"));
     let mut writer = animation_writer(gif, Destination::stream("x.gif", io::sink()), &header(1, 10.0, 0)).unwrap();
-    writer.write_frame(&frame(0)).unwrap();
-    assert!(writer.write_frame(&frame(0)).is_err(), "one too many");
+    writer.write_frame((&frame(0)).into()).unwrap();
+    assert!(writer.write_frame((&frame(0)).into()).is_err(), "one too many");
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn a_file_is_there_when_it_is_finished() {
         let path = folder.path().join(format!("film.{}", format.extension()));
         assert_eq!(AnimationFormat::from_path(&path), Some(format));
         let mut writer = create_animation(&path, format, &header(1, 10.0, 0)).unwrap();
-        writer.write_frame(&frame(0)).unwrap();
+        writer.write_frame((&frame(0)).into()).unwrap();
         assert!(!path.exists());
         writer.finish().unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), write(format, &header(1, 10.0, 0)));

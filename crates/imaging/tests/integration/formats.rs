@@ -226,7 +226,7 @@ fn files_appear_only_when_finished() {
     write_image(create(&path, ImageFormat::Png, &header(&image)).unwrap(), &image).unwrap();
     let old = std::fs::read(&path).unwrap();
     let mut rows = create(&path, ImageFormat::Png, &header(&image)).unwrap();
-    rows.write_rows(&image.pixels()[..200]).unwrap();
+    rows.write_rows(image.pixels()[..200].into()).unwrap();
     assert!(matches!(rows.finish(), Err(ImageError::Rows { expected: 200, given: 0 })));
     drop(create(&path, ImageFormat::Exr, &header(&image)).unwrap());
     assert_eq!(std::fs::read(&path).unwrap(), old);
@@ -264,9 +264,12 @@ fn half_rows_and_rows_too_many_are_refused() {
     for format in ImageFormat::ALL {
         let mut rows =
             writer(format, Destination::seekable("m", std::io::Cursor::new(vec![])), &header(&image)).unwrap();
-        assert!(matches!(rows.write_rows(&image.pixels()[..15]), Err(ImageError::Rows { given: 15, .. })));
-        rows.write_rows(image.pixels()).unwrap();
-        assert!(matches!(rows.write_rows(&image.pixels()[..10]), Err(ImageError::Rows { expected: 0, given: 10 })));
+        assert!(matches!(rows.write_rows(image.pixels()[..15].into()), Err(ImageError::Rows { given: 15, .. })));
+        rows.write_rows(image.pixels().into()).unwrap();
+        assert!(matches!(
+            rows.write_rows(image.pixels()[..10].into()),
+            Err(ImageError::Rows { expected: 0, given: 10 })
+        ));
         rows.finish().unwrap();
         let wrong = Header::new(0, 4);
         assert!(writer(format, Destination::stream("m", std::io::sink()), &wrong).is_err());

@@ -19,3 +19,4 @@ mod mp4;
 mod rasters;
 mod read_only;
 mod tones;
+mod transparency;

@@ -20,7 +20,7 @@ fn film(header: &AnimationHeader) -> Vec<u8> {
     let file = Shared::default();
     let destination = Destination::seekable("memory", file.clone());
     let mut writer = animation_writer(AnimationFormat::Mp4, destination, header).unwrap();
-    (0..header.frames).for_each(|number| writer.write_frame(&frame(header, number)).unwrap());
+    (0..header.frames).for_each(|number| writer.write_frame((&frame(header, number)).into()).unwrap());
     writer.finish().unwrap();
     file.bytes()
 }

@@ -134,7 +134,7 @@ fn formats_without_primaries_reject_wide_gamuts() {
     let image = picture(8, 8, 1.0);
     let refused = |format, primaries, options| {
         let header = Header { options, ..with(&image, Tone { primaries, ..WIDE }) };
-        match header.check_primaries(format) {
+        match header.check(format) {
             Err(error @ ImageError::Primaries { .. }) => error.to_string().contains(primaries.name()),
             Err(other) => panic!("{other}"),
             Ok(()) => false,

@@ -3,7 +3,8 @@
 use super::{Aov, AovSet, cryptomatte};
 use juggler_camera::aov::{AdjacentFrame, FilmAov, LightGroup};
 use juggler_camera::film::{AovSums, PixelStatistics, Rect, Tile};
-use juggler_math::Rgb;
+use juggler_imaging::layered;
+use juggler_math::{PixelRows, Rgb};
 
 /// Indices of the film's coverage masks.
 const OBJECTS: usize = 0;
@@ -22,9 +23,9 @@ struct Pixel<'t> {
 }
 
 impl AovSet {
-    /// Returns the channels of a band from its tiles: red, green and blue of the rendered image if
-    /// given, then those of [`AovSet::headers`]. Pixels without a tile are 0.
-    pub fn band_values(&self, band: &Rect, tiles: &[Tile], picture: Option<&[Rgb]>) -> Vec<Vec<f32>> {
+    /// Returns the channels of a band from its tiles: red, green, blue and perhaps alpha of the
+    /// rendered image if given, then those of [`AovSet::headers`]. Pixels without a tile are 0.
+    pub fn band_values(&self, band: &Rect, tiles: &[Tile], picture: Option<PixelRows>) -> Vec<Vec<f32>> {
         let mut channels = vec![vec![0.0; band.area() as usize]; self.channels];
         for tile in tiles {
             channels
@@ -32,7 +33,7 @@ impl AovSet {
                 .zip(self.values(tile))
                 .for_each(|(row, values)| tile.pixels().copy_into(&values, band, row));
         }
-        picture.map(channels_of).into_iter().flatten().chain(channels).collect()
+        picture.map(layered::channels).into_iter().flatten().chain(channels).collect()
     }
 
     /// Returns a tile's pixels with each light group scaled by its gain; `gains` are in the order
@@ -49,6 +50,19 @@ impl AovSet {
             *pixel = pixel.map(|channel| channel.max(0.0));
         }
         pixels
+    }
+
+    /// Returns alpha of the pixels of a band from its tiles, 0 to 1; `None` if the picture is opaque.
+    /// Pixels without a tile are transparent.
+    pub fn alpha(&self, band: &Rect, tiles: &[Tile]) -> Option<Vec<f32>> {
+        let mut alpha = self.transparent.then(|| vec![0.0; band.area() as usize])?;
+        for tile in tiles {
+            let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
+            let of_pixel = |number| Pixel { set: self, tile, aov_sums: &aov_sums, number, count }.alpha();
+            let values: Vec<f32> = (0..tile.pixels().area() as usize).map(of_pixel).collect();
+            tile.pixels().copy_into(&values, band, &mut alpha);
+        }
+        Some(alpha)
     }
 
     /// Returns the channels of a tile, each with its pixels row by row.
@@ -78,6 +92,17 @@ impl Pixel<'_> {
         let place =
             self.set.film_aovs.index_of(aov).and_then(|place| self.aov_sums.planes.get(self.number * planes + place));
         place.copied().unwrap_or(Rgb::BLACK)
+    }
+
+    /// Returns alpha: the fraction of the samples that see objects, and of those that see shadow
+    /// catchers the fraction of the light that these lose. All weights are sums over the samples, so
+    /// that alpha is exactly 0 and 1 where all samples agree.
+    fn alpha(&self) -> f32 {
+        let Rgb { r: opaque, g: transmitted, b: caught } = self.sum(FilmAov::Alpha);
+        let Rgb { r: lit, g: unoccluded, .. } = self.sum(FilmAov::ShadowCatcher);
+        let lost = if unoccluded > 0.0 { (1.0 - lit / unoccluded).clamp(0.0, 1.0) } else { 0.0 };
+        let all = opaque + transmitted + caught;
+        if all > 0.0 { ((opaque + caught * lost) / all).clamp(0.0, 1.0) } else { 0.0 }
     }
 
     /// Returns the first two channels of an AOV, averaged over the valid samples, which its third
@@ -148,11 +173,6 @@ impl Pixel<'_> {
             Aov::Clamped => row.push(self.sum(FilmAov::Coverage).b),
         }
     }
-}
-
-/// Splits pixels into red, green and blue channels.
-fn channels_of(pixels: &[Rgb]) -> Vec<Vec<f32>> {
-    (0..3).map(|channel| pixels.iter().map(|pixel| pixel.to_array()[channel]).collect()).collect()
 }
 
 /// Divides a sum by the sum of weights; returns 0 if the latter is 0.

@@ -70,7 +70,8 @@ impl Picture {
         let (tone, limit) = ((*scene.description.tone).clone(), settings.limit);
         let scene_fingerprint =
             SceneFingerprint::from_scene(scene.clone(), camera.1.clone(), compiled.camera_keys.clone());
-        let aovs = Arc::new(AovSet::new(&settings.aovs, settings.denoiser, &compiled.names));
+        let aovs =
+            Arc::new(AovSet::new(&settings.aovs, settings.denoiser, &compiled.names, compiled.settings.transparent));
         aovs.check()?;
         let neighbors = NeighborScenes::build(plain, settings, &compiled, &shutter_camera, &aovs, control)?;
         Ok(Self {

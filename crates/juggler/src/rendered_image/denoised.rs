@@ -1,7 +1,7 @@
 //! Denoising of images that were rendered without a denoiser.
 
 use super::{RenderedImage, digest};
-use crate::denoise::{Denoiser, NoisyPixels, PixelFeatures, denoise_pixels};
+use crate::denoise::{Denoiser, NoisyPixels, PixelFeatures, denoise_pixels, hide_transparent};
 use crate::{Aov, Error};
 use juggler_camera::film::{FilmSummary, Rect};
 use juggler_math::{Rgb, Vec3};
@@ -28,9 +28,10 @@ impl RenderedImage {
         };
         let noisy = NoisyPixels::Whole(&self.pixels);
         let denoised = denoise_pixels([width, height], noisy, &features, with, library, control)?;
-        let pixels = denoised.ok_or(Error::Cancelled(Cancelled))?.pixels;
+        let mut pixels = denoised.ok_or(Error::Cancelled(Cancelled))?.pixels;
+        hide_transparent(&mut pixels, self.alpha());
         let mut image = Self { pixels, ..self.clone() };
-        let FilmSummary { hash, mean, .. } = digest(&image.pixels, Rect { x: 0, y: 0, width, height });
+        let FilmSummary { hash, mean, .. } = digest(image.pixel_rows(), Rect { x: 0, y: 0, width, height });
         image.stats.film = FilmSummary { hash, mean, ..self.stats.film.clone() };
         image.stats.denoise = start.elapsed();
         Ok(image)

@@ -4,7 +4,8 @@ use super::RenderedImage;
 use crate::Error;
 use juggler_imaging::tone::Quantizer;
 use juggler_imaging::{Header, ImageFormat, Tone, to_memory};
-use juggler_math::Rgb;
+use juggler_math::PixelRows;
+use std::ops::{Add, Div};
 
 impl RenderedImage {
     /// Returns the bytes of an image file without AOVs. An image that is wider than `most` pixels
@@ -12,14 +13,16 @@ impl RenderedImage {
     pub fn encode(&self, format: ImageFormat, most: u32) -> Result<Vec<u8>, Error> {
         let factor = self.header.width.div_ceil(most.max(1)).max(1);
         if factor == 1 {
-            return Ok(to_memory(format, &self.header, &self.pixels)?);
+            return Ok(to_memory(format, &self.header, self.pixel_rows())?);
         }
         let [width, height] = self.size().map(|edge| edge.div_ceil(factor));
         let header = Header { width, height, viewpoint: None, crop: None, ..self.header.clone() };
-        Ok(to_memory(format, &header, &self.reduced(factor))?)
+        let colors = self.reduced(&self.pixels, factor);
+        let alpha = self.alpha.as_deref().map(|alpha| self.reduced(alpha, factor));
+        Ok(to_memory(format, &header, PixelRows { colors: &colors, alpha: alpha.as_deref() })?)
     }
 
-    /// Returns 8-bit red, green and blue levels of all pixels, row by row from the top, without
+    /// Returns 8-bit red, green and blue levels of all pixels over black, row by row from the top, without
     /// dithering: an array of shape (height, width, 3).
     pub fn to_rgb8(&self, tone: &Tone) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -27,16 +30,19 @@ impl RenderedImage {
         bytes
     }
 
-    /// Means of blocks of `factor` × `factor` pixels, which may be smaller at the right and at the
-    /// bottom.
-    fn reduced(&self, factor: u32) -> Vec<Rgb> {
+    /// Means of blocks of `factor` × `factor` values of pixels, which may be smaller at the right and
+    /// at the bottom.
+    fn reduced<T>(&self, values: &[T], factor: u32) -> Vec<T>
+    where
+        T: Copy + Default + Add<Output = T> + Div<f32, Output = T>,
+    {
         let (width, factor) = (self.header.width.max(1) as usize, factor as usize);
-        let bands = self.pixels.chunks(width * factor);
+        let bands = values.chunks(width * factor);
         let means = bands.flat_map(|band| {
-            let rows: Vec<&[Rgb]> = band.chunks(width).collect();
+            let rows: Vec<&[T]> = band.chunks(width).collect();
             (0..width).step_by(factor).map(move |left| {
                 let block = rows.iter().flat_map(|row| row.get(left..(left + factor).min(width)).unwrap_or_default());
-                let (sum, count) = block.fold((Rgb::BLACK, 0.0), |(sum, count), pixel| (sum + *pixel, count + 1.0));
+                let (sum, count) = block.fold((T::default(), 0.0), |(sum, count), pixel| (sum + *pixel, count + 1.0));
                 sum / count
             })
         });

@@ -41,7 +41,7 @@ fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
     let mut rows = Vec::new();
     picture
         .develop(&film, |band| {
-            rows.extend_from_slice(band);
+            rows.extend_from_slice(band.colors);
             Ok::<(), ()>(())
         })
         .unwrap();

@@ -77,7 +77,7 @@ fn render(scene: &Scene, aovs: &[Aov]) -> (Picture, Vec<Vec<f32>>, Vec<f32>) {
     let mut red = Vec::new();
     picture
         .develop(&film, |rows| {
-            red.extend(rows.iter().map(|pixel| pixel.r));
+            red.extend(rows.colors.iter().map(|pixel| pixel.r));
             Ok::<(), ()>(())
         })
         .unwrap();

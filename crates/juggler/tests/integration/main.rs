@@ -25,4 +25,5 @@ mod noise;
 mod prelude;
 mod probe;
 mod rendered_image;
+mod transparency;
 mod viewpoint;

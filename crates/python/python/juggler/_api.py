@@ -16,8 +16,8 @@ def render(scene, **settings):
     size=(width, height), samples=, noise= (relative error at which the render ends), time=
     (seconds), seed=, integrator=, sampler=, max_depth=, camera= (name, or a camera), frame= or at=
     (seconds), shutter=(open, close), crop=(left, top, width, height), aovs=[names], denoise=
-    (True, "own" or "oidn"), tone= (curve), exposure= (stops), white_balance=, primaries=, dither=;
-    for model files variant=, animation=, model_scene=, lenient=; threads=, max_memory= ("4G"), and
+    (True, "own" or "oidn"), transparent= (hides the background, for files with alpha), tone= (curve),
+    exposure= (stops), white_balance=, primaries=, dither=; for model files variant=, animation=, model_scene=, lenient=; threads=, max_memory= ("4G"), and
     progress= (a function that takes a `Progress`, True for a bar, False for nothing).
     """
     from juggler._renderer import Renderer

@@ -69,6 +69,17 @@ class Image:
         return self._arrays["color"]
 
     @property
+    def alpha(self):
+        """Alpha of the pixels of a transparent image, by which their colors are multiplied: a
+        read-only array of shape (height, width), float32. `None` for an opaque image.
+        """
+        # The AOV `alpha`, the coverage by surfaces, has the plain name.
+        if ".alpha" not in self._arrays:
+            data, (width, height) = self._native.alpha(), self.size
+            self._arrays[".alpha"] = None if data is None else array(data, "float32", (height, width))
+        return self._arrays[".alpha"]
+
+    @property
     def aovs(self):
         """Arrays of the AOVs by name, of shape (height, width) or (height, width, channels)."""
         return Layers(self)

@@ -48,6 +48,11 @@ class Image:
     def color(self) -> NDArray[numpy.float32]:
         """Linear pixels: a read-only array of shape (height, width, 3), float32."""
     @property
+    def alpha(self) -> NDArray[numpy.float32] | None:
+        """Alpha of the pixels of a transparent image, by which their colors are multiplied: a
+        read-only array of shape (height, width), float32. `None` for an opaque image.
+        """
+    @property
     def aovs(self) -> Mapping[str, NDArray[Any]]:
         """Arrays of the AOVs by name, of shape (height, width) or (height, width, channels)."""
     @property

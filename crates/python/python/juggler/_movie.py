@@ -63,8 +63,8 @@ def _flags(settings):
             words.append(
                 f"--white-balance={','.join(map(str, value)) if isinstance(value, (tuple, list)) else value}"
             )
-        elif name == "lenient":
-            words += ["--lenient"] if value else []
+        elif name in ("lenient", "transparent"):
+            words += [f"--{name}"] if value else []
         else:
             raise SettingsError(f"a movie cannot have the setting `{name}`", name)
     return words

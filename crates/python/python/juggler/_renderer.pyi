@@ -34,6 +34,7 @@ class Settings(TypedDict, total=False):
     white_balance: float | Sequence[float] | None
     primaries: str | None
     dither: bool | None
+    transparent: bool | None
     variant: str | int | None
     animation: str | int | None
     model_scene: str | int | None

@@ -133,6 +133,8 @@ class RenderSettings(Node):
             frames relative to the frame's own time, in this order. Motion in between is blurred.
             `[0, 0.5]` is the 180° shutter of a movie camera; the default `[0, 0]` disables motion
             blur.
+        transparent (True or False): Whether the background is transparent: the camera does not see
+            it, also through glass, and PNG, WebP and EXR files store alpha. Its light stays.
         integrator (integrator): Light transport algorithm. Defaults to `path` if the scene contains
             anything that `classic` does not support: an `emissive` material, an `area` light, an
             `environment` or a `sky`, a medium, any material except `phong` and combinations of it.
@@ -146,7 +148,17 @@ class RenderSettings(Node):
         RenderSettings(size=(1280, 720), samples=256, integrator=integrators.Path(max_depth=8))
     """
 
-    __slots__ = ("size", "samples", "seed", "camera", "shutter", "integrator", "sampler", "filter")
+    __slots__ = (
+        "size",
+        "samples",
+        "seed",
+        "camera",
+        "shutter",
+        "transparent",
+        "integrator",
+        "sampler",
+        "filter",
+    )
 
 
 class Tone(Node):
@@ -343,6 +355,10 @@ class Object(Placement):
         light_group (string): Light group of the emitters inside this object; each light group is
             written to an AOV of its own. It has an effect only in the scene's own `objects`.
             Without it, the object belongs to the group `rest`.
+        shadow_catcher (True or False): Whether the object is a shadow catcher: in a transparent
+            picture ([`transparent` ](Render::transparent)) the camera sees only the shadows that
+            other objects cast on it, as black whose alpha is the lost fraction of the light. Other
+            objects see the whole object. It has an effect only in the scene's own `objects`.
         visible (True, False or number): Whether the scene contains the object with its children.
             Numbers other than 0 count as `true`, so an expression such as `"=seconds >= 1"` can
             show and hide the object.
@@ -363,6 +379,7 @@ class Object(Placement):
         "transform",
         "material",
         "light_group",
+        "shadow_catcher",
         "visible",
     )
     _positional = ("shape",)

@@ -202,6 +202,8 @@ class RenderSettings(Node):
             frames relative to the frame's own time, in this order. Motion in between is blurred.
             `[0, 0.5]` is the 180° shutter of a movie camera; the default `[0, 0]` disables motion
             blur.
+        transparent (True or False): Whether the background is transparent: the camera does not see
+            it, also through glass, and PNG, WebP and EXR files store alpha. Its light stays.
         integrator (integrator): Light transport algorithm. Defaults to `path` if the scene contains
             anything that `classic` does not support: an `emissive` material, an `area` light, an
             `environment` or a `sky`, a medium, any material except `phong` and combinations of it.
@@ -220,6 +222,7 @@ class RenderSettings(Node):
         "seed",
         "camera",
         "shutter",
+        "transparent",
         "integrator",
         "sampler",
         "filter",
@@ -229,6 +232,7 @@ class RenderSettings(Node):
     seed: int | Any
     camera: str | Any
     shutter: list[float | Any] | Any
+    transparent: bool | Any
     integrator: t.Integrator | Any
     sampler: t.Sampler | Any
     filter: t.Filter | Any
@@ -240,6 +244,7 @@ class RenderSettings(Node):
         seed: t.Integer | None = None,
         camera: str | t.ValueForm | None = None,
         shutter: t.Vec2Like | None = None,
+        transparent: bool | t.ValueForm | None = None,
         integrator: t.IntegratorLike | None = None,
         sampler: t.SamplerLike | None = None,
         filter: t.FilterLike | None = None,
@@ -252,6 +257,7 @@ class RenderSettings(Node):
         seed: t.Integer | None = ...,
         camera: str | t.ValueForm | None = ...,
         shutter: t.Vec2Like | None = ...,
+        transparent: bool | t.ValueForm | None = ...,
         integrator: t.IntegratorLike | None = ...,
         sampler: t.SamplerLike | None = ...,
         filter: t.FilterLike | None = ...,
@@ -579,6 +585,10 @@ class Object(Placement):
         light_group (string): Light group of the emitters inside this object; each light group is
             written to an AOV of its own. It has an effect only in the scene's own `objects`.
             Without it, the object belongs to the group `rest`.
+        shadow_catcher (True or False): Whether the object is a shadow catcher: in a transparent
+            picture ([`transparent` ](Render::transparent)) the camera sees only the shadows that
+            other objects cast on it, as black whose alpha is the lost fraction of the light. Other
+            objects see the whole object. It has an effect only in the scene's own `objects`.
         visible (True, False or number): Whether the scene contains the object with its children.
             Numbers other than 0 count as `true`, so an expression such as `"=seconds >= 1"` can
             show and hide the object.
@@ -598,6 +608,7 @@ class Object(Placement):
         "transform",
         "material",
         "light_group",
+        "shadow_catcher",
         "visible",
     )
     name: str | Any
@@ -611,6 +622,7 @@ class Object(Placement):
     transform: Any
     material: str | t.Material | Any
     light_group: str | Any
+    shadow_catcher: bool | Any
     visible: bool | float | Any
     def __init__(
         self,
@@ -626,6 +638,7 @@ class Object(Placement):
         transform: Sequence[t.TransformStepLike] | t.TransformStepLike | None = None,
         material: str | t.MaterialLike | None = None,
         light_group: str | t.ValueForm | None = None,
+        shadow_catcher: bool | t.ValueForm | None = None,
         visible: bool | t.Number | None = None,
     ) -> None: ...
     def replace(
@@ -642,6 +655,7 @@ class Object(Placement):
         transform: Sequence[t.TransformStepLike] | t.TransformStepLike | None = ...,
         material: str | t.MaterialLike | None = ...,
         light_group: str | t.ValueForm | None = ...,
+        shadow_catcher: bool | t.ValueForm | None = ...,
         visible: bool | t.Number | None = ...,
     ) -> Self: ...
 

@@ -977,6 +977,7 @@ class RenderSettingsDict(TypedDict, total=False):
     seed: Integer
     camera: str | ValueForm
     shutter: Vec2Like
+    transparent: bool | ValueForm
     integrator: IntegratorLike
     sampler: SamplerLike
     filter: FilterLike
@@ -1078,6 +1079,7 @@ class ObjectDict(TypedDict, total=False):
     transform: Sequence[TransformStepLike] | TransformStepLike
     material: str | MaterialLike
     light_group: str | ValueForm
+    shadow_catcher: bool | ValueForm
     visible: bool | Number
 
 

@@ -6,7 +6,7 @@
 //! Within a segment each ray has a slot of its own, by which the log identifies the ray of a
 //! contribution.
 
-use super::{Engine, GROUP_RAYS, shade_ray};
+use super::{Engine, GROUP_RAYS, hits_shadow_catcher, shade_ray};
 use crate::camera_rays::push_camera_rays;
 use crate::tile_samples::TileSamples;
 use crate::{Cancelled, Control, Job, RayCounts, Work};
@@ -168,9 +168,12 @@ impl Inspector<'_> {
         self.engine.nearest(&mut recorded.queue);
         let mut segment =
             SegmentHits { bent: vec![None; count], shading_points: vec![None; count], ..SegmentHits::default() };
-        let Engine { job, has_ray_differentials, hits, buffers, .. } = &mut self.engine;
+        let Engine { world, shading, caught, hits, buffers, .. } = &mut self.engine;
         for ((ray, path), hit) in recorded.queue.rays.iter().zip(&recorded.queue.paths).zip(hits.iter()) {
-            segment.vertices.push(shade_ray(job, *has_ray_differentials, buffers, ray, path, hit));
+            // Shadow catchers have no radiance in the picture.
+            let is_caught = caught.is_some() && hits_shadow_catcher(world, path, hit);
+            let vertex = if is_caught { None } else { shade_ray(world, *shading, buffers, ray, path, hit) };
+            segment.vertices.push(vertex);
         }
         let emission_count = self.log().map_or(0, |log| log.lights.len());
         segment.direct_count = self.engine.buffers.shadows.iter().map(|queue| queue.contributions.len()).sum();

@@ -38,6 +38,7 @@ mod placer;
 mod placing;
 mod prepared_instances;
 mod settings;
+mod shadow_catchers;
 mod shutter_motion;
 mod surface_coordinates;
 mod times;
@@ -107,9 +108,21 @@ pub struct Assembly {
     /// As [`Compiled::bounds`].
     pub bounds: Aabb,
     pub(crate) object_materials: Arc<Vec<MaterialId>>,
+    /// Whether each scene entry is a shadow catcher; empty if none is.
+    shadow_catchers: Vec<bool>,
 }
 
 impl Compiled {
+    /// Hides the background from the camera, or shows it.
+    #[must_use]
+    pub fn with_hidden_background(mut self, hides_background: bool) -> Self {
+        self.settings.transparent = hides_background;
+        if self.world.hides_background() != hides_background {
+            self.world = Arc::new((*self.world).clone().with_hidden_background(hides_background));
+        }
+        self
+    }
+
     /// Selected camera for images of `size` pixels, over the shutter interval.
     pub fn shutter_camera(&self, size: UVec2) -> Result<ShutterCamera, InvalidCamera> {
         let keys: Result<Vec<_>, _> = self.camera_keys.iter().map(|camera| camera.projection(size)).collect();
@@ -158,6 +171,7 @@ impl Assembly {
             integrator,
             bounds,
             object_materials,
+            shadow_catchers: shadow_catchers::entries(scene),
         };
         findings.extend(darkness::warning(scene, &assembly));
         (assembly, findings)
@@ -170,8 +184,13 @@ impl Assembly {
     /// [`Cancelled`] if `control` is cancelled.
     pub fn compile(self, settings: Render, warnings: Problems, control: &BuildControl) -> Result<Compiled, Cancelled> {
         control.begin(BuildStage::Building);
+        let unoccluded = shadow_catchers::unoccluded(&self, control)?;
         let world = World::new(self.objects, self.materials, self.lights, self.background, control)?;
-        let world = world.with_labels(self.labels);
+        let world = world.with_labels(self.labels).with_hidden_background(settings.transparent);
+        let world = match unoccluded {
+            Some(unoccluded) => world.with_shadow_catchers(self.shadow_catchers, unoccluded),
+            None => world,
+        };
         let Self { cameras, camera_keys, names, integrator, bounds, illuminance, object_materials, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
         Ok(Compiled {
@@ -209,6 +228,7 @@ impl SceneInputs {
         let materials = materials::Materials::new(scene, files, findings);
         let names = Names::from_scene(scene);
         names.check_groups(scene, findings);
+        shadow_catchers::check(scene, findings);
         Self { integrator, sources, background, materials, names }
     }
 }
@@ -273,7 +293,8 @@ pub fn with_shading(
     if !fits {
         return None;
     }
-    let world = earlier.world.with_shading(materials, lights, background, files.control).ok()?.with_labels(labels);
+    let world = earlier.world.with_shading(materials, lights, background, files.control).ok()?;
+    let world = world.with_labels(labels).with_hidden_background(scene.render.transparent);
     let (world, settings, names) = (Arc::new(world), (*scene.render).clone(), Arc::new(names));
     let base = Compiled { world, cameras, camera_keys, settings, integrator, ..earlier.clone() };
     Some((Compiled { names, illuminance, object_materials, ..base }, findings))

@@ -5,6 +5,9 @@
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
+#[cfg(doc)]
+use super::Render;
+use super::render::is_false;
 use super::{Chain, Instances, Limb, Model, Objects, Rotate, ScaleFactors, TransformStep, transform};
 use crate::item::Item;
 use juggler_material::{AnyMaterial, MaterialRef};
@@ -66,6 +69,12 @@ pub struct Object {
     /// the group `rest`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_group: Option<String>,
+    /// Whether the object is a shadow catcher: in a transparent picture ([`transparent`
+    /// ](Render::transparent)) the camera sees only the shadows that other objects cast on it, as
+    /// black whose alpha is the lost fraction of the light. Other objects see the whole object. It
+    /// has an effect only in the scene's own `objects`.
+    #[serde(skip_serializing_if = "is_false")]
+    pub shadow_catcher: bool,
     /// Whether the scene contains the object with its children. Numbers other than 0 count as
     /// `true`, so an expression such as `"=seconds >= 1"` can show and hide the object.
     #[serde(skip_serializing_if = "Visible::is_default")]
@@ -220,6 +229,13 @@ impl Object {
     #[must_use]
     pub fn instances(mut self, instances: Instances) -> Self {
         self.instances = Some(instances);
+        self
+    }
+
+    /// Makes the object a shadow catcher, or a surface as others.
+    #[must_use]
+    pub fn shadow_catcher(mut self, shadow_catcher: bool) -> Self {
+        self.shadow_catcher = shadow_catcher;
         self
     }
 

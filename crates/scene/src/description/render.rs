@@ -32,6 +32,10 @@ pub struct Render {
     #[serde(skip_serializing_if = "is_instant")]
     #[schemars(inner(range(min = -1000, max = 1000)), extend("x-unit" = "frames"))]
     pub shutter: [f64; 2],
+    /// Whether the background is transparent: the camera does not see it, also through glass, and
+    /// PNG, WebP and EXR files store alpha. Its light stays.
+    #[serde(skip_serializing_if = "is_false")]
+    pub transparent: bool,
     /// Light transport algorithm. Defaults to `path` if the scene contains anything that `classic`
     /// does not support: an `emissive` material, an `area` light, an `environment` or a `sky`, a
     /// medium, any material except `phong` and combinations of it. Otherwise defaults to `classic`.
@@ -52,6 +56,7 @@ impl Default for Render {
             seed: 0,
             camera: None,
             shutter: [0.0, 0.0],
+            transparent: false,
             integrator: None,
             sampler: AnySampler::default(),
             filter: AnyFilter::default(),
@@ -61,6 +66,11 @@ impl Default for Render {
 
 fn is_instant(shutter: &[f64; 2]) -> bool {
     *shutter == [0.0, 0.0]
+}
+
+/// Whether a flag has its default, `false`.
+pub(super) fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// Name of one of the scene's cameras.

@@ -26,7 +26,7 @@ fn save(path: &Path, image: &Image, options: Options) {
     let tone = Tone { dither: false, ..Tone::default() };
     let header = Header { options, tone, ..Header::new(image.width(), image.height()) };
     let mut writer = create(path, ImageFormat::from_path(path).unwrap(), &header).unwrap();
-    writer.write_rows(image.pixels()).unwrap();
+    writer.write_rows(image.pixels().into()).unwrap();
     writer.finish().unwrap();
 }
 
@@ -61,7 +61,7 @@ fn textures_convert_the_primaries_that_files_state() {
         let options = Options { png_16_bit, ..Options::default() };
         let header = Header { options, tone: tone.clone(), ..Header::new(2, 1) };
         let mut writer = create(&path, ImageFormat::from_path(&path).unwrap(), &header).unwrap();
-        writer.write_rows(image.pixels()).unwrap();
+        writer.write_rows(image.pixels().into()).unwrap();
         writer.finish().unwrap();
         let texel = |space| AssetCache::default().image(&path, space).unwrap().texel(0, 0, 0);
         let stored = [0.8225 * 0.05 + 0.1775 * 0.25, 0.0332 * 0.05 + 0.9668 * 0.25];

@@ -28,7 +28,7 @@ fn save(path: &Path, right: f32) {
     let image =
         Image::from_pixels(8, 4, (0..32).map(|i| Rgb::splat(if i % 8 < 4 { 0.5 } else { 0.25 * right })).collect());
     let mut writer = create(path, ImageFormat::from_path(path).unwrap(), &Header::new(8, 4)).unwrap();
-    writer.write_rows(image.unwrap().pixels()).unwrap();
+    writer.write_rows(image.unwrap().pixels().into()).unwrap();
     writer.finish().unwrap();
 }
 

@@ -19,7 +19,7 @@ use juggler::film::partial_render::{PartialRender, PartialRenderError, RenderDes
 use juggler::film::shard::{self, Work};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{Header, inspect};
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use juggler::render::{Cancelled, Control};
 use juggler::{Limit, Picture, RenderOrigin, RenderStats, SAMPLES_PER_TILE, Settings};
 use std::path::{Path, PathBuf};
@@ -129,7 +129,7 @@ pub fn report_moved(denoised: &Denoised) {
 }
 
 /// Summary of pixels that are not those of the film, such as denoised ones.
-fn summary_of(pixels: &[Rgb], picture: &Picture, film: &Film) -> FilmSummary {
+fn summary_of(pixels: PixelRows, picture: &Picture, film: &Film) -> FilmSummary {
     let [width, height] = picture.size();
     let mut digest = FilmDigest::new(width, height);
     digest.update(pixels);
@@ -289,7 +289,7 @@ impl FilmRender<'_> {
         let mut plain = Vec::new();
         if with_picture && pixels.is_none() {
             picture.develop(&self.film, |rows| {
-                plain.extend_from_slice(rows);
+                plain.extend_from_slice(rows.colors);
                 Ok::<(), Failure>(())
             })?;
         }
@@ -327,7 +327,9 @@ impl FilmRender<'_> {
                 let summary = match pixels {
                     None if in_picture => picture.develop(&self.film, |_| Ok::<(), Failure>(()))?,
                     None => picture.write_film(&self.film, writer()?)?,
-                    Some(pixels) => {
+                    Some(colors) => {
+                        let alpha = picture.alpha(&self.film);
+                        let pixels = PixelRows { colors, alpha: alpha.as_deref() };
                         if !in_picture {
                             let mut writer = writer()?;
                             writer.write_rows(pixels)?;

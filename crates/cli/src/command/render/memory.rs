@@ -20,7 +20,7 @@ const MIN_CHECKPOINT_SAMPLES: u32 = 8;
 /// Memory estimate of a picture, before its files are read.
 pub fn estimate(plan: &Plan, scene: &Scene, frame_output: &FrameOutput) -> Result<Memory, Failure> {
     let mut memory = Memory::estimate(scene, &plan.settings)?;
-    if plan.needs_film(frame_output) {
+    if plan.needs_film(scene, frame_output) {
         // Numbers of samples read from a file may reach the maximum in every tile.
         let (crop, shards) =
             if plan.samples_from.is_some() { (None, 1) } else { (plan.cut.crop, frame_output.shard.count) };
@@ -33,7 +33,8 @@ pub fn estimate(plan: &Plan, scene: &Scene, frame_output: &FrameOutput) -> Resul
     if let OutputKind::Picture(Encoding { format, options }) = plan.output_kind {
         let (width, height) = (memory.region().width, memory.region().height);
         format.check_dimensions(width, height)?;
-        let header = Header { options, ..Header::new(width, height) };
+        let transparent = plan.settings.transparent_of(scene);
+        let header = Header { options, transparent, ..Header::new(width, height) };
         let file = format.memory_needed(&header, frame_output.output != STANDARD_OUTPUT);
         memory = memory.with_part(format!("the {format} file"), file);
         // A shard renders frames and encodes no movie.

@@ -100,7 +100,9 @@ impl RenderCommand {
         let Rect { width, height, .. } = self.plan.settings.region(self.plan.settings.size_of(scene))?;
         let frames = self.plan.frames(animation.frames).len();
         // An empty range of frames is an error of `frame_outputs`.
+        let transparent = self.plan.settings.transparent_of(scene);
         let header = movie.header([width, height], frames.max(1), animation.frames_per_second);
+        let header = AnimationHeader { transparent, ..header };
         movie.check(&header)?;
         let mut tone = (*scene.description.tone).clone();
         self.plan.settings.apply_to(&mut (*scene.description.render).clone(), &mut tone)?;
@@ -177,12 +179,18 @@ impl RenderCommand {
         let build = built.elapsed();
         let frame =
             FrameRender { frame_output: &frame_output, picture: &picture, effort, expected, load, build, start };
-        let is_rendered = frame_cache.install(|| self.picture(&frame, interrupts))?;
+        let needs_film = self.plan.needs_film(scene, &frame_output);
+        let is_rendered = frame_cache.install(|| self.picture(&frame, needs_film, interrupts))?;
         frame_cache.keep(&self.plan, scene, picture)?;
         Ok(is_rendered)
     }
 
-    fn picture(&self, frame: &FrameRender, interrupts: &mut Option<Interrupts>) -> Result<bool, Failure> {
+    fn picture(
+        &self,
+        frame: &FrameRender,
+        needs_film: bool,
+        interrupts: &mut Option<Interrupts>,
+    ) -> Result<bool, Failure> {
         let mut header = frame.picture.header(self.plan.options());
         header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, frame.frame_output)));
         if header.tone != Tone::default() {
@@ -194,7 +202,7 @@ impl RenderCommand {
         // flicker.
         header.tone.dither &= self.plan.movie.is_none();
         if let OutputKind::Picture(encoding) = self.plan.output_kind {
-            header.check_primaries(encoding.format)?;
+            header.check(encoding.format)?;
         }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
@@ -206,7 +214,7 @@ impl RenderCommand {
         }
         let clamped = header.clamped.clone();
         let (outcome, beside) = match self.plan.output_kind {
-            OutputKind::Picture(encoding) if !self.plan.needs_film(frame.frame_output) => {
+            OutputKind::Picture(encoding) if !needs_film => {
                 (self.render(frame, encoding.format, &header, interrupts)?, Ok(()))
             }
             _ => film_render::render(self, frame, header, interrupts)?,

@@ -63,12 +63,12 @@ impl Drop for MovieEncoder {
 fn encode(movie: &Movie, header: &AnimationHeader, frames: &Receiver<PathBuf>) -> Result<(), Failure> {
     let mut writer: Option<Box<dyn FrameWriter>> = None;
     for frame in frames {
-        let image = imaging::read(&frame)?;
+        let image = imaging::read_with_alpha(&frame)?;
         let writer = match &mut writer {
             Some(writer) => writer,
             none => none.insert(imaging::create_animation(Path::new(&movie.file), movie.format, header)?),
         };
-        writer.write_frame(image.pixels())?;
+        writer.write_frame(image.rows())?;
     }
     writer.map_or(Ok(()), |writer| Ok(writer.finish()?))
 }

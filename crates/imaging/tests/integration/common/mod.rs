@@ -57,7 +57,7 @@ pub fn encode_by(format: ImageFormat, image: &Image, header: &Header, rows: usiz
     };
     let mut writer = writer(format, destination, header).unwrap();
     for rows in image.pixels().chunks(image.width() as usize * rows) {
-        writer.write_rows(rows).unwrap();
+        writer.write_rows(rows.into()).unwrap();
     }
     writer.finish().unwrap();
     memory.bytes()
