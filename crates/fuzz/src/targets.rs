@@ -13,7 +13,7 @@ use juggler::scene::model::{ModelChoice, ModelFormat};
 use juggler::{AovSet, Settings};
 use juggler_expression::{Names, PointEvaluator, Program, Quantity};
 use juggler_import::gltf::document::ComponentType;
-use juggler_import::gltf::draco::{self, DracoAttribute};
+use juggler_import::gltf::draco::{self, DracoAttribute, DracoLimits};
 use juggler_import::gltf::ktx2::{self, Ktx2Error};
 use juggler_import::gltf::meshopt;
 use juggler_import::stl::StlFormat;
@@ -166,7 +166,8 @@ fn meshopt_stream(bytes: &[u8]) -> bool {
 fn draco_stream(bytes: &[u8]) -> bool {
     let (name, component) = ("POSITION", ComponentType::F32);
     let positions = DracoAttribute { name, unique_id: 0, component, components: 3 };
-    draco::decode(bytes, &[positions], SCENE_BYTES).is_ok_and(|mesh| {
+    let limits = DracoLimits { triangles: 1 << 20, bytes: SCENE_BYTES };
+    draco::decode(bytes, &[positions], &limits).is_ok_and(|mesh| {
         assert!(mesh.indices.iter().all(|index| (*index as usize) < mesh.vertices), "an index is out of range");
         assert!(mesh.attributes.iter().all(|values| values.len() == 12 * mesh.vertices), "a vertex has no position");
         true

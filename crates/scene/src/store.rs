@@ -129,6 +129,19 @@ impl Store {
         }
     }
 
+    /// Whether a file whose name stays in a folder is elsewhere, because of a symbolic link.
+    pub(crate) fn leads_out(&self, path: &Path, folder: &Path) -> bool {
+        if self.is_in_memory() || self.assets.at(path).is_some() {
+            return false;
+        }
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        match (std::fs::canonicalize(path), std::fs::canonicalize(folder)) {
+            (Ok(file), Ok(folder)) => !file.starts_with(folder),
+            // The reader reports a file that does not exist.
+            _ => false,
+        }
+    }
+
     /// Canonical name, which is equal for equal files.
     pub(crate) fn canonical_name(&self, path: &Path) -> PathBuf {
         if self.assets.at(path).is_some() {

@@ -1,18 +1,21 @@
 //! Meshes of the extension `KHR_draco_mesh_compression`, by the crate `draco-core` (feature
 //! `draco`).
 //!
-//! The decoder runs behind limits on its output: [`MAX_FACES_PER_BYTE`] beyond [`FREE_FACES`], and
-//! a number of bytes that the caller sets. Its result is checked before it is used. Without the
-//! feature, [`decode`] refuses every stream with [`DracoError::Disabled`].
+//! The decoder runs behind [`DracoLimits`], which the caller takes from the document. The length of
+//! the stream is no limit: a flat grid has no information but its size, and a million triangles fit
+//! into 44 kB. The result is checked before it is used. Without the feature, [`decode`] refuses every
+//! stream with [`DracoError::Disabled`].
 
 use super::document::ComponentType;
 
-/// Maximum number of triangles per byte of a stream, in addition to [`FREE_FACES`].
-pub const MAX_FACES_PER_BYTE: u64 = 8;
-
-/// Number of triangles that a stream of any length may have. A flat grid has no information but its
-/// size: 8,192 triangles fit into 336 bytes.
-pub const FREE_FACES: u64 = 1 << 16;
+/// Limits of a decoded mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DracoLimits {
+    /// Maximum number of triangles: that of the primitive's accessors.
+    pub triangles: u64,
+    /// Maximum number of bytes of indices and requested attributes.
+    pub bytes: u64,
+}
 
 /// An attribute of a primitive that the stream holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -105,21 +108,31 @@ pub enum DracoError {
         /// Number of the vertex.
         vertex: usize,
     },
+    /// The stream has more triangles than the limit of the caller.
+    #[error("the Draco stream has more triangles than the accessors of the primitive, which have {limit}")]
+    Triangles {
+        /// Maximum number of triangles.
+        limit: u64,
+    },
     /// The decoded mesh exceeds the limit of the caller.
-    #[error("the Draco stream has more than {limit} bytes when decoded")]
+    #[error("the Draco stream has more than {limit} bytes when decoded; export the model without Draco compression")]
     TooLarge {
         /// Maximum number of decoded bytes.
         limit: u64,
     },
 }
 
-/// Decodes a stream, with the values of these attributes. The decoded mesh has at most `max_bytes`.
+/// Decodes a stream, with the values of these attributes, within limits.
 ///
 /// # Errors
 ///
 /// Always [`DracoError::Disabled`]: this build has no decoder.
 #[cfg(not(feature = "draco"))]
-pub fn decode(_stream: &[u8], _attributes: &[DracoAttribute<'_>], _max_bytes: u64) -> Result<DracoMesh, DracoError> {
+pub fn decode(
+    _stream: &[u8],
+    _attributes: &[DracoAttribute<'_>],
+    _limits: &DracoLimits,
+) -> Result<DracoMesh, DracoError> {
     Err(DracoError::Disabled)
 }
 

@@ -116,8 +116,11 @@ struct FolderFiles<'f> {
 
 impl Files for FolderFiles<'_> {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
-        let read = self.store.read_bytes(&self.folder.join(name), limit);
-        read.map(Cow::into_owned).map_err(|error| match error {
+        let path = self.folder.join(name);
+        if self.store.leads_out(&path, self.folder) {
+            return Err(FileError::Outside);
+        }
+        self.store.read_bytes(&path, limit).map(Cow::into_owned).map_err(|error| match error {
             ReadError::Io(error) if error.kind() == ErrorKind::NotFound => FileError::Missing,
             ReadError::Io(error) => FileError::Read(plain_io(&error)),
             ReadError::TooLarge { found, limit } => FileError::TooLarge { found, limit },

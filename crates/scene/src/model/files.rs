@@ -17,6 +17,9 @@ pub enum FileError {
         /// Maximum size in bytes.
         limit: u64,
     },
+    /// A symbolic link leads out of the folder of the model file.
+    #[error("a symbolic link leads out of the folder of the model, and only files in it are read; copy the file there")]
+    Outside,
     /// The system cannot read the file.
     #[error("cannot be read: {0}")]
     Read(String),
@@ -29,8 +32,8 @@ pub trait Files {
     ///
     /// # Errors
     ///
-    /// The file does not exist, has more than `limit` bytes (known before memory is reserved), or
-    /// cannot be read.
+    /// The file does not exist, is a symbolic link that leaves the folder, has more than `limit`
+    /// bytes (known before memory is reserved), or cannot be read.
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError>;
 
     /// Whether pictures that are missing or broken are shown gray, with a warning, instead of being

@@ -347,6 +347,39 @@ fn a_model_file_is_a_scene_and_is_read_again_when_its_files_change() {
     assert!(Scene::load(Path::new(&path)).is_err());
 }
 
+#[cfg(unix)]
+#[test]
+fn files_of_a_model_lie_in_its_folder_even_through_symbolic_links() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().unwrap();
+    let [inner, outside] = ["inner", "outside"].map(|name| folder.path().join(name));
+    fs::create_dir_all(inner.join("deep")).unwrap();
+    fs::create_dir(&outside).unwrap();
+    fs::write(outside.join("secret.bin"), "1").unwrap();
+    fs::write(inner.join("deep/plain.bin"), "2").unwrap();
+    symlink("deep/plain.bin", inner.join("inside.bin")).unwrap();
+    symlink("../outside/secret.bin", inner.join("link.bin")).unwrap();
+    symlink(&outside, inner.join("folder")).unwrap();
+    symlink("nowhere", inner.join("dangling.bin")).unwrap();
+    symlink(&inner, folder.path().join("other")).unwrap();
+    let path = folder.path().join("other/a.toy");
+    let load = |name: &str| {
+        fs::write(&path, format!("toy\n{name}\n")).unwrap();
+        LOADER.load(&path).map(drop).map_err(|error| error.to_string())
+    };
+    for name in ["deep/plain.bin", "inside.bin", "deep/../inside.bin"] {
+        assert_eq!(load(name), Ok(()), "{name}");
+    }
+    for name in ["link.bin", "folder/secret.bin"] {
+        let message = load(name).unwrap_err();
+        assert!(
+            message.contains(&format!("{name}: a symbolic link leads out of the folder of the model")),
+            "{message}"
+        );
+    }
+    assert!(load("dangling.bin").unwrap_err().contains("no such file"));
+}
+
 #[test]
 fn an_edit_of_a_scene_with_models_compiles_to_the_same_as_anew() {
     let scene = scene(STILL).unwrap();

@@ -1,9 +1,9 @@
 //! Calls `draco-core` within limits, and converts its values to the types of accessors.
 
-use super::{ComponentType, DracoAttribute, DracoError, DracoMesh, FREE_FACES, MAX_FACES_PER_BYTE};
+use super::{ComponentType, DracoAttribute, DracoError, DracoLimits, DracoMesh};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
-/// Decodes a stream, with the values of these attributes. The decoded mesh has at most `max_bytes`.
+/// Decodes a stream, with the values of these attributes, within limits.
 ///
 /// Integers keep their values if the accessor has another integer type. Integers become floating
 /// point numbers of the same value, or of the range that normalized integers have if the stream
@@ -13,18 +13,18 @@ use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDec
 ///
 /// The stream is no Draco mesh, is damaged, or exceeds a limit; or an attribute is absent, has
 /// another number of components, or has values that the accessor's type cannot hold.
-pub fn decode(stream: &[u8], attributes: &[DracoAttribute<'_>], max_bytes: u64) -> Result<DracoMesh, DracoError> {
+pub fn decode(stream: &[u8], attributes: &[DracoAttribute<'_>], limits: &DracoLimits) -> Result<DracoMesh, DracoError> {
     // The header has the magic number, the version and the kind of geometry (1: a mesh).
     if !matches!(stream, [b'D', b'R', b'A', b'C', b'O', 2, _, 1, ..]) {
         return Err(DracoError::NotAMesh);
     }
-    let mesh = decode_mesh(stream, max_bytes)?;
+    let mesh = decode_mesh(stream, limits)?;
     let vertices = mesh.num_points();
     let index_bytes = (mesh.num_faces() as u64).saturating_mul(12);
     let vertex_bytes: u64 = attributes.iter().map(|attribute| size(attribute) as u64).sum();
     let bytes = vertex_bytes.saturating_mul(vertices as u64).saturating_add(index_bytes);
-    if bytes > max_bytes {
-        return Err(DracoError::TooLarge { limit: max_bytes });
+    if bytes > limits.bytes {
+        return Err(DracoError::TooLarge { limit: limits.bytes });
     }
     let indices = indices(&mesh)?;
     let values = attributes.iter().map(|attribute| values(&mesh, attribute));
@@ -32,21 +32,23 @@ pub fn decode(stream: &[u8], attributes: &[DracoAttribute<'_>], max_bytes: u64) 
 }
 
 /// Runs the decoder within the limits.
-fn decode_mesh(stream: &[u8], max_bytes: u64) -> Result<Mesh, DracoError> {
-    let faces = MAX_FACES_PER_BYTE.saturating_mul(stream.len() as u64).saturating_add(FREE_FACES);
-    let limits = DecodeLimits::default()
-        .with_max_faces(faces.min(max_bytes / 12))
-        .with_max_points(max_bytes)
-        .with_max_decoded_bytes(max_bytes);
+fn decode_mesh(stream: &[u8], limits: &DracoLimits) -> Result<Mesh, DracoError> {
+    let DracoLimits { triangles, bytes } = *limits;
+    let affordable = bytes / 12;
+    let decode_limits = DecodeLimits::default()
+        .with_max_faces(triangles.min(affordable))
+        .with_max_points(bytes)
+        .with_max_decoded_bytes(bytes);
     let mut mesh = Mesh::new();
-    let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
-    match MeshDecoder::new().decode(&mut buffer, &mut mesh) {
-        Ok(()) => Ok(mesh),
-        Err(error) if error.kind() == ErrorKind::LimitExceeded && !error.message().contains("faces") => {
-            Err(DracoError::TooLarge { limit: max_bytes })
-        }
-        Err(error) => Err(DracoError::Decoder { message: error.to_string() }),
-    }
+    let mut buffer = DecoderBuffer::new(stream).with_limits(decode_limits);
+    let Err(error) = MeshDecoder::new().decode(&mut buffer, &mut mesh) else { return Ok(mesh) };
+    Err(if error.kind() != ErrorKind::LimitExceeded {
+        DracoError::Decoder { message: error.to_string() }
+    } else if error.message().contains("faces") && triangles < affordable {
+        DracoError::Triangles { limit: triangles }
+    } else {
+        DracoError::TooLarge { limit: bytes }
+    })
 }
 
 /// Indices of all triangles, checked.

@@ -1,6 +1,6 @@
-use super::{ComponentType, DracoAttribute, DracoError, DracoMesh, FREE_FACES, decode};
+use super::{ComponentType, DracoAttribute, DracoError, DracoLimits, DracoMesh, decode};
 
-const MAX_BYTES: u64 = 1 << 26;
+const LIMITS: DracoLimits = DracoLimits { triangles: 131_072, bytes: 1 << 26 };
 
 /// A stream of the reference encoder, and what the reference decoder makes of it.
 struct Known {
@@ -50,18 +50,18 @@ fn hash(bytes: &[u8]) -> u64 {
 }
 
 fn run(known: &Known, stream: &[u8]) -> Result<DracoMesh, DracoError> {
-    decode(stream, &known.attributes, MAX_BYTES)
+    decode(stream, &known.attributes, &LIMITS)
 }
 
-/// Streams that the limits allow.
+/// Streams of few vertices.
 fn small() -> Vec<Known> {
     known().into_iter().filter(|known| known.vertices < 10_000).collect()
 }
 
 #[test]
 fn streams_of_the_reference_encoder_decode_to_the_same_bytes() {
-    let all = small();
-    assert_eq!(all.len(), 9);
+    let all = known();
+    assert_eq!(all.len(), 10);
     for (line, known) in all.iter().enumerate() {
         let mesh = run(known, &known.stream).unwrap_or_else(|error| panic!("line {}: {error}", line + 1));
         assert_eq!(mesh.vertices, known.vertices, "line {}", line + 1);
@@ -100,21 +100,27 @@ fn changed_streams_do_not_panic() {
 }
 
 #[test]
-fn the_number_of_triangles_is_limited() {
+fn the_number_of_triangles_is_limited_and_not_by_the_length_of_the_stream() {
     let all = known();
-    let large = all.last().unwrap();
-    assert!(131_072 > FREE_FACES + 8 * large.stream.len() as u64);
-    let message = run(large, &large.stream).unwrap_err().to_string();
-    assert!(message.starts_with("the Draco stream cannot be decoded: ") && message.contains("faces"), "{message}");
+    let grid = all.last().unwrap();
+    assert!(grid.stream.len() < 131_072 / 20, "a flat grid needs hardly any bytes");
+    assert_eq!(run(grid, &grid.stream).unwrap().indices.len(), 3 * 131_072);
+    let limits = DracoLimits { triangles: 131_071, ..LIMITS };
+    let error = decode(&grid.stream, &grid.attributes, &limits).unwrap_err();
+    assert_eq!(error, DracoError::Triangles { limit: 131_071 });
+    let limits = DracoLimits { bytes: 12 * 131_072 - 1, ..LIMITS };
+    let error = decode(&grid.stream, &grid.attributes, &limits).unwrap_err();
+    assert_eq!(error, DracoError::TooLarge { limit: limits.bytes }, "of triangles alone");
 }
 
 #[test]
 fn the_number_of_bytes_is_limited() {
     let known = &small()[1];
     // Without the attributes, the indices alone are 32 triangles of 12 bytes.
-    for limit in [0, 100, 12 * 32, 1000] {
-        let error = decode(&known.stream, &known.attributes, limit).unwrap_err();
-        assert!(matches!(error, DracoError::TooLarge { .. } | DracoError::Decoder { .. }), "{limit}: {error}");
+    for bytes in [0, 100, 12 * 32, 1000] {
+        let limits = DracoLimits { bytes, ..LIMITS };
+        let error = decode(&known.stream, &known.attributes, &limits).unwrap_err();
+        assert!(matches!(error, DracoError::TooLarge { .. } | DracoError::Decoder { .. }), "{bytes}: {error}");
     }
 }
 
@@ -124,7 +130,7 @@ fn requests_that_do_not_fit_the_stream_are_named() {
     let message = |change: &dyn Fn(&mut DracoAttribute<'_>)| {
         let mut request = known.attributes[0].clone();
         change(&mut request);
-        decode(&known.stream, &[request], MAX_BYTES).unwrap_err().to_string()
+        decode(&known.stream, &[request], &LIMITS).unwrap_err().to_string()
     };
     let absent = message(&|request| request.unique_id = 77);
     assert_eq!(absent, "POSITION is attribute 77, which the Draco stream does not have");
@@ -137,7 +143,7 @@ fn requests_that_do_not_fit_the_stream_are_named() {
     );
     // The joints have the value 200, which a signed byte does not hold.
     let joints = DracoAttribute { component: ComponentType::I8, ..known.attributes[4].clone() };
-    let message = decode(&known.stream, &[joints], MAX_BYTES).unwrap_err().to_string();
+    let message = decode(&known.stream, &[joints], &LIMITS).unwrap_err().to_string();
     assert_eq!(message, "JOINTS_0 is stored as Uint8 in the Draco stream, which does not fit its accessor (BYTE)");
 }
 
@@ -145,6 +151,6 @@ fn requests_that_do_not_fit_the_stream_are_named() {
 fn other_data_is_no_mesh() {
     for stream in [&b""[..], b"DRACO", b"DRACO\x02\x02\x00\x01\x00\x00", b"DRACO\x01\x01\x01\x00\x00\x00", b"glTF....."]
     {
-        assert_eq!(decode(stream, &[], MAX_BYTES), Err(DracoError::NotAMesh));
+        assert_eq!(decode(stream, &[], &LIMITS), Err(DracoError::NotAMesh));
     }
 }

@@ -10,7 +10,7 @@
 //! | triangle fan | {i + 1, i + 2, 0} |
 
 use super::Assembler;
-use crate::gltf::document::{ComponentType, Document, Mode, Primitive, Semantic};
+use crate::gltf::document::{ComponentType, Document, Index, Mode, Primitive, Semantic};
 use crate::gltf::error::Fault;
 
 /// Faces of a primitive by the indices of their vertices.
@@ -55,6 +55,18 @@ pub fn points_and_lines(document: &Document, primitive: &Primitive) -> u64 {
     let accessor = primitive.indices.or_else(|| primitive.attributes.find(&Semantic::Position));
     let corners = accessor.and_then(|index| document.accessors.get(index.get())).map_or(0, |found| found.count.get());
     face_count(primitive.mode, usize::try_from(corners).unwrap_or(usize::MAX)) as u64
+}
+
+/// Number of triangles of a compressed primitive by the counts of its accessors. Without indices, it
+/// is the largest number of triangles of a surface without holes: twice that of the vertices.
+pub fn compressed_triangles(document: &Document, primitive: &Primitive) -> u64 {
+    let count = |index: Index| document.accessors.get(index.get()).map(|accessor| accessor.count.get());
+    let vertices = || primitive.attributes.find(&Semantic::Position).and_then(count).unwrap_or(0);
+    match (primitive.indices.and_then(count), primitive.mode) {
+        (Some(corners), Mode::TriangleStrip) => corners.saturating_sub(2),
+        (Some(corners), _) => corners / 3,
+        (None, _) => vertices().saturating_mul(2),
+    }
 }
 
 impl Assembler<'_> {

@@ -16,7 +16,7 @@ mod joints;
 mod tests;
 
 pub use draco::{DracoArrays, DracoStream};
-pub use faces::{Faces, points_and_lines};
+pub use faces::{Faces, compressed_triangles, points_and_lines};
 pub use joints::JointSet;
 
 use super::accessor::Elements;

@@ -4,12 +4,12 @@
 use super::materials::{add_tangents, tangent_uv_set};
 use crate::gltf::data::GltfData;
 use crate::gltf::document::{Document, Mode, Primitive, Semantic};
-use crate::gltf::draco::{self, DracoAttribute};
+use crate::gltf::draco::{self, DracoAttribute, DracoLimits};
 use crate::gltf::error::Fault;
 use crate::gltf::limits::Limits;
 use crate::gltf::pose::Vertices;
 use crate::gltf::primitive::{
-    Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays, points_and_lines,
+    Assembly, DracoArrays, DracoStream, Faces, GeometryKey, PrimitiveArrays, compressed_triangles, points_and_lines,
 };
 use crate::gltf::warning::Warnings;
 use juggler_math::{Aabb, Vec3};
@@ -246,8 +246,11 @@ fn decompress(data: &GltfData, mesh: usize, part: usize, stream: &DracoStream<'_
         components: accessor.element_type.components(),
     });
     let attributes: Vec<DracoAttribute<'_>> = attributes.collect();
-    let limit = data.gltf.limits.decoded_bytes_of(stream.data.len() as u64);
-    let decoded = draco::decode(stream.data, &attributes, limit).map_err(|error| Fault::at(&at, error))?;
+    let limits = DracoLimits {
+        triangles: primitive.map_or(0, |primitive| compressed_triangles(document, primitive)),
+        bytes: data.gltf.limits.decoded_bytes_of(stream.data.len() as u64),
+    };
+    let decoded = draco::decode(stream.data, &attributes, &limits).map_err(|error| Fault::at(&at, error))?;
     data.reserve(&at, decoded.attributes.iter().map(|bytes| bytes.len() as u64).sum())?;
     let semantics = wanted.iter().map(|(semantic, ..)| (*semantic).clone());
     Ok(DracoArrays { attributes: semantics.zip(decoded.attributes).collect(), indices: decoded.indices })
