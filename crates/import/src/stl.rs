@@ -7,7 +7,7 @@ use juggler_math::BuildControl;
 use juggler_mesh::{MAX_SOLIDS, MeshFile, MeshLimits, STL, has_several_solids, parse_with_control};
 use juggler_scene::Object;
 use juggler_scene::model::{
-    AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+    AnimationChoice, FileDigest, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
 use juggler_shape::Mesh;
 use std::path::Path;
@@ -97,7 +97,7 @@ impl ModelFile for StlModel {
         self.digest
     }
 
-    fn files(&self) -> &[String] {
+    fn files(&self) -> &[FileDigest] {
         &[]
     }
 

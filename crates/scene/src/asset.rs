@@ -15,6 +15,8 @@ pub struct Asset {
     content: Content,
     /// BLAKE3 hash of the content, computed once.
     digest: [u8; 32],
+    /// Where the content is from, for messages.
+    origin: Option<Arc<str>>,
 }
 
 /// Content of an asset.
@@ -44,7 +46,7 @@ impl Asset {
     pub fn from_bytes(bytes: impl Into<Arc<[u8]>>) -> Self {
         let bytes = bytes.into();
         let digest = blake3::hash(&bytes).into();
-        Self { content: Content::File(bytes), digest }
+        Self { content: Content::File(bytes), digest, origin: None }
     }
 
     /// Creates an asset of pixels in linear light. The pixels are not copied until a texture or
@@ -59,7 +61,7 @@ impl Asset {
             let channels = row.iter().flat_map(|pixel| pixel.to_array());
             hasher.update(&channels.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
         }
-        Self { digest: hasher.finalize().into(), content: Content::Image(image) }
+        Self { digest: hasher.finalize().into(), content: Content::Image(image), origin: None }
     }
 
     /// Creates an asset of the arrays of a mesh, in place of a mesh file. The arrays are neither copied
@@ -80,7 +82,7 @@ impl Asset {
     /// ```
     pub fn from_mesh(mesh: impl Into<Arc<MeshData>>) -> Self {
         let mesh = mesh.into();
-        Self { digest: mesh_digest::digest(&mesh), content: Content::Mesh(mesh) }
+        Self { digest: mesh_digest::digest(&mesh), content: Content::Mesh(mesh), origin: None }
     }
 
     /// Creates an asset of texels, in place of an image file. They are kept as they are until a texture
@@ -98,7 +100,7 @@ impl Asset {
     /// ```
     pub fn from_texels(texels: impl Into<Arc<TexelArray>>) -> Self {
         let texels = texels.into();
-        Self { digest: texels.digest(), content: Content::Texels(texels) }
+        Self { digest: texels.digest(), content: Content::Texels(texels), origin: None }
     }
 
     /// Creates an asset of the arrays of instances, in place of a PLY file of points: the `file` of an
@@ -116,7 +118,14 @@ impl Asset {
     /// # Ok::<(), juggler_scene::SceneError>(())
     /// ```
     pub fn from_instances(instances: Instances) -> Self {
-        Self { digest: instance_digest::digest(&instances), content: Content::Instances(instances) }
+        Self { digest: instance_digest::digest(&instances), content: Content::Instances(instances), origin: None }
+    }
+
+    /// Names the origin of the content, which messages about it show in place of the asset's name: for
+    /// example "car.glb: /images/3 (wood)".
+    #[must_use]
+    pub fn with_origin(self, origin: impl Into<Arc<str>>) -> Self {
+        Self { origin: Some(origin.into()), ..self }
     }
 
     /// BLAKE3 hash of the content.
@@ -210,6 +219,13 @@ impl Assets {
         self.0.get(name).filter(|_| self.path_of(name).is_some_and(|own| own == path))
     }
 
+    /// Origin of a file for messages: that of the asset, if the path stands for one that has an origin,
+    /// otherwise the name.
+    pub fn origin(&self, path: &Path) -> String {
+        let origin = self.at(path).and_then(|asset| asset.origin.as_deref());
+        origin.map_or_else(|| display_name(path), str::to_owned)
+    }
+
     /// Texels of a path that [`path_of`](Self::path_of) has given, and their hash.
     pub fn texels_at(&self, path: &Path) -> Option<(&TexelArray, [u8; 32])> {
         let asset = self.at(path)?;
@@ -234,8 +250,12 @@ mod tests {
         assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"png"));
         let path = assets.path_of("car.glb#images/3").unwrap();
         assert_eq!(assets.at(&path), Some(&Asset::from_bytes(*b"png")));
-        assert_eq!(display_name(&path), "car.glb#images/3");
-        assert_eq!(display_name(Path::new("a/b.png")), "a/b.png");
+        assert_eq!(assets.origin(&path), "car.glb#images/3");
+        assert_eq!(assets.origin(Path::new("a/b.png")), "a/b.png");
+        let named = Asset::from_bytes(*b"png").with_origin("car.glb: /images/3 (wood)");
+        assert_eq!(named, Asset::from_bytes(*b"png"), "the same content");
+        assets.insert("car.glb#images/3".into(), named);
+        assert_eq!(assets.origin(&path), "car.glb: /images/3 (wood)");
         assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"other"));
         assert_eq!(assets.at(&path), None, "the name has another content now");
         assets.insert("/of the root".into(), Asset::from_bytes(*b"root"));

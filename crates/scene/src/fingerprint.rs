@@ -9,9 +9,11 @@
 use crate::compile::{Files, image_files, light_files};
 use crate::description::{Description, Object, Render};
 use crate::item::Item;
+use crate::model::{FileDigest, ModelIdentity};
 use crate::motion::Tracks;
 use crate::path::Path;
 use crate::shared::Shared;
+use indexmap::IndexSet;
 use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
 use juggler_integrator::AnyIntegrator;
@@ -31,13 +33,13 @@ pub struct Fingerprint(BTreeMap<String, String>);
 
 impl Fingerprint {
     /// Computes the fingerprint of a description with this integrator, its motion while the
-    /// shutter is open, the files it refers to, and its models: hashes of their files, and times.
+    /// shutter is open, the files it refers to, and its models.
     pub(crate) fn compute(
         scene: &Description,
         integrator: AnyIntegrator,
         tracks: &Tracks,
         files: &Files<'_>,
-        models: &[([u8; 32], Vec<f64>)],
+        models: &[ModelIdentity],
     ) -> Self {
         // Clear the settings that do not affect pixels.
         let settings = Render { samples: 0, integrator: Some(integrator), camera: None, ..(*scene.render).clone() };
@@ -63,9 +65,7 @@ impl Fingerprint {
         parts.insert_section("lights", lights, lights.is_empty());
         parts.insert_section("objects", objects, objects.is_empty());
         parts.insert_motion(tracks);
-        if !models.is_empty() {
-            parts.insert("models", &digest_of(&models));
-        }
+        parts.insert_models(models);
         for (file, hash) in digests(scene, files) {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             parts.insert(&format!("file {name}"), &digest(&hash));
@@ -94,6 +94,20 @@ impl Fingerprint {
     fn insert_motion(&mut self, tracks: &Tracks) {
         if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
             self.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
+        }
+    }
+
+    /// Adds the models, unless there are none: a part for each of their files, which names the file
+    /// that changes, and a part for which of the models are where, at which times.
+    fn insert_models(&mut self, models: &[ModelIdentity]) {
+        if models.is_empty() {
+            return;
+        }
+        let mut distinct: IndexSet<&[FileDigest]> = IndexSet::new();
+        let placed = models.iter().map(|model| (distinct.insert_full(&model.files).0, &model.times));
+        self.insert("models", &digest_of(&placed.collect::<Vec<_>>()));
+        for file in distinct.into_iter().flatten() {
+            self.insert(&format!("file {}", file.name), &digest(&file.digest));
         }
     }
 

@@ -146,6 +146,57 @@ fn lost_pictures_are_gray_if_that_is_allowed() {
 }
 
 #[test]
+fn checkpoints_of_models_depend_on_the_meaning_of_their_files() {
+    let folder = with_triangle();
+    let line = "render triangle.gltf --size 16x12 --samples 2 -q -o a.png --checkpoint a.jfilm";
+    folder.good(line);
+    let value: Value = serde_json::from_str(TRIANGLE).unwrap();
+    fs::write(folder.path("triangle.gltf"), serde_json::to_string_pretty(&value).unwrap() + "\n").unwrap();
+    folder.good(line);
+    fs::write(folder.path("triangle.gltf"), TRIANGLE.replace("\"Dull\"", "\"Flat\"")).unwrap();
+    let message = folder.bad(line, 2);
+    assert!(message.contains("file triangle.gltf: ") && !message.contains("triangle.bin"), "{message}");
+    fs::write(folder.path("triangle.gltf"), TRIANGLE).unwrap();
+    let mut bytes = fs::read(folder.path("triangle.bin")).unwrap();
+    bytes[12] ^= 1;
+    fs::write(folder.path("triangle.bin"), bytes).unwrap();
+    let message = folder.bad(line, 2);
+    assert!(message.contains("file triangle.bin: ") && !message.contains("triangle.gltf: "), "{message}");
+}
+
+#[test]
+fn broken_pictures_are_named_by_their_place_in_the_model() {
+    let folder = with_triangle();
+    let textured = TRIANGLE.replace(
+        r#"{"name": "Dull", "doubleSided": true}"#,
+        r#"{"name": "Dull", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "doubleSided": true}"#,
+    );
+    let image = |image: &str| {
+        let more = format!(r#"{{"textures": [{{"source": 1}}], "images": [{{"uri": "unused.png"}}, {image}],"#);
+        fs::write(folder.path("wood.gltf"), textured.replacen('{', &more, 1)).unwrap();
+    };
+    fs::write(folder.path("broken.png"), b"no picture").unwrap();
+    for (picture, place) in [
+        (r#"{"uri": "broken.png"}"#, "wood.gltf: /images/1 (broken.png)"),
+        (r#"{"uri": "data:,no%20picture", "name": "Oak"}"#, "wood.gltf: /images/1 (Oak)"),
+        (r#"{"uri": "data:,no%20picture"}"#, "wood.gltf: /images/1"),
+    ] {
+        image(picture);
+        for command in ["check wood.gltf", "render wood.gltf --size 8x6 --samples 1 -o a.png"] {
+            let run = folder.run(command);
+            assert!(run.status != 0 && run.stderr.contains(&format!("cannot read `{place}`: ")), "{}", run.stderr);
+        }
+        let run = folder.run("check wood.gltf --lenient");
+        let place = place.trim_start_matches("wood.gltf: ");
+        assert!(run.status == 0 && (run.stdout.clone() + &run.stderr).contains(place), "{}{}", run.stdout, run.stderr);
+    }
+    fs::write(folder.path("wood.obj"), "mtllib wood.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl w\nf 1 2 3\n").unwrap();
+    fs::write(folder.path("wood.mtl"), "newmtl w\nmap_Kd broken.png\n").unwrap();
+    let message = folder.run("check wood.obj").stderr;
+    assert!(message.contains("cannot read `wood.mtl:2: broken.png`: "), "{message}");
+}
+
+#[test]
 fn broken_models_are_refused_with_file_and_place() {
     let folder = with_triangle();
     fs::write(folder.path("cut.glb"), b"glTF\x02\0\0\0").unwrap();

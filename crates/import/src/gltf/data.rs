@@ -8,6 +8,7 @@ use super::meshopt;
 use super::open::Gltf;
 use super::uri::{self, Uri};
 use super::{FileError, Files};
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -164,6 +165,15 @@ impl GltfData {
         let missing = || Fault::at(format!("/images/{index}"), "there is no such image");
         let image = self.gltf.document.images.get(index.get()).ok_or_else(missing)?;
         self.data(&format!("/images/{index}"), image.uri.as_deref(), image.buffer_view, files)
+    }
+
+    /// JSON pointer of an image, with its name or that of its file for people.
+    pub fn image_place(&self, index: Index) -> String {
+        let image = self.gltf.document.images.get(index.get());
+        let uri = image.and_then(|image| Uri::parse(image.uri.as_deref()?).ok());
+        let name = image.and_then(|image| image.name.as_deref()).or(uri.as_ref().and_then(Uri::file_name));
+        let name = name.map_or_else(String::new, |name| format!(" ({})", excerpt(name, MAX_QUOTE)));
+        format!("/images/{index}{name}")
     }
 
     /// Bytes of an object that has either a URI or a buffer view, at a JSON pointer.

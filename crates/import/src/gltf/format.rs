@@ -1,5 +1,6 @@
 //! glTF as a format of model files.
 
+use super::digest::digest;
 use super::document::Document;
 use super::error::{Fault, GltfError};
 use super::limits::Limits;
@@ -9,7 +10,7 @@ use super::{is_binary, summary};
 use glam::DAffine3;
 use juggler_math::BuildControl;
 use juggler_scene::model::{
-    FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+    FileDigest, FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -52,9 +53,8 @@ impl ModelFormat for GltfFormat {
         control: &BuildControl,
     ) -> Result<Arc<dyn ModelFile>, ModelError> {
         let files = Recorder { files, read: RefCell::default() };
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&bytes);
         let limits = self.limits.unwrap_or_default();
+        let digest = digest(name, &bytes, &limits);
         let content = Gltf::open(name, bytes, &limits).and_then(|gltf| {
             let mut data = gltf.load(&files)?;
             data.load_media(&files, control)?;
@@ -62,13 +62,7 @@ impl ModelFormat for GltfFormat {
         });
         let content = content.map_err(|error| model_error(&error))?;
         control.check()?;
-        let read = files.read.into_inner();
-        for (name, digest) in &read {
-            // The length keeps names apart from what follows them.
-            hasher.update(&(name.len() as u64).to_le_bytes()).update(name.as_bytes()).update(digest);
-        }
-        let files = read.into_iter().map(|(name, _)| name).collect();
-        Ok(Arc::new(GltfModel { content, files, digest: hasher.finalize().into() }))
+        Ok(Arc::new(GltfModel { content, files: files.read.into_inner(), digest }))
     }
 }
 
@@ -77,7 +71,7 @@ impl ModelFormat for GltfFormat {
 pub(super) struct GltfModel {
     /// The file with its decoded arrays.
     pub content: Content,
-    files: Vec<String>,
+    files: Vec<FileDigest>,
     digest: [u8; 32],
 }
 
@@ -93,7 +87,7 @@ impl ModelFile for GltfModel {
         self.digest
     }
 
-    fn files(&self) -> &[String] {
+    fn files(&self) -> &[FileDigest] {
         &self.files
     }
 
@@ -131,14 +125,15 @@ fn model_error(error: &GltfError) -> ModelError {
 /// Files that remember what was read.
 struct Recorder<'f> {
     files: &'f dyn Files,
-    /// Names and BLAKE3 hashes of the files, in the order of reading.
-    read: RefCell<Vec<(String, [u8; 32])>>,
+    /// The files in the order of reading.
+    read: RefCell<Vec<FileDigest>>,
 }
 
 impl Files for Recorder<'_> {
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError> {
         let bytes = self.files.read(name, limit)?;
-        self.read.borrow_mut().push((name.to_owned(), blake3::hash(&bytes).into()));
+        let digest = blake3::hash(&bytes).into();
+        self.read.borrow_mut().push(FileDigest { name: name.to_owned(), digest });
         Ok(bytes)
     }
 

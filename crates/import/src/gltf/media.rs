@@ -58,13 +58,13 @@ impl GltfData {
         let images = uses.map(|(index, Use { is_used, is_replaceable })| {
             control.check().ok()?;
             let index = Index::from(u32::try_from(index).ok()?);
-            let read = || self.image(index, files).map(|bytes| Asset::from_bytes(bytes.into_owned()));
+            let read = || self.picture(index, files);
             if !is_used || !is_lenient {
                 return is_used.then(|| keep(read(), is_replaceable)).flatten();
             }
             let picture = read().and_then(|asset| match check_picture(asset.bytes().unwrap_or_default()) {
                 Ok(()) => Ok(asset),
-                Err(error) => Err(Fault::at(format!("/images/{index}"), error)),
+                Err(error) => Err(Fault::at(self.image_place(index), error)),
             });
             picture.map_err(|fault| lost.push(fault)).ok()
         });
@@ -81,6 +81,12 @@ impl GltfData {
             self.gltf.warnings.add(fault.to_string(), "the picture is shown gray", 1);
         }
         Ok(())
+    }
+
+    /// Reads a picture.
+    fn picture(&self, index: Index, files: &dyn Files) -> Result<Asset, Fault> {
+        let origin = format!("{}: {}", self.gltf.name, self.image_place(index));
+        Ok(Asset::from_bytes(self.image(index, files)?.into_owned()).with_origin(origin))
     }
 
     /// Reads a light profile.

@@ -19,6 +19,7 @@ mod accessor;
 mod check;
 mod container;
 mod data;
+mod digest;
 pub mod document;
 pub mod draco;
 mod error;

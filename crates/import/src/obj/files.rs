@@ -2,7 +2,7 @@
 //! files in the folder of the OBJ are read.
 
 use crate::gltf::Warnings;
-use juggler_scene::model::{FileError, Files};
+use juggler_scene::model::{FileDigest, FileError, Files};
 
 /// Maximum number of bytes of all files that an OBJ names.
 const MAX_BYTES: u64 = 1 << 32;
@@ -12,8 +12,8 @@ const MAX_FILES: usize = 65_536;
 /// Files that remember what was read.
 pub struct Reader<'f> {
     files: &'f dyn Files,
-    /// Names and BLAKE3 hashes of the files, in the order of reading.
-    pub read: Vec<(String, [u8; 32])>,
+    /// The files in the order of reading.
+    pub read: Vec<FileDigest>,
     bytes_left: u64,
 }
 
@@ -54,7 +54,7 @@ impl<'f> Reader<'f> {
             let is_other = index > 0 || direct(folder, name).is_none();
             warnings.add(place, "names of files differ in path or case from the files found", u64::from(is_other));
             self.bytes_left = self.bytes_left.saturating_sub(bytes.len() as u64);
-            self.read.push((candidate.clone(), blake3::hash(&bytes).into()));
+            self.read.push(FileDigest { name: candidate.clone(), digest: blake3::hash(&bytes).into() });
             return Ok(Some((candidate, bytes)));
         }
         Ok(None)

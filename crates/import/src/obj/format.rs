@@ -12,7 +12,7 @@ use juggler_math::{Aabb, BuildControl};
 use juggler_mesh::{MeshLimits, OBJ, is_plain_obj, parse_obj_with_control};
 use juggler_scene::Object;
 use juggler_scene::model::{
-    AnimationChoice, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+    AnimationChoice, FileDigest, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -56,8 +56,7 @@ impl ModelFormat for ObjFormat {
         let shown = name.rsplit(['/', '\\']).next().unwrap_or(name);
         let parsed = parse_obj_with_control(Path::new(name), &bytes, &MeshLimits::default(), control);
         let model = parsed.map_err(|error| ModelError::new(error.to_string()))?;
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&bytes);
+        let digest = blake3::hash(&bytes).into();
         drop(bytes);
         let mut warnings = Warnings::default();
         model.warnings.iter().for_each(|warning| warnings.add(shown, warning, 1));
@@ -66,16 +65,11 @@ impl ModelFormat for ObjFormat {
         let library = Library::read(shown, &model.libraries, &used, &mut reader, &mut warnings);
         let in_file = |fault: String| format!("{name}: {fault}");
         let library = library.map_err(|faults| ModelError { faults: faults.into_iter().map(in_file).collect() })?;
-        for (name, digest) in &reader.read {
-            // The length keeps names apart from what follows them.
-            hasher.update(&(name.len() as u64).to_le_bytes()).update(name.as_bytes()).update(digest);
-        }
         let bounds = Aabb::from_points(model.mesh.positions.iter().copied());
         let has_colors = model.mesh.attributes.contains_key(VERTEX_COLORS);
         let (pieces, is_merged) = pieces(model);
         let text = format!("has more than {MAX_OBJECTS} objects and groups; faces are joined by material");
         warnings.add(shown, text, u64::from(is_merged));
-        let files = reader.read.into_iter().map(|(name, _)| name).collect();
         let diagonal = (bounds.max - bounds.min).length();
         Ok(Arc::new(ObjFile {
             name: shown.to_owned(),
@@ -84,8 +78,8 @@ impl ModelFormat for ObjFormat {
             has_colors,
             diagonal: if diagonal.is_finite() { diagonal } else { 1.0 },
             warnings,
-            files,
-            digest: hasher.finalize().into(),
+            files: reader.read,
+            digest,
         }))
     }
 }
@@ -100,7 +94,7 @@ struct ObjFile {
     /// Diagonal of the bounding box, in scene units.
     diagonal: f32,
     warnings: Warnings,
-    files: Vec<String>,
+    files: Vec<FileDigest>,
     digest: [u8; 32],
 }
 
@@ -109,7 +103,7 @@ impl ModelFile for ObjFile {
         self.digest
     }
 
-    fn files(&self) -> &[String] {
+    fn files(&self) -> &[FileDigest] {
         &self.files
     }
 

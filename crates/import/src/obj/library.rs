@@ -130,7 +130,7 @@ impl Library {
                         continue;
                     }
                 };
-                let index = add_picture(&mut self.pictures, found);
+                let index = add_picture(&mut self.pictures, found, &place);
                 inspect(self.pictures.get_mut(index), word);
                 known.insert(written, index);
                 loaded.pictures.insert(word, index);
@@ -186,13 +186,13 @@ fn read_picture(
     Ok((name, bytes))
 }
 
-/// Adds a file as a picture, or finds it.
-fn add_picture(pictures: &mut Vec<Picture>, (file, bytes): (String, Vec<u8>)) -> usize {
+/// Adds a file that is named at a place as a picture, or finds it.
+fn add_picture(pictures: &mut Vec<Picture>, (file, bytes): (String, Vec<u8>), place: &str) -> usize {
     if let Some(index) = pictures.iter().position(|picture| picture.file == file) {
         return index;
     }
     let asset_name = picture_asset_name(pictures.len(), Some(&file), &bytes);
-    let asset = Asset::from_bytes(bytes);
+    let asset = Asset::from_bytes(bytes).with_origin(format!("{place}: {file}"));
     pictures.push(Picture { file, asset_name, asset, has_alpha: false, is_normal_map: false });
     pictures.len() - 1
 }

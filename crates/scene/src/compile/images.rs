@@ -2,7 +2,6 @@
 //! and copies of a scene.
 
 use super::meshes::{AssetCache, Files, NEVER_CANCELLED, file_stamp, read_error_message};
-use crate::asset::display_name;
 use crate::description::Description;
 use crate::item::Item;
 use crate::path::Path;
@@ -105,10 +104,10 @@ impl AssetCache {
 impl ImageFile {
     fn load(path: &std::path::Path, space: ColorSpace, store: &Store) -> Self {
         if let Some((image, digest)) = store.assets.image_at(path) {
-            return Self::from_image(image, digest, path);
+            return Self::from_image(image, digest, &store.assets.origin(path));
         }
         if let Some((texels, digest)) = store.assets.texels_at(path) {
-            return Self::from_raster(Ok(texels.raster()), digest, path, space);
+            return Self::from_raster(Ok(texels.raster()), digest, &store.assets.origin(path), space);
         }
         let stamp = file_stamp(path);
         let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
@@ -118,21 +117,17 @@ impl ImageFile {
             }
         };
         let digest = blake3::hash(&bytes).into();
-        let raster = decode_raster(&display_name(path), Cursor::new(&*bytes), &IMAGE_LIMITS);
+        let origin = store.assets.origin(path);
+        let raster = decode_raster(&origin, Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
-        Self { stamp, ..Self::from_raster(raster, digest, path, space) }
+        Self { stamp, ..Self::from_raster(raster, digest, &origin, space) }
     }
 
-    fn from_raster(
-        raster: Result<Raster, ImageError>,
-        digest: [u8; 32],
-        path: &std::path::Path,
-        space: ColorSpace,
-    ) -> Self {
+    fn from_raster(raster: Result<Raster, ImageError>, digest: [u8; 32], origin: &str, space: ColorSpace) -> Self {
         let infinite = raster.as_ref().map_or(0, infinite_pixels);
         let is_first_of_several = raster.as_ref().is_ok_and(|raster| raster.is_first_of_several);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
-            mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: contains no image", display_name(path)))
+            mip_map(raster, space).map(Arc::new).ok_or_else(|| format!("`{origin}`: contains no image"))
         });
         Self { infinite, is_first_of_several, ..Self::new(digest, pixels) }
     }
@@ -142,9 +137,9 @@ impl ImageFile {
     }
 
     /// Creates an image from pixels in linear light; the color space of textures has no effect.
-    fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
+    fn from_image(image: &juggler_math::Image, digest: [u8; 32], origin: &str) -> Self {
         let pixels = MipMap::from_floats([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
-        let pixels = pixels.ok_or_else(|| format!("`{}`: contains no image", display_name(path)));
+        let pixels = pixels.ok_or_else(|| format!("`{origin}`: contains no image"));
         Self::new(digest, pixels)
     }
 }

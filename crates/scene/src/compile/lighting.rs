@@ -3,7 +3,6 @@
 use super::file_cache::{CachedFile, FileCache};
 use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS, infinity_warning};
 use super::meshes::{AssetCache, Files};
-use crate::asset::display_name;
 use crate::description::{BackgroundInput, Description};
 use crate::item::Item;
 use crate::kind::name_of;
@@ -67,7 +66,7 @@ impl LightFiles {
 
 impl AssetCache {
     fn panorama(&self, path: &std::path::Path) -> Arc<CachedFile<Panorama>> {
-        let shown = display_name(path);
+        let shown = self.store().assets.origin(path);
         let panorama = |image| Panorama::new(image).map_err(|wrong| format!("`{shown}` {wrong}"));
         if let Some((image, digest)) = self.store().assets.image_at(path) {
             return self.light_files().panoramas.insert_asset(path, digest, || panorama(image.clone()));
@@ -86,7 +85,7 @@ impl AssetCache {
     }
 
     fn profile(&self, path: &std::path::Path) -> Arc<CachedFile<IesProfile>> {
-        let shown = display_name(path);
+        let shown = self.store().assets.origin(path);
         self.light_files().profiles.load(path, self.store(), MAX_PROFILE_BYTES, |bytes| {
             // Decode lossily: old files contain names in local encodings, but the numbers are
             // ASCII.

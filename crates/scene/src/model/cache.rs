@@ -1,7 +1,7 @@
 //! Model files of a scene. Each is opened once and shared by all objects, frames and copies of the
 //! scene.
 
-use super::{FileError, Files, ModelFile, ModelFormat};
+use super::{FileDigest, FileError, Files, ModelFile, ModelFormat};
 use crate::compile::file_stamp;
 use crate::report::plain_io;
 use crate::store::{MAX_FILE_BYTES, Store};
@@ -28,6 +28,8 @@ pub struct ModelCache {
 pub struct OpenedModel {
     /// The file, or messages that name it.
     pub file: Result<Arc<dyn ModelFile>, Vec<String>>,
+    /// Hashes of the file and of the files that it names; none if it cannot be opened.
+    pub digests: Arc<[FileDigest]>,
     /// The file and the files that it names, each with length and modification time before it was
     /// read.
     stamps: Vec<(PathBuf, Option<(u64, SystemTime)>)>,
@@ -83,7 +85,9 @@ impl ModelCache {
     fn open(&self, path: &Path, store: &Store, control: &BuildControl) -> OpenedModel {
         let (folder, shown) = (path.parent().unwrap_or(Path::new("")), path.display().to_string());
         let mut stamps = vec![(path.to_owned(), file_stamp(path))];
-        let failed = |message: String| OpenedModel { file: Err(vec![message]), stamps: stamps.clone() };
+        let none = || Arc::from(Vec::new());
+        let failed =
+            |message: String| OpenedModel { file: Err(vec![message]), digests: none(), stamps: stamps.clone() };
         let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes.into_owned(),
             Err(error) => return failed(crate::compile::read_error_message(path, &error)),
@@ -94,11 +98,14 @@ impl ModelCache {
         let beside = FolderFiles { folder, store, is_lenient: self.is_lenient };
         match format.open_with_control(&shown, bytes, &beside, control) {
             Ok(file) => {
-                let others = file.files().iter().map(|name| folder.join(name));
+                let others = file.files().iter().map(|other| folder.join(&other.name));
                 stamps.extend(others.map(|path| (path.clone(), file_stamp(&path))));
-                OpenedModel { file: Ok(file), stamps }
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let own = FileDigest { name, digest: file.digest() };
+                let digests = std::iter::once(own).chain(file.files().iter().cloned()).collect();
+                OpenedModel { file: Ok(file), digests, stamps }
             }
-            Err(error) => OpenedModel { file: Err(error.faults), stamps },
+            Err(error) => OpenedModel { file: Err(error.faults), digests: none(), stamps },
         }
     }
 

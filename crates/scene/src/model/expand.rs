@@ -6,7 +6,7 @@
 //! sampled time too, which gives the tracks of their objects, lights and cameras.
 
 use super::instance::{ModelNames, Place};
-use super::{ModelChoice, find_camera};
+use super::{FileDigest, ModelChoice, find_camera};
 use crate::compile::{AssetCache, Files};
 use crate::description::{BackgroundInput, CameraName, Description, Instances, Object, Objects};
 use crate::item::Item;
@@ -34,9 +34,17 @@ pub struct Expansion {
     pub asset_cache: AssetCache,
     /// Errors and warnings about models.
     pub findings: Vec<Finding>,
-    /// What determines the models' contents, for fingerprints: hash of the file, and times; the size
-    /// of the picture too if points and lines depend on it.
-    pub identities: Vec<([u8; 32], Vec<f64>)>,
+    /// What determines the contents of the models, for fingerprints.
+    pub identities: Vec<ModelIdentity>,
+}
+
+/// What determines the content of a model of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelIdentity {
+    /// The file and the files that it names; copies of the model share the list.
+    pub files: Arc<[FileDigest]>,
+    /// Times in seconds; the size of the picture too if points and lines depend on it.
+    pub times: Vec<f64>,
 }
 
 /// Time of a scene.
@@ -168,7 +176,7 @@ pub(super) struct Expander<'s> {
     seconds: f64,
     pub names: ModelNames,
     pub findings: Vec<Finding>,
-    pub identities: Vec<([u8; 32], Vec<f64>)>,
+    pub identities: Vec<ModelIdentity>,
     /// Lights of models, by the path of the model and their index there.
     pub lights: IndexMap<(String, usize), InModel<AnyLight>>,
     /// Cameras of models, by the path of the model and their index there, with their names.

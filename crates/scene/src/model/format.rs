@@ -50,13 +50,22 @@ pub trait ModelFormat: Debug + Send + Sync {
     }
 }
 
+/// A file with the hash of its content.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct FileDigest {
+    /// Name of the file.
+    pub name: String,
+    /// BLAKE3 hash of the content.
+    pub digest: [u8; 32],
+}
+
 /// An opened model file. All files that it names are read.
 pub trait ModelFile: Debug + Send + Sync {
-    /// BLAKE3 hash of the file and of the files that it names.
+    /// Hash of the file without the files that it names. It may be equal for texts of equal meaning.
     fn digest(&self) -> [u8; 32];
 
-    /// Names of the files that the file names, relative to its folder.
-    fn files(&self) -> &[String];
+    /// The files that the file names, relative to its folder, in the order of reading.
+    fn files(&self) -> &[FileDigest];
 
     /// Whether the z axis of the file points up. A scene around the file rotates it. Defaults to
     /// `false`: y points up.

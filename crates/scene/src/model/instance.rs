@@ -1,7 +1,7 @@
 //! A model of a scene: its objects with the model's settings, and its other parts under names of
 //! their own.
 
-use super::expand::{Expander, InModel};
+use super::expand::{Expander, InModel, ModelIdentity};
 use super::{ModelChoice, ModelParts, OpenedModel};
 use crate::description::{BackgroundInput, Model, Object};
 use crate::item::Item;
@@ -13,6 +13,7 @@ use juggler_math::suggest::did_you_mean_or_list;
 use juggler_math::{BuildControl, Transform, portable};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Where the objects of a list are, and when.
 #[derive(Clone, Copy, Default)]
@@ -77,11 +78,11 @@ impl Expander<'_> {
             }
         };
         if place.is_moment {
-            self.identities.last_mut().iter_mut().for_each(|(_, times)| times.push(choice.seconds));
+            self.identities.last_mut().iter_mut().for_each(|identity| identity.times.push(choice.seconds));
         } else {
-            let digest = opened.file.as_ref().map_or([0; 32], |file| file.digest());
             let size = size.map(f64::from).into_iter().filter(|_| parts.depends_on_size);
-            self.identities.push((digest, std::iter::once(choice.seconds).chain(size).collect()));
+            let times = std::iter::once(choice.seconds).chain(size).collect();
+            self.identities.push(ModelIdentity { files: Arc::clone(&opened.digests), times });
         }
         self.check_names(model, &parts, &prefix, path, place);
         let mut objects = selected(model, std::mem::take(&mut parts.objects));

@@ -23,6 +23,7 @@ mod juggler;
 mod lighting;
 mod limits;
 mod model_cameras;
+mod model_files;
 mod models;
 mod mutations;
 mod placing;

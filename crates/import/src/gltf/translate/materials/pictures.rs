@@ -68,7 +68,7 @@ impl<'a> Pictures<'a> {
             (Ok(picture), _) => Ok(Some(picture)),
             (Err(_), Some(plain)) if !cfg!(feature = "ktx2") && !is_required => {
                 let text = format!("{}; the plain image is shown", Ktx2Error::Disabled);
-                warnings.add(format!("/images/{basisu}"), text, 1);
+                warnings.add(self.data.image_place(basisu), text, 1);
                 self.add(plain).map(Some)
             }
             (Err(fault), _) => Err(fault),
@@ -77,7 +77,7 @@ impl<'a> Pictures<'a> {
 
     /// Adds an image at its first use.
     fn add(&mut self, image: Index) -> Result<Picture, Fault> {
-        let at = format!("/images/{image}");
+        let at = self.data.image_place(image);
         let missing = || Fault::at(&at, "the picture has not been read");
         let asset = self.data.image_asset(image.get()).ok_or_else(missing)?;
         let encoded = asset.bytes().filter(|bytes| bytes.starts_with(KTX2));

@@ -358,7 +358,7 @@ fn missing_pictures_are_errors_that_name_them() {
     let data = builder.load();
     let mut set = MaterialSet::new(&data.gltf.document, &data, "");
     let fault = set.material(Some(0), &LIT).unwrap_err();
-    assert_eq!(fault.to_string(), "/images/0: the picture has not been read");
+    assert_eq!(fault.to_string(), "/images/0 (a.png): the picture has not been read");
 }
 
 #[cfg(not(feature = "ktx2"))]
