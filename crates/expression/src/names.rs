@@ -29,22 +29,31 @@ impl From<f64> for Quantity {
 
 /// Names that expressions may use, with their values, in order of insertion.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Names(IndexMap<String, Quantity>);
+pub struct Names {
+    quantities: IndexMap<String, Quantity>,
+    /// Whether errors about unknown names suggest no others.
+    omits_suggestions: bool,
+}
 
 impl Names {
     /// Sets the value of a name.
     pub fn insert(&mut self, name: impl Into<String>, quantity: Quantity) {
-        self.0.insert(name.into(), quantity);
+        self.quantities.insert(name.into(), quantity);
+    }
+
+    /// Omits suggestions of names from now on, since each takes the time to look at all names.
+    pub fn omit_suggestions(&mut self) {
+        self.omits_suggestions = true;
     }
 
     /// Value of a name; `None` for an unknown name.
     pub fn get(&self, name: &str) -> Option<&Quantity> {
-        self.0.get(name)
+        self.quantities.get(name)
     }
 
     /// Whether the name has been inserted.
     pub fn contains(&self, name: &str) -> bool {
-        self.0.contains_key(name)
+        self.quantities.contains_key(name)
     }
 
     /// Number that `name` or `name.component` stands for, written at `at`. Returns `None` if the
@@ -71,14 +80,18 @@ impl Names {
             (None, None) if let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) => {
                 fail(at.clone(), format!("`{name}` is a function: write {}", function.usage))
             }
-            (None, _) => Err(unknown_name(name, at.clone(), "nothing", self.0.keys().map(String::as_str))),
+            (None, _) => {
+                let known = self.quantities.keys().map(String::as_str).filter(|_| !self.omits_suggestions);
+                Err(unknown_name(name, at.clone(), "nothing", known))
+            }
         }
     }
 }
 
 impl<S: Into<String>> FromIterator<(S, Quantity)> for Names {
     fn from_iter<I: IntoIterator<Item = (S, Quantity)>>(quantities: I) -> Self {
-        Self(quantities.into_iter().map(|(name, quantity)| (name.into(), quantity)).collect())
+        let quantities = quantities.into_iter().map(|(name, quantity)| (name.into(), quantity)).collect();
+        Self { quantities, omits_suggestions: false }
     }
 }
 

@@ -28,23 +28,23 @@ pub(crate) fn of_head(head: &[u8], size: u64) -> Option<&'static dyn MeshFormat>
     FORMATS.iter().copied().find(|format| format.is_head(head, size))
 }
 
-/// Names of all formats in words: "OBJ, PLY and STL".
-pub(crate) fn names() -> String {
-    enumeration(|format| format.name.to_owned(), "and")
+/// Names of all formats in words: "OBJ, PLY or STL".
+pub(crate) fn alternatives() -> String {
+    enumeration(|format| format.name.to_owned())
 }
 
 /// Extensions of all formats in words: ".obj, .ply or .stl".
 pub(crate) fn extensions() -> String {
-    enumeration(|format| format!(".{}", format.extension), "or")
+    enumeration(|format| format!(".{}", format.extension))
 }
 
-/// The words for all formats in alphabetical order, the last two joined by `conjunction`.
-fn enumeration(word: impl Fn(MeshFormatInfo) -> String, conjunction: &str) -> String {
+/// The words for all formats in alphabetical order.
+fn enumeration(word: impl Fn(MeshFormatInfo) -> String) -> String {
     let mut words: Vec<String> = FORMATS.iter().map(|format| word(format.info())).collect();
     words.sort();
     match words.split_last() {
         Some((last, [])) => last.clone(),
-        Some((last, others)) => format!("{} {conjunction} {last}", others.join(", ")),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
         None => String::new(),
     }
 }

@@ -61,7 +61,7 @@ fn unreadable_files_are_named() {
     let unknown = parse(Path::new("cow.moo"), b"\0\x01cow", &MeshLimits::default()).unwrap_err();
     assert_eq!(unknown.to_string(), "cow.moo: not a known mesh format: expected a file named .obj, .ply or .stl");
     let foreign = parse(Path::new("cow.fbx"), b"Kaydara FBX", &MeshLimits::default()).unwrap_err();
-    assert_eq!(foreign.to_string(), "cow.fbx: FBX is not supported; supported mesh formats: OBJ, PLY and STL");
+    assert_eq!(foreign.to_string(), "cow.fbx: FBX is not supported: export the model as glTF (.glb), OBJ, PLY or STL");
 }
 
 #[test]

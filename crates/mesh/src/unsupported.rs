@@ -28,9 +28,12 @@ const fn language(name: &'static str, extensions: &'static [&'static str]) -> Un
     UnsupportedFormat { name, extensions, magic: b"", is_language: true }
 }
 
+/// Name of the format of models that importers read.
+const GLTF: &str = "glTF";
+
 /// All recognized formats.
 const FOREIGN: &[UnsupportedFormat] = &[
-    model("glTF", &["glb", "gltf"], b"glTF"),
+    model(GLTF, &["glb", "gltf"], b"glTF"),
     model("FBX", &["fbx"], b"Kaydara FBX Binary"),
     model("Blender's own format", &["blend"], b"BLENDER"),
     model("USD", &["usdc", "usd"], b"PXR-USDC"),
@@ -73,11 +76,21 @@ impl UnsupportedFormat {
 
 impl fmt::Display for UnsupportedFormat {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} is not supported; supported mesh formats: {}", self.name, formats::names())?;
-        if self.is_language {
-            formatter.write_str(" (docs/names.md lists the corresponding names in scene files)")?;
+        let Self { name, is_language, .. } = *self;
+        match name {
+            GLTF => {
+                write!(formatter, "{GLTF} files are no meshes: write \"model\": {{\"file\": ...}} instead of \"shape\"")
+            }
+            _ if is_language => write!(
+                formatter,
+                "{name} is not supported (docs/names.md lists the corresponding names in scene files)"
+            ),
+            _ => write!(
+                formatter,
+                "{name} is not supported: export the model as {GLTF} (.glb), {}",
+                formats::alternatives()
+            ),
         }
-        Ok(())
     }
 }
 
@@ -102,13 +115,12 @@ mod tests {
     }
 
     #[test]
-    fn messages_name_the_unsupported_and_the_supported_formats() {
+    fn messages_name_the_format_and_what_to_do() {
         let message = |file: &str| UnsupportedFormat::of_name(Path::new(file)).unwrap().to_string();
-        assert_eq!(message("a.glb"), "glTF is not supported; supported mesh formats: OBJ, PLY and STL");
-        assert!(
-            message("a.pov")
-                .starts_with("POV-Ray's scene language is not supported; supported mesh formats: OBJ, PLY and STL")
-        );
+        assert_eq!(message("a.glb"), "glTF files are no meshes: write \"model\": {\"file\": ...} instead of \"shape\"");
+        let exported = "is not supported: export the model as glTF (.glb), OBJ, PLY or STL";
+        assert_eq!(message("a.blend"), format!("Blender's own format {exported}"));
+        assert!(message("a.pov").starts_with("POV-Ray's scene language is not supported"));
         assert!(message("a.pov").contains("docs/names.md"));
     }
 }

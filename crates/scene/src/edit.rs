@@ -100,7 +100,7 @@ impl Scene {
         let at = PathRef::Root.key("paths");
         let paths = resolved.get("paths");
         findings.extend(paths.into_iter().flat_map(|paths| {
-            validate::item(paths, &Path::from(&at), &at, NameScope::Scene(&self.description)).findings
+            validate::item(paths, &Path::from(&at), &at, NameScope::Scene(&self.description), 0).findings
         }));
         if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
     }

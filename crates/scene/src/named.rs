@@ -8,7 +8,6 @@ use juggler_math::BuildControl;
 use std::path::Path;
 
 /// Maximum number of file names of a folder that are searched for suggestions.
-/// A name of neither a file nor a built-in scene.
 const MAX_NAMES: usize = 10_000;
 
 /// A name that leads to no file and to nothing built in.
@@ -57,26 +56,28 @@ impl Loader {
 pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'n str>) -> UnknownName {
     let path = Path::new(name);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let files = names_in(folder);
-    let file_name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let near = |names: &[String]| closest(file_name, names.iter().map(String::as_str)).map(str::to_owned);
+    let near = || similar_file(path, MAX_NAMES);
     if path.extension().is_some() || !folder.as_os_str().is_empty() {
-        let meant = near(&files).map(|near| folder.join(near).display().to_string());
+        let meant = near().map(|near| folder.join(near).display().to_string());
         return UnknownName { message: format!("file not found: `{name}`{}", question(meant)), is_file: true };
     }
     // A colon precedes the size of a built-in mesh.
-    let bare = file_name.split(':').next().unwrap_or_default();
-    let meant = closest(bare, built_in).map(str::to_owned).or_else(|| near(&files));
+    let bare = name.split(':').next().unwrap_or_default();
+    let meant = closest(bare, built_in).map(str::to_owned).or_else(near);
     let message = format!("unknown {what} `{name}`: neither a file nor a built-in {what}{}", question(meant));
     UnknownName { message, is_file: false }
 }
 
-fn question(meant: Option<String>) -> String {
-    meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
+/// Name of the file in the folder of a missing file that resembles its name most, among the first
+/// `most` files of the folder.
+pub(crate) fn similar_file(path: &Path, most: usize) -> Option<String> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().take(most);
+    let names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    closest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
 }
 
-fn names_in(folder: &Path) -> Vec<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().take(MAX_NAMES);
-    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
+/// Question that follows a message: "; did you mean `wood.png`?".
+pub(crate) fn question(meant: Option<String>) -> String {
+    meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
 }

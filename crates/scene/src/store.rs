@@ -2,6 +2,8 @@
 
 use crate::asset::Assets;
 use crate::document::{self, Unreadable, text_of};
+use crate::named;
+use crate::suggest::closest;
 use juggler_imaging::regular::{self, ReadError};
 use juggler_mesh::{FileContent, PointEstimate, estimate_points, points_of_head};
 use std::borrow::Cow;
@@ -12,6 +14,10 @@ use std::sync::Arc;
 
 /// Maximum number of bytes of a file, unless its reader has a lower limit: 4 GiB.
 pub(crate) const MAX_FILE_BYTES: u64 = 1 << 32;
+
+/// Maximum number of file names that are searched for suggestions. A scene may name many missing
+/// files.
+const MAX_NAMES: usize = 1000;
 
 /// Number of first bytes by which formats of models are recognized.
 const HEAD: usize = 16;
@@ -57,6 +63,12 @@ impl Bundle {
     fn find(&self, path: &Path) -> Option<(&PathBuf, &Vec<u8>)> {
         let alone = || self.0.get_key_value(Path::new(path.file_name()?));
         self.0.get_key_value(&normalize(path)).or_else(alone)
+    }
+
+    /// Name of the file that resembles a missing one most.
+    fn similar_file(&self, path: &Path) -> Option<String> {
+        let names = self.0.keys().filter_map(|path| path.file_name()?.to_str()).take(MAX_NAMES);
+        closest(path.file_name()?.to_str()?, names).map(str::to_owned)
     }
 }
 
@@ -140,6 +152,17 @@ impl Store {
             // The reader reports a file that does not exist.
             _ => false,
         }
+    }
+
+    /// Question that suggests a file of the same folder for a missing one; empty for all other errors.
+    pub(crate) fn suggestion(&self, path: &Path, error: &std::io::Error) -> String {
+        if error.kind() != ErrorKind::NotFound {
+            return String::new();
+        }
+        named::question(match &self.backend {
+            Backend::Disk => named::similar_file(path, MAX_NAMES),
+            Backend::Memory(bundle) => bundle.similar_file(path),
+        })
     }
 
     /// Canonical name, which is equal for equal files.

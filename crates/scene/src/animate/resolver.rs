@@ -22,7 +22,7 @@ impl<'s> Resolver<'s> {
         if let Some(paths) = resolver.all_paths() {
             let paths = Node { place: None, value: Value::Object(paths) };
             let at = PathRef::Root.key("paths");
-            let checked = validate::item(&paths, &(&at).into(), &at, validate::NameScope::Tree(head));
+            let checked = validate::item(&paths, &(&at).into(), &at, validate::NameScope::Tree(head), 0);
             checked.findings.into_iter().for_each(|finding| resolver.report(finding));
         }
         Self { resolver }

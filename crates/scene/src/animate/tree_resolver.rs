@@ -7,7 +7,7 @@ use super::{Programs, SceneSources, number, numbers};
 use crate::document::{Members, Node, SourceSpan, Value};
 use crate::path::PathRef;
 use crate::report::Finding;
-use crate::validate;
+use crate::validate::{self, MAX_SUGGESTIONS};
 use juggler_expression::{ExpressionError, Names, PointEvaluator, Program, Quantity};
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
@@ -187,6 +187,9 @@ impl TreeResolver<'_> {
     pub fn report(&mut self, finding: Finding) {
         if self.findings.len() < MAX_FINDINGS {
             self.findings.push(finding);
+        }
+        if self.findings.len() >= MAX_SUGGESTIONS {
+            self.names.omit_suggestions();
         }
     }
 

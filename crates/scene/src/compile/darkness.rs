@@ -36,12 +36,13 @@ pub fn warning(scene: &Description, assembly: &Assembly) -> Option<Finding> {
         return None;
     }
     let message = "no light reaches the camera: no light, background or material emits any";
-    let help = "add a light or a background such as `\"background\": 0.5`, or increase `intensity` or `scale`";
+    let help = "add a light or a background such as `\"background\": 0.5`, or increase the `intensity`, `power`, `radiance` or \
+                `scale` of a source of light";
     Some(Finding::warning(message).at(Path::root()).help(help))
 }
 
 /// Whether a material emits light, or is seen without any.
-fn is_seen(id: MaterialId, materials: &MaterialTable) -> bool {
+pub fn is_seen(id: MaterialId, materials: &MaterialTable) -> bool {
     let emits = |emission: SurfaceEmission| emission.radiance.is_none_or(|radiance| !radiance.is_black());
     materials.emission(id).is_some_and(emits) || materials.shows_unlit(id)
 }

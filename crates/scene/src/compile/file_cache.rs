@@ -60,7 +60,9 @@ impl<T> FileCache<T> {
                     let digest = blake3::hash(&bytes).into();
                     CachedFile { digest, content: read(&bytes).map(Arc::new), stamp }
                 }
-                Err(error) => CachedFile { digest: [0; 32], content: Err(read_error_message(path, &error)), stamp },
+                Err(error) => {
+                    CachedFile { digest: [0; 32], content: Err(read_error_message(path, &error, store)), stamp }
+                }
             }
         })
     }

@@ -4,7 +4,7 @@
 use crate::description::Description;
 use crate::path::Path;
 use crate::report::Finding;
-use juggler_light::AnyLight;
+use juggler_light::{AnyLight, Area, Point, Spot};
 use juggler_math::range::format_number;
 use juggler_math::{Aabb, Vec2, Vec3, portable};
 use juggler_world::SceneLight;
@@ -12,6 +12,9 @@ use std::fmt;
 
 /// Illuminance below which an image is nearly black: white becomes level 39 of 255 in sRGB.
 const DARK: f32 = 0.02;
+
+/// Scale of illuminances for readers of messages, without exposure.
+const SCALE: &str = "0.1 is dim, 3 shows white paper as white";
 
 /// Light of the highest illuminance at the center of the scene's bounds, without occlusion.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +28,8 @@ pub struct Illuminance {
 impl fmt::Display for Illuminance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let light = self.light.as_deref().unwrap_or("the default light");
-        write!(f, "{light} gives the center of the scene an illuminance of {}", format_number(significant(self.value)))
+        let value = format_number(significant(self.value));
+        write!(f, "{light} lights the center of the scene with {value} W per square unit ({SCALE})")
     }
 }
 
@@ -67,9 +71,22 @@ pub fn warning(scene: &Description, lights: &[SceneLight], bounds: &Aabb) -> Opt
         return None;
     }
     let middle = format_number(significant(middle));
-    let message = format!("the brightest light gives the center of the scene an illuminance of {middle}: nearly black");
+    let message =
+        format!("the brightest light lights the center of the scene with {middle} W per square unit: nearly black");
     let finding = Finding::warning(message).at(Path::root().key("lights").index(number));
-    Some(finding.help("increase its `intensity`, move it closer, or increase `tone.exposure_stops`"))
+    let strength = scene.lights.get(number).map_or("intensity", |light| strength_key(light));
+    Some(finding.help(format!("increase its `{strength}`, move it closer, or increase `tone.exposure_stops`")))
+}
+
+/// Key of a light's strength: the one that the scene gives, or that the light has by default.
+fn strength_key(light: &AnyLight) -> &'static str {
+    match light {
+        AnyLight::Point(Point { power: Some(_), .. })
+        | AnyLight::Spot(Spot { power: Some(_), .. })
+        | AnyLight::Area(Area { power: Some(_), .. }) => "power",
+        AnyLight::Area(_) => "radiance",
+        AnyLight::Ambient(_) | AnyLight::Directional(_) | AnyLight::Point(_) | AnyLight::Spot(_) => "intensity",
+    }
 }
 
 /// Rounds to two significant digits.
@@ -110,7 +127,13 @@ mod tests {
         let warnings = |lights: &str, more: &str| scene(lights, more).check().warnings();
         assert_eq!(warnings(&light(1.0), ""), 1);
         let report = scene(&light(1.0), "").check().to_string();
-        assert!(report.contains("gives the center of the scene an illuminance of 0.01"), "{report}");
+        assert!(report.contains("lights the center of the scene with 0.01 W per square unit"), "{report}");
+        assert!(report.contains("increase its `intensity`"), "{report}");
+        for (area, key) in [("radiance", "radiance"), ("power", "power")] {
+            let light = format!(r#"{{"area": {{"position": [0, 11, 0], "{area}": 0.1}}}}"#);
+            let report = scene(&light, "").check().to_string();
+            assert!(report.contains(&format!("increase its `{key}`")), "{report}");
+        }
         assert_eq!(warnings(&light(3.0), ""), 0);
         for more in [
             r#", "tone": {"exposure_stops": 2}"#,
@@ -123,6 +146,7 @@ mod tests {
         // One light for a corner only, and one at the very center.
         let spot = r#"{"spot": {"position": [0.4, 3, 0.4], "direction": [0, -1, 0], "cutoff_degrees": 10, "beam_degrees": 5, "intensity": 9}}"#;
         assert_eq!(warnings(spot, ""), 0);
-        assert_eq!(warnings(r#"{"point": {"position": [0, 1, 0], "intensity": 1}}"#, ""), 0);
+        let report = scene(r#"{"point": {"position": [0, 1, 0], "intensity": 1}}"#, "").check().to_string();
+        assert!(!report.contains("nearly black"), "{report}");
     }
 }

@@ -113,7 +113,7 @@ impl ImageFile {
         let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes,
             Err(error) => {
-                return Self { stamp, ..Self::new([0; 32], Err(read_error_message(path, &error))) };
+                return Self { stamp, ..Self::new([0; 32], Err(read_error_message(path, &error, store))) };
             }
         };
         let digest = blake3::hash(&bytes).into();

@@ -180,7 +180,7 @@ impl Entry {
         let bytes = match store.read_bytes(path, limits.file_bytes) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let mesh = Err(read_error_message(path, &error));
+                let mesh = Err(read_error_message(path, &error, store));
                 return Self { digest: [0; 32], mesh, texture_file: None, stamp };
             }
         };
@@ -210,10 +210,12 @@ fn prepared(
 }
 
 /// Message about a file or asset that cannot be read.
-pub(crate) fn read_error_message(path: &std::path::Path, error: &ReadError) -> String {
+pub(crate) fn read_error_message(path: &std::path::Path, error: &ReadError, store: &Store) -> String {
     let shown = display_name(path);
     match error {
-        ReadError::Io(error) => format!("cannot read `{shown}`: {}", plain_io(error)),
+        ReadError::Io(error) => {
+            format!("cannot read `{shown}`: {}{}", plain_io(error), store.suggestion(path, error))
+        }
         ReadError::TooLarge { .. } => format!("cannot read `{shown}`: {error}"),
     }
 }

@@ -40,6 +40,7 @@ mod prepared_instances;
 mod settings;
 mod shadow_catchers;
 mod shutter_motion;
+mod sight;
 mod surface_coordinates;
 mod times;
 mod transform_motion;
@@ -174,6 +175,7 @@ impl Assembly {
             shadow_catchers: shadow_catchers::entries(scene),
         };
         findings.extend(darkness::warning(scene, &assembly));
+        assembly.check_sight(scene, &mut findings);
         (assembly, findings)
     }
 

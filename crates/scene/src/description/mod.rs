@@ -247,7 +247,8 @@ impl Description {
         self.each_item(&mut |at, item| {
             if predicate(item) && !item.has_passed(*names) {
                 let json = item.json_without_arrays().into();
-                let found = validate::item(&json, &at.into(), at, NameScope::Scene(self)).all();
+                let names_of = NameScope::Scene(self);
+                let found = validate::item(&json, &at.into(), at, names_of, findings.len()).all();
                 if found.is_empty() {
                     item.set_passed(*names);
                 }

@@ -156,14 +156,15 @@ impl<'s> Reader<'s> {
         } else {
             None
         };
-        let text = match problem.map_or_else(|| self.store.text(&path).map_err(|why| explain(&path, why)), Err) {
-            Ok(text) => text,
-            Err(message) => {
-                self.findings.push(Finding::error(message).on(place));
-                self.complete = false;
-                return None;
-            }
-        };
+        let text =
+            match problem.map_or_else(|| self.store.text(&path).map_err(|why| explain(&path, why, self.store)), Err) {
+                Ok(text) => text,
+                Err(message) => {
+                    self.findings.push(Finding::error(message).on(place));
+                    self.complete = false;
+                    return None;
+                }
+            };
         self.read_files.push(identity.clone());
         self.open.push(identity);
         let tree = self.file(&path.to_string_lossy(), text);
@@ -178,7 +179,7 @@ impl<'s> Reader<'s> {
         let known: Vec<&str> = known.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
         for (key, member) in tree.members().filter(|(key, _)| !known.contains(&key.as_str())) {
             let finding = Finding::error(format!("unknown key `{key}`")).on(member.key_place);
-            self.findings.push(finding.maybe_help(suggest_scene_key(key)));
+            self.findings.push(finding.maybe_help(suggest_scene_key(key, &member.node)));
         }
         if let Some(version) =
             tree.get("version").filter(|version| !matches!(&version.value, Value::Number(n) if n.as_f64() == Some(1.0)))
@@ -251,10 +252,12 @@ pub fn finding(file: FileId, error: SyntaxError) -> Finding {
     }
 }
 
-fn explain(path: &Path, why: Unreadable) -> String {
+fn explain(path: &Path, why: Unreadable, store: &Store) -> String {
     let shown = path.display();
     match why {
-        Unreadable::Io(error) => format!("cannot read `{shown}`: {}", plain_io(&error)),
+        Unreadable::Io(error) => {
+            format!("cannot read `{shown}`: {}{}", plain_io(&error), store.suggestion(path, &error))
+        }
         Unreadable::NotText(message) => format!("cannot include `{shown}`: {message}"),
     }
 }

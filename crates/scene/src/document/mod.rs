@@ -2,6 +2,7 @@
 //! of the scene format's meaning, except for the names of its sections.
 
 mod chunks;
+mod explain;
 mod include;
 mod limits;
 mod members;

@@ -4,12 +4,12 @@
 //! explains the first error of a text that this parser rejects; building nodes from its syntax tree
 //! took more than twice the time.
 
+use super::explain::explain;
 use super::limits::{self, SyntaxError};
 use super::members::Members;
 use super::source::{FileId, SourceSpan};
 use super::tree::{Member, Node, Value};
 use crate::path::PathRef;
-use jsonc_parser::errors::ParseErrorKind as Kind;
 use jsonc_parser::tokens::Token;
 use jsonc_parser::{CollectOptions, ParseOptions, ParseResult, Scanner, ScannerOptions, parse_to_ast};
 use serde_json::Number;
@@ -86,46 +86,6 @@ const STRICT: ScannerOptions = ScannerOptions {
     allow_non_finite_numbers: false,
     allow_extended_string_escapes: false,
 };
-
-/// Explains a syntax error at `word`. Returns the message and a suggestion.
-fn explain(kind: &Kind, word: &str) -> (String, Option<String>) {
-    let small = word.to_ascii_lowercase();
-    let quoted = format!("write \"{word}\"");
-    let (message, help) = match kind {
-        Kind::UnterminatedObject => ("this `{` is never closed by `}`", ""),
-        Kind::UnterminatedArray => ("this `[` is never closed by `]`", ""),
-        Kind::UnterminatedCommentBlock => ("this comment is never closed by `*/`", ""),
-        Kind::UnexpectedCloseBrace => ("unexpected `}`", ""),
-        Kind::UnexpectedCloseBracket => ("unexpected `]`", ""),
-        Kind::UnexpectedComma => ("unexpected `,`", ""),
-        Kind::UnexpectedColon => ("unexpected `:`", ""),
-        Kind::ExpectedComma => ("a `,` is missing here", ""),
-        Kind::ExpectedColonAfterObjectKey => ("a `:` and a value must follow the key", ""),
-        Kind::ExpectedObjectValue => ("a value must follow the `:`", ""),
-        Kind::ExpectedStringObjectProperty => ("keys must be in double quotes", quoted.as_str()),
-        Kind::SingleQuotedStringsNotAllowed => ("strings must be in double quotes", ""),
-        Kind::NonFiniteNumbersNotAllowed => ("numbers must be finite", ""),
-        Kind::HexadecimalNumbersNotAllowed => ("numbers must be decimal", "colors are written \"#rrggbb\", in quotes"),
-        Kind::UnaryPlusNumbersNotAllowed => ("numbers must not begin with `+`", ""),
-        Kind::BareDecimalPointNumbersNotAllowed => {
-            ("digits are required on both sides of the decimal point", "write 0.5")
-        }
-        Kind::UnexpectedWord | Kind::UnexpectedToken if matches!(small.as_str(), "true" | "false" | "null") => {
-            ("true, false and null must be in lower case", "")
-        }
-        Kind::UnexpectedWord | Kind::UnexpectedToken => {
-            ("words must be in double quotes", "only true, false and null have none")
-        }
-        Kind::MultipleRootJsonValues => ("unexpected text after the end of the JSON value", ""),
-        other => return (format!("invalid JSON: {}", lower_first(&other.to_string())), None),
-    };
-    (message.to_owned(), (!help.is_empty()).then(|| help.to_owned()))
-}
-
-fn lower_first(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| first.to_lowercase().chain(characters).collect())
-}
 
 /// Extends a range to character boundaries within the text.
 fn on_characters(text: &str, range: Range<usize>) -> Range<usize> {

@@ -7,6 +7,7 @@ use crate::report::plain_io;
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;
 use juggler_math::BuildControl;
+use juggler_mesh::UnsupportedFormat;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -90,10 +91,12 @@ impl ModelCache {
             |message: String| OpenedModel { file: Err(vec![message]), digests: none(), stamps: stamps.clone() };
         let bytes = match store.read_bytes(path, MAX_FILE_BYTES) {
             Ok(bytes) => bytes.into_owned(),
-            Err(error) => return failed(crate::compile::read_error_message(path, &error)),
+            Err(error) => return failed(crate::compile::read_error_message(path, &error, store)),
         };
         let Some(format) = self.format(path, &bytes) else {
-            return failed(format!("`{shown}` is in no known format of models"));
+            let foreign = UnsupportedFormat::of_content(&bytes).or_else(|| UnsupportedFormat::of_name(path));
+            let unknown = || format!("`{shown}` is in no known format of models");
+            return failed(foreign.map_or_else(unknown, |foreign| format!("`{shown}`: {foreign}")));
         };
         let beside = FolderFiles { folder, store, is_lenient: self.is_lenient };
         match format.open_with_control(&shown, bytes, &beside, control) {
@@ -105,7 +108,17 @@ impl ModelCache {
                 let digests = std::iter::once(own).chain(file.files().iter().cloned()).collect();
                 OpenedModel { file: Ok(file), digests, stamps }
             }
-            Err(error) => OpenedModel { file: Err(error.faults), digests: none(), stamps },
+            Err(mut error) => {
+                let lenient = FolderFiles { is_lenient: true, ..beside };
+                let opens =
+                    |bytes: Cow<'_, [u8]>| format.open_with_control(&shown, bytes.into_owned(), &lenient, control);
+                let helps =
+                    !self.is_lenient && store.read_bytes(path, MAX_FILE_BYTES).is_ok_and(|bytes| opens(bytes).is_ok());
+                if let Some(last) = error.faults.last_mut().filter(|_| helps) {
+                    last.push_str("; `--lenient` shows such pictures gray");
+                }
+                OpenedModel { file: Err(error.faults), digests: none(), stamps }
+            }
         }
     }
 

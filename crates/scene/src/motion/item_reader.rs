@@ -154,7 +154,7 @@ impl<'s, 'w> ItemReader<'s, 'w> {
         let before = self.findings.len();
         let checked = with_path_ref(message_path.steps(), &PathRef::Root, &mut |at: &PathRef<'_>| {
             let node = self.resolver.value(&source.template.node, at);
-            validate::item(&node, &source.path, at, NameScope::Scene(self.scene))
+            validate::item(&node, &source.path, at, NameScope::Scene(self.scene), before)
         });
         self.textures.extend(checked.textures);
         self.findings.extend(checked.findings);

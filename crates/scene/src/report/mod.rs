@@ -89,7 +89,6 @@ impl Finding {
     }
 
     /// Whether the message contains `words`.
-    #[cfg(test)]
     pub(crate) fn message_contains(&self, words: &str) -> bool {
         self.message.contains(words)
     }

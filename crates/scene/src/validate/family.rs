@@ -1,8 +1,9 @@
 //! Checks of families: `{"sphere": {...}}`, or `"sphere"` if all fields have defaults; and of fixed
 //! words.
 
+use super::other_programs::{self, Written};
 use super::rule::Rule;
-use super::{Plain, Validator, other_programs, wording};
+use super::{Plain, Validator, wording};
 use crate::document::{Members, Node, Value as NodeValue};
 use crate::path::PathRef;
 use crate::report::Finding;
@@ -33,7 +34,9 @@ impl Validator<'_> {
         };
         let Some((kind, content)) = family.kinds.iter().find(|(kind, _)| kind == key) else {
             let finding = Finding::error(format!("unknown kind of {} `{key}`", noun(family))).on(member.key_place);
-            let help = other_programs::suggest_kind(key, family).or_else(|| did_you_mean_or_list(key, kinds(family)));
+            let written = Written { value: &member.node, siblings: None };
+            let other = || other_programs::suggest_kind(key, family, Some(written));
+            let help = self.suggestion(|| other().or_else(|| did_you_mean_or_list(key, kinds(family))));
             self.findings.push(finding.maybe_help(help).at(&at.key(key)));
             return None;
         };
@@ -72,7 +75,7 @@ impl Validator<'_> {
                 format!("kinds: {}", wording::list(kinds, "and"))
             }
         };
-        let help = tagged(members, family).unwrap_or_else(other);
+        let help = self.suggestion(|| tagged(node, members, family)).unwrap_or_else(other);
         self.report(node, at, Finding::error(message).help(help))
     }
 
@@ -95,8 +98,8 @@ impl Validator<'_> {
                 let known: Vec<&str> = kinds(family).chain(family.words.iter().copied()).collect();
                 let what = if family.words.is_empty() { "kind of " } else { "" };
                 let finding = Finding::error(format!("unknown {what}{} `{text}`", noun(family)));
-                let help = other_programs::suggest_kind(text, family)
-                    .or_else(|| did_you_mean_or_list(text, known.iter().copied()));
+                let other = || other_programs::suggest_kind(text, family, None);
+                let help = self.suggestion(|| other().or_else(|| did_you_mean_or_list(text, known.iter().copied())));
                 self.report(node, at, finding.maybe_help(help))
             }
         }
@@ -105,13 +108,14 @@ impl Validator<'_> {
 
 /// Suggests the correct form of `{"type": "diffuse", "reflectance": 0.5}`: the kind as a key, with
 /// the other keys inside.
-fn tagged(members: &Members, family: &Rule) -> Option<String> {
+fn tagged(node: &Node, members: &Members, family: &Rule) -> Option<String> {
     let tag = members.get("type")?.node.as_str()?;
     let known = kinds(family).find(|kind| *kind == tag);
     let Some(kind) = known.or_else(|| other_programs::kind_name(tag, family)) else {
         let all =
             || format!("kinds are written as keys, {{\"KIND\": {{...}}}}: {}", wording::list(kinds(family), "and"));
-        return Some(other_programs::suggest_kind(tag, family).unwrap_or_else(all));
+        let written = Written { value: node, siblings: None };
+        return Some(other_programs::suggest_kind(tag, family, Some(written)).unwrap_or_else(all));
     };
     let inside = members.keys().filter(|key| *key != "type").take(MAX_SHOWN).map(|key| format!("\"{key}\": ..."));
     let inside = inside.collect::<Vec<_>>().join(", ");

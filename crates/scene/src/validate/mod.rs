@@ -10,6 +10,7 @@ use crate::path::{Path, PathRef, Step};
 use crate::report::Finding;
 use crate::schema::Schema;
 use crate::suggest::did_you_mean;
+use other_programs::Written;
 use rule::{Rule, RuleId};
 
 mod choice;
@@ -35,6 +36,8 @@ pub(crate) use wording::{is_product, list, names_textures, noun as family_noun, 
 const MAX_WARNINGS: usize = 20;
 /// Maximum number of errors; a file of numbers in place of objects has one for each.
 const MAX_FINDINGS: usize = 200;
+/// Maximum number of errors with suggestions of names, which take the time to look at all names.
+pub(crate) const MAX_SUGGESTIONS: usize = 50;
 
 /// Result of a validation.
 #[derive(Debug, Default)]
@@ -70,10 +73,11 @@ pub fn validate(tree: &Node) -> Validated {
 }
 
 /// Validates an item of a scene, or a list of items, whose expressions are evaluated. `belongs` is
-/// its path in the scene, and `at` its path in messages.
-pub(crate) fn item(node: &Node, belongs: &Path, at: &PathRef<'_>, known: NameScope<'_>) -> Validated {
+/// its path in the scene, and `at` its path in messages. After `earlier` errors in other items,
+/// suggestions end.
+pub(crate) fn item(node: &Node, belongs: &Path, at: &PathRef<'_>, known: NameScope<'_>, earlier: usize) -> Validated {
     let Some(rule) = rule_of(belongs) else { return Validated::default() };
-    let mut validator = Validator::new(known);
+    let mut validator = Validator { suggestions: earlier, ..Validator::new(known) };
     let json = validator.value(node, at, rule);
     let textures = std::mem::take(&mut validator.textures);
     Validated { json, textures, findings: validator.findings, warnings: validator.warnings }
@@ -102,14 +106,25 @@ pub(crate) fn part(node: &Node, definition: &str, at: &PathRef<'_>) -> Validated
 }
 
 fn by_rule(node: &Node, rule: &'static Rule, at: &PathRef<'_>) -> Validated {
-    let mut validator = Validator::new(NameScope::Tree(node));
+    validated_by(Validator::new(NameScope::Tree(node)), node, rule, at)
+}
+
+/// Whether a value has no other errors by a rule than those that `allowed` accepts.
+fn is_valid(node: &Node, rule: &'static Rule, allowed: impl Fn(&Finding) -> bool) -> bool {
+    // Suggestions would validate the examples that they suggest.
+    let validator = Validator { suggestions: MAX_SUGGESTIONS, ..Validator::new(NameScope::Tree(node)) };
+    validated_by(validator, node, rule, &PathRef::Root.key("example")).findings.iter().all(allowed)
+}
+
+fn validated_by(mut validator: Validator<'_>, node: &Node, rule: &'static Rule, at: &PathRef<'_>) -> Validated {
     let json = validator.value(node, at, rule);
     Validated { json, textures: Vec::new(), findings: validator.findings, warnings: validator.warnings }
 }
 
 /// Suggests a replacement for an unknown key of a scene.
-pub(crate) fn suggest_scene_key(key: &str) -> Option<String> {
-    Rule::root().and_then(|scene| structure::suggest_key(key, scene))
+pub(crate) fn suggest_scene_key(key: &str, value: &Node) -> Option<String> {
+    let written = Written { value, siblings: None };
+    Rule::root().and_then(|scene| structure::suggest_key(key, scene, written))
 }
 
 struct Validator<'t> {
@@ -120,11 +135,26 @@ struct Validator<'t> {
     /// Inline textures by name.
     textures: Vec<(String, Plain)>,
     warnings: Vec<Finding>,
+    /// Number of errors that may have had a suggestion.
+    suggestions: usize,
 }
 
 impl<'t> Validator<'t> {
     fn new(known: NameScope<'t>) -> Self {
-        Self { schema: Schema::get(), known, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
+        Self {
+            schema: Schema::get(),
+            known,
+            findings: Vec::new(),
+            textures: Vec::new(),
+            warnings: Vec::new(),
+            suggestions: 0,
+        }
+    }
+
+    /// Computes the suggestion for an error, if it is one of the first [`MAX_SUGGESTIONS`].
+    fn suggestion(&mut self, suggest: impl FnOnce() -> Option<String>) -> Option<String> {
+        self.suggestions += 1;
+        if self.suggestions <= MAX_SUGGESTIONS { suggest() } else { None }
     }
 }
 
@@ -169,7 +199,7 @@ impl Validator<'_> {
             }
             NodeValue::Object(members) => {
                 let form = members.keys().next().filter(|_| members.len() == 1);
-                let form = form.and_then(|key| crate::animate::closest_form(key)).map(did_you_mean);
+                let form = self.suggestion(|| crate::animate::closest_form(form?).map(did_you_mean));
                 Finding::error(format!("expected {expected}, found {}", node.kind())).maybe_help(form)
             }
             _ => Finding::error(format!("expected {expected}, found {}", node.kind())),

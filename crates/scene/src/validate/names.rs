@@ -7,7 +7,7 @@ use crate::document::Node;
 use crate::model::has_models;
 use crate::path::PathRef;
 use crate::report::Finding;
-use crate::suggest::{closest, did_you_mean, did_you_mean_or_list};
+use crate::suggest::{closest, did_you_mean, list_of_known};
 
 /// Families of named items of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,15 +89,25 @@ impl Validator<'_> {
         if self.known.has(part, name) || family == NamedFamily::Camera && self.known.has_models() {
             return;
         }
-        let names = self.known.all(part);
-        let near = closest(name, names.iter().copied()).map(did_you_mean);
-        let kind = || kind_of_material(name).filter(|_| family == NamedFamily::Material);
-        let known = || did_you_mean_or_list(name, names.iter().copied());
-        let help = near.or_else(kind).or_else(known).unwrap_or_else(|| match family {
-            NamedFamily::Texture => "the scene has no `textures`; a color is written [r, g, b] or \"#rrggbb\"".into(),
-            _ => format!("the scene has no `{part}`"),
+        let known = self.known;
+        let help = self.suggestion(|| {
+            let names = known.all(part);
+            if let Some(near) = closest(name, names.iter().copied()) {
+                return Some(did_you_mean(near));
+            }
+            let kind = (family == NamedFamily::Material).then(|| kind_of_material(name)).flatten();
+            let listed = kind.or_else(|| list_of_known(names.iter().copied()));
+            listed.or_else(|| Some(none_known(family, part)))
         });
-        self.report::<()>(node, at, Finding::error(format!("no {noun} is called `{name}`")).help(help));
+        self.report::<()>(node, at, Finding::error(format!("no {noun} is called `{name}`")).maybe_help(help));
+    }
+}
+
+/// Help where the scene defines no names of a family.
+fn none_known(family: NamedFamily, part: &str) -> String {
+    match family {
+        NamedFamily::Texture => "the scene has no `textures`; a color is written [r, g, b] or \"#rrggbb\"".into(),
+        _ => format!("the scene has no `{part}`"),
     }
 }
 
@@ -106,5 +116,5 @@ fn kind_of_material(name: &str) -> Option<String> {
     let family = Rule::named("AnyMaterial")?;
     let own = family.kinds.iter().any(|(kind, _)| *kind == name);
     let own = own.then(|| format!("`{name}` is a kind of material: write {{\"{name}\": {{...}}}}"));
-    own.or_else(|| other_programs::suggest_kind(name, family))
+    own.or_else(|| other_programs::suggest_kind(name, family, None))
 }

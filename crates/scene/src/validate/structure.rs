@@ -1,11 +1,13 @@
 //! Checks of arrays and objects.
 
-use super::rule::Rule;
-use super::{MAX_FINDINGS, Plain, Validator, other_programs, wording};
+use super::other_programs::{self, Written};
+use super::rule::{Rule, RuleId};
+use super::{MAX_FINDINGS, MAX_WARNINGS, Plain, Validator, wording};
 use crate::document::{Member, Members, Node};
 use crate::path::PathRef;
 use crate::report::Finding;
 use crate::suggest::did_you_mean_or_list;
+use std::borrow::Cow;
 
 /// Objects that are kept when one of their members is invalid, so that the others can still be
 /// checked. Members of all other objects (such as cameras and shapes) depend on each other.
@@ -57,8 +59,12 @@ impl Validator<'_> {
             if self.findings.len() >= MAX_FINDINGS {
                 return None;
             }
-            let Some((name, field)) = rule.member(key) else {
-                let finding = unknown_key(key, member, rule, at).on(member.key_place);
+            let known = rule.member(key).or_else(|| self.aliased(key, member, members, rule, at));
+            // Of two names for one key, the second is an error.
+            let known = known.filter(|(name, _)| name == key || json.iter().all(|(other, _)| other != name));
+            let Some((name, field)) = known else {
+                let written = Written { value: &member.node, siblings: Some(members) };
+                let finding = self.unknown_key(key, written, rule, at).on(member.key_place);
                 self.findings.push(finding.at(&at.key(key)));
                 is_valid = false;
                 continue;
@@ -110,23 +116,44 @@ impl Validator<'_> {
         };
         self.report::<()>(node, at, Finding::error(message).help(help));
     }
-}
 
-fn unknown_key(key: &str, member: &Member, rule: &'static Rule, at: &PathRef<'_>) -> Finding {
-    let has_settings = rule.fields.iter().flatten().next().is_some();
-    if let (false, Some(owner)) = (has_settings, at.last_key()) {
-        let help = other_programs::suggest_key(key, rule).unwrap_or_else(|| format!("write \"{owner}\": {{}}"));
-        return Finding::error(format!("`{owner}` has no settings, so `{key}` is not allowed")).help(help);
+    /// Reads another program's key as the key here, with a warning, unless both are given.
+    fn aliased(
+        &mut self,
+        key: &str,
+        member: &Member,
+        members: &Members,
+        rule: &'static Rule,
+        at: &PathRef<'_>,
+    ) -> Option<(Cow<'static, str>, RuleId)> {
+        let name = other_programs::aliased_key(key, rule).filter(|name| !members.contains_key(name))?;
+        if self.warnings.len() < MAX_WARNINGS {
+            let warning = Finding::warning(format!("`{key}` is read as `{name}`, its name here"));
+            self.warnings.push(warning.help(format!("write \"{name}\"")).at(&at.key(key)).on(member.key_place));
+        }
+        rule.member(name)
     }
-    let tagged = member.node.as_str().filter(|_| key == "type").and_then(|kind| parent_key(kind, rule));
-    Finding::error(format!("unknown key `{key}`")).maybe_help(tagged.or_else(|| suggest_key(key, rule)))
+
+    fn unknown_key(&mut self, key: &str, written: Written<'_>, rule: &'static Rule, at: &PathRef<'_>) -> Finding {
+        let has_settings = rule.fields.iter().flatten().next().is_some();
+        if let (false, Some(owner)) = (has_settings, at.last_key()) {
+            let other = self.suggestion(|| other_programs::suggest_key(key, rule, Some(written)));
+            let help = other.unwrap_or_else(|| format!("write \"{owner}\": {{}}"));
+            return Finding::error(format!("`{owner}` has no settings, so `{key}` is not allowed")).help(help);
+        }
+        let help = self.suggestion(|| {
+            let tagged = written.value.as_str().filter(|_| key == "type").and_then(|kind| parent_key(kind, rule));
+            tagged.or_else(|| suggest_key(key, rule, written))
+        });
+        Finding::error(format!("unknown key `{key}`")).maybe_help(help)
+    }
 }
 
 /// Suggests a replacement for an unknown key: the key that takes a kind of this name, the name here
 /// of another program's word, or a similar known key.
-pub(super) fn suggest_key(key: &str, rule: &'static Rule) -> Option<String> {
+pub(super) fn suggest_key(key: &str, rule: &'static Rule, written: Written<'_>) -> Option<String> {
     let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
-    let other = || other_programs::suggest_key(key, rule);
+    let other = || other_programs::suggest_key(key, rule, Some(written));
     parent_key(key, rule).or_else(other).or_else(|| did_you_mean_or_list(key, known.iter().copied()))
 }
 

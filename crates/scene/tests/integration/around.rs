@@ -84,7 +84,7 @@ fn saved_scenes_refer_to_files_relative_to_their_folder() {
 #[test]
 fn formats_that_are_not_read_yet_are_named() {
     let gltf = message("car.glb", b"glTF\x02\0\0\0");
-    assert_eq!(gltf, "`car.glb`: glTF is not supported; supported mesh formats: OBJ, PLY and STL");
+    assert_eq!(gltf, "`car.glb`: glTF files are no meshes: write \"model\": {\"file\": ...} instead of \"shape\"");
     assert_eq!(message("car.gltf", br#"{"asset": {"version": "2.0"}}"#), gltf.replace("glb", "gltf"));
     assert!(message("car.obj", b"Kaydara FBX Binary  \0").contains("FBX is not supported"));
     assert!(message("room.pov", b"// a room\nsphere { 0, 1 }").contains("docs/names.md"));
@@ -94,7 +94,7 @@ fn formats_that_are_not_read_yet_are_named() {
     let path = folder.path().join("scene.json");
     fs::write(&path, in_scene).unwrap();
     let scene = Scene::load(&path).unwrap();
-    assert!(scene.check().to_string().contains("car.glb`: glTF is not supported"), "{}", scene.check());
+    assert!(scene.check().to_string().contains("car.glb`: glTF files are no meshes"), "{}", scene.check());
 }
 
 #[test]

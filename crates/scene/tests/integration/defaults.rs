@@ -114,7 +114,7 @@ fn scenes_without_lights_get_a_default_light_for_their_integrator() {
 #[test]
 fn lights_that_light_nothing_are_warned_of() {
     let lights = r#""lights": [{"ambient": {}}, {"point": {"extent": {"sphere": {"radius": 1}}, "samples": 4}}]"#;
-    let path = scene(&format!(r#""render": {{"integrator": "path"}}, {lights}, "objects": []"#));
+    let path = scene(&format!(r#""render": {{"integrator": "path"}}, {lights}, "objects": [{{"shape": "plane"}}]"#));
     assert_eq!(
         warnings(&path),
         [
@@ -122,14 +122,14 @@ fn lights_that_light_nothing_are_warned_of() {
             ("lights[1].point.samples".into(), "`samples` of a light has no effect with the integrator `path`".into()),
         ]
     );
-    assert_eq!(warnings(&scene(&format!(r#"{lights}, "objects": []"#))), []);
+    assert_eq!(warnings(&scene(&format!(r#"{lights}, "objects": [{{"shape": "plane"}}]"#))), []);
     let classic = |more: &str| scene(&format!(r#""render": {{"integrator": "classic"}}, {more}"#));
     let light = sphere(r#"{"emissive": {}}"#);
     let warning = |message: &str, path: &str| vec![(path.to_owned(), message.to_owned())];
     let emits = warning("`emissive` does not light the scene with the integrator `classic`", "objects[0].material");
     assert_eq!(warnings(&classic(&light)), emits);
     assert_eq!(warnings(&scene(&light)), []);
-    let sky = r#""background": {"sky": {}}, "objects": []"#;
+    let sky = r#""background": {"sky": {}}, "objects": [{"shape": "plane"}]"#;
     assert_eq!(
         warnings(&classic(sky)),
         warning("`sky` does not light the scene with the integrator `classic`", "background")

@@ -1,8 +1,8 @@
 //! Every numeric limit of the schema is an allowed value: a scene is checked for each minimum and
 //! each maximum.
 
-use juggler_scene::Scene;
 use juggler_scene::schema::Schema;
+use juggler_scene::{Scene, SceneError};
 use serde_json::{Value, json};
 
 /// Limits that other fields narrow: the end of the field's path, and the narrower limit.
@@ -130,7 +130,7 @@ fn schema_limits_are_inclusive() {
         let text = serde_json::to_string(scene).unwrap();
         let problems = match Scene::from_json(text.clone(), "limits.json") {
             Ok(scene) => scene.check(),
-            Err(juggler_scene::SceneError::Problems(problems)) => problems,
+            Err(SceneError::Problems(problems)) => problems,
             Err(error) => panic!("{error}"),
         };
         let field = path.rsplit('.').next().unwrap_or_default();
@@ -203,4 +203,21 @@ fn a_scene_that_passes_the_check_has_a_camera() {
         }
     }
     assert!(passed > 20 && refused > 3, "{passed} {refused}");
+}
+
+/// Suggestions take the time to look at all names, so only the first 50 of many errors have one.
+#[test]
+fn many_misspelled_names_get_few_suggestions() {
+    let objects: Vec<String> = (0..4000).map(|i| format!(r#"{{"shape": "sphere", "material": "mta{i}"}}"#)).collect();
+    let materials: Vec<String> = (0..4000).map(|i| format!(r#""mat{i}": {{"diffuse": {{}}}}"#)).collect();
+    let names =
+        format!(r#"{{"version": 1, "materials": {{{}}}, "objects": [{}]}}"#, materials.join(", "), objects.join(", "));
+    let variables: Vec<String> = (0..4000).map(|i| format!(r#""a{i}": "b{i} + 1""#)).collect();
+    let variables = format!(r#"{{"version": 1, "objects": [], "variables": {{{}}}}}"#, variables.join(", "));
+    for scene in [names, variables] {
+        let Err(SceneError::Problems(problems)) = Scene::from_json(scene, "scene.json") else { panic!("problems") };
+        let helps: Vec<bool> = problems.list().iter().map(|problem| problem.help.is_some()).collect();
+        assert!(helps.len() >= 200, "{}", helps.len());
+        assert_eq!(helps.iter().filter(|help| **help).count(), 50);
+    }
 }

@@ -9,6 +9,7 @@
     reason = "a test fails by panicking and prints its figures"
 )]
 
+mod advice;
 mod animation;
 mod around;
 mod assets;

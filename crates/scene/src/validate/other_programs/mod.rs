@@ -3,12 +3,17 @@
 
 use super::rule::Rule;
 use super::wording;
+use crate::document::{FileId, Node, parse};
+use example::{Example, plain};
 use std::sync::LazyLock;
 
+mod example;
+mod json_line;
 mod page;
 #[cfg(test)]
 mod tests;
 
+pub use example::Written;
 pub use page::page;
 
 /// Text of the table.
@@ -35,6 +40,8 @@ struct Entry {
     section: &'static str,
     /// Whether the words are kinds or other fixed words; otherwise they are keys.
     is_kind: bool,
+    /// Whether the words are keys that are read as the target's, with a warning.
+    is_alias: bool,
     /// Definitions in which the words occur.
     owners: Vec<&'static str>,
     /// The words as their programs spell them.
@@ -44,27 +51,36 @@ struct Entry {
     /// Path of definitions to the name here.
     target: Vec<&'static str>,
     /// Example of the correct form.
-    example: &'static str,
+    example: Example,
     /// Programs that use these words.
     programs: &'static str,
+    /// Explanation of the value, such as its unit; empty for most.
+    note: &'static str,
 }
 
 impl Entry {
     fn read(line: &'static str, section: &'static str) -> Option<Self> {
         let mut cells = line.split('|').map(str::trim);
         let (place, names) = (cells.next()?, cells.next()?);
-        let (target, example, programs) = (cells.next()?, cells.next()?, cells.next()?);
+        let (target, example, programs) = (cells.next()?, Example::read(cells.next()?)?, cells.next()?);
+        let note = cells.next().unwrap_or_default();
         let (sort, owners) = place.split_once(' ')?;
         let list = |text: &'static str| text.split(',').map(str::trim).collect();
         let (owners, words): (Vec<_>, Vec<&str>) = (list(owners), list(names));
         let plain_words = words.iter().map(|word| plain(word)).collect();
         let target = target.split('.').collect();
-        Some(Self { section, is_kind: sort == "kind", owners, words, plain_words, target, example, programs })
+        let (is_kind, is_alias) = (sort == "kind", sort == "alias");
+        Some(Self { section, is_kind, is_alias, owners, words, plain_words, target, example, programs, note })
     }
 
-    /// Last step of the target: the kind, word or key to write.
+    /// Last step of the target: the kind, word or keys to write.
+    fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.target.last().copied().unwrap_or_default().split('+')
+    }
+
+    /// The kind, word or first key to write.
     fn name(&self) -> &'static str {
-        self.target.last().copied().unwrap_or_default()
+        self.names().next().unwrap_or_default()
     }
 
     /// All other steps of the target: an owner, perhaps with its kind.
@@ -74,28 +90,71 @@ impl Entry {
 
     /// Describes the target independently of the place of the error.
     fn described(&self) -> String {
+        let names = wording::list(self.names(), "and");
         match self.target.as_slice() {
-            ["scene", key] => format!("`{key}` of the scene"),
-            ["object", key] => format!("`{key}` of an object"),
+            ["scene", _] => format!("{names} of the scene"),
+            ["object", _] => format!("{names} of an object"),
             [family, kind] if is_kind_of(family, kind) => {
                 let article = wording::article(kind);
-                format!("{article} `{kind}` {}", family.replace('_', " "))
+                format!("{article} {names} {}", family.replace('_', " "))
             }
-            [owner, key] => format!("`{key}` of `{owner}`"),
-            [family, kind, key] => format!("`{key}` of {} `{kind}` {family}", wording::article(kind)),
+            [owner, _] => format!("{names} of `{owner}`"),
+            [family, kind, _] => format!("{names} of {} `{kind}` {family}", wording::article(kind)),
             _ => String::new(),
         }
     }
 
-    fn help(&self, word: &str, is_here: bool) -> String {
-        let what = if is_here { format!("called `{}`", self.name()) } else { self.described() };
-        format!("`{word}` is {what} here: write {}", self.example)
+    /// Help for a word, with the value that the user wrote.
+    fn help(&self, word: &str, is_here: bool, written: Option<Written<'_>>) -> String {
+        let what = match self.names().count() {
+            1 if is_here => format!("called `{}`", self.name()),
+            _ if is_here => wording::list(self.names(), "and"),
+            _ => self.described(),
+        };
+        let example = self.example.advice(written, |text| self.is_right(text));
+        let note = if self.note.is_empty() { String::new() } else { format!(" ({})", self.note) };
+        format!("`{word}` is {what} here: write {example}{note}")
+    }
+
+    /// Whether the example can carry the value that the user wrote.
+    fn carries(&self, written: Option<Written<'_>>) -> bool {
+        written.is_some_and(|written| self.example.converted(written, |text| self.is_right(text)).is_some())
+    }
+
+    /// Whether a text is valid where the example is.
+    fn is_right(&self, text: &str) -> bool {
+        let nodes = [text.to_owned(), format!("{{{text}}}")].map(|text| parse(&text, FileId::MAIN));
+        let nodes: Vec<Node> = nodes.into_iter().filter_map(|parsed| Some(parsed.ok()?.0)).collect();
+        self.rules().iter().any(|rule| nodes.iter().any(|node| is_valid_excerpt(node, rule)))
+    }
+
+    /// Rules of the places where the words or the target occur.
+    fn rules(&self) -> Vec<&'static Rule> {
+        let owners = self.owners.iter().flat_map(|owner| owner.split('.'));
+        let nouns = self.target.iter().copied().chain(owners).chain(["object", "scene", "render"]);
+        nouns.flat_map(named).flat_map(|rule| [vec![rule], contents(rule)].concat()).collect()
     }
 }
 
-/// Normalizes a word: lower case, without `_`, `-` and spaces.
-fn plain(word: &str) -> String {
-    word.chars().filter(|character| !"_- ".contains(*character)).flat_map(char::to_lowercase).collect()
+/// Rules with this noun in the table.
+fn named(owner: &str) -> Vec<&'static Rule> {
+    if owner == "scene" {
+        return Rule::root().into_iter().collect();
+    }
+    Rule::all().iter().filter(|rule| rule.name.is_some_and(|name| noun(name) == owner)).collect()
+}
+
+/// Rules of the kinds of a family, or the rule of an object itself.
+fn contents(rule: &'static Rule) -> Vec<&'static Rule> {
+    let kinds: Vec<_> = rule.kinds.iter().map(|(_, content)| content.get()).collect();
+    if kinds.is_empty() { vec![rule] } else { kinds }
+}
+
+/// Whether a value is valid by a rule, except for undefined names and missing keys beside it, since
+/// examples are excerpts.
+fn is_valid_excerpt(node: &Node, rule: &'static Rule) -> bool {
+    let of_excerpts = ["is called", "missing here", "exactly one of"];
+    super::is_valid(node, rule, |finding| of_excerpts.iter().any(|words| finding.message_contains(words)))
 }
 
 /// Name of a definition in the table.
@@ -131,11 +190,11 @@ fn entries(is_kind: bool, word: &str) -> impl Iterator<Item = &'static Entry> {
     ENTRIES.iter().filter(move |entry| entry.is_kind == is_kind && entry.plain_words.contains(&word))
 }
 
-/// Suggests the name here of the kind or fixed word `word` of a family.
-pub fn suggest_kind(word: &str, family: &Rule) -> Option<String> {
+/// Suggests the name here of the kind or fixed word `word` of a family. `written` is its value.
+pub fn suggest_kind(word: &str, family: &Rule, written: Option<Written<'_>>) -> Option<String> {
     let entry = kind_entry(word, family)?;
     let is_here = family.name.map(noun) == Some(entry.owner()) && entry.target.len() == 2;
-    Some(entry.help(word, is_here))
+    Some(entry.help(word, is_here, written))
 }
 
 /// The kind of the same family that other programs call `word`.
@@ -153,20 +212,31 @@ fn kind_entry(word: &str, family: &Rule) -> Option<&'static Entry> {
     entries(true, word).filter(here).find(fits)
 }
 
-/// Suggests the name here of the key `word` of an object.
-pub fn suggest_key(word: &str, rule: &Rule) -> Option<String> {
+/// Suggests the name here of the key `word` of an object. `written` is its value. Of several
+/// entries, the first one that can carry the value counts, or else the first one.
+pub fn suggest_key(word: &str, rule: &Rule, written: Option<Written<'_>>) -> Option<String> {
     let entries: Vec<&Entry> = entries(false, word).collect();
     let owners = if entries.is_empty() { Vec::new() } else { owners(rule) };
-    owners.iter().find_map(|owner| {
-        let here = entries.iter().filter(|entry| entry.owners.contains(&owner.as_str()));
-        here.into_iter().find_map(|entry| key_help(word, entry, rule, &owners))
-    })
+    let of_owner = owners.iter().flat_map(|owner| entries.iter().filter(move |entry| entry.owners.contains(&&**owner)));
+    let useful: Vec<&Entry> = of_owner.copied().filter(|entry| is_useful(entry, rule, &owners)).collect();
+    let entry = useful.iter().find(|entry| entry.carries(written)).or_else(|| useful.first())?;
+    Some(entry.help(word, owners.contains(&entry.owner()) && has_field(rule, entry.name()), written))
 }
 
-fn key_help(word: &str, entry: &Entry, rule: &Rule, owners: &[String]) -> Option<String> {
-    let is_owner = owners.contains(&entry.owner());
-    let has_field = rule.fields.iter().flatten().any(|(name, _)| *name == entry.name());
-    // A key that only other kinds of the family have is no useful suggestion.
-    let family_only = entry.target.len() == 2 && is_owner && !has_field;
-    (!family_only).then(|| entry.help(word, is_owner && has_field))
+/// The key that the unknown key `word` of an object is read as; `None` for most words.
+pub fn aliased_key(word: &str, rule: &Rule) -> Option<&'static str> {
+    let aliases: Vec<&Entry> = entries(false, word).filter(|entry| entry.is_alias).collect();
+    let owners = if aliases.is_empty() { Vec::new() } else { owners(rule) };
+    let is_here = |entry: &&&Entry| entry.owners.iter().any(|owner| owners.iter().any(|own| own == owner));
+    aliases.iter().find(is_here).map(|entry| entry.name()).filter(|name| has_field(rule, name))
+}
+
+/// Whether a suggestion helps: a key that only other kinds of the family have does not.
+fn is_useful(entry: &Entry, rule: &Rule, owners: &[String]) -> bool {
+    let family_only = entry.target.len() == 2 && owners.contains(&entry.owner()) && !has_field(rule, entry.name());
+    !family_only
+}
+
+fn has_field(rule: &Rule, key: &str) -> bool {
+    rule.fields.iter().flatten().any(|(name, _)| *name == key)
 }

@@ -8,7 +8,9 @@ use std::fmt::Write;
 const INTRODUCTION: &str = "# Names in other programs
 
 Names in Blender, glTF, Mitsuba, pbrt, POV-Ray and three.js, and the corresponding names in [scene files](scene-format.md).
-`juggler check` suggests the same replacements. Case, hyphens and underscores are ignored.
+`juggler check` suggests the same replacements, with the values of the scene; `1 - x` stands for a value that is computed
+from the value `x`. Case, hyphens and underscores are ignored. Names that are accepted, with a warning, are read as the
+names here.
 
 Kinds are written as keys: `{\"sphere\": {\"radius\": 1}}` instead of `{\"type\": \"sphere\", \"radius\": 1}`. Coordinates
 are right-handed with y up, as in glTF and three.js; angles are in degrees; colors are linear RGB from 0 to 1, or sRGB as
@@ -32,10 +34,19 @@ pub fn page() -> String {
                 "\n## {section}\n\n| name | used as | in scene files | example | programs |\n|---|---|---|---|---|\n"
             );
         }
-        let (place, target) = (place(entry), linked(entry));
-        let _ = writeln!(text, "| {words} | {place} | {target} | `{}` | {} |", entry.example, entry.programs);
+        let (place, target, example) = (place(entry), linked(entry), entry.example.sample());
+        let (note, programs) = (note(entry), entry.programs);
+        let _ = writeln!(text, "| {words} | {place} | {target} | `{example}`{note} | {programs} |");
     }
     text
+}
+
+/// How an entry computes its values from a value `x`, and its note; empty for most.
+fn note(entry: &Entry) -> String {
+    let computations = entry.example.computations().map(|computation| format!("`{computation}`"));
+    let computed = computations.collect::<Vec<_>>().join(", ");
+    let parts: Vec<&str> = [&*computed, entry.note].into_iter().filter(|part| !part.is_empty()).collect();
+    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join("; ")) }
 }
 
 /// The words of an entry that are not valid at its place, in Markdown.
@@ -98,8 +109,8 @@ fn linked(entry: &Entry) -> String {
             format!("[{}](scene-format.md#{family}-{kind})", entry.described())
         }
         [_, word] if entry.is_kind && entry.owners.contains(&entry.owner().as_str()) => format!("`\"{word}\"`"),
-        [owner, key] if entry.owners.iter().any(|own| own == owner) => format!("`{key}`"),
-        [owner, key] if !["scene", "object"].contains(owner) && !is_object(owner) => format!("`{key}`"),
+        [owner, _] if entry.owners.iter().any(|own| own == owner) => wording::list(entry.names(), "and"),
+        [owner, _] if !["scene", "object"].contains(owner) && !is_object(owner) => wording::list(entry.names(), "and"),
         _ => entry.described(),
     }
 }

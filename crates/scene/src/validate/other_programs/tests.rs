@@ -1,27 +1,7 @@
 //! Tests of the table: all its targets exist, and all its examples are valid.
 
 use super::*;
-use crate::document::{FileId, parse};
-use crate::path::PathRef;
 use crate::schema::reference;
-
-/// Rules with this noun in the table.
-fn named(owner: &str) -> Vec<&'static Rule> {
-    if owner == "scene" {
-        return Rule::root().into_iter().collect();
-    }
-    Rule::all().iter().filter(|rule| rule.name.is_some_and(|name| noun(name) == owner)).collect()
-}
-
-/// Rules of the kinds of a family, or the rule of an object itself.
-fn contents(rule: &'static Rule) -> Vec<&'static Rule> {
-    let kinds: Vec<_> = rule.kinds.iter().map(|(_, content)| content.get()).collect();
-    if kinds.is_empty() { vec![rule] } else { kinds }
-}
-
-fn has_field(rule: &Rule, key: &str) -> bool {
-    rule.fields.iter().flatten().any(|(name, _)| *name == key)
-}
 
 fn exists(target: &[&str]) -> bool {
     match target {
@@ -36,16 +16,6 @@ fn exists(target: &[&str]) -> bool {
     }
 }
 
-/// Whether a text is valid by a rule, except for undefined names and missing sibling keys, since
-/// the table's examples are excerpts.
-fn is_right(text: &str, rule: &'static Rule) -> bool {
-    let Ok((node, _)) = parse(text, FileId::MAIN) else { return false };
-    let findings = super::super::by_rule(&node, rule, &PathRef::Root.key("example")).findings;
-    findings
-        .iter()
-        .all(|finding| ["is called", "missing here", "exactly one of"].iter().any(|of| finding.message_contains(of)))
-}
-
 #[test]
 fn every_table_entry_names_an_existing_target_with_a_valid_example() {
     let lines = TABLE.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
@@ -53,8 +23,9 @@ fn every_table_entry_names_an_existing_target_with_a_valid_example() {
     assert!(ENTRIES.iter().map(|entry| entry.words.len()).sum::<usize>() > 1000);
     let mut wrong = Vec::new();
     for entry in ENTRIES.iter() {
-        assert!(exists(&entry.target), "nothing is called {:?}", entry.target);
-        let places: Vec<&str> = entry.owners.iter().flat_map(|owner| owner.split('.')).collect();
+        let (_, owner) = entry.target.split_last().unwrap();
+        let mut targets = entry.names().map(|name| [owner, &[name]].concat());
+        assert!(targets.all(|target| exists(&target)), "nothing is called {:?}", entry.target);
         for owner in &entry.owners {
             let known = owner.split_once('.').map_or_else(
                 || !named(owner).is_empty() || Rule::all().iter().any(|rule| owners(rule).contains(&(*owner).into())),
@@ -62,11 +33,8 @@ fn every_table_entry_names_an_existing_target_with_a_valid_example() {
             );
             assert!(known, "nothing is called {owner}");
         }
-        let nouns = entry.target.iter().copied().chain(places).chain(["object", "scene", "render"]);
-        let rules: Vec<&Rule> = nouns.flat_map(named).flat_map(|rule| [vec![rule], contents(rule)].concat()).collect();
-        let alone = rules.iter().any(|rule| is_right(entry.example, rule));
-        let inside = rules.iter().any(|rule| is_right(&format!("{{{}}}", entry.example), rule));
-        wrong.extend((!alone && !inside).then_some(entry.example));
+        let example = entry.example.sample();
+        wrong.extend((!entry.is_right(&example)).then_some(example));
     }
     assert!(wrong.is_empty(), "cannot be written: {wrong:#?}");
 }
@@ -90,6 +58,8 @@ fn foreign_words_are_suggested_by_context() {
         let family = Rule::named("AnyLight").unwrap();
         family.kinds.iter().find(|(name, _)| *name == kind).unwrap().1.get()
     };
+    let suggest_key = |word: &str, rule| suggest_key(word, rule, None);
+    let suggest_kind = |word: &str, rule| suggest_kind(word, rule, None);
     let help = suggest_key("angle", light("spot")).unwrap();
     assert!(help.starts_with("`angle` is called `cutoff_degrees` here: write \"cutoff_degrees\": 30"), "{help}");
     assert!(suggest_key("angle", light("directional")).unwrap().contains("`angle_degrees`"));
@@ -135,7 +105,7 @@ fn known_words_are_left_out_of_the_page() {
     for entry in ENTRIES.iter().filter(|entry| entry.is_kind && entry.owners != ["filter"]) {
         let families: Vec<_> = entry.owners.iter().flat_map(|owner| named(owner)).collect();
         let listed = |word: &str| families.iter().any(|rule| rule.kinds.iter().any(|(kind, _)| *kind == word));
-        for line in page.lines().filter(|line| line.contains(&format!("`{}` |", entry.example))) {
+        for line in page.lines().filter(|line| line.contains(&format!("`{}` |", entry.example.sample()))) {
             let words = line.split('|').nth(1).unwrap_or_default();
             let known = entry.words.iter().find(|word| listed(word) && words.contains(&format!("`{word}`")));
             assert_eq!(known, None, "{line}");
