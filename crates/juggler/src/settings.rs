@@ -1,6 +1,5 @@
 //! Settings that override values of a scene.
 
-use crate::kinds::check_name;
 use crate::{Aov, Denoiser, Error, Picture};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_camera::sampler::SamplerKind;
@@ -10,6 +9,7 @@ use juggler_render::StopCriterion;
 use juggler_scene::compile::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::model::find_camera;
+use juggler_scene::suggest::{closest, did_you_mean, list_of_known};
 use juggler_scene::{IntegratorChoice, Scene};
 use std::ops::RangeInclusive;
 
@@ -147,10 +147,9 @@ impl Settings {
             return Ok(Some(CameraName(name.clone())));
         }
         let names = scene.camera_names();
-        let names = names.iter().map(String::as_str);
-        match find_camera(names.clone(), name) {
+        match find_camera(names.iter().map(String::as_str), name) {
             Some(found) => Ok(Some(CameraName(found.to_owned()))),
-            None => check_name("camera", name, names).map(|()| None),
+            None => Err(unknown_camera(name, &names)),
         }
     }
 
@@ -282,6 +281,18 @@ fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> 
     Ok(())
 }
 
+/// Error for a camera that the scene does not have; it suggests a name and lists all.
+fn unknown_camera(name: &str, names: &[String]) -> Error {
+    let known = || names.iter().map(String::as_str);
+    let near = closest(name, known()).map(did_you_mean);
+    let help = match (near, list_of_known(known())) {
+        (Some(near), Some(list)) if names.len() > 1 => format!("{near} {list}"),
+        (Some(help), _) | (None, Some(help)) => help,
+        (None, None) => "the scene has one camera, without a name".into(),
+    };
+    Error::Settings { setting: "camera".into(), message: format!("there is no camera `{name}`"), help: Some(help) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -382,5 +393,14 @@ mod tests {
         let Error::Settings { setting, message, help } = error else { panic!("{error}") };
         assert_eq!((setting.as_str(), message.as_str()), ("camera", "there is no camera `lift`"));
         assert_eq!(help.as_deref(), Some("did you mean `left`?"));
+        let help = |scene: &Scene, name: &str| {
+            let settings = Settings { camera: Some(name.into()), ..Settings::default() };
+            settings.apply(scene).unwrap_err().to_string()
+        };
+        let scene = scene.camera("top", juggler_camera::Perspective::default());
+        assert_eq!(help(&scene, "lift"), "there is no camera `lift`; did you mean `left`? known: `left`, `top`");
+        assert_eq!(help(&scene, "foo"), "there is no camera `foo`; known: `left`, `top`");
+        let bare = Scene::from_json(r#"{"version": 1, "objects": []}"#, "a.json").unwrap();
+        assert_eq!(help(&bare, "foo"), "there is no camera `foo`; the scene has one camera, without a name");
     }
 }
