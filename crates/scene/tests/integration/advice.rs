@@ -224,16 +224,16 @@ fn missing_files_lead_to_files_of_the_same_folder() {
     for name in ["wood.png", "cow.ply", "materials.json"] {
         std::fs::write(folder.path().join(name), "{}").unwrap();
     }
-    let image = r#"{"shape": "sphere", "material": {"diffuse": {"reflectance": {"image": {"file": "wod.png"}}}}}"#;
-    let mesh = r#"{"shape": {"mesh": {"file": "cwo.ply"}}}"#;
+    let image = r#"{"shape": "sphere", "material": {"diffuse": {"reflectance": {"image": {"file": "wood2.png"}}}}}"#;
+    let mesh = r#"{"shape": {"mesh": {"file": "cow2.ply"}}}"#;
     let far = r#"{"shape": {"mesh": {"file": "teapot.obj"}}}"#;
     for (scene, expected) in [
-        (format!(r#"{{"version": 1, "objects": [{image}]}}"#), "wod.png`: file not found; did you mean `wood.png`?"),
-        (format!(r#"{{"version": 1, "objects": [{mesh}]}}"#), "cwo.ply`: file not found; did you mean `cow.ply`?"),
+        (format!(r#"{{"version": 1, "objects": [{image}]}}"#), "wood2.png`: file not found; did you mean `wood.png`?"),
+        (format!(r#"{{"version": 1, "objects": [{mesh}]}}"#), "cow2.ply`: file not found; did you mean `cow.ply`?"),
         (format!(r#"{{"version": 1, "objects": [{far}]}}"#), "teapot.obj`: file not found\n"),
         (
-            r#"{"version": 1, "include": ["materails.json"], "objects": []}"#.to_owned(),
-            "materails.json`: file not found; did you mean `materials.json`?",
+            r#"{"version": 1, "include": ["material.json"], "objects": []}"#.to_owned(),
+            "material.json`: file not found; did you mean `materials.json`?",
         ),
     ] {
         let file = folder.path().join("scene.json");
