@@ -32,7 +32,10 @@ pub struct ViewArgs {
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
 
-    /// Maximum number of path segments (path) or of reflections and refractions (classic)
+    /// Maximum length of light paths: 2 is direct light, each further 1 a bounce between surfaces
+    ///
+    /// The integrator path counts the segments between camera and light, one more than the bounces;
+    /// the integrator classic counts reflections and refractions.
     #[arg(long, value_name = "N", hide_short_help = true)]
     pub max_depth: Option<u32>,
 

@@ -5,7 +5,7 @@ use crate::{flags, value};
 use clap::{Arg, ColorChoice, CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 
-/// Ray tracer whose pictures are bit-identical on every machine.
+/// Renders 3D scenes and models to pictures and movies, bit-identical on every machine.
 #[derive(Debug, Parser)]
 #[command(name = "juggler", version, propagate_version = true, max_term_width = 100)]
 pub struct CommandLine {

@@ -22,6 +22,8 @@ pub enum Failure {
     Invalid(String),
     /// Mistakes in the scene.
     Scene(Box<Problems>),
+    /// A file that is no valid scene, model or mesh.
+    Unreadable(String),
     /// Failed file operation or system call.
     System(String),
     /// Interruption by a signal.
@@ -38,7 +40,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Self::Negative | Self::Different(_) => 1,
-            Self::Invalid(_) | Self::Scene(_) => 2,
+            Self::Invalid(_) | Self::Scene(_) | Self::Unreadable(_) => 2,
             Self::System(_) => 3,
             Self::Interrupted { signal, .. } => 128_u8.saturating_add(*signal),
         }
@@ -50,7 +52,9 @@ impl Failure {
         match self {
             Self::Negative => None,
             Self::Different(message) => Some(message::lines(message)),
-            Self::Invalid(message) | Self::System(message) => Some(format!("{label}: {}", message::lines(message))),
+            Self::Invalid(message) | Self::Unreadable(message) | Self::System(message) => {
+                Some(format!("{label}: {}", message::lines(message)))
+            }
             Self::Scene(problems) => Some(problems.render(color)),
             Self::Interrupted { saved: None, .. } => Some("interrupted".into()),
             Self::Interrupted { saved: Some(file), .. } => {
@@ -94,6 +98,10 @@ impl From<SceneError> for Failure {
                 Self::System(error.to_string())
             }
             SceneError::Unknown(unknown) => unknown.into(),
+            SceneError::NotText { .. }
+            | SceneError::Foreign { .. }
+            | SceneError::Mesh(_)
+            | SceneError::Model { .. } => Self::Unreadable(error.to_string()),
             _ => Self::Invalid(error.to_string()),
         }
     }

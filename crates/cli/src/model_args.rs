@@ -20,7 +20,7 @@ pub struct ModelArgs {
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub model_scene: Option<String>,
 
-    /// Show missing and broken pictures of models gray, with a warning, instead of refusing the model
+    /// Render a model although image files of its textures are missing or broken: gray, with a warning
     #[arg(long, hide_short_help = true)]
     pub lenient: bool,
 }

@@ -97,7 +97,7 @@ fn standard_input() -> Result<String, Failure> {
         let most = bytes(MAX_BYTES);
         return Err(Failure::Invalid(format!("{STANDARD_INPUT_NAME} holds more than the limit of {most}")));
     }
-    String::from_utf8(text).map_err(|_| Failure::Invalid(format!("{STANDARD_INPUT_NAME} is not UTF-8 text")))
+    String::from_utf8(text).map_err(|_| Failure::Unreadable(format!("{STANDARD_INPUT_NAME} is not UTF-8 text")))
 }
 
 /// File name without folder and extension.

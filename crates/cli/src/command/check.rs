@@ -17,7 +17,8 @@ pub struct Check {
 }
 
 impl Check {
-    /// Prints mistakes and warnings; warnings alone are no failure.
+    /// Prints mistakes and warnings; warnings alone are no failure. A file that is no scene at all is a
+    /// mistake as well.
     pub fn run(self) -> Result<(), Failure> {
         match source::load_model(&self.scene, &self.model, None) {
             Ok(scene) => {
@@ -25,6 +26,10 @@ impl Check {
                 self.answer(&problems, light.as_ref())
             }
             Err(Failure::Scene(problems)) => self.answer(&problems, None),
+            Err(failure @ Failure::Unreadable(_)) => {
+                failure.message(console::color()).iter().for_each(|message| console::print_message(message));
+                Err(Failure::Negative)
+            }
             Err(failure) => Err(failure),
         }
     }

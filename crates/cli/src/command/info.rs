@@ -127,7 +127,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     }
     let brightest = compiled.illuminance.as_ref().map(|light| format!(", {light}")).unwrap_or_default();
     row("lights", format!("{}{brightest}", geometry.lights));
-    row("emitting", counted(geometry.emitting_shapes as u128, "shape"));
+    row("emissive", emissive_text(geometry.emitting_shapes));
     row("background", background_text(compiled.world.background()));
     row("infinite", infinite_lights_text(&compiled.world.infinite_lights()));
     row("materials", shown.materials.len().to_string());
@@ -164,6 +164,14 @@ fn background_text(background: &AnyBackground) -> String {
 fn infinite_lights_text(lights: &[(&str, f32)]) -> String {
     let lights: Vec<String> = lights.iter().map(|(name, chance)| format!("{name} {:.0} %", chance * 100.0)).collect();
     if lights.is_empty() { "none".into() } else { lights.join(", ") }
+}
+
+fn emissive_text(shapes: usize) -> String {
+    match shapes {
+        0 => "no shape emits light".into(),
+        1 => "1 shape emits light".into(),
+        several => format!("{several} shapes emit light"),
+    }
 }
 
 /// `3, 12 MiB of pictures`.

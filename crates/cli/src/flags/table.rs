@@ -54,7 +54,7 @@ pub const FLAGS: &[Flag] = &[
         .tip("--samples N sets the samples per pixel", &["-s", "--spp", "--sample", "--sample-count", "--num-samples"]),
     flag("integrator", PICTURE),
     flag("max-depth", PICTURE)
-        .tip("--max-depth N limits the number of path segments", &["--bounces", "--max-bounces", "--depth", "--path-depth"]),
+        .tip("--max-depth N allows N - 1 bounces: 2 is direct light", &["--bounces", "--max-bounces", "--depth", "--path-depth"]),
     flag("camera", PICTURE).tip("--camera NAME chooses one of the scene's cameras", &["--cam", "--view"]),
     flag("frame", PICTURE).idle(&[(Targets::Movies, NOT_ONE_FRAME)]),
     flag("at", PICTURE).idle(&[(Targets::Movies, NOT_ONE_FRAME)]),

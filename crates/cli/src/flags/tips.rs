@@ -5,12 +5,17 @@ use super::table::{FLAGS, Flag};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
-use juggler::scene::suggest;
+use juggler::math::message;
+use juggler::scene::{built_in_scenes, suggest};
 use std::ffi::OsString;
+use std::path::Path;
 
 /// Replaces the parser's suggestion by a better one, or removes it. A tip leads only to flags of
 /// the command that the words name.
 pub fn with_tip(mut error: Error, program: &Command, words: &[OsString]) -> Error {
+    if error.kind() == ErrorKind::InvalidSubcommand {
+        return with_command(error);
+    }
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
@@ -29,6 +34,19 @@ pub fn with_tip(mut error: Error, program: &Command, words: &[OsString]) -> Erro
     // Remove the suggestion to pass the flag as a value.
     error.remove(ContextKind::Suggested);
     if let Some(tip) = ours {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    }
+    error
+}
+
+/// Adds the commands for a scene that stands in place of a command.
+fn with_command(mut error: Error) -> Error {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand).cloned() else { return error };
+    let is_file = Path::new(&word).extension().is_some() || Path::new(&word).exists();
+    if is_file || built_in_scenes().iter().any(|scene| scene.name == word) {
+        let word = message::excerpt(&word, message::MAX_QUOTE);
+        let tip = format!("write 'juggler render {word}' for a picture of it; 'juggler --help' lists all commands");
+        error.remove(ContextKind::SuggestedSubcommand);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
     }
     error
@@ -75,6 +93,16 @@ mod tests {
             assert!(message.contains(&format!("tip: {reported}")), "{message}");
             assert!(!message.contains("as a value") && !message.contains("--white-balance"), "{message}");
         }
+    }
+
+    #[test]
+    fn scenes_in_place_of_a_command_lead_to_render() {
+        for scene in ["vase.glb", "a/b.json", "juggler", "."] {
+            let message = refused(&format!("juggler {scene}"));
+            assert!(message.contains(&format!("juggler render {scene}")), "{message}");
+        }
+        let message = refused("juggler rendr");
+        assert!(message.contains("'render'") && !message.contains("juggler render rendr"), "{message}");
     }
 
     #[test]

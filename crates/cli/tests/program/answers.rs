@@ -107,7 +107,7 @@ fn info_describes_a_scene() {
         r#"{{"shape": "sphere", {emitting}}}, {{"shape": {{"disk": {{}}}}, {emitting}}}, {{"shape": "sphere"}}"#
     );
     fs::write(folder.path("emitting.json"), format!(r#"{{"version": 1, "objects": [{balls}]}}"#)).unwrap();
-    assert!(folder.good("info emitting.json").stdout.contains("\nemitting     2 shapes\n"));
+    assert!(folder.good("info emitting.json").stdout.contains("\nemissive     2 shapes emit light\n"));
     let reason = "chosen because `classic` supports all lights and materials of the scene";
     assert_eq!((&json["integrator"], &json["integrator_reason"]), (&"classic".into(), &reason.into()));
     for said in [

@@ -158,6 +158,9 @@ fn scene_errors_are_reported_with_file_and_line() {
     folder.bad("render cut.json", 2);
     fs::write(folder.path("binary.json"), [0xff, 0xfe, 0, 1]).unwrap();
     folder.bad("render binary.json", 2);
+    for wrong in ["cut.json", "binary.json"] {
+        folder.bad(&format!("check {wrong}"), 1);
+    }
     assert_eq!(folder.files(), ["bad.json", "binary.json", "cut.json"]);
 }
 

@@ -106,10 +106,16 @@ fn files_of_other_programs_are_named() {
     fs::write(folder.path("room.pov"), "sphere { 0, 1 }").unwrap();
     for command in ["render", "check", "info", "convert"] {
         let output = if command == "convert" { " a.json" } else { "" };
-        let message = folder.bad(&format!("{command} car.fbx{output}"), 2);
-        assert_eq!(message, "error: `car.fbx`: FBX is not supported; supported mesh formats: OBJ, PLY and STL\n");
+        let status = if command == "check" { 1 } else { 2 };
+        let message = folder.bad(&format!("{command} car.fbx{output}"), status);
+        assert_eq!(
+            message,
+            "error: `car.fbx`: FBX is not supported: export the model as glTF (.glb), OBJ, PLY or STL\n"
+        );
         assert!(
-            folder.bad(&format!("{command} room.pov{output}"), 2).contains("POV-Ray's scene language is not supported")
+            folder
+                .bad(&format!("{command} room.pov{output}"), status)
+                .contains("POV-Ray's scene language is not supported")
         );
     }
 }

@@ -123,7 +123,8 @@ pub fn report_moved(denoised: &Denoised) {
     if denoised.moved_energy >= TRIFLE {
         let percent = 100.0 * denoised.moved_energy;
         console::print_message(&format!(
-            "note: the denoiser moved {percent:.1} % of the light from bright outliers to their neighborhoods"
+            "note: the denoiser spread {percent:.1} % of the light from single bright pixels to their neighbors; more \
+             samples make them rarer"
         ));
     }
 }
