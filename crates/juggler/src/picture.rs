@@ -70,7 +70,8 @@ impl Picture {
         description.camera = Some(view.camera.clone().into());
         let problems = scene.check();
         if problems.errors() > 0 {
-            return Err(SceneError::Problems(problems).into());
+            // The scene has a view alone.
+            return Err(SceneError::Problems(problems.without_warnings()).into());
         }
         let [width, height] = view.render.size;
         let mut picture = self.clone();

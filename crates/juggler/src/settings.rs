@@ -1,17 +1,19 @@
 //! Settings that override values of a scene.
 
-use crate::{Aov, Denoiser, Error, Picture};
+mod max_depth;
+
+use crate::{Aov, Denoiser, Error};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_camera::sampler::SamplerKind;
 use juggler_imaging::{Primaries, Tone, ToneCurveKind, WhiteBalance};
-use juggler_integrator::{AnyIntegrator, IntegratorKind};
+use juggler_integrator::IntegratorKind;
 use juggler_render::StopCriterion;
 use juggler_scene::compile::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::model::find_camera;
 use juggler_scene::suggest::{closest, did_you_mean, list_of_known};
 use juggler_scene::{IntegratorChoice, Scene};
-use std::ops::RangeInclusive;
+use max_depth::limit_depth;
 
 /// Default maximum number of samples per pixel under a noise limit.
 const MAX_SAMPLES_NOISE: u32 = 1 << 16;
@@ -246,39 +248,6 @@ impl Settings {
         let message = format!("the crop {x},{y},{w},{h} reaches beyond the picture of {width}x{height} pixels");
         Err(Error::setting("crop", message))
     }
-}
-
-impl Picture {
-    /// Returns the maximum path depth with its range: specular bounces under the integrator
-    /// `classic`, path segments under `path`. `None` for integrators without one.
-    pub fn max_depth(&self) -> Option<(u32, RangeInclusive<u32>)> {
-        max_depth(&mut self.integrator().clone()).map(|(depth, range)| (*depth, range))
-    }
-}
-
-/// Returns the maximum depth of an integrator with the range of the scene format; `None` if the
-/// integrator has none.
-fn max_depth(integrator: &mut AnyIntegrator) -> Option<(&mut u32, RangeInclusive<u32>)> {
-    match integrator {
-        AnyIntegrator::Classic(classic) => Some((&mut classic.max_depth, 0..=1000)),
-        AnyIntegrator::Path(path) => Some((&mut path.max_depth, 1..=10_000)),
-        _ => None,
-    }
-}
-
-/// Sets the maximum depth of an integrator that has one, within the range of the scene format.
-fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
-    let name = integrator.name();
-    let Some((place, range)) = max_depth(integrator) else {
-        return Err(Error::setting("max_depth", format!("the integrator `{name}` has no maximum depth")));
-    };
-    if !range.contains(&depth) {
-        let (least, most) = (range.start(), range.end());
-        let message = format!("a maximum depth of {depth} is out of range: {least} to {most}");
-        return Err(Error::setting("max_depth", message));
-    }
-    *place = depth;
-    Ok(())
 }
 
 /// Error for a camera that the scene does not have; it suggests a name and lists all.

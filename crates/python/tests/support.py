@@ -85,7 +85,7 @@ def program(*words):
 def program_hash(scene, *flags):
     """Hash of the pixels that the program renders."""
     with tempfile.TemporaryDirectory() as folder:
-        image = os.path.join(folder, "image.pfm")
+        image = os.path.join(folder, "image.exr")
         stats = os.path.join(folder, "stats.json")
         program("render", scene, "-q", "-o", image, "--stats", stats, *flags)
         with open(stats, encoding="utf-8") as file:

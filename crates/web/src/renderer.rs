@@ -222,6 +222,6 @@ mod tests {
         let (kept, error) = renderer.edit(r#"[{"setting": {"tone": "agx2"}}, {"setting": {"exposure": 1}}]"#).unwrap();
         assert!(kept && status(&renderer)["exposure"] == 1.0, "the other edit is applied");
         assert_eq!(error.as_deref(), Some("error: there is no tone curve `agx2`; did you mean `agx`?"));
-        assert_eq!(renderer.coarse([8, 8]).radiance.len(), 8 * 8 * 3, "what was open stays open");
+        assert_eq!(renderer.coarse([8, 8]).radiance.len(), 8 * 8 * 4, "what was open stays open");
     }
 }

@@ -169,6 +169,6 @@ mod tests {
         let mut bands: Vec<_> = parts.iter().flat_map(|part| part.iter()).collect();
         bands.sort_by_key(|(band, ..)| band.y);
         assert!(bands.into_iter().eq(whole.iter()));
-        assert_eq!(whole.radiance.len(), 35 * 23 * 3);
+        assert_eq!(whole.radiance.len(), 35 * 23 * 4);
     }
 }

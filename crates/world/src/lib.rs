@@ -245,18 +245,6 @@ impl World {
         self
     }
 
-    /// Hides the background from camera rays, also through glass. Its light stays.
-    #[must_use]
-    pub fn with_hidden_background(self, hides_background: bool) -> Self {
-        Self { hides_background, ..self }
-    }
-
-    /// Whether camera rays see black in place of the background.
-    #[inline]
-    pub fn hides_background(&self) -> bool {
-        self.hides_background
-    }
-
     /// Materials of all shapes.
     #[inline]
     pub fn materials(&self) -> &MaterialTable {

@@ -1,4 +1,4 @@
-//! Shadow catchers: objects of a transparent picture that show only the light that other objects
+//! Hidden backgrounds, and shadow catchers: objects of a transparent picture that show only the light that other objects
 //! take from them.
 //!
 //! A camera path that reaches a shadow catcher continues twice: in the world, and in a world of which
@@ -58,6 +58,18 @@ impl Object {
 }
 
 impl World {
+    /// Hides the background from camera rays, also through glass. Its light stays.
+    #[must_use]
+    pub fn with_hidden_background(self, hides_background: bool) -> Self {
+        Self { hides_background, ..self }
+    }
+
+    /// Whether camera rays see black in place of the background.
+    #[inline]
+    pub fn hides_background(&self) -> bool {
+        self.hides_background
+    }
+
     /// Makes scene entries shadow catchers, by `entries`. `unoccluded` is the world without all
     /// objects that neither are in such entries nor emit light.
     #[must_use]

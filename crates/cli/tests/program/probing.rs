@@ -52,7 +52,9 @@ fn probe_explains_a_pixel() {
     folder.good("probe ball.json 0,0 --size 1x1 --samples 1 --stats a.json");
     assert_eq!(json(&fs::read_to_string(folder.path("a.json")).unwrap())["version"], 1);
     fs::write(folder.path("empty.json"), r#"{"version": 1, "objects": []}"#).unwrap();
-    assert!(folder.good("probe empty.json 1,1 --size 4x4").stdout.contains("background"));
+    let empty = folder.run("probe empty.json 1,1 --size 4x4");
+    assert!(empty.status == 0 && empty.stdout.contains("background"), "{}", empty.stdout);
+    assert!(empty.stderr.contains("the scene has no objects"), "{}", empty.stderr);
 }
 
 #[test]

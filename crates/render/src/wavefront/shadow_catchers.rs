@@ -23,7 +23,7 @@ pub fn catch(caught: &mut Queue, buffers: &mut PathBuffers, ray: &Ray, path: &Pa
 
 impl<'j> Engine<'j> {
     /// Traces the rays that hit shadow catchers, and records the light that these have and would
-    /// have alone. Their radiance is no part of the picture.
+    /// have alone. Their radiance does not reach the picture.
     pub(super) fn trace_shadow_catchers(&mut self, control: &Control) -> Result<(), Cancelled> {
         let Some(mut caught) = self.caught.take_if(|caught| !caught.is_empty()) else { return Ok(()) };
         sort_by_slot(&mut caught);

@@ -2,6 +2,8 @@
 
 use crate::description::Description;
 use crate::integrator::{IntegratorChoice, IntegratorRequirements};
+use crate::path::Path;
+use crate::report::Finding;
 use juggler_camera::{AnyCamera, Perspective};
 use juggler_light::background::{AnyBackground, Solid};
 use juggler_light::{Ambient, AnyLight, Extent, Point};
@@ -62,4 +64,23 @@ pub fn background(has_lights: bool) -> AnyBackground {
 fn bounding_sphere(bounds: &Aabb) -> (Vec3, f32) {
     let half = (bounds.max - bounds.min) * 0.5;
     (bounds.min + half, half.length().max(1e-6))
+}
+
+/// Camera that sees all of `bounds`. Reports it at `farthest_object` if it is invalid.
+pub fn checked_camera(bounds: &Aabb, size: UVec2, farthest_object: &Path, findings: &mut Vec<Finding>) -> AnyCamera {
+    let camera = camera(bounds, size);
+    if camera.projection(size).is_err() {
+        let problem =
+            Finding::error("this object is too large or too far away for the default camera to see the whole scene");
+        findings.push(problem.at(farthest_object).help("make it smaller, move it closer, or add a `camera`"));
+    }
+    camera
+}
+
+/// Reports a camera that is invalid for pictures of `size`.
+pub fn check_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {
+    if let Err(invalid) = camera.projection(size) {
+        let path = path.key(crate::kind::name_of(camera)).join(invalid.field);
+        findings.push(Finding::error(invalid.message).at(&path));
+    }
 }

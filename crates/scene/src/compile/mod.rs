@@ -109,7 +109,7 @@ pub struct Assembly {
     /// As [`Compiled::bounds`].
     pub bounds: Aabb,
     pub(crate) object_materials: Arc<Vec<MaterialId>>,
-    /// Whether each scene entry is a shadow catcher; empty if none is.
+    /// Whether each of the scene's objects is a shadow catcher.
     shadow_catchers: Vec<bool>,
 }
 
@@ -172,9 +172,10 @@ impl Assembly {
             integrator,
             bounds,
             object_materials,
-            shadow_catchers: shadow_catchers::entries(scene),
+            shadow_catchers: scene.objects.iter().map(|object| object.shadow_catcher).collect(),
         };
         findings.extend(darkness::warning(scene, &assembly));
+        Self::check_shadow_catchers(scene, &mut findings);
         assembly.check_sight(scene, &mut findings);
         (assembly, findings)
     }
@@ -186,13 +187,14 @@ impl Assembly {
     /// [`Cancelled`] if `control` is cancelled.
     pub fn compile(self, settings: Render, warnings: Problems, control: &BuildControl) -> Result<Compiled, Cancelled> {
         control.begin(BuildStage::Building);
-        let unoccluded = shadow_catchers::unoccluded(&self, control)?;
+        let shading = || (self.materials.clone(), self.lights.clone(), self.background.clone());
+        let unoccluded = self.shadow_catching_objects().map(|objects| (objects, shading()));
         let world = World::new(self.objects, self.materials, self.lights, self.background, control)?;
-        let world = world.with_labels(self.labels).with_hidden_background(settings.transparent);
-        let world = match unoccluded {
-            Some(unoccluded) => world.with_shadow_catchers(self.shadow_catchers, unoccluded),
-            None => world,
-        };
+        let mut world = world.with_labels(self.labels).with_hidden_background(settings.transparent);
+        if let Some((objects, (materials, lights, background))) = unoccluded {
+            let unoccluded = World::new(objects, materials, lights, background, control)?;
+            world = world.with_shadow_catchers(self.shadow_catchers, unoccluded);
+        }
         let Self { cameras, camera_keys, names, integrator, bounds, illuminance, object_materials, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
         Ok(Compiled {
@@ -230,7 +232,6 @@ impl SceneInputs {
         let materials = materials::Materials::new(scene, files, findings);
         let names = Names::from_scene(scene);
         names.check_groups(scene, findings);
-        shadow_catchers::check(scene, findings);
         Self { integrator, sources, background, materials, names }
     }
 }
@@ -355,7 +356,7 @@ fn cameras(
     let size = UVec2::new(width.max(1), height.max(1));
     let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
     if let Some(camera) = &scene.camera {
-        try_camera(camera, size, &Path::root().key("camera"), findings);
+        defaults::check_camera(camera, size, &Path::root().key("camera"), findings);
         cameras.push(("camera".into(), (**camera).clone()));
         if !scene.cameras.is_empty() {
             let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
@@ -363,11 +364,11 @@ fn cameras(
         }
     }
     for (name, camera) in &scene.cameras {
-        try_camera(camera, size, &Path::root().key("cameras").key(name.as_str()), findings);
+        defaults::check_camera(camera, size, &Path::root().key("cameras").key(name.as_str()), findings);
         cameras.push((name.clone(), (**camera).clone()));
     }
     if cameras.is_empty() {
-        cameras.push(("default".into(), default_camera(bounds, size, farthest_object, findings)));
+        cameras.push(("default".into(), defaults::checked_camera(bounds, size, farthest_object, findings)));
     }
     if let Some(chosen) = &scene.render.camera
         && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
@@ -384,21 +385,4 @@ fn cameras(
         }
     }
     (cameras, camera_keys)
-}
-
-fn default_camera(bounds: &Aabb, size: UVec2, farthest_object: &Path, findings: &mut Vec<Finding>) -> AnyCamera {
-    let camera = defaults::camera(bounds, size);
-    if camera.projection(size).is_err() {
-        let problem =
-            Finding::error("this object is too large or too far away for the default camera to see the whole scene");
-        findings.push(problem.at(farthest_object).help("make it smaller, move it closer, or add a `camera`"));
-    }
-    camera
-}
-
-fn try_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {
-    if let Err(invalid) = camera.projection(size) {
-        let path = path.key(crate::kind::name_of(camera)).join(invalid.field);
-        findings.push(Finding::error(invalid.message).at(&path));
-    }
 }

@@ -173,6 +173,13 @@ impl Problems {
         self.list.len() - self.errors()
     }
 
+    /// The errors alone.
+    #[must_use]
+    pub fn without_warnings(mut self) -> Self {
+        self.list.retain(|problem| problem.severity == Severity::Error);
+        self
+    }
+
     /// Formats the problems for a terminal: file, line, column, excerpt with a caret, path and
     /// suggested fix.
     pub fn render(&self, color: bool) -> String {
