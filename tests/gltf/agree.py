@@ -111,7 +111,7 @@ def check_encodings(program, models, folder):
 
 def arrays(program, model, folder):
     """Contents of the mesh files of an unpacked model."""
-    run(program, "convert", model, "--unpack", folder)
+    run(program, "convert", model, "--force", "--unpack", folder)
     return sorted(path.read_bytes() for path in folder.glob("**/*.ply"))
 
 
@@ -211,7 +211,7 @@ def check_tangents(program, models, folder):
     import numpy as np
     for found in json.loads(run("node", HERE / "tangents.mjs", folder, *models_of(models)).stdout):
         unpacked = Path(folder) / f"{Path(found['file']).stem}-unpacked"
-        run(program, "convert", found["file"], "--unpack", unpacked)
+        run(program, "convert", found["file"], "--force", "--unpack", unpacked)
         meshes = list(unpacked.glob("**/*.ply"))
         ours, theirs = ply_tangents(meshes[0]), np.array(found["tangents"]).reshape(-1, 4)
         name = found["name"].removeprefix(f"{models}/")

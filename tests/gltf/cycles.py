@@ -131,7 +131,7 @@ def with_materials(options, model, scene, change):
     folder = options.folder / f"{model}.parts"
     packed = options.folder / f"{model}.packed.json"
     packed.write_text(json.dumps(scene))
-    unpacked = Path(run(options.program, "convert", packed, "--unpack", folder).strip())
+    unpacked = Path(run(options.program, "convert", packed, "--force", "--unpack", folder).strip())
     return changed(json.loads(unpacked.read_text()), change, folder)
 
 

@@ -3,6 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, missing_folder};
 use juggler::imaging::atomic;
+use juggler::imaging::regular::{self, ReadError};
 use std::io::{ErrorKind, IsTerminal};
 use std::ops::Range;
 use std::path::Path;
@@ -17,6 +18,17 @@ pub fn write_text(output: &str, text: &str) -> Result<(), Failure> {
     }
     atomic::write(Path::new(output), format!("{text}\n").as_bytes())
         .map_err(|error| Failure::file("write", output, &error))
+}
+
+/// Whether a regular file exists whose content is not `text`, apart from line breaks at its end.
+pub fn differs(path: &Path, text: &str) -> bool {
+    let text = text.trim_end();
+    match regular::read(path, (text.len() as u64).saturating_add(64)) {
+        Ok(bytes) => String::from_utf8_lossy(&bytes).trim_end() != text,
+        Err(ReadError::TooLarge { .. }) => true,
+        // The writer reports a file that it cannot replace.
+        Err(ReadError::Io(_)) => false,
+    }
 }
 
 /// File name of a frame: a row of `#`, or `%04d`, becomes the frame number padded with zeros.

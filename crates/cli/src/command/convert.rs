@@ -25,6 +25,9 @@ pub struct Convert {
     /// Evaluate the scene at this frame, without expressions and animations
     #[arg(long, value_name = "N")]
     frame: Option<u32>,
+    /// Replace a scene file that exists and contains another scene
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
     model: ModelArgs,
 }
@@ -42,7 +45,23 @@ impl Convert {
         }
         let output = self.output.as_deref().unwrap_or(output::STANDARD_OUTPUT);
         let folder = Path::new(output).parent().filter(|_| output != output::STANDARD_OUTPUT);
-        output::write_text(output, &folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder)))
+        let text = folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder));
+        if output != output::STANDARD_OUTPUT {
+            self.check_replaced(Path::new(output), &text)?;
+        }
+        output::write_text(output, &text)
+    }
+
+    /// Fails if a file contains another scene than `text`, which may have been edited, unless
+    /// `--force` is given.
+    fn check_replaced(&self, path: &Path, text: &str) -> Result<(), Failure> {
+        if self.force || !output::differs(path, text) {
+            return Ok(());
+        }
+        Err(Failure::Invalid(format!(
+            "`{}` exists and contains another scene: --force replaces it, another name keeps it",
+            path.display()
+        )))
     }
 
     /// Writes the scene and all that its models contain to a folder.
@@ -54,6 +73,7 @@ impl Convert {
         std::fs::create_dir_all(folder).map_err(|error| Failure::file("create", folder, &error))?;
         let stem = Path::new(&self.scene).file_stem().and_then(|stem| stem.to_str()).filter(|stem| *stem != "-");
         let path = Path::new(folder).join(format!("{}.json", stem.unwrap_or("scene")));
+        self.check_replaced(&path, &unpacked.to_json_in(Path::new(folder)))?;
         unpacked.save(&path)?;
         console::print_result(&path.display().to_string())
     }

@@ -93,6 +93,7 @@ pub const FLAGS: &[Flag] = &[
     flag("difference", OPTIONS),
     flag("json", OPTIONS),
     flag("unpack", OPTIONS),
+    flag("force", OPTIONS).tip("--force replaces an existing scene", &["--overwrite", "-y"]),
     flag("folder", OPTIONS),
     flag("addr", OPTIONS),
     flag("allow-remote", OPTIONS),

@@ -106,12 +106,37 @@ fn unpacked_models_are_scenes_of_mesh_files_with_the_same_picture() {
     let unpacked = hash("parts/triangle.json");
     let folder = with_triangle();
     assert_eq!(folder.hash("triangle.gltf --variant shiny --frame 15 --size 24x18 --samples 2 -o a.png"), unpacked);
-    let run = folder.run("convert triangle.gltf --unpack parts");
+    let run = folder.run("convert triangle.gltf --unpack parts --force");
     assert!(run.status == 0 && run.stderr.starts_with("note: the scene moves"), "{}", run.stderr);
     folder.good("convert one-sphere --unpack parts");
     folder.bad("convert triangle.gltf a.json --unpack parts", 2);
     folder.bad("convert triangle.gltf", 2);
     folder.bad("convert triangle.gltf --unpack triangle.gltf", 3);
+}
+
+#[test]
+fn edited_scenes_are_replaced_only_with_force() {
+    let folder = with_triangle();
+    for (command, file) in [
+        ("convert triangle.gltf a.json", "a.json"),
+        ("convert triangle.gltf --frame 0 --unpack parts", "parts/triangle.json"),
+    ] {
+        folder.good(command);
+        let written = fs::read_to_string(folder.path(file)).unwrap();
+        folder.good(command);
+        assert_eq!(fs::read_to_string(folder.path(file)).unwrap(), written, "the same scene again");
+        for edited in ["{}".to_owned(), written.replace("Triangle", "My triangle") + " ".repeat(1000).as_str() + "//"] {
+            fs::write(folder.path(file), &edited).unwrap();
+            let message = folder.bad(command, 2);
+            let name = Path::new(file).display();
+            assert!(message.contains(&format!("`{name}` exists and contains another scene: --force")), "{message}");
+            assert_eq!(fs::read_to_string(folder.path(file)).unwrap(), edited);
+        }
+        folder.good(&format!("{command} --force"));
+        assert_eq!(fs::read_to_string(folder.path(file)).unwrap(), written);
+    }
+    fs::create_dir(folder.path("folder")).unwrap();
+    folder.bad("convert triangle.gltf folder", 3);
 }
 
 #[test]
