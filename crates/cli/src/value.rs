@@ -228,6 +228,12 @@ pub fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
+/// A mean FLIP value from 0 to 1.
+pub fn flip(text: &str) -> Result<f64, String> {
+    let flip = text.parse().ok().filter(|flip: &f64| (0.0..=1.0).contains(flip));
+    flip.ok_or_else(|| "a FLIP value lies between 0 and 1, such as 0.02".to_owned())
+}
+
 /// A non-negative tolerance.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -13,6 +13,9 @@ pub struct Difference {
     pub relative_mse: f64,
     /// Largest absolute difference of a channel.
     pub largest: f64,
+    /// Column and row of the first pixel with that difference, from the top left; `None` without
+    /// differences.
+    pub largest_at: Option<[u32; 2]>,
     /// Whether all bits are equal, including those of NaNs and signed zeros.
     pub same_bits: bool,
 }
@@ -25,8 +28,8 @@ pub struct Difference {
 /// [`ImageError::SizesDiffer`] if the sizes differ.
 pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageError> {
     same_size(picture, reference)?;
-    let (mut squares, mut relative, mut largest, mut same_bits) = (0.0, 0.0, 0.0f64, true);
-    for (a, b) in picture.pixels().iter().zip(reference.pixels()) {
+    let (mut squares, mut relative, mut largest, mut same_bits) = (0.0, 0.0, Largest::default(), true);
+    for (index, (a, b)) in picture.pixels().iter().zip(reference.pixels()).enumerate() {
         for (x, r) in a.to_array().into_iter().zip(b.to_array()) {
             if x.to_bits() == r.to_bits() {
                 continue;
@@ -37,11 +40,36 @@ pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageEr
             squares += difference * difference;
             relative +=
                 if r.is_finite() { difference * difference / (f64::from(r) * f64::from(r) + 0.01) } else { difference };
-            largest = largest.max(difference);
+            largest.include(difference, index);
         }
     }
     let count = (picture.pixels().len() * 3).max(1) as f64;
-    Ok(Difference { rmse: (squares / count).sqrt(), relative_mse: relative / count, largest, same_bits })
+    let largest_at = largest.pixel(picture.width());
+    let (rmse, relative_mse, largest) = ((squares / count).sqrt(), relative / count, largest.value);
+    Ok(Difference { rmse, relative_mse, largest, largest_at, same_bits })
+}
+
+/// Largest value of the pixels of an image, above 0, and its first pixel.
+#[derive(Default)]
+pub(crate) struct Largest {
+    /// The value; 0 before a larger one is included.
+    pub value: f64,
+    index: Option<usize>,
+}
+
+impl Largest {
+    /// Includes the value of a pixel by its index.
+    pub fn include(&mut self, value: f64, index: usize) {
+        if value > self.value {
+            *self = Self { value, index: Some(index) };
+        }
+    }
+
+    /// Column and row of the pixel in an image of a width.
+    pub fn pixel(&self, width: u32) -> Option<[u32; 2]> {
+        let index = u32::try_from(self.index?).ok()?;
+        Some([index.checked_rem(width)?, index.checked_div(width)?])
+    }
 }
 
 /// Checks that both images have the same size.
@@ -65,7 +93,13 @@ mod tests {
         let found = compare(&image(&[1.0, 2.0, 3.0]), &image(&[1.0, 0.0, 4.0])).unwrap();
         assert!((found.rmse - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);
         assert!((found.relative_mse - (400.0 + 1.0 / 16.01) / 3.0).abs() < 1e-9);
-        assert_eq!((found.largest, found.same_bits), (2.0, false));
+        assert_eq!((found.largest, found.largest_at, found.same_bits), (2.0, Some([0, 0]), false));
+        // The largest difference of 2 is in the second row, first column; an equal one follows it.
+        let (mut picture, reference) = (Image::new(2, 2), Image::new(2, 2));
+        for (pixel, value) in picture.pixels_mut().iter_mut().zip([0.0, 1.0, -2.0, 2.0]) {
+            *pixel = Rgb::new(0.0, value, 0.0);
+        }
+        assert_eq!(compare(&picture, &reference).unwrap().largest_at, Some([0, 1]));
     }
 
     #[test]
@@ -73,7 +107,7 @@ mod tests {
         let odd = image(&[f32::NAN, f32::INFINITY, -0.0]);
         assert_eq!(
             compare(&odd, &odd).unwrap(),
-            Difference { rmse: 0.0, relative_mse: 0.0, largest: 0.0, same_bits: true }
+            Difference { rmse: 0.0, relative_mse: 0.0, largest: 0.0, largest_at: None, same_bits: true }
         );
         let zeros = compare(&image(&[0.0, 0.0, 0.0]), &image(&[0.0, -0.0, 0.0])).unwrap();
         assert!(zeros.largest == 0.0 && !zeros.same_bits);

@@ -49,7 +49,8 @@ pub fn compare<'py>(
         let [image, reference] = sources.map(|read| read());
         measure(&image?, &reference?, significance, with_flip)
     })?;
-    let Compared { difference: Difference { rmse, relative_mse, largest, same_bits }, flip, noise, size } = compared;
+    let Compared { difference: Difference { rmse, relative_mse, largest, same_bits, .. }, flip, noise, size } =
+        compared;
     let all = PyDict::new(py);
     all.set_item("same_bits", same_bits)?;
     all.set_item("rmse", rmse)?;

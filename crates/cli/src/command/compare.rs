@@ -3,6 +3,7 @@
 
 mod memory;
 mod noise;
+mod result;
 
 use crate::console;
 use crate::failure::Failure;
@@ -13,7 +14,7 @@ use juggler::comparison::{ComparedImage, NoiseTest};
 use juggler::imaging::flip::{self, DynamicRange, Flip};
 use juggler::imaging::{self, Difference, Header, ImageFormat, Tone};
 use juggler::math::Image;
-use serde_json::json;
+use result::{CompareLimits, Comparison};
 use std::path::Path;
 
 /// Maximum number of pixels for FLIP, which needs more than a hundred bytes per pixel and takes
@@ -29,11 +30,16 @@ pub struct Compare {
     reference: String,
     /// Maximum root mean squared difference of equal pictures
     ///
-    /// Without it, pictures are equal if all bits are equal, or if both contain variances and noise
-    /// explains the difference. Variances are in .jfilm files and in EXR files rendered with
-    /// `--aov variance,samples`.
+    /// Without it and `--flip`, pictures are equal if all bits are equal, or if both contain
+    /// variances and noise explains the difference. Variances are in .jfilm files and in EXR files
+    /// rendered with `--aov variance,samples`.
     #[arg(long, value_name = "RMSE", value_parser = value::tolerance)]
     tolerance: Option<f64>,
+    /// Maximum perceived difference (mean FLIP, 0 to 1) of equal pictures
+    ///
+    /// With `--tolerance`, both limits must hold.
+    #[arg(long, value_name = "LEVEL", value_parser = value::flip)]
+    flip: Option<f64>,
     /// Significance level: smallest p-value at which noise explains the difference
     #[arg(long, value_name = "P", value_parser = value::probability, default_value = "0.01")]
     significance: f64,
@@ -59,8 +65,24 @@ impl Compare {
         let map =
             self.difference.as_deref().map(|file| Ok::<_, Failure>((file, ImageFormat::from_path(Path::new(file))?)));
         let map = map.transpose()?;
+        let (reference, comparison) = self.measure(map.is_some() || self.flip.is_some())?;
+        if let (Some((file, format)), Some(flip)) = (map, &comparison.flip) {
+            write_map(file, format, flip, &reference)?;
+        }
+        let width = reference.width();
+        if let Some(file) = &self.stats {
+            output::write_text(file, &comparison.to_json(width))?;
+        }
+        if self.stats.as_deref() != Some(STANDARD_OUTPUT) {
+            console::print_result(&comparison.to_words(width))?;
+        }
+        if comparison.is_equal() { Ok(()) } else { Err(Failure::Negative) }
+    }
+
+    /// Compares the pictures; returns the reference, too. Fails without FLIP if that is needed.
+    fn measure(&self, needs_flip: bool) -> Result<(Image, Comparison), Failure> {
         let names = [self.picture.as_str(), self.reference.as_str()];
-        let has_room = memory::has_room_for_flip(names, map.is_some(), self.max_memory)?;
+        let has_room = memory::has_room_for_flip(names, needs_flip, self.max_memory)?;
         let (picture, reference) =
             (ComparedImage::read(Path::new(&self.picture))?, ComparedImage::read(Path::new(&self.reference))?);
         let difference = imaging::compare(&picture.image, &reference.image)?;
@@ -69,22 +91,13 @@ impl Compare {
         let range =
             if picture.is_tone_mapped && reference.is_tone_mapped { DynamicRange::Ldr } else { DynamicRange::Hdr };
         let flip = if has_room { measured(&picture.image, &reference.image, range, &difference)? } else { None };
+        if flip.is_none() && needs_flip {
+            let flag = if self.flip.is_some() { "--flip" } else { "--difference" };
+            return Err(Failure::Invalid(format!("{flag} is for pictures of up to {MAX_PIXELS} pixels")));
+        }
         let noise = if difference.same_bits { None } else { NoiseTest::new(&picture, &reference, self.significance) };
-        let equal = match self.tolerance {
-            Some(most) => difference.rmse <= most,
-            None => difference.same_bits || noise.as_ref().and_then(NoiseTest::is_same) == Some(true),
-        };
-        let (reference, comparison) = (reference.image, Comparison { difference, flip, noise, equal });
-        if let Some((file, format)) = map {
-            write_map(file, format, comparison.flip.as_ref(), &reference)?;
-        }
-        if let Some(file) = &self.stats {
-            output::write_text(file, &comparison.to_json())?;
-        }
-        if self.stats.as_deref() != Some(STANDARD_OUTPUT) {
-            console::print_result(&comparison.to_words(self.tolerance.is_some()))?;
-        }
-        if comparison.equal { Ok(()) } else { Err(Failure::Negative) }
+        let limits = CompareLimits { rmse: self.tolerance, flip: self.flip };
+        Ok((reference.image, Comparison { difference, flip, noise, limits }))
     }
 }
 
@@ -106,56 +119,10 @@ fn measured(
 }
 
 /// Writes the map in colors.
-fn write_map(file: &str, format: ImageFormat, flip: Option<&Flip>, reference: &Image) -> Result<(), Failure> {
+fn write_map(file: &str, format: ImageFormat, flip: &Flip, reference: &Image) -> Result<(), Failure> {
     let (width, height) = (reference.width(), reference.height());
-    let Some(map) = flip.and_then(|flip| flip::color_map(&flip.map, width)) else {
-        return Err(Failure::Invalid(format!("--difference is for pictures of up to {MAX_PIXELS} pixels")));
-    };
+    let Some(map) = flip::color_map(&flip.map, width) else { return Ok(()) };
     let tone = Tone { dither: false, ..Tone::default() };
     let header = Header { tone, ..Header::new(width, height) };
     Ok(imaging::write_image(imaging::create(Path::new(file), format, &header)?, &map)?)
-}
-
-/// Result of a comparison.
-struct Comparison {
-    difference: Difference,
-    flip: Option<Flip>,
-    noise: Option<NoiseTest>,
-    equal: bool,
-}
-
-impl Comparison {
-    fn to_words(&self, has_tolerance: bool) -> String {
-        let Difference { rmse, relative_mse, largest, same_bits } = self.difference;
-        let p_value = self.noise.as_ref().and_then(noise::p_value).filter(|_| !has_tolerance);
-        let answer = match (self.equal, same_bits, p_value) {
-            (_, true, _) => "identical, bit for bit".to_owned(),
-            (true, _, Some(p_value)) => format!("same up to noise, {p_value}"),
-            (true, _, None) => "equal within the tolerance".to_owned(),
-            (false, _, Some(p_value)) => format!("different, {p_value}"),
-            (false, _, None) => "different".to_owned(),
-        };
-        let flip = match &self.flip {
-            Some(Flip { mean, range, .. }) => format!("{mean:.6e} ({})", range.name()),
-            None => "not measured: the pictures are too large".to_owned(),
-        };
-        let numbers = format!("RMSE    {rmse:.6e}\nrelMSE  {relative_mse:.6e}\nmax     {largest:.6e}\nFLIP    {flip}");
-        let noise = self.noise.iter().flat_map(noise::to_words);
-        [answer, numbers].into_iter().chain(noise).collect::<Vec<_>>().join("\n")
-    }
-
-    /// Results as JSON; numbers that JSON cannot represent are null.
-    fn to_json(&self) -> String {
-        let Difference { rmse, relative_mse, largest, same_bits } = self.difference;
-        let flip = self.flip.as_ref();
-        let flip = flip.map(|Flip { mean, range, .. }| json!({"mean": mean, "range": range.name().to_lowercase()}));
-        let mut json = json!({
-            "version": 1, "equal": self.equal, "same_bits": same_bits,
-            "rmse": rmse, "relative_mse": relative_mse, "max": largest, "flip": flip,
-        });
-        if let (Some(object), Some(noise)) = (json.as_object_mut(), &self.noise) {
-            object.insert("noise".to_owned(), noise::to_json(noise));
-        }
-        json.to_string()
-    }
 }

@@ -89,6 +89,7 @@ pub const FLAGS: &[Flag] = &[
     flag("tree-depth", OPTIONS),
     flag("branches", OPTIONS),
     flag("tolerance", OPTIONS),
+    flag("flip", OPTIONS),
     flag("significance", OPTIONS),
     flag("difference", OPTIONS),
     flag("json", OPTIONS),

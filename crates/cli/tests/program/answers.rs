@@ -183,55 +183,6 @@ fn the_schema_is_one_json_object() {
 }
 
 #[test]
-fn comparisons_answer_with_their_status() {
-    let folder = Folder::new();
-    folder.good("render ball.json -q -o a.pfm");
-    folder.good("render ball.json -q -o b.pfm --seed 1");
-    folder.good("render ball.json -q -o small.pfm --size 4x4");
-    assert!(folder.good("compare a.pfm a.pfm").stdout.starts_with("identical, bit for bit"));
-    let different = folder.run("compare a.pfm b.pfm");
-    assert!(different.status == 1 && different.stdout.starts_with("different") && different.stderr.is_empty());
-    assert!(folder.good("compare a.pfm b.pfm --tolerance 10").stdout.starts_with("equal within"));
-    assert_eq!(folder.run("compare a.pfm b.pfm --tolerance 1e-9").status, 1);
-    assert!(folder.bad("compare a.pfm small.pfm", 1).contains("16×9"));
-    let stats: serde_json::Value = serde_json::from_str(&folder.run("compare a.pfm b.pfm --stats -").stdout).unwrap();
-    assert!(stats["equal"] == false && stats["rmse"].as_f64().unwrap() > 0.0, "{stats}");
-    let keys: Vec<&String> = stats.as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["version", "equal", "same_bits", "rmse", "relative_mse", "max", "flip"]);
-}
-
-#[test]
-fn compare_reports_the_perceived_difference_and_its_location() {
-    let folder = Folder::new();
-    for (name, flags) in [("a.pfm", ""), ("b.exr", "--seed 1"), ("a.png", ""), ("b.png", "--exposure 1")] {
-        folder.good(&format!("render ball.json -q -o {name} {flags}"));
-    }
-    let stats = |line: &str| -> serde_json::Value { serde_json::from_str(&folder.run(line).stdout).unwrap() };
-    // Tone-mapped files are compared as LDR; if one file contains linear radiance, as HDR.
-    for (pair, range) in [("a.png b.png", "ldr"), ("a.pfm b.exr", "hdr"), ("a.png a.pfm", "hdr")] {
-        let flip = &stats(&format!("compare {pair} --stats -"))["flip"];
-        assert!(flip["range"] == range && (1e-4..1.0).contains(&flip["mean"].as_f64().unwrap()), "{pair}: {flip}");
-    }
-    assert_eq!(stats("compare a.pfm a.pfm --stats -")["flip"], serde_json::json!({"mean": 0.0, "range": "hdr"}));
-    let words = folder.run("compare a.png b.png --difference map.png").stdout;
-    assert!(words.lines().any(|line| line.starts_with("FLIP") && line.ends_with("(LDR)")), "{words}");
-    let map = juggler::imaging::read(&folder.path("map.png")).unwrap();
-    assert_eq!((map.width(), map.height()), (16, 9));
-    assert!(map.pixels().iter().any(|pixel| pixel.luminance() > 0.1));
-    // The map of equal pictures is black in every format, and the exit status is that of the
-    // comparison.
-    for name in ["none.exr", "none.jpg"] {
-        folder.good(&format!("compare a.png a.png --difference {name}"));
-        let map = juggler::imaging::read(&folder.path(name)).unwrap();
-        assert!(map.pixels().iter().all(|pixel| pixel.luminance() < 0.01), "{name}");
-    }
-    assert_eq!(folder.run("compare a.pfm b.exr --tolerance 10 --difference map.webp").status, 0);
-    folder.bad("compare a.pfm b.exr --difference map.tga", 2);
-    folder.bad("compare a.pfm none.pfm --difference other.png", 3);
-    assert!(!folder.files().contains(&"other.png".to_owned()));
-}
-
-#[test]
 fn closed_standard_output_is_no_error_for_text() {
     let folder = Folder::new();
     for line in ["schema", "--help", "scenes"] {

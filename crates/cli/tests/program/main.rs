@@ -5,6 +5,7 @@
 mod answers;
 mod aovs;
 mod before;
+mod comparing;
 mod errors;
 mod harness;
 mod inputs;

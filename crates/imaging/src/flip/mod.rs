@@ -17,7 +17,8 @@ mod hdr;
 
 pub use color_map::color_map;
 
-use crate::{ImageError, compare::same_size};
+use crate::ImageError;
+use crate::compare::{Largest, same_size};
 use color::{ColorFilters, Opponent};
 use features::FeatureFilters;
 use hdr::Exposures;
@@ -58,6 +59,16 @@ pub struct Flip {
     pub range: DynamicRange,
     /// Difference of each pixel, 0 to 1, row by row.
     pub map: Vec<f32>,
+}
+
+impl Flip {
+    /// Largest difference of a pixel with column and row of the first such pixel, for images of this
+    /// width; `None` without differences.
+    pub fn largest(&self, width: u32) -> Option<(f64, [u32; 2])> {
+        let mut largest = Largest::default();
+        self.map.iter().enumerate().for_each(|(index, value)| largest.include(f64::from(*value), index));
+        Some((largest.value, largest.pixel(width)?))
+    }
 }
 
 /// Computes FLIP between an image and a reference, both in linear RGB. Negative values and NaN
