@@ -50,13 +50,22 @@ impl MeshEstimate {
 /// bytes.
 pub fn estimate(path: &Path) -> Result<MeshEstimate, MeshError> {
     let failed = |error: io::Error| MeshError { path: path.to_owned(), kind: error.into() };
-    let limit = MeshLimits::default().file_bytes;
-    let mut file = FileSampler::open(path, limit).map_err(failed)?;
+    let file = FileSampler::open(path, MeshLimits::default().file_bytes).map_err(failed)?;
+    of_samples(path, file).map_err(failed)
+}
+
+/// [`estimate`] of a file in memory. Its name counts if its content belongs to no format.
+pub fn estimate_bytes(path: &Path, bytes: &[u8]) -> MeshEstimate {
+    let file = FileSampler::from_bytes(bytes, MeshLimits::default().file_bytes);
+    file.and_then(|file| of_samples(path, file)).unwrap_or_default()
+}
+
+fn of_samples(path: &Path, mut file: FileSampler) -> io::Result<MeshEstimate> {
     let size = file.size;
     let format = formats::of_head(&file.head, size).or_else(|| formats::of_name(path));
-    let Some(format) = format.filter(|_| size <= limit) else { return Ok(MeshEstimate::default()) };
-    let counts = format.counts(&mut file).map_err(failed)?;
-    Ok(MeshEstimate::new(&counts, size))
+    let format = format.filter(|_| size <= MeshLimits::default().file_bytes);
+    let Some(format) = format else { return Ok(MeshEstimate::default()) };
+    Ok(MeshEstimate::new(&format.counts(&mut file)?, size))
 }
 
 /// Estimated memory of the points of a PLY file.
@@ -96,7 +105,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        estimate(&path).unwrap()
+        let found = estimate(&path).unwrap();
+        assert_eq!(estimate_bytes(Path::new(name), bytes), found, "in memory");
+        found
     }
 
     fn ply(format: &str, body: &[u8]) -> Vec<u8> {

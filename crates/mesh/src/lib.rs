@@ -36,7 +36,7 @@ mod weld;
 
 pub use detect::FileContent;
 pub use error::{FilePosition, MeshError, MeshErrorKind};
-pub use estimate::{MeshEstimate, PointEstimate, estimate, estimate_points, points_of_head};
+pub use estimate::{MeshEstimate, PointEstimate, estimate, estimate_bytes, estimate_points, points_of_head};
 pub use format::MeshFormatInfo;
 pub use limits::MeshLimits;
 pub use load::{load, parse, parse_with_control};

@@ -1,8 +1,7 @@
 //! Samples of a mesh file, from which its format estimates its counts without reading all of it.
 
 use juggler_imaging::regular;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Number of bytes read at the start of a file: enough for any sensible header and for all of a
@@ -44,22 +43,36 @@ impl Counts {
     }
 }
 
-/// An open file of which samples are read.
-pub(crate) struct FileSampler {
-    file: File,
+/// Bytes that are read at any position.
+trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
+/// A file, on disk or in memory, of which samples are read.
+pub(crate) struct FileSampler<'f> {
+    file: Box<dyn Source + 'f>,
     /// First bytes: at most [`HEAD`], all of a smaller file.
     pub head: Vec<u8>,
     /// Size of the file, in bytes.
     pub size: u64,
 }
 
-impl FileSampler {
+impl<'f> FileSampler<'f> {
     /// Opens a file and reads its first bytes; none of a file of more than `limit` bytes.
     pub fn open(path: &Path, limit: u64) -> io::Result<Self> {
-        let mut file = regular::open(path)?;
+        let file = regular::open(path)?;
         let size = file.metadata()?.len();
+        Self::new(file, size, limit)
+    }
+
+    /// Reads the first bytes of a file in memory.
+    pub fn from_bytes(bytes: &'f [u8], limit: u64) -> io::Result<Self> {
+        Self::new(Cursor::new(bytes), bytes.len() as u64, limit)
+    }
+
+    fn new(mut file: impl Source + 'f, size: u64, limit: u64) -> io::Result<Self> {
         let head = if size > limit { Vec::new() } else { read_at(&mut file, 0, HEAD)? };
-        Ok(Self { file, head, size })
+        Ok(Self { file: Box::new(file), head, size })
     }
 
     /// Reads the last bytes of the file: at most [`TAIL`], all of a smaller file.
@@ -91,7 +104,7 @@ impl FileSampler {
     }
 }
 
-fn read_at(file: &mut File, at: u64, length: u64) -> io::Result<Vec<u8>> {
+fn read_at(file: &mut impl Source, at: u64, length: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.seek(SeekFrom::Start(at))?;
     file.take(length).read_to_end(&mut bytes)?;

@@ -5,7 +5,7 @@ use crate::document::{self, Unreadable, text_of};
 use crate::named;
 use crate::suggest::closest;
 use juggler_imaging::regular::{self, ReadError};
-use juggler_mesh::{FileContent, PointEstimate, estimate_points, points_of_head};
+use juggler_mesh::{FileContent, PointEstimate, estimate_bytes, estimate_points, points_of_head};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -60,6 +60,22 @@ impl FromIterator<(String, Vec<u8>)> for Bundle {
 }
 
 impl Bundle {
+    /// Number of bytes of all files.
+    pub fn bytes(&self) -> u64 {
+        self.0.values().map(|bytes| bytes.len() as u64).fold(0, u64::saturating_add)
+    }
+
+    /// Upper bound of the memory of all mesh files (OBJ, PLY, STL) while they are read and their
+    /// hierarchies are built, in bytes.
+    pub fn mesh_bytes(&self) -> u64 {
+        let meshes = self.0.iter().filter(|(path, bytes)| {
+            let content = FileContent::from_head(path, bytes, bytes.len() as u64);
+            content.is_mesh()
+        });
+        let peaks = meshes.map(|(path, bytes)| estimate_bytes(path, bytes).peak_bytes);
+        peaks.fold(0, u64::saturating_add)
+    }
+
     fn find(&self, path: &Path) -> Option<(&PathBuf, &Vec<u8>)> {
         let alone = || self.0.get_key_value(Path::new(path.file_name()?));
         self.0.get_key_value(&normalize(path)).or_else(alone)

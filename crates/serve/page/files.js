@@ -1,6 +1,6 @@
 // Files that the user drops or selects: a scene and the files that it refers to.
 
-/** Maximum total size of the files, in bytes. */
+/** Maximum total size of the files, in bytes, unless the caller has another. */
 const MOST = 1 << 30;
 
 /** Endings of the names of files that can be opened, the most likely one first. */
@@ -49,15 +49,18 @@ export function watchDrops(take) {
 
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
 
-/** Finds the scene, or else the model or mesh, in the fewest folders, and reads the bytes of all files. */
-export async function scene(files) {
+/**
+ * Finds the scene, or else the model or mesh, in the fewest folders, and reads the bytes of all files, at most `most`.
+ */
+export async function scene(files, most = MOST) {
   const depth = ({ name }) => name.split("/").length;
   const ending = ({ name }) => OPENED.findIndex((ending) => name.toLowerCase().endsWith(ending));
   const scenes = files.filter((file) => ending(file) >= 0);
   scenes.sort((a, b) => ending(a) - ending(b) || depth(a) - depth(b));
   if (scenes.length === 0) throw new Error(`there is no scene among the files: its name ends in ${OPENED.join(", ")}`);
   const sum = files.reduce((bytes, { file }) => bytes + file.size, 0);
-  if (sum > MOST) throw new Error(`the files have ${Math.round(sum / 2 ** 20)} MiB; the page takes up to 1024`);
+  const mebibytes = (bytes) => Math.round(bytes / 2 ** 20);
+  if (sum > most) throw new Error(`the files have ${mebibytes(sum)} MiB; the page takes up to ${mebibytes(most)}`);
   const bytes = await Promise.all(files.map(({ file }) => file.arrayBuffer()));
   return { name: scenes[0].name, files: files.map(({ name }, i) => ({ name, bytes: bytes[i] })) };
 }

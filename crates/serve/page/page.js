@@ -39,7 +39,7 @@ async function openFiles(files) {
   if (files.length === 0 || !canEdit()) return;
   try {
     notices.toast("uploading the files");
-    connection.send({ dropped: await upload(files) });
+    connection.send({ dropped: await upload(files, catalog?.most.upload) });
   } catch (error) {
     notices.toast(error.message);
   }

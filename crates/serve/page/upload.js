@@ -2,9 +2,9 @@
 
 import { scene } from "./files.js";
 
-/// Sends the files to the server. Returns the number under which it keeps them.
-export async function upload(files) {
-  const { name, files: all } = await scene(files);
+/// Sends the files, of at most `most` bytes, to the server. Returns the number under which it keeps them.
+export async function upload(files, most) {
+  const { name, files: all } = await scene(files, most);
   const sizes = all.map(({ name, bytes }) => [name, bytes.byteLength]);
   const head = new TextEncoder().encode(JSON.stringify({ name, files: sizes }));
   const length = new DataView(new ArrayBuffer(4));

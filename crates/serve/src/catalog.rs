@@ -17,9 +17,10 @@ pub struct Catalog {
 }
 
 impl Catalog {
-    /// Lists the built-in scenes, and the scene file with which the server was started.
-    pub fn new(scene: Option<&str>) -> Self {
-        Self { text: listing(scene).to_string() }
+    /// Lists the built-in scenes, the scene file with which the server was started, and the maximum
+    /// size of dropped files.
+    pub fn new(scene: Option<&str>, dropped_bytes: u64) -> Self {
+        Self { text: listing(scene, dropped_bytes).to_string() }
     }
 
     /// Returns the JSON text.
@@ -28,7 +29,7 @@ impl Catalog {
     }
 }
 
-fn listing(scene: Option<&str>) -> Value {
+fn listing(scene: Option<&str>, dropped_bytes: u64) -> Value {
     let of = |scene: &BuiltIn| {
         let title = Scene::built_in(scene.name).map(|scene| scene.description.title).unwrap_or_default();
         json!({"name": scene.name, "title": title, "description": scene.description()})
@@ -43,7 +44,7 @@ fn listing(scene: Option<&str>) -> Value {
         "tones": names::<ToneCurveKind>(),
         "schedulers": names::<Scheduler>(),
         "channels": Channel::ALL,
-        "most": {"edge": MAX_EDGE, "pixels": MAX_PIXELS, "samples": MAX_SAMPLES},
+        "most": {"edge": MAX_EDGE, "pixels": MAX_PIXELS, "samples": MAX_SAMPLES, "upload": dropped_bytes},
     })
 }
 
@@ -57,7 +58,7 @@ mod tests {
 
     #[test]
     fn kinds_and_channels_are_listed_by_name() {
-        let listing: Value = serde_json::from_str(Catalog::new(None).text()).unwrap();
+        let listing: Value = serde_json::from_str(Catalog::new(None, 7).text()).unwrap();
         let integrators = ["classic", "path", "direct", "ambient_occlusion", "albedo", "normals", "depth"];
         assert_eq!(listing["integrators"], json!(integrators));
         assert_eq!(listing["samplers"], json!(["sobol", "stratified", "independent", "blue_noise"]));
@@ -69,12 +70,12 @@ mod tests {
 
     #[test]
     fn every_built_in_scene_is_listed() {
-        let catalog = Catalog::new(Some("mine.json"));
+        let catalog = Catalog::new(Some("mine.json"), 7);
         let listing: Value = serde_json::from_str(catalog.text()).unwrap();
         assert_eq!(listing["scenes"].as_array().unwrap().len(), built_in_scenes().len());
         assert!(listing["scenes"].as_array().unwrap().iter().all(|scene| scene["title"] != ""));
         assert_eq!(listing["file"]["name"], "mine.json");
         assert!(listing["integrators"].as_array().unwrap().contains(&json!("classic")));
-        assert_eq!(listing["channels"][0], "color");
+        assert_eq!((&listing["channels"][0], &listing["most"]["upload"]), (&json!("color"), &json!(7)));
     }
 }

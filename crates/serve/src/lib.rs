@@ -6,7 +6,8 @@
 //!   [`Running`] is dropped.
 //! - `access` has the access rules, [`Limits`] the resource limits, `edits` the edits that a page
 //!   may send.
-//! - `dropped` reads files that were dropped on a page.
+//! - `dropped` receives files that were dropped on a page, and `uploads` keeps them until a page opens
+//!   them.
 //! - `socket` serves a page's WebSocket, `encoded_frame` encodes its frames, `wheel` decides which
 //!   page steers.
 
@@ -23,6 +24,7 @@ mod routes;
 mod server;
 mod socket;
 mod state;
+mod uploads;
 mod wheel;
 
 pub use encoded_frame::HEADER_BYTES;

@@ -5,9 +5,10 @@ use crate::accept::ConnectionPermit;
 use crate::access::{Authorization, Peer};
 use crate::assets::ASSETS;
 use crate::dropped;
+use crate::server::Limits;
 use crate::socket;
 use crate::state::ServerState;
-use axum::body::{Body, to_bytes};
+use axum::body::{Body, HttpBody};
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::{Path, Request, State};
@@ -112,24 +113,30 @@ async fn save(State(state): State<Arc<ServerState>>, Path(name): Path<String>) -
 }
 
 /// Receives files that were dropped on a page, and answers with the number under which the page
-/// opens them.
+/// opens them. The stated length is judged before any byte is read.
 async fn keep_dropped(State(state): State<Arc<ServerState>>, Extension(peer): Extension<Peer>, body: Body) -> Response {
-    let Ok(_turn) = state.uploading.try_acquire() else {
-        return (StatusCode::SERVICE_UNAVAILABLE, "another page uploads files\n").into_response();
-    };
-    let most = state.limits.dropped_bytes;
-    let Ok(bytes) = to_bytes(body, most).await else {
-        let reason = format!("the files cannot be received, or have more than {} MiB\n", most >> 20);
-        return (StatusCode::PAYLOAD_TOO_LARGE, reason).into_response();
-    };
-    match tokio::task::spawn_blocking(move || dropped::parse(&bytes)).await {
-        Ok(Ok(files)) => state.keep_dropped(files).to_string().into_response(),
-        Ok(Err(why)) => {
-            state.refusals.log(peer.remote, why);
-            (StatusCode::BAD_REQUEST, format!("{why}\n")).into_response()
-        }
-        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    let Limits { dropped_bytes, upload_silence, .. } = state.limits;
+    let length = body.size_hint().exact();
+    if length.is_some_and(|length| length > dropped_bytes) {
+        let reason =
+            format!("the files have more than {:.1} MiB, the limit\n", dropped_bytes as f64 / f64::from(1 << 20));
+        return last_response(StatusCode::PAYLOAD_TOO_LARGE, reason);
     }
+    let Some(memory) = state.uploads.reserve(length.unwrap_or(dropped_bytes)) else {
+        return last_response(StatusCode::SERVICE_UNAVAILABLE, "other pages upload files\n".to_owned());
+    };
+    match dropped::receive(body, length, dropped_bytes, upload_silence).await {
+        Ok(files) => state.uploads.keep(files, memory).to_string().into_response(),
+        Err(error) => {
+            state.refusals.log(peer.remote, &error.to_string());
+            last_response(error.status(), format!("{error}\n"))
+        }
+    }
+}
+
+/// Response to a request whose body is not read, after which the connection ends.
+fn last_response(status: StatusCode, text: String) -> Response {
+    (status, [(header::CONNECTION, "close")], text).into_response()
 }
 
 /// Returns a file name that is safe in a header and on any file system.

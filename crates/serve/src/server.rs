@@ -54,7 +54,12 @@ pub struct Limits {
     pub message_bytes: usize,
     /// Maximum size of the files that are dropped on a page at once, in bytes; 1 GiB by default.
     /// They stay in memory.
-    pub dropped_bytes: usize,
+    pub dropped_bytes: u64,
+    /// Maximum size of all files that pages upload at the same time or that wait to be opened, in
+    /// bytes; 2 GiB by default.
+    pub dropped_total_bytes: u64,
+    /// Time without a byte after which an upload ends, 10 seconds by default.
+    pub upload_silence: Duration,
     /// Maximum time to receive the head of a request, 10 seconds by default.
     pub head: Duration,
     /// Maximum duration of a connection that is no WebSocket, 10 minutes by default.
@@ -64,6 +69,16 @@ pub struct Limits {
     pub silence: Duration,
 }
 
+impl Limits {
+    /// The same limits, with at most half of `bytes`, the memory of the program, for dropped files: the
+    /// scene that is made of them needs memory, too.
+    #[must_use]
+    pub fn with_memory(self, bytes: u64) -> Self {
+        let dropped_total_bytes = self.dropped_total_bytes.min(bytes / 2);
+        Self { dropped_bytes: self.dropped_bytes.min(dropped_total_bytes), dropped_total_bytes, ..self }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Self {
@@ -71,6 +86,8 @@ impl Default for Limits {
             sockets: 16,
             message_bytes: 64 << 10,
             dropped_bytes: 1 << 30,
+            dropped_total_bytes: 2 << 30,
+            upload_silence: Duration::from_secs(10),
             head: Duration::from_secs(10),
             connection: Duration::from_secs(600),
             silence: Duration::from_secs(90),

@@ -93,7 +93,7 @@ impl Listener {
         if !self.try_steer() {
             return self.answer(&ServerMessage::Refused(WATCHES)).await;
         }
-        match self.state.take_dropped(number) {
+        match self.state.uploads.take(number) {
             Some(files) => drop(self.state.session.edit(Edit::Files(files))),
             None => self.answer(&ServerMessage::Refused("other files were dropped in the meantime")).await,
         }

@@ -5,8 +5,9 @@ use crate::catalog::Catalog;
 use crate::encoded_frame::FrameEncoder;
 use crate::refusal_log::RefusalLog;
 use crate::server::{Limits, ServerOptions};
+use crate::uploads::Uploads;
 use crate::wheel::{PageId, Wheel};
-use juggler_session::{SceneFiles, Session};
+use juggler_session::Session;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::{Semaphore, watch};
@@ -31,10 +32,8 @@ pub struct ServerState {
     pub sockets: Arc<Semaphore>,
     /// Permit for encoding an image to be saved, one at a time.
     pub saving: Semaphore,
-    /// Permit for an upload of dropped files, one at a time.
-    pub uploading: Semaphore,
-    /// Number of the latest upload, and its files until a page opens them.
-    dropped: Mutex<(u64, Option<SceneFiles>)>,
+    /// Uploads of dropped files.
+    pub uploads: Uploads,
     updates: watch::Sender<()>,
     wheel: Mutex<Wheel>,
     pages: AtomicU64,
@@ -51,15 +50,14 @@ impl ServerState {
         Self {
             session,
             encoder: FrameEncoder::default(),
-            catalog: Catalog::new(options.scene.as_deref()),
+            catalog: Catalog::new(options.scene.as_deref(), options.limits.dropped_bytes),
             access,
             refusals,
             scene: options.scene,
             limits: options.limits,
             sockets: Arc::new(Semaphore::new(options.limits.sockets)),
             saving: Semaphore::new(1),
-            uploading: Semaphore::new(1),
-            dropped: Mutex::default(),
+            uploads: Uploads::new(&options.limits),
             updates,
             wheel: Mutex::default(),
             pages: AtomicU64::new(1),
@@ -69,20 +67,6 @@ impl ServerState {
     /// Returns an ID for a new page.
     pub fn new_page(&self) -> PageId {
         self.pages.fetch_add(1, Relaxed)
-    }
-
-    /// Keeps dropped files in place of earlier ones, and returns the number under which a page
-    /// opens them.
-    pub fn keep_dropped(&self, files: SceneFiles) -> u64 {
-        let mut dropped = self.dropped.lock().unwrap_or_else(PoisonError::into_inner);
-        *dropped = (dropped.0 + 1, Some(files));
-        dropped.0
-    }
-
-    /// Takes dropped files by their number; `None` if later ones have replaced them.
-    pub fn take_dropped(&self, number: u64) -> Option<SceneFiles> {
-        let mut dropped = self.dropped.lock().unwrap_or_else(PoisonError::into_inner);
-        if dropped.0 == number { dropped.1.take() } else { None }
     }
 
     /// Returns a receiver that is notified of frames, statuses and changes of steering.

@@ -98,6 +98,7 @@ impl Subject {
             models: keeps_models.then(|| Arc::clone(&self.models)),
             interest: self.interest_is_chosen.then_some(self.interest),
             previous: Some((Arc::clone(self.scene()), Arc::clone(&self.picture))),
+            max_memory: None,
         }
     }
 

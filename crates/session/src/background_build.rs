@@ -23,6 +23,7 @@ impl Worker {
             mailbox.build_number += 1;
             mailbox.build_number
         };
+        let build = BuildRequest { max_memory: self.options.max_memory, ..build };
         let control = Arc::new(BuildControl::default());
         self.building = Some(RunningBuild { began: Instant::now(), reason, control: Arc::clone(&control) });
         if reason == BuildReason::OtherScene {

@@ -2,6 +2,7 @@
 
 use crate::choices::Choices;
 use crate::edited_scene::EditedScene;
+use crate::memory;
 use crate::model_status::ModelStatus;
 use crate::subject::Subject;
 use juggler::camera::AnyCamera;
@@ -33,6 +34,8 @@ pub struct BuildRequest {
     pub(crate) interest: Option<Vec3>,
     /// Scene and picture of the previous subject, whose world is reused where it still holds.
     pub(crate) previous: Option<(Arc<Scene>, Arc<Picture>)>,
+    /// Maximum memory in bytes of files in memory and of the scene that they make.
+    pub(crate) max_memory: Option<u64>,
 }
 
 /// Origin of the scene.
@@ -88,6 +91,7 @@ impl BuildRequest {
             models: None,
             interest: None,
             previous: None,
+            max_memory: None,
         }
     }
 
@@ -138,6 +142,9 @@ impl BuildRequest {
         let scene = self.scene(control)?;
         let displayed = Arc::clone(scene.displayed());
         self.fit_settings(&displayed);
+        if let (SceneSource::Files(files), Some(most)) = (&self.source, self.max_memory) {
+            memory::check(files, &displayed, &self.choices.settings, most)?;
+        }
         let mut picture = self.picture(&displayed, control)?;
         let upward = picture.view().camera.up();
         if let Some(camera) = &self.choices.camera {

@@ -25,6 +25,7 @@ mod edit;
 mod edited_scene;
 mod frame;
 mod interest;
+mod memory;
 mod model_status;
 #[cfg(feature = "native")]
 mod options;

@@ -19,11 +19,14 @@ pub struct SessionOptions {
     pub budget: Duration,
     /// Whether the scene's files are watched and reloaded when they change.
     pub watch: bool,
+    /// Maximum memory in bytes of files in memory ([`Edit::Files`](crate::Edit::Files)) and of the
+    /// scene that they make; scenes that need more are errors. `None` for no limit.
+    pub max_memory: Option<u64>,
 }
 
 impl Default for SessionOptions {
     fn default() -> Self {
         let (size, values, budget) = (None, Vec::new(), Duration::from_millis(30));
-        Self { size, values, lenient: false, threads: 0, budget, watch: false }
+        Self { size, values, lenient: false, threads: 0, budget, watch: false, max_memory: None }
     }
 }

@@ -7,7 +7,7 @@ use crate::model_args::ModelArgs;
 use crate::source;
 use crate::value;
 use clap::Args;
-use juggler_serve::{ServeError, Server, ServerOptions};
+use juggler_serve::{Limits, ServeError, Server, ServerOptions};
 use juggler_session::Session;
 use std::net::{SocketAddr, ToSocketAddrs};
 
@@ -41,6 +41,12 @@ pub struct Serve {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
+    /// Memory limit for files that are dropped on a page, such as 4G
+    ///
+    /// Uploads may take half of it. A scene whose files, world and film need more is refused.
+    #[arg(long, value_name = "SIZE", value_parser = value::memory)]
+    max_memory: Option<u64>,
+
     #[command(flatten)]
     model: ModelArgs,
 }
@@ -55,11 +61,14 @@ impl Serve {
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
         let (size, values, lenient) = (self.size, source::model_values(name, &self.model)?, self.model.lenient);
+        let (watch, max_memory) = (true, self.max_memory);
         let options =
-            juggler_session::SessionOptions { size, values, lenient, threads, watch: true, ..Default::default() };
+            juggler_session::SessionOptions { size, values, lenient, threads, watch, max_memory, ..Default::default() };
         let session = Session::open(name, options);
         let (address, allow_remote, token) = (self.addr, self.allow_remote, !self.no_token);
-        let options = ServerOptions { address, allow_remote, token, scene: self.scene, ..ServerOptions::default() };
+        let limits = Limits::default();
+        let limits = max_memory.map_or(limits, |bytes| limits.with_memory(bytes));
+        let options = ServerOptions { address, allow_remote, token, scene: self.scene, limits };
         let server = Server::bind(session, options, console::print_message)?;
         let url = server.url();
         let _running = server.start()?;

@@ -84,3 +84,43 @@ fn unservable_scenes_and_busy_ports_are_reported() {
     assert!(folder.bad("serve - --addr 127.0.0.1:0", 2).contains("standard input"));
     assert!(folder.bad("serve ball.json --addr nonsense", 2).contains("127.0.0.1:8080"));
 }
+
+/// Peak memory of a process in bytes.
+#[cfg(target_os = "linux")]
+fn peak(child: &Child) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+    line.trim().strip_suffix(" kB").unwrap().parse::<u64>().unwrap() << 10
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn dropped_files_are_in_memory_once_and_within_a_limit() {
+    const MEBI: u64 = 1 << 20;
+    let folder = Folder::new();
+    let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --no-token --threads 1 --max-memory 800M");
+    let host = url.strip_suffix('/').unwrap();
+    let upload = |mebibytes: u64| {
+        let head = format!(r#"{{"name": "a.obj", "files": [["a.obj", {}]]}}"#, mebibytes * MEBI);
+        let mut stream = TcpStream::connect(host).unwrap();
+        let length = 4 + head.len() as u64 + mebibytes * MEBI;
+        write!(stream, "POST /drop HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\n").unwrap();
+        write!(stream, "Connection: close\r\nContent-Length: {length}\r\n\r\n").unwrap();
+        let piece = vec![b' '; 1 << 20];
+        let mut send = |bytes: &[u8]| stream.write_all(bytes).is_ok();
+        // The server may answer before it has read everything.
+        let _ =
+            send(&(head.len() as u32).to_le_bytes()) && send(head.as_bytes()) && (0..mebibytes).all(|_| send(&piece));
+        let mut answer = String::new();
+        let _ = stream.read_to_string(&mut answer);
+        answer
+    };
+    get(host, "");
+    let before = peak(&child);
+    let answer = upload(300);
+    assert!(answer.starts_with("HTTP/1.1 200") && answer.ends_with("\r\n1"), "{answer}");
+    let grown = peak(&child) - before;
+    assert!((300 * MEBI..350 * MEBI).contains(&grown), "{} MiB", grown / MEBI);
+    assert!(!upload(401).starts_with("HTTP/1.1 200"), "half of the limit is for files");
+    assert_eq!(end(child, "-TERM").0, Some(143));
+}

@@ -1,7 +1,7 @@
 //! Scene files that change during a session.
 use crate::until;
 use juggler::scene::Scene;
-use juggler_session::{Edit, Fly, Session, SessionOptions, Stage, Status};
+use juggler_session::{Edit, Fly, SceneFiles, Session, SessionOptions, Stage, Status};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -91,4 +91,31 @@ fn invalid_file_is_shown_once_it_is_corrected() {
     fs::write(folder.path().join("a.obj"), TRIANGLE).unwrap();
     fs::write(&file, scene("", 2)).unwrap();
     until(&session, |status| status.error.is_none() && status.hash.is_some());
+}
+
+#[test]
+fn scenes_of_files_in_memory_keep_to_the_limit() {
+    let options = SessionOptions { size: Some([32, 24]), threads: 1, ..SessionOptions::default() };
+    let session = Session::open("one-sphere", SessionOptions { max_memory: Some(200 << 20), ..options });
+    let first = until(&session, |status| status.hash.is_some());
+    let open = |files: Vec<(&str, Vec<u8>)>| {
+        let name = files[0].0.to_owned();
+        let files = files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect();
+        session.edit(Edit::Files(SceneFiles { name, files }))
+    };
+    let scene = r#"{"version": 1, "camera": {"perspective": {"eye": [0, 0, 5]}}, "objects": [{"shape": "sphere"}]}"#;
+    let triangles = TRIANGLE.to_owned() + &"f 1 2 3\n".repeat(2_000_000);
+    // The second file of the first pair counts although the scene does not name it.
+    for (name, files) in [
+        ("bytes", vec![("a.json", scene.into()), ("b.bin", vec![0; 190 << 20])]),
+        ("a mesh", vec![("a.obj", triangles.into_bytes())]),
+    ] {
+        let revision = open(files);
+        let status = until(&session, |status| status.revision >= revision && status.error.is_some());
+        let error = status.error.clone().unwrap();
+        assert!(error.contains("of memory, more than --max-memory 200.0 MiB"), "{name}: {error}");
+        assert_eq!(status.scene, first.scene, "{name}: the scene before stays");
+    }
+    open(vec![("a.json", scene.into())]);
+    until(&session, |status| status.error.is_none() && status.scene == "a.json" && status.hash.is_some());
 }

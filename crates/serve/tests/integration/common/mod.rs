@@ -112,16 +112,23 @@ impl Serving {
 
     /// Uploads the body of a drop, as the page does.
     pub fn upload(&self, body: &[u8]) -> Answer {
+        let mut stream = self.begin_upload(&format!("Content-Length: {}", body.len()));
+        // The server may answer before it has read everything.
+        let _ = stream.write_all(body);
+        answer(&mut stream)
+    }
+
+    /// Sends the head of an upload with a header that states the length of its body.
+    pub fn begin_upload(&self, length: &str) -> TcpStream {
         let mut stream = self.connect();
         let cookie = self.cookie.iter().map(|cookie| format!("Cookie: {cookie}\r\n")).collect::<String>();
         let host = self.host();
-        let head = format!(
-            "POST /drop HTTP/1.1\r\nConnection: close\r\nHost: {host}\r\nOrigin: http://{host}\r\n{cookie}Content-Length: {}\r\n\r\n",
-            body.len()
-        );
-        // The server may answer before it has read everything.
-        let _ = stream.write_all(&[head.as_bytes(), body].concat());
-        answer(&mut stream)
+        write!(
+            stream,
+            "POST /drop HTTP/1.1\r\nConnection: close\r\nHost: {host}\r\nOrigin: http://{host}\r\n{cookie}{length}\r\n\r\n"
+        )
+        .unwrap();
+        stream
     }
 
     /// Returns whether the server still delivers the page.
