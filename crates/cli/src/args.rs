@@ -68,9 +68,15 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub given: GivenFlags,
 
-    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene (see `juggler scenes`), or `-`
-    /// for standard input
+    /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene (see `juggler scenes`), folder of
+    /// scene files, or `-` for standard input
     pub scene: String,
+
+    /// Further scenes and folders of scene files
+    ///
+    /// They are rendered one after the other. A scene that fails does not stop the others.
+    #[arg(value_name = "SCENE")]
+    pub more_scenes: Vec<String>,
 
     #[command(flatten)]
     pub model: ModelArgs,
@@ -79,9 +85,17 @@ pub struct RenderArgs {
     ///
     /// Pictures are .png .jpg .exr .hdr .webp .pfm, movies are .mp4 .webp .apng .gif, and partial
     /// renders are .jfilm; `-` writes to standard output. The default is the scene's name with
-    /// .png, in the current folder.
+    /// .png, in the current folder. For several scenes, a folder, or a name in which `{}` becomes the
+    /// name of the scene.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<String>,
+
+    /// Keep pictures that the same command made from the same scene
+    ///
+    /// PNG, EXR and HDR files store their command and a fingerprint of their scene: of all values, of
+    /// its files and of the settings of the render. Pictures of `--frames` are kept without this flag.
+    #[arg(long, hide_short_help = true)]
+    pub resume: bool,
 
     /// File format, instead of the one that the extension selects
     #[arg(long, value_name = "FORMAT", hide_short_help = true)]

@@ -16,6 +16,8 @@ use std::path::Path;
 pub enum Failure {
     /// Negative result of a check or comparison, already printed.
     Negative,
+    /// Failures of several scenes, already printed, with the exit status of the first.
+    Several(u8),
     /// Negative result of a comparison, with the reason.
     Different(String),
     /// Invalid command line, or a scene that cannot be rendered as requested.
@@ -40,6 +42,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Self::Negative | Self::Different(_) => 1,
+            Self::Several(status) => *status,
             Self::Invalid(_) | Self::Scene(_) | Self::Unreadable(_) => 2,
             Self::System(_) => 3,
             Self::Interrupted { signal, .. } => 128_u8.saturating_add(*signal),
@@ -50,7 +53,7 @@ impl Failure {
     pub fn message(&self, color: bool) -> Option<String> {
         let label = if color { "\x1b[1;31merror\x1b[0m" } else { "error" };
         match self {
-            Self::Negative => None,
+            Self::Negative | Self::Several(_) => None,
             Self::Different(message) => Some(message::lines(message)),
             Self::Invalid(message) | Self::Unreadable(message) | Self::System(message) => {
                 Some(format!("{label}: {}", message::lines(message)))

@@ -4,10 +4,12 @@ pub mod aovs;
 pub mod effect;
 mod movie;
 mod parts;
+mod series;
 mod view;
 
 pub use movie::Movie;
 pub use parts::{Checkpoint, Cut, Shard};
+pub use series::Plans;
 pub use view::end_warning;
 
 use crate::args::RenderArgs;
@@ -40,6 +42,8 @@ pub struct Plan {
     pub settings: Settings,
     /// Frames or time to render.
     pub times: TimeSelection,
+    /// Whether existing pictures are kept, also single ones.
+    pub resume: bool,
     /// Output file, possibly with `####`; `-` for standard output.
     pub output: String,
     /// Kind of output.
@@ -125,6 +129,7 @@ impl Plan {
             scene: args.scene,
             model: args.model,
             times,
+            resume: args.resume,
             output,
             aov_output: args.aov_output,
             output_kind,
@@ -174,7 +179,7 @@ impl Plan {
     /// Whether existing pictures are kept if the same command made them from the same scene.
     pub fn keeps_existing(&self) -> bool {
         let OutputKind::Picture(encoding) = self.output_kind else { return false };
-        matches!(self.times, TimeSelection::Frames(_)) && encoding.format.stores_metadata()
+        (self.resume || matches!(self.times, TimeSelection::Frames(_))) && encoding.format.stores_metadata()
     }
 
     /// Pictures to render, for an animation of `length` frames.

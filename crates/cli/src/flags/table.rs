@@ -25,6 +25,8 @@ const MAKES_PARTIAL_RENDER: &str =
 /// All flags, by the headings of the help.
 pub const FLAGS: &[Flag] = &[
     flag("output", OUTPUT).tip("-o FILE, or --output FILE, sets the output file", &["--out", "--outfile", "--output-file", "-O"]),
+    flag("resume", OUTPUT).idle(&[(Targets::PicturesWithoutMetadata, "is for PNG, EXR and HDR pictures, which store how they were made; {format} files do not"), (Targets::PartialRenders, "is for pictures; `--checkpoint` resumes a partial render"), (Targets::Movies, "is for pictures; a movie always resumes with its frames")])
+        .tip("--resume keeps the pictures that are done", &["--skip-existing", "--no-clobber", "--skip"]),
     flag("format", OUTPUT),
     flag("bits", OUTPUT).idle(&[(Targets::PartialRenders, NOT_SUMS), (Targets::Movies, NOT_ONE_FRAME)]),
     flag("quality", OUTPUT).idle(&[(Targets::PicturesWithoutQuality, "is for JPEG and MP4 files; {format} files have none"), (Targets::PartialRenders, "is for JPEG and MP4 files; a partial render has none"), (Targets::MoviesWithoutQuality, "is for JPEG and MP4 files; {format} has none")]),
@@ -69,7 +71,7 @@ pub const FLAGS: &[Flag] = &[
     flag("crop", PICTURE).tip("--crop X,Y,W,H renders a rectangle of the picture", &["--region", "--window", "--cropwindow"]),
 
     flag("checkpoint", PARTIAL_RENDERS)
-        .tip("--checkpoint FILE saves progress; the same command resumes from it", &["--resume", "--continue"]),
+        .tip("--checkpoint FILE saves progress; the same command resumes from it", &["--continue"]),
     flag("checkpoint-every", PARTIAL_RENDERS),
     // A shard of several pictures consists of whole pictures.
     flag("shard", PARTIAL_RENDERS).idle(&[(Targets::SinglePictures, "makes a partial render, for `juggler merge`: give an output with the extension .jfilm; with --frames, it selects frames")]),

@@ -18,6 +18,8 @@ pub enum Targets {
     PicturesWithoutDither,
     /// Pictures that cannot be transparent.
     PicturesWithoutAlpha,
+    /// Pictures whose format does not store how they were made.
+    PicturesWithoutMetadata,
     PartialRenders,
     AllButPartialRenders,
     Movies,
@@ -46,6 +48,7 @@ impl Targets {
             }),
             Self::PicturesWithoutAlpha => picture
                 .is_some_and(|picture| !picture.format.stores_alpha() || picture.options.look != DisplayLook::Plain),
+            Self::PicturesWithoutMetadata => is_picture_without(ImageFormat::stores_metadata),
             Self::PartialRenders => target == Target::PartialRender,
             Self::AllButPartialRenders => target != Target::PartialRender,
             Self::Movies => matches!(target, Target::Movie(_)),

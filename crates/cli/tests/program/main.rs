@@ -18,6 +18,7 @@ mod parts;
 mod pictures;
 mod probing;
 mod readme;
+mod series;
 mod serving;
 mod signals;
 mod statistics;

@@ -6,6 +6,7 @@ mod frame;
 mod frame_cache;
 mod memory;
 mod movie;
+mod series;
 
 use crate::args::RenderArgs;
 use crate::console;
@@ -14,7 +15,7 @@ use crate::failure::Failure;
 use crate::format::{amount, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
 use crate::output;
-use crate::plan::{FrameOutput, Movie, Plan, Shard, effect, end_warning};
+use crate::plan::{FrameOutput, Movie, Plans, Shard, effect, end_warning};
 use crate::progress::{FrameProgress, Goal, Watch, with_progress};
 use crate::reproduce;
 use crate::source;
@@ -40,6 +41,7 @@ pub const EXAMPLES: &str = "\
 Examples:
   juggler render juggler                                     the built-in scene, into juggler.png
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
+  juggler render scenes -o pictures --resume                 all scenes of a folder, without those that are done
   juggler render juggler --frames 0..30 -o 'frame_####.png'
   juggler render juggler -o juggler.mp4                      all frames as a movie, also .webp .apng .gif
   juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the movie
@@ -50,18 +52,24 @@ Examples:
   juggler info scene.png                                     how that picture was made
 
 Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed,
-129, 130 or 143 interrupted.";
+129, 130 or 143 interrupted; of several scenes, that of the first that failed.";
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    let plan = Plan::new(args)?;
-    output::check_stream(&plan.output)?;
-    RenderCommand { reporter: plan.progress.reporter(), plan }.run(start)
+    match Plans::new(args)? {
+        Plans::One(plan) => {
+            output::check_stream(&plan.output)?;
+            RenderCommand { reporter: plan.progress.reporter(), plan: *plan }.run(start, &mut None).map(drop)
+        }
+        Plans::Series { plans, folder } => series::run(plans, folder.as_deref()),
+    }
 }
 
 impl RenderCommand {
-    fn run(self, start: Instant) -> Result<(), Failure> {
+    /// Renders the scene; returns whether there was something to render. Signals are caught from the
+    /// first render on, when there are files to clean up; until then they end the program.
+    fn run(self, start: Instant, interrupts: &mut Option<Interrupts>) -> Result<bool, Failure> {
         let scene = source::load_model(&self.plan.scene, &self.plan.model, self.plan.max_memory)?;
         effect::check_scene(&self.plan.settings, &scene)?;
         let animation = scene.description.animation;
@@ -73,21 +81,22 @@ impl RenderCommand {
                 [Some(output), aov_output.as_ref(), checkpoint.as_ref()]
             });
             files.into_iter().flatten().flatten().try_for_each(|file| output::check_folder(file))?;
-            return self.frames(&scene, &frame_outputs, start, |_| true);
+            return self.frames(&scene, &frame_outputs, start, interrupts, |_| true);
         };
         // Check the memory limit before the folder is created.
         frame_outputs.first().map(|first| memory::fit(&self.plan, &scene, first)).transpose()?;
         if self.plan.shard != Shard::WHOLE {
             let _folder = FrameFolder::open(&movie.folder(), Access::Shared)?;
-            self.frames(&scene, &frame_outputs, start, |_| true)
+            self.frames(&scene, &frame_outputs, start, interrupts, |_| true)
                 .map_err(|failure| failure.with_saved_work(Some(movie.folder())))?;
-            return self.report_frames(movie, frame_outputs.len());
+            return self.report_frames(movie, frame_outputs.len()).map(|()| true);
         }
         let mut encoder = MovieEncoder::start(movie, header)?;
-        let frames = self.frames(&scene, &frame_outputs, start, |frame_output| encoder.push(&frame_output.output));
+        let push = |frame_output: &FrameOutput| encoder.push(&frame_output.output);
+        let frames = self.frames(&scene, &frame_outputs, start, interrupts, push);
         frames.map_err(|failure| failure.with_saved_work(Some(movie.folder())))?;
         encoder.finish()?;
-        self.report_movie(movie, frame_outputs.len(), start)
+        self.report_movie(movie, frame_outputs.len(), start).map(|()| true)
     }
 
     /// Header of the movie.
@@ -115,17 +124,17 @@ impl RenderCommand {
         Ok(header)
     }
 
-    /// Renders the pictures in order, as long as `done` returns `true`.
+    /// Renders the pictures in order, as long as `done` returns `true`. Returns whether one was
+    /// rendered and did not exist already.
     fn frames(
         &self,
         scene: &Scene,
         frame_outputs: &[FrameOutput],
         start: Instant,
+        interrupts: &mut Option<Interrupts>,
         mut done: impl FnMut(&FrameOutput) -> bool,
-    ) -> Result<(), Failure> {
-        // Signals are caught from the first render on, when there are files to clean up; until then
-        // they end the program.
-        let mut interrupts = None;
+    ) -> Result<bool, Failure> {
+        let mut some_rendered = false;
         let (mut frame_cache, mut frame_progress, mut start) =
             (FrameCache::default(), FrameProgress::new(frame_outputs.len()), start);
         for frame_output in frame_outputs {
@@ -135,8 +144,9 @@ impl RenderCommand {
                 frame_output,
                 &mut frame_cache,
                 RenderStart { time: start, frame_progress: current },
-                &mut interrupts,
+                interrupts,
             )?;
+            some_rendered |= is_rendered;
             if !done(frame_output) {
                 break;
             }
@@ -147,7 +157,7 @@ impl RenderCommand {
             frame_progress = frame_progress.after(is_rendered.then(|| start.elapsed()));
             start = Instant::now();
         }
-        Ok(())
+        Ok(some_rendered)
     }
 
     /// Renders a picture; returns `false` if it exists already.
