@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use crate::model_args::ModelArgs;
-use juggler::memory::solids_bytes;
+use juggler::memory::model_bytes;
 use juggler::mesh::{FileContent, estimate};
 use juggler::scene::document::{bytes_to_read, read_text};
 use juggler::scene::{Loader, Scene, named};
@@ -33,12 +33,19 @@ fn load_by(loader: Loader, name: &str, most: Option<u64>) -> Result<Scene, Failu
     let path = Path::new(name);
     if FileContent::detect(path).is_mesh() {
         check_memory(estimate(path).map_or(0, |mesh| mesh.peak_bytes), name, most)?;
+        if most.is_some() && loader.is_model(path) {
+            check_memory(model_bytes(&loader.model_needs(path)), name, most)?;
+        }
     } else if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
-        check_memory(solids_bytes(loader.solids(path)), name, most)?;
+        check_memory(model_bytes(&loader.model_needs(path)), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
-    Ok(loader.named(name)?)
+    let scene = loader.named(name)?;
+    if most.is_some() && !scene.is_around_model() {
+        check_memory(model_bytes(&scene.model_needs()), name, most)?;
+    }
+    Ok(scene)
 }
 
 /// Loads as [`load`], and selects what a model file shows.
@@ -48,6 +55,17 @@ fn load_by(loader: Loader, name: &str, most: Option<u64>) -> Result<Scene, Failu
 /// As [`load`]; also if flags for models are given and the file is no model.
 pub fn load_model(name: &str, model: &ModelArgs, most: Option<u64>) -> Result<Scene, Failure> {
     let mut scene = load_by(model.loader(), name, most)?;
+    model.apply(name, &mut scene)?;
+    Ok(scene)
+}
+
+/// Loads as [`load_model`], without a limit of memory and without decoding pictures of textures.
+///
+/// # Errors
+///
+/// As [`load_model`].
+pub fn load_outline(name: &str, model: &ModelArgs) -> Result<Scene, Failure> {
+    let mut scene = load_by(model.loader().with_picture_heads(), name, None)?;
     model.apply(name, &mut scene)?;
     Ok(scene)
 }

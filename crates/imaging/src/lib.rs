@@ -50,7 +50,9 @@ pub use format::ImageFormat;
 pub use input::{AlphaImage, Limits, decode, inspect, read, read_with_alpha, read_within};
 pub use look::DisplayLook;
 pub use output::{Destination, create, to_memory, to_standard_output, write_image};
-pub use raster::{Raster, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster};
+pub use raster::{
+    Raster, RasterHead, RasterLayout, RasterSamples, TransferFunction, decode_raster, inspect_raster, raster_head,
+};
 pub use raster_file::raster_bytes;
 pub use tone::{AnyCurve, Matrix, Primaries, Tone, ToneCurveKind, WhiteBalance};
 pub use viewpoint::{Matrix4, Viewpoint};

@@ -165,3 +165,46 @@ pub fn inspect_raster(path: &Path) -> Result<RasterLayout, ImageError> {
     let (file, mut bytes) = (path.display().to_string(), open(path)?);
     codec::layout(source(&file, &mut bytes, &Limits::NONE)?, &mut bytes)
 }
+
+/// Layout of an image, and the memory that decoding it needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RasterHead {
+    /// Size and sample format.
+    pub layout: RasterLayout,
+    /// Upper bound of the memory of the decoder beside the samples, in bytes.
+    pub decoder_bytes: u64,
+}
+
+impl RasterHead {
+    /// Bytes of the samples.
+    pub fn samples_bytes(&self) -> u64 {
+        let RasterLayout { width, height, channels, sample_bytes, .. } = self.layout;
+        let pixels = u64::from(width).saturating_mul(u64::from(height));
+        pixels.saturating_mul(u64::from(channels) * u64::from(sample_bytes))
+    }
+}
+
+/// Reads the head of an image within the limits, without decoding pixels; `file` names the bytes in
+/// messages.
+pub fn raster_head(file: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Result<RasterHead, ImageError> {
+    let mut bytes = bytes;
+    let layout = codec::layout(source(file, &mut bytes, limits)?, &mut bytes)?;
+    let per_sample = match layout.format {
+        // A copy that Exif turns, and of 16 bits the bytes before they become words.
+        ImageFormat::Png if layout.sample_bytes == 1 => 1,
+        ImageFormat::Png => 4,
+        // A copy that Exif turns, and the coefficients of all blocks if several scans refine them.
+        ImageFormat::Jpeg if !codec::has_several_scans(file, &mut bytes)? => 1,
+        ImageFormat::Jpeg => 3,
+        // Planes of the colors, and colors with alpha.
+        ImageFormat::Webp => 3,
+        ImageFormat::Exr | ImageFormat::Hdr | ImageFormat::Pfm => 10,
+        ImageFormat::Tiff | ImageFormat::Tga | ImageFormat::Bmp | ImageFormat::Gif => {
+            4 * u64::from(layout.sample_bytes)
+        }
+    };
+    // Sizes above the limits of textures are possible here.
+    let sides = u64::from(layout.width).saturating_mul(u64::from(layout.height));
+    let decoder_bytes = sides.saturating_mul(u64::from(layout.channels)).saturating_mul(per_sample);
+    Ok(RasterHead { layout, decoder_bytes })
+}

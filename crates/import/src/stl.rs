@@ -101,6 +101,10 @@ impl ModelFile for StlModel {
         &[]
     }
 
+    fn moves(&self, _choice: &ModelChoice) -> bool {
+        false
+    }
+
     fn is_z_up(&self) -> bool {
         STL.is_z_up
     }
@@ -112,7 +116,7 @@ impl ModelFile for StlModel {
         }
         let material = format!("{prefix}{DEFAULT_MATERIAL}");
         let object = |(name, mesh): &(String, Mesh)| {
-            Object::new(mesh.clone()).named(format!("{prefix}{name}")).material_named(&*material)
+            Object::new(mesh.clone()).named(format!("{prefix}{name}")).material_named(&*material).into()
         };
         Ok(ModelParts {
             materials: IndexMap::from([(material.clone(), gray(false))]),

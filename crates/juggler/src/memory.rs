@@ -5,8 +5,10 @@ use crate::{AovSet, Error, Picture, Settings};
 use juggler_camera::aov::FilmAovs;
 use juggler_camera::film::{AovSums, Film, Rect, TILE_EDGE};
 use juggler_render::BAND_PIXELS;
-use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
+use juggler_scene::compile::{DECODED_AT_ONCE, Needs, PictureNeeds};
+use juggler_scene::model::ModelNeeds;
 use juggler_scene::{Names, Scene};
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::path::Path;
 
@@ -25,9 +27,11 @@ const OBJECT: u64 = 768;
 const INSTANCE: u64 = 448;
 /// Bytes of an emitting shape while the world is built.
 const EMITTER: u64 = 768;
-/// Bytes of a triangle written in the scene file itself, while the world is built.
-const TRIANGLE: u64 = 160;
+/// Bytes of a triangle of a mesh in the scene itself beside its arrays, while the world is built.
+const TRIANGLE: u64 = 120;
 
+/// Bytes of a mesh in the scene itself beside its arrays and triangles, while the world is built.
+const MESH: u64 = 2200;
 /// Bytes of the arrays of a point or a line segment while its model file is read.
 const SOLID: u64 = 160;
 
@@ -70,6 +74,12 @@ pub struct Effort {
 #[derive(Clone, Debug)]
 pub struct Memory {
     building: Vec<MemoryPart>,
+    /// Bytes that the reading of the largest file needs meanwhile, since files are read one after the
+    /// other.
+    reading: u64,
+    /// Bytes that the decoding of each picture needs meanwhile, in descending order. Several pictures
+    /// are decoded at once.
+    decoding: Vec<u64>,
     /// Components of the built world.
     world: Vec<MemoryPart>,
     /// Other components while rendering, without bands and threads.
@@ -91,9 +101,10 @@ pub struct Memory {
 struct Contents {
     /// What stays in memory.
     parts: Vec<MemoryPart>,
-    /// Bytes that the reading of the largest file needs meanwhile, since files are read one after the
-    /// other.
-    temporary: u64,
+    /// As [`Memory::reading`].
+    reading: u64,
+    /// As [`Memory::decoding`].
+    decoding: Vec<u64>,
     /// Bytes of the arrays of instances.
     instances: u64,
 }
@@ -106,12 +117,15 @@ impl Contents {
             let estimate = juggler_mesh::estimate(file).unwrap_or_default();
             all.add_file("mesh", file, [estimate.peak_bytes, estimate.resident_bytes]);
         }
-        let pictures = needs.pictures.iter().map(|file| (file, estimate_picture(file)));
-        let panoramas = needs.panoramas.iter().map(|file| (file, estimate_panorama(file)));
-        for (file, estimate) in pictures.chain(panoramas) {
-            all.add_file("picture", file, [estimate.peak_bytes, estimate.resident_bytes]);
+        for PictureNeeds { name, estimate } in needs.pictures.iter().chain(&needs.panoramas) {
+            all.parts.push(part(format!("the picture `{name}`"), estimate.resident_bytes));
         }
+        let readings = needs.panoramas.iter().map(|panorama| panorama.estimate.temporary_bytes());
+        all.reading = readings.fold(all.reading, u64::max);
+        all.decoding = needs.pictures.iter().map(|picture| picture.estimate.temporary_bytes()).collect();
+        all.decoding.sort_by_key(|bytes| Reverse(*bytes));
         all.add_arrays("meshes in memory", needs.meshes);
+        all.add_arrays("model files", needs.models);
         for file in &needs.instance_files {
             let estimate = juggler_mesh::estimate_points(file).unwrap_or_default();
             all.instances = all.instances.saturating_add(estimate.resident_bytes);
@@ -124,7 +138,7 @@ impl Contents {
 
     /// Adds a file and the bytes that it needs: at most, and after it is read.
     fn add_file(&mut self, kind: &str, file: &Path, [peak, resident]: [u64; 2]) {
-        self.temporary = self.temporary.max(peak.saturating_sub(resident));
+        self.reading = self.reading.max(peak.saturating_sub(resident));
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         self.parts.push(part(format!("the {kind} `{name}`"), resident));
     }
@@ -148,12 +162,13 @@ impl Memory {
         let more = neighbor_scenes::extra_worlds(scene, &settings.aovs);
         world.push(part(NEIGHBOR_WORLDS, more.saturating_mul(scene_bytes(&needs))));
         building.extend_from_slice(world.get(2..).unwrap_or_default());
-        building.push(part("reading files and building trees", contents.temporary));
         Ok(Self {
             building,
+            reading: contents.reading,
+            decoding: contents.decoding,
             world,
             rendering: Vec::new(),
-            text: needs.text.saturating_add(contents.instances),
+            text: needs.text.saturating_add(contents.instances).saturating_add(needs.models),
             thread: THREAD + GROUP.saturating_mul(needs.rays * RAY + needs.shadows * SHADOW),
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),
@@ -177,6 +192,7 @@ impl Memory {
         self.world.push(part("textures", geometry.texture_bytes as u64));
         self.world.push(part("the background", geometry.background_bytes as u64));
         self.building.clear();
+        (self.reading, self.decoding) = Default::default();
         self
     }
 
@@ -213,7 +229,15 @@ impl Memory {
 
     fn building_with(&self, effort: &Effort) -> Vec<MemoryPart> {
         let threads = part("threads", THREAD.saturating_mul(effort.threads as u64));
-        self.building.iter().cloned().chain([threads]).collect()
+        let reading = self.reading.max(self.decoding_bytes(effort.threads));
+        let reading = part("reading files and building trees", reading);
+        self.building.iter().cloned().chain([reading, threads]).collect()
+    }
+
+    /// Bytes that the decoding of pictures needs at most beside the pictures.
+    fn decoding_bytes(&self, threads: usize) -> u64 {
+        let bound = self.decoding.first().copied().unwrap_or_default().max(DECODED_AT_ONCE);
+        self.decoding.iter().take(threads).copied().fold(0, u64::saturating_add).min(bound)
     }
 
     fn rendering_with(&self, effort: &Effort) -> Vec<MemoryPart> {
@@ -249,10 +273,12 @@ impl Memory {
     }
 }
 
-/// Bytes to read the points and lines of a model file, and to build a world of the `solids`, spheres
-/// and cylinders, that they become.
-pub fn solids_bytes(solids: u64) -> u64 {
-    if solids == 0 { 0 } else { PROGRAM.saturating_add(solids.saturating_mul(SOLID.saturating_add(INSTANCE))) }
+/// Bytes to open models and to build a world of the spheres and cylinders that their points and lines
+/// become; 0 without models.
+pub fn model_bytes(needs: &ModelNeeds) -> u64 {
+    let solids = needs.solids.saturating_mul(SOLID.saturating_add(INSTANCE));
+    let bytes = needs.bytes.saturating_add(solids);
+    if bytes == 0 { 0 } else { PROGRAM.saturating_add(bytes) }
 }
 
 /// AOVs that the film of a scene with these settings stores.
@@ -264,9 +290,10 @@ fn film_aovs(scene: &Scene, settings: &Settings) -> FilmAovs {
 fn scene_bytes(needs: &Needs) -> u64 {
     let objects = needs.objects.saturating_mul(OBJECT);
     let instances = needs.instances.saturating_mul(INSTANCE);
-    let triangles = needs.triangles.saturating_mul(TRIANGLE);
+    let triangles = needs.triangles.saturating_mul(TRIANGLE).saturating_add(needs.arrays);
     let emitters = needs.emitters.saturating_mul(EMITTER);
-    [objects, instances, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
+    let meshes = needs.inline_meshes.saturating_mul(MESH);
+    [objects, instances, meshes, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
 }
 
 fn part(what: impl Into<String>, bytes: u64) -> MemoryPart {

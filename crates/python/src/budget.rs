@@ -4,7 +4,7 @@ use crate::errors::{convert, memory_error};
 use crate::settings::RenderSettings;
 use crate::threads;
 use juggler::denoise::DenoiserInput;
-use juggler::memory::{Effort, Memory, MemoryPart, sum};
+use juggler::memory::{Effort, Memory, MemoryPart, model_bytes, sum};
 use juggler::render::BAND_PIXELS;
 use juggler::scene::Scene;
 use juggler::{Limit, Settings};
@@ -18,6 +18,12 @@ const PIXEL: u64 = 12;
 pub fn effort(scene: &Scene, settings: &RenderSettings) -> PyResult<Effort> {
     let threads = threads::thread_count(settings.threads)?;
     let Some(most) = settings.max_memory else { return Ok(Effort { threads, band_pixels: BAND_PIXELS }) };
+    let models = model_bytes(&scene.model_needs());
+    if models > most {
+        let (models, most) = (bytes(models), bytes(most));
+        let message = format!("the models of the scene need about {models} of memory to be read");
+        return Err(memory_error(&format!("{message}, more than `max_memory` of {most}")));
+    }
     let memory = estimate(scene, &settings.settings).map_err(convert)?;
     memory.fit(most, threads).map_err(|parts| memory_error(&message(&parts, most)))
 }

@@ -1,9 +1,9 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::asset::Asset;
-use crate::compile::{AssetCache, NEVER_CANCELLED};
-use crate::model::{ModelCache, ModelFormat};
-use crate::store::{Bundle, MAX_FILE_BYTES, Store};
+use crate::compile::{AssetCache, NEVER_CANCELLED, PictureReading};
+use crate::model::{ModelCache, ModelFormat, ModelNeeds};
+use crate::store::{Bundle, Store};
 use crate::{Scene, SceneError};
 use juggler_math::BuildControl;
 use std::path::Path;
@@ -16,12 +16,13 @@ use std::path::Path;
 pub struct Loader {
     formats: &'static [&'static dyn ModelFormat],
     is_lenient: bool,
+    pictures: PictureReading,
 }
 
 impl Loader {
     /// Creates a loader that knows these formats.
     pub const fn new(formats: &'static [&'static dyn ModelFormat]) -> Self {
-        Self { formats, is_lenient: false }
+        Self { formats, is_lenient: false, pictures: PictureReading::Whole }
     }
 
     /// The same loader, which shows missing and broken pictures of models gray, with a warning,
@@ -29,6 +30,13 @@ impl Loader {
     #[must_use]
     pub const fn lenient(self) -> Self {
         Self { is_lenient: true, ..self }
+    }
+
+    /// The same loader, whose scenes read only the heads of the pictures of textures, for programs that
+    /// render nothing.
+    #[must_use]
+    pub const fn with_picture_heads(self) -> Self {
+        Self { pictures: PictureReading::Heads, ..self }
     }
 
     /// Loads a file as [`Scene::load`] does. A model becomes a scene that shows it, with a light if
@@ -84,16 +92,18 @@ impl Loader {
         cache.is_model(path) && !cache.is_plain_mesh(path)
     }
 
-    /// Number of spheres and cylinders that the points and lines of a model file become, from its
-    /// head alone; 0 for other files.
-    pub fn solids(self, path: &Path) -> u64 {
-        let (store, models) = (Store::default(), ModelCache::new(self.formats, self.is_lenient));
-        let bytes = store.read_bytes(path, MAX_FILE_BYTES).unwrap_or_default();
-        models.format(path, &bytes).map_or(0, |format| format.solids(&bytes))
+    /// Memory that a model file needs, from its document and the lengths of the files that it names;
+    /// zero for other files.
+    pub fn model_needs(self, path: &Path) -> ModelNeeds {
+        self.models().needs(path, &Store::default())
+    }
+
+    fn models(self) -> ModelCache {
+        ModelCache::new(self.formats, self.is_lenient, self.pictures)
     }
 
     /// Cache of files from a store, in the formats of the loader.
     pub(crate) fn cache(self, store: Store) -> AssetCache {
-        AssetCache::new(store).with_models(ModelCache::new(self.formats, self.is_lenient))
+        AssetCache::new(store).with_models(self.models(), self.pictures)
     }
 }

@@ -265,8 +265,12 @@ impl Scene {
     /// Estimates what building the world needs memory for, without reading files.
     pub fn needs(&self) -> Needs {
         match self.expanded_heads() {
-            None => Needs::from_scene(&self.description, self.files()),
-            Some(expansion) => Needs::from_scene(&expansion.description, self.files_of(&expansion)),
+            None => Needs::from_scene(&self.description, &Tracks::default(), self.files()),
+            Some(expansion) => {
+                let files = self.files_of(&expansion);
+                let needs = Needs::from_scene(&expansion.description, &expansion.tracks, files);
+                Needs { models: expansion.model_bytes, ..needs }
+            }
         }
     }
 

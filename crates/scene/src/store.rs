@@ -1,14 +1,15 @@
 //! Storage of a scene's files: the file system, or memory.
 
-use crate::asset::Assets;
+use crate::asset::{Assets, display_name};
 use crate::document::{self, Unreadable, text_of};
 use crate::named;
 use crate::suggest::closest;
 use juggler_imaging::regular::{self, ReadError};
-use juggler_mesh::{FileContent, PointEstimate, estimate_bytes, estimate_points, points_of_head};
+use juggler_imaging::{Limits, RasterHead, raster_head};
+use juggler_mesh::{FileContent, PointEstimate, estimate_points, points_of_head};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
+use std::io::{BufReader, Cursor, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -126,6 +127,24 @@ impl Store {
         }
     }
 
+    /// Head of a picture, and the length of its file in bytes; `None` if it cannot be read.
+    pub(crate) fn picture_head(&self, path: &Path, limits: &Limits) -> Option<(RasterHead, u64)> {
+        let name = display_name(path);
+        let of_bytes = |bytes: &[u8]| {
+            let head = raster_head(&name, Cursor::new(bytes), limits).ok()?;
+            Some((head, bytes.len() as u64))
+        };
+        match (self.assets.at(path), &self.backend) {
+            (Some(asset), _) => of_bytes(asset.bytes()?),
+            (None, Backend::Memory(bundle)) => of_bytes(bundle.find(path)?.1),
+            (None, Backend::Disk) => {
+                let file = regular::open(path).ok()?;
+                let length = file.metadata().ok()?.len();
+                Some((raster_head(&name, BufReader::new(file), limits).ok()?, length))
+            }
+        }
+    }
+
     /// Memory of the points of a PLY file, from its head; zero for a file that cannot be read.
     pub(crate) fn points_of_head(&self, path: &Path) -> PointEstimate {
         let of_bytes = |bytes: &[u8]| points_of_head(bytes, bytes.len() as u64);
@@ -179,6 +198,15 @@ impl Store {
             Backend::Disk => named::similar_file(path, MAX_NAMES),
             Backend::Memory(bundle) => bundle.similar_file(path),
         })
+    }
+
+    /// Length of a file in bytes; `None` if it cannot be read.
+    pub(crate) fn length(&self, path: &Path) -> Option<u64> {
+        match (self.assets.at(path), &self.backend) {
+            (Some(asset), _) => asset.bytes().map(|bytes| bytes.len() as u64),
+            (None, Backend::Disk) => Some(std::fs::metadata(path).ok()?.len()),
+            (None, Backend::Memory(bundle)) => Some(bundle.find(path)?.1.len() as u64),
+        }
     }
 
     /// Canonical name, which is equal for equal files.

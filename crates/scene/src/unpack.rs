@@ -79,7 +79,7 @@ impl Unpacker<'_> {
                 mesh.crease_angle_degrees = crease_angle_degrees;
             }
             if let Some(instances) = object.instances.as_mut().filter(|instances| are_many(instances)) {
-                *instances = Instances::from_file(self.instance_file(instances, &name));
+                **instances = Instances::from_file(self.instance_file(instances, &name));
             }
             object.objects.iter_mut().for_each(|objects| self.list(objects, &name));
         }
@@ -128,7 +128,8 @@ impl Unpacker<'_> {
 
 /// Whether an object or an object inside it is a mesh of arrays or has many instances.
 fn has_arrays(object: &Item<Object>) -> bool {
-    let own = object.mesh().is_some_and(|mesh| mesh.file.is_none()) || object.instances.as_ref().is_some_and(are_many);
+    let own =
+        object.mesh().is_some_and(|mesh| mesh.file.is_none()) || object.instances.as_deref().is_some_and(are_many);
     own || object.inner().iter().any(has_arrays)
 }
 

@@ -1,10 +1,15 @@
 //! Places where the order of objects decides what is seen, since nothing else does: surfaces of
 //! unlike materials at one place, and overlapping solids of equal priority.
 
-use super::{Cluster, Member, Vertex, World};
+use super::emitters::Emitters;
+use super::geometry::Geometry;
+use super::{Cluster, Member, Object, Vertex, World};
+use juggler_light::background::AnyBackground;
+use juggler_material::MaterialTable;
 use juggler_material::medium::InteriorId;
-use juggler_math::{Ray, Vec3};
+use juggler_math::{BuildControl, Cancelled, Ray, Rgb, Vec3};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Number of test rays along each edge of the bounding box.
 const GRID: u32 = 24;
@@ -36,6 +41,23 @@ struct Search {
 }
 
 impl World {
+    /// Builds the hierarchy over the objects as [`World::new`] does, without light sampling: shapes that
+    /// emit light are hit by rays and are no emitters. For programs that only trace rays.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if `control` is cancelled.
+    pub fn without_emitters(
+        objects: Vec<Object>,
+        materials: MaterialTable,
+        control: &BuildControl,
+    ) -> Result<Self, Cancelled> {
+        let top = Geometry::top_level(objects, control)?;
+        let background = AnyBackground::from(Rgb::BLACK);
+        let no_lights = (Vec::new(), Rgb::BLACK);
+        Ok(Self::from_emitters(Arc::new(top), materials, no_lights, background, Emitters::default()))
+    }
+
     /// Finds scene entries whose order decides what is seen. Test rays parallel to the axes, on a grid
     /// over the bounding box, follow solids up to the first opaque surface. Small contacts, and those
     /// inside closed rooms, may be missed, as may all after several places with many surfaces each.

@@ -10,6 +10,12 @@ use juggler_light::LightSample;
 use juggler_light::background::AnyBackground;
 use juggler_light::emitter::{AreaEmitter, LightBounds, LightTree, LightTreeSample};
 use juggler_math::{BuildControl, Cancelled, Ray, Rgb, Vec2, Vec3, robust};
+use std::collections::BTreeSet;
+
+/// Maximum number of triangles of all emissive meshes up to which each triangle is an emitter. With
+/// more, a mesh that is placed several times is one emitter per placement, whose points are sampled by
+/// area.
+pub const MAX_SPLIT_TRIANGLES: u64 = 1 << 18;
 
 /// All emitters of a world.
 #[derive(Clone, Debug, Default)]
@@ -103,6 +109,27 @@ impl LightSampleContext {
     }
 }
 
+/// Address of the arrays of a mesh, which its copies share; `None` for other shapes.
+fn mesh_address(shape: &EmissiveShape) -> Option<usize> {
+    Some(std::ptr::from_ref(shape.shape().mesh()?.data()?).addr())
+}
+
+/// Meshes that are placed several times, if all emissive meshes have more than
+/// [`MAX_SPLIT_TRIANGLES`] triangles.
+fn repeated_meshes(shapes: &[EmissiveShapeEntry]) -> BTreeSet<usize> {
+    let meshes = shapes.iter().filter_map(|entry| entry.shape.shape().mesh());
+    if meshes.map(|mesh| mesh.arrays().triangles.len() as u64).sum::<u64>() <= MAX_SPLIT_TRIANGLES {
+        return BTreeSet::new();
+    }
+    let (mut seen, mut repeated) = (BTreeSet::new(), BTreeSet::new());
+    for address in shapes.iter().filter_map(|entry| mesh_address(&entry.shape)) {
+        if !seen.insert(address) {
+            repeated.insert(address);
+        }
+    }
+    repeated
+}
+
 impl Emitters {
     /// Creates the emitters of lights, emissive shapes and background. `radius` is that of a sphere
     /// around all bounded objects.
@@ -151,6 +178,7 @@ impl Emitters {
         self.shapes = emissive_shapes.into_iter().map(entry).collect();
         // The list is mostly sorted already, and indices are unique.
         self.shapes.sort_unstable_by_key(|entry| entry.shape.shape_index);
+        let repeated = repeated_meshes(&self.shapes);
         self.finite.reserve(self.shapes.len());
         bounds.reserve(self.shapes.len());
         for (entry_index, EmissiveShapeEntry { shape, first_emitter, emitter_indices }) in (0..).zip(&mut self.shapes) {
@@ -158,8 +186,10 @@ impl Emitters {
                 return;
             }
             *first_emitter = self.finite.len() as u32;
+            let is_split = mesh_address(shape).is_none_or(|mesh| !repeated.contains(&mesh));
+            let transform = shape.static_transform().filter(|_| is_split);
             let Some(emissive) =
-                shape.static_transform().and_then(|transform| EmissiveSurfaces::from_shape(shape.shape(), &transform))
+                transform.and_then(|transform| EmissiveSurfaces::from_shape(shape.shape(), &transform))
             else {
                 bounds.push(shape.bounds());
                 self.finite.push(Emitter::Shape(entry_index));

@@ -55,7 +55,7 @@ pub use closest_after::HitKey;
 use cluster::starts_at;
 pub use cluster::{Cluster, Member};
 pub use differential::SurfaceDifferential;
-pub use emitters::{EmitterId, EmitterSample, LightSampleContext};
+pub use emitters::{EmitterId, EmitterSample, LightSampleContext, MAX_SPLIT_TRIANGLES};
 pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
 pub use geometry_stats::GeometryStats;
 pub use instance_attributes::{AttributeArrays, AttributeList, InstanceAttributes};
@@ -194,6 +194,21 @@ impl World {
         background: AnyBackground,
         control: &BuildControl,
     ) -> Result<Self, Cancelled> {
+        let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
+        let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
+        lights.retain(|light| light.ambient.is_black());
+        let shapes = EmissiveShape::collect(&top, &materials);
+        let emitters = Emitters::new(&lights, shapes, &background, radius(&top.bounds()), control)?;
+        Ok(Self::from_emitters(top, materials, (lights, ambient), background, emitters))
+    }
+
+    fn from_emitters(
+        top: Arc<Geometry>,
+        materials: MaterialTable,
+        (lights, ambient): (Vec<SceneLight>, Rgb),
+        background: AnyBackground,
+        emitters: Emitters,
+    ) -> Self {
         let geometries = geometry_stats::geometries(&top);
         let used =
             || geometries.iter().flat_map(|geometry| &geometry.objects).filter_map(|instance| instance.material());
@@ -203,17 +218,14 @@ impl World {
         let has_sheets = used().any(|id| materials.is_sheet(id));
         let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
         let has_dispersion = materials.interiors().iter().any(|interior| interior.dispersion > 0.0);
-        let mut lights: Vec<SceneLight> = lights.into_iter().map(Into::into).collect();
-        let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
-        lights.retain(|light| light.ambient.is_black());
+        let has_mesh_attributes = top.has_mesh_attributes;
+        let has_image_textures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lights.iter().any(SceneLight::moves);
-        let shapes = EmissiveShape::collect(&top, &materials);
-        let emitters = Emitters::new(&lights, shapes, &background, radius(&top.bounds()), control)?;
         let casters = CausticCaster::collect(&top, &materials);
         let contacts = Contacts::new(&top, &materials);
-        Ok(Self {
-            has_image_textures: materials.textures().image_bytes() > 0,
-            has_mesh_attributes: top.has_mesh_attributes,
+        Self {
+            has_mesh_attributes,
+            has_image_textures,
             top,
             materials,
             lights,
@@ -233,7 +245,7 @@ impl World {
             moves,
             labels: Labels::default(),
             has_groups: false,
-        })
+        }
     }
 
     /// Sets the SIMD instruction set of all ray queries, for tests and measurements. The default is

@@ -20,7 +20,7 @@ impl Check {
     /// Prints mistakes and warnings; warnings alone are no failure. A file that is no scene at all is a
     /// mistake as well.
     pub fn run(self) -> Result<(), Failure> {
-        match source::load_model(&self.scene, &self.model, None) {
+        match source::load_outline(&self.scene, &self.model) {
             Ok(scene) => {
                 let (problems, light) = scene.check_with_light();
                 self.answer(&problems, light.as_ref())

@@ -58,7 +58,7 @@ impl Info {
         if film::is_partial_render(&start) {
             return partial_render::text(path, self.json);
         }
-        let scene = source::load_model(&self.scene, &self.model, None)?;
+        let scene = source::load_outline(&self.scene, &self.model)?;
         let compiled = scene.compile()?;
         let text = if self.json { to_json } else { to_words };
         Ok(text(&self.scene, &scene, &compiled))
@@ -131,7 +131,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("background", background_text(compiled.world.background()));
     row("infinite", infinite_lights_text(&compiled.world.infinite_lights()));
     row("materials", shown.materials.len().to_string());
-    row("textures", textures_text(shown.textures.len(), geometry.texture_bytes));
+    row("textures", textures_text(shown.textures.len(), picture_bytes(scene)));
     row("cameras", cameras.join(", "));
     row("bounds", bounds_text(&compiled.world.bounds()));
     row("memory", memory_text(geometry.geometry_bytes, geometry.bvh_bytes));
@@ -175,8 +175,13 @@ fn emissive_text(shapes: usize) -> String {
 }
 
 /// `3, 12 MiB of pictures`.
-fn textures_text(count: usize, pictures: usize) -> String {
-    if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures as u64)) } else { count.to_string() }
+fn textures_text(count: usize, pictures: u64) -> String {
+    if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures)) } else { count.to_string() }
+}
+
+/// Memory of the pictures of textures in bytes, by their heads.
+fn picture_bytes(scene: &Scene) -> u64 {
+    scene.needs().pictures.iter().map(|picture| picture.estimate.resident_bytes).fold(0, u64::saturating_add)
 }
 
 fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
@@ -213,7 +218,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "memory": {
             "geometry_bytes": geometry.geometry_bytes,
             "bvh_bytes": geometry.bvh_bytes,
-            "texture_bytes": geometry.texture_bytes,
+            "texture_bytes": picture_bytes(scene),
         },
         "animation": motion::json(&description.animation, &scene.survey()),
         "models": model::json(scene),

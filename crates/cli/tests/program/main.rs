@@ -12,6 +12,7 @@ mod inputs;
 mod memory;
 mod merging;
 mod meshes;
+mod model_memory;
 mod models;
 mod movies;
 mod parts;

@@ -306,6 +306,12 @@ fn stored(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError
     }
 }
 
+/// Whether a JPEG has several scans, whose coefficients a decoder holds until the last of them.
+pub(crate) fn has_several_scans(file: &str, bytes: &mut dyn ReadSeek) -> Result<bool, ImageError> {
+    let found = bytes.rewind().and_then(|()| jpeg::has_several_scans(bytes));
+    found.map_err(|source| ImageError::Read { file: file.to_owned(), source })
+}
+
 /// Reads the layout of [`raster`] from the header.
 pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     let layout = stored_layout(source, bytes);

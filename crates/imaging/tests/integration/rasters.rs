@@ -3,7 +3,7 @@
 use crate::common::{encode, header, picture};
 use juggler_imaging::{
     ImageError, ImageFormat, Limits, Options, Raster, RasterLayout, RasterSamples, TransferFunction, decode,
-    decode_raster,
+    decode_raster, raster_head,
 };
 use std::io::Cursor;
 
@@ -43,6 +43,25 @@ fn raster_samples_of_every_format_match_the_image() {
         assert_eq!(linear, image.pixels().iter().flat_map(|p| p.to_array()).collect::<Vec<_>>(), "{format}");
         assert_eq!(raster.transfer_function == TransferFunction::Linear, !format.is_tone_mapped());
     }
+}
+
+#[test]
+fn heads_have_the_layout_and_the_memory_of_decoders() {
+    let image = picture(19, 18, 3.0);
+    let head = |bytes: &[u8], limits: &Limits| raster_head("a file", Cursor::new(bytes), limits);
+    for format in ImageFormat::ALL {
+        let bytes = encode(format, &image, &header(&image));
+        let found = head(&bytes, &LIMITS).unwrap();
+        assert_eq!(found.layout, read(&bytes).unwrap().layout);
+        let samples = 19 * 18 * 3;
+        assert_eq!(found.samples_bytes(), samples * u64::from(found.layout.sample_bytes), "{format}");
+        assert!((samples..=10 * samples).contains(&found.decoder_bytes), "{format}: {}", found.decoder_bytes);
+        assert!(head(&bytes, &Limits { max_pixels: 10, ..LIMITS }).is_err(), "{format}");
+    }
+    let jpeg = encode(ImageFormat::Jpeg, &image, &header(&image));
+    let decoder = |bytes: &[u8]| head(bytes, &LIMITS).unwrap().decoder_bytes;
+    // With a second scan, decoders keep the coefficients of the first.
+    assert_eq!(decoder(&[jpeg.as_slice(), &[0xff, 0xda]].concat()), 3 * decoder(&jpeg));
 }
 
 #[test]

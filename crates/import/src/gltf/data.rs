@@ -13,6 +13,12 @@ use std::borrow::Cow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// Bytes of a document for each byte of its JSON.
+const JSON: u64 = 6;
+
+/// Bytes of the pose and the objects of a node beside those of its document, while parts are made.
+const NODE: u64 = 600;
+
 /// Contents of a buffer.
 #[derive(Debug)]
 enum Contents {
@@ -144,6 +150,17 @@ impl GltfData {
                 Err(Fault::at(at, format!("the arrays of the file need more than {limit} bytes, the limit")))
             }
         }
+    }
+
+    /// Memory in bytes of the file, its buffers, decoded buffer views, pictures and document.
+    pub fn bytes(&self) -> u64 {
+        let of_buffer = |contents: &Contents| if let Contents::Bytes(bytes) = contents { bytes.len() } else { 0 };
+        let buffers = self.buffers.iter().map(of_buffer);
+        let views = self.views.iter().filter_map(|view| Some(view.get()?.as_ref().ok()?.len()));
+        let encoded = buffers.chain(views).map(|bytes| bytes as u64).fold(self.media.bytes(), u64::saturating_add);
+        let nodes = (self.gltf.document.nodes.len() as u64).saturating_mul(NODE);
+        let document = self.gltf.json_length.saturating_mul(JSON).saturating_add(nodes);
+        encoded.saturating_add(self.gltf.bytes.len() as u64).saturating_add(document)
     }
 
     /// Number of bytes of all arrays decoded so far.

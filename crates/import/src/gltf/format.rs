@@ -5,12 +5,13 @@ use super::document::Document;
 use super::error::{Fault, GltfError};
 use super::limits::Limits;
 use super::open::Gltf;
-use super::translate::{Content, Meshes};
-use super::{is_binary, summary};
+use super::translate::Content;
+use super::{is_binary, needs, summary};
 use glam::DAffine3;
 use juggler_math::BuildControl;
+use juggler_scene::compile::PictureReading;
 use juggler_scene::model::{
-    FileDigest, FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+    FileDigest, FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelNeeds, ModelParts, ModelSummary,
 };
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -35,10 +36,9 @@ impl ModelFormat for GltfFormat {
         is_binary(head)
     }
 
-    fn solids(&self, bytes: &[u8]) -> u64 {
-        let limits = self.limits.unwrap_or_default();
-        let document = Gltf::open("", bytes.to_vec(), &limits).map(|gltf| gltf.document);
-        document.map_or(0, |document| Meshes::new(&document, &limits).solids(&document))
+    fn needs(&self, bytes: Vec<u8>, files: &dyn Files) -> ModelNeeds {
+        let gltf = Gltf::open("", bytes, &self.limits.unwrap_or_default());
+        gltf.map_or_else(|_| ModelNeeds::default(), |gltf| needs::needs(&gltf, files))
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
@@ -91,6 +91,11 @@ impl ModelFile for GltfModel {
         &self.files
     }
 
+    fn bytes(&self) -> u64 {
+        let deformable = self.content.meshes.deformable_bytes();
+        self.content.data.bytes().saturating_add(deformable)
+    }
+
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
         self.parts_with_control(choice, prefix, &BuildControl::default())
     }
@@ -108,6 +113,10 @@ impl ModelFile for GltfModel {
 
     fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, ModelError> {
         self.content.node_transform(node, choice).map_err(|error| model_error(&error))
+    }
+
+    fn moves(&self, choice: &ModelChoice) -> bool {
+        self.content.moves(choice)
     }
 
     fn summary(&self, choice: &ModelChoice) -> Result<ModelSummary, ModelError> {
@@ -139,5 +148,9 @@ impl Files for Recorder<'_> {
 
     fn is_lenient(&self) -> bool {
         self.files.is_lenient()
+    }
+
+    fn pictures(&self) -> PictureReading {
+        self.files.pictures()
     }
 }

@@ -6,10 +6,12 @@ use super::data::GltfData;
 use super::document::{Document, IesProfile, Index};
 use super::error::{Fault, GltfError};
 use super::ktx2;
-use juggler_imaging::{Limits as ImageLimits, decode_raster};
+use juggler_imaging::{Limits as ImageLimits, decode_raster, raster_head};
 use juggler_math::BuildControl;
 use juggler_scene::Asset;
+use juggler_scene::compile::PictureReading;
 use std::io::Cursor;
+use std::sync::OnceLock;
 
 /// First bytes of a KTX2 file.
 pub const KTX2: &[u8] = b"\xabKTX 20\xbb";
@@ -20,9 +22,19 @@ pub const MAX_TEXELS: u64 = 1 << 28;
 #[derive(Debug, Default)]
 pub struct Media {
     images: Vec<Option<Asset>>,
+    /// Pictures in other formats that take the place of KTX2 pictures, each made at its first use.
+    replacements: Vec<OnceLock<Result<Asset, Fault>>>,
     /// Whether pictures may be missing although textures use them.
     is_lenient: bool,
     profiles: Vec<Option<Asset>>,
+}
+
+impl Media {
+    /// Bytes of the pictures and profiles.
+    pub fn bytes(&self) -> u64 {
+        let assets = self.images.iter().chain(&self.profiles).flatten();
+        assets.filter_map(Asset::bytes).map(|bytes| bytes.len() as u64).fold(0, u64::saturating_add)
+    }
 }
 
 /// How the pictures of a file are used.
@@ -62,13 +74,15 @@ impl GltfData {
             if !is_used || !is_lenient {
                 return is_used.then(|| keep(read(), is_replaceable)).flatten();
             }
-            let picture = read().and_then(|asset| match check_picture(asset.bytes().unwrap_or_default()) {
+            let check = |asset: &Asset| check_picture(asset.bytes().unwrap_or_default(), files.pictures());
+            let picture = read().and_then(|asset| match check(&asset) {
                 Ok(()) => Ok(asset),
                 Err(error) => Err(Fault::at(self.image_place(index), error)),
             });
             picture.map_err(|fault| lost.push(fault)).ok()
         });
-        let images = images.collect();
+        let images: Vec<Option<Asset>> = images.collect();
+        let replacements = images.iter().map(|_| OnceLock::new()).collect();
         let profiles = document.extensions.lights_ies.iter().flat_map(|lights| &lights.lights).enumerate();
         let profiles = profiles.map(|(index, profile)| keep(self.profile(index, profile, files), false)).collect();
         if !faults.is_empty() {
@@ -76,7 +90,7 @@ impl GltfData {
             faults.truncate(self.gltf.limits.faults.max(1));
             return Err(GltfError { file: self.gltf.name.clone(), faults, omitted });
         }
-        self.media = Media { images, is_lenient, profiles };
+        self.media = Media { images, replacements, is_lenient, profiles };
         for fault in lost {
             self.gltf.warnings.add(fault.to_string(), "the picture is shown gray", 1);
         }
@@ -101,6 +115,22 @@ impl GltfData {
         self.media.images.get(image).cloned().flatten()
     }
 
+    /// Picture in another format that takes the place of a picture, which `convert` makes once.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be decoded.
+    pub fn image_replacement(
+        &self,
+        image: usize,
+        convert: impl FnOnce() -> Result<Asset, Fault>,
+    ) -> Result<Asset, Fault> {
+        match self.media.replacements.get(image) {
+            Some(known) => known.get_or_init(convert).clone(),
+            None => convert(),
+        }
+    }
+
     /// Whether a picture is missing or broken and lenient files allow it.
     pub fn is_lost(&self, image: usize) -> bool {
         self.media.is_lenient && self.media.images.get(image).is_some_and(Option::is_none)
@@ -112,13 +142,16 @@ impl GltfData {
     }
 }
 
-/// Checks that a picture can be decoded.
-fn check_picture(bytes: &[u8]) -> Result<(), String> {
-    if bytes.starts_with(KTX2) {
-        return ktx2::decode(bytes, MAX_TEXELS).map(drop).map_err(|error| error.to_string());
-    }
-    let decoded = decode_raster("the picture", Cursor::new(bytes), &ImageLimits::default());
-    decoded.map(drop).map_err(|error| error.to_string())
+/// Checks that a picture, or its head, can be decoded.
+fn check_picture(bytes: &[u8], reading: PictureReading) -> Result<(), String> {
+    let (name, limits) = ("the picture", ImageLimits::default());
+    let checked = match (bytes.starts_with(KTX2), reading) {
+        (true, PictureReading::Whole) => return ktx2::decode(bytes, MAX_TEXELS).map(drop).map_err(|e| e.to_string()),
+        (true, PictureReading::Heads) => return ktx2::read_head(bytes).map(drop).map_err(|e| e.to_string()),
+        (false, PictureReading::Whole) => decode_raster(name, Cursor::new(bytes), &limits).map(drop),
+        (false, PictureReading::Heads) => raster_head(name, Cursor::new(bytes), &limits).map(drop),
+    };
+    checked.map_err(|error| error.to_string())
 }
 
 /// Use of each picture.

@@ -33,6 +33,7 @@ mod limits;
 mod location;
 mod media;
 pub mod meshopt;
+mod needs;
 mod open;
 pub mod pose;
 mod primitive;

@@ -29,6 +29,8 @@ pub struct Gltf {
     pub(super) binary: Option<Range<usize>>,
     /// Length of the file in bytes.
     pub(super) length: u64,
+    /// Length of its JSON in bytes.
+    pub(super) json_length: u64,
 }
 
 impl Gltf {
@@ -50,12 +52,12 @@ impl Gltf {
             Ok(document) => document,
             Err(fault) => return Err(GltfError::new(name, fault)),
         };
-        let Container { binary, mut warnings, .. } = container;
+        let Container { binary, mut warnings, json, .. } = container;
         let binary_bytes = binary.as_ref().map(|range| range.len() as u64);
         warnings.append(check::check(&name, &document, binary_bytes, limits)?);
-        let length = bytes.len() as u64;
+        let (length, json_length) = (bytes.len() as u64, json.len() as u64);
         let bytes = if binary.is_some() { bytes } else { Vec::new() };
-        Ok(Self { name, document, warnings, limits: *limits, bytes, binary, length })
+        Ok(Self { name, document, warnings, limits: *limits, bytes, binary, length, json_length })
     }
 
     /// Loads the buffers.

@@ -6,7 +6,7 @@ use super::extensions::{Support, extension};
 use super::format::GltfModel;
 use super::translate::camera_aspects;
 use juggler_math::BuildControl;
-use juggler_scene::model::{ExtensionSupport, ModelChoice, ModelClip, ModelExtension, ModelSummary};
+use juggler_scene::model::{ExtensionSupport, ModelChoice, ModelClip, ModelExtension, ModelParts, ModelSummary};
 use std::collections::BTreeSet;
 
 /// Describes a file.
@@ -16,8 +16,9 @@ use std::collections::BTreeSet;
 /// The content is not valid, or the choice names something that the file does not have.
 pub fn summary(model: &GltfModel, choice: &ModelChoice) -> Result<ModelSummary, GltfError> {
     let (content, document) = (&model.content, model.document());
+    // The objects of many nodes are dropped at once.
+    let ModelParts { lights, background, warnings, .. } = content.parts(choice, "", &BuildControl::new())?;
     let posed = content.posed(choice)?;
-    let parts = content.parts(choice, "", &BuildControl::new())?;
     let nodes = posed.nodes.iter().map(|node| node.index);
     let clips = content.clips.iter().map(|clip| ModelClip { name: clip.name.clone(), seconds: clip.duration() });
     let names = &content.names;
@@ -30,15 +31,15 @@ pub fn summary(model: &GltfModel, choice: &ModelChoice) -> Result<ModelSummary, 
         clip: posed.selection.clip,
         materials: names.materials.clone(),
         cameras: camera_aspects(&content.view(&posed, ""), document),
-        lights: parts.lights.iter().map(|(name, _)| name.clone()).collect(),
-        illuminance: content.illuminance(&posed, &parts.lights),
-        has_environment: parts.background.is_some(),
+        lights: lights.iter().map(|(name, _)| name.clone()).collect(),
+        illuminance: content.illuminance(&posed, &lights),
+        has_environment: background.is_some(),
         nodes: document.nodes.len(),
         distinct_triangles: distinct_triangles(model),
         drawn_triangles: nodes.map(|node| drawn_triangles(document, node)).fold(0, u64::saturating_add),
         textures: textures(model),
         extensions: document.extensions_used.iter().map(|name| support(name)).collect(),
-        warnings: parts.warnings,
+        warnings,
     })
 }
 
@@ -92,7 +93,7 @@ fn drawn_triangles(document: &Document, node: usize) -> u64 {
 }
 
 /// Number of triangles of a primitive, degenerate ones included.
-fn triangles(document: &Document, primitive: &Primitive) -> u64 {
+pub fn triangles(document: &Document, primitive: &Primitive) -> u64 {
     let accessor = primitive.indices.or_else(|| primitive.attributes.find(&Semantic::Position));
     let corners = accessor.and_then(|index| document.accessors.get(index.get())).map_or(0, |found| found.count.get());
     match primitive.mode {

@@ -2,6 +2,7 @@
 //! files in the folder of the OBJ are read.
 
 use crate::gltf::Warnings;
+use juggler_scene::compile::PictureReading;
 use juggler_scene::model::{FileDigest, FileError, Files};
 
 /// Maximum number of bytes of all files that an OBJ names.
@@ -26,6 +27,11 @@ impl<'f> Reader<'f> {
     /// Whether pictures that are missing or broken are shown gray.
     pub fn is_lenient(&self) -> bool {
         self.files.is_lenient()
+    }
+
+    /// What is read of pictures.
+    pub fn pictures(&self) -> PictureReading {
+        self.files.pictures()
     }
 
     /// Reads the file that `name`, as written in a file in `folder`, means. Returns its name and

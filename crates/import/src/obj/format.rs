@@ -3,6 +3,7 @@
 use super::files::Reader;
 use super::library::Library;
 use super::materials::{Materials, gray};
+use super::needs;
 use super::pieces::{MAX_OBJECTS, Piece, pieces};
 use crate::gltf::{Warnings, image_size};
 use crate::textures::{NamedTextures, VERTEX_COLORS};
@@ -12,7 +13,8 @@ use juggler_math::{Aabb, BuildControl};
 use juggler_mesh::{MeshLimits, OBJ, is_plain_obj, parse_obj_with_control};
 use juggler_scene::Object;
 use juggler_scene::model::{
-    AnimationChoice, FileDigest, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelParts, ModelSummary,
+    AnimationChoice, FileDigest, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelNeeds, ModelParts,
+    ModelSummary,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -40,6 +42,10 @@ impl ModelFormat for ObjFormat {
 
     fn is_plain_mesh(&self, bytes: &[u8]) -> bool {
         is_plain_obj(bytes)
+    }
+
+    fn needs(&self, bytes: Vec<u8>, files: &dyn Files) -> ModelNeeds {
+        needs::needs(&bytes, files)
     }
 
     fn open(&self, name: &str, bytes: Vec<u8>, files: &dyn Files) -> Result<Arc<dyn ModelFile>, ModelError> {
@@ -107,6 +113,15 @@ impl ModelFile for ObjFile {
         &self.files
     }
 
+    fn moves(&self, _choice: &ModelChoice) -> bool {
+        false
+    }
+
+    fn bytes(&self) -> u64 {
+        let pictures = self.library.pictures.iter().filter_map(|picture| picture.asset.bytes());
+        pictures.map(|bytes| bytes.len() as u64).fold(0, u64::saturating_add)
+    }
+
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
         self.check(choice)?;
         let mut translated = Materials {
@@ -132,7 +147,7 @@ impl ModelFile for ObjFile {
             }
             let shown = piece.name.as_deref().map_or_else(|| format!("object {}", objects.len()), str::to_owned);
             let object = Object::new(piece.mesh.clone()).named(format!("{prefix}{shown}"));
-            objects.push(object.material_named(name));
+            objects.push(object.material_named(name).into());
         }
         let assets = self.library.pictures.iter();
         let assets = assets.map(|picture| (format!("{prefix}{}", picture.asset_name), picture.asset.clone()));

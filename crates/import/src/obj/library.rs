@@ -4,9 +4,10 @@ use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
 use crate::gltf::Warnings;
 use crate::textures::picture_asset_name;
-use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
+use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster, raster_head};
 use juggler_math::message::{MAX_QUOTE, excerpt};
 use juggler_scene::Asset;
+use juggler_scene::compile::PictureReading;
 use juggler_scene::model::FileError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -115,7 +116,7 @@ impl Library {
                 let written = (folder.clone(), map.file.clone());
                 let written = format!("{}/{}", written.0, written.1);
                 if let Some(index) = known.get(&written) {
-                    inspect(self.pictures.get_mut(*index), word);
+                    inspect(self.pictures.get_mut(*index), word, reader.pictures());
                     loaded.pictures.insert(word, *index);
                     continue;
                 }
@@ -131,7 +132,7 @@ impl Library {
                     }
                 };
                 let index = add_picture(&mut self.pictures, found, &place);
-                inspect(self.pictures.get_mut(index), word);
+                inspect(self.pictures.get_mut(index), word, reader.pictures());
                 known.insert(written, index);
                 loaded.pictures.insert(word, index);
             }
@@ -180,8 +181,12 @@ fn read_picture(
     let found = reader.find(folder, file, place, warnings).and_then(|found| found.ok_or(FileError::Missing));
     let (name, bytes) = found.map_err(|error| format!("{place}: {}: {error}", excerpt(file, MAX_QUOTE)))?;
     if reader.is_lenient() {
-        let decoded = decode_raster(&name, Cursor::new(&bytes), &Limits::default());
-        decoded.map_err(|error| format!("{place}: {error}"))?;
+        let (file, limits) = (Cursor::new(&bytes), Limits::default());
+        let checked = match reader.pictures() {
+            PictureReading::Whole => decode_raster(&name, file, &limits).map(drop),
+            PictureReading::Heads => raster_head(&name, file, &limits).map(drop),
+        };
+        checked.map_err(|error| format!("{place}: {error}"))?;
     }
     Ok((name, bytes))
 }
@@ -197,16 +202,18 @@ fn add_picture(pictures: &mut Vec<Picture>, (file, bytes): (String, Vec<u8>), pl
     pictures.len() - 1
 }
 
-/// Learns about a picture what its use for a texture needs. Files that are no pictures are reported
-/// when the texture is prepared.
-fn inspect(picture: Option<&mut Picture>, word: &str) {
-    let Some(picture) = picture.filter(|_| matches!(word, "map_d" | "bump")) else { return };
-    let bytes = picture.asset.bytes().unwrap_or_default();
-    let Ok(raster) = decode_raster(&picture.file, Cursor::new(bytes), &Limits::default()) else { return };
+/// Learns about a picture what its use for a texture needs: from its head whether it has alpha, and
+/// from its pixels, if they are read, whether it is a normal map. Files that are no pictures are
+/// reported when the texture is prepared.
+fn inspect(picture: Option<&mut Picture>, word: &str, reading: PictureReading) {
+    let Some(picture) = picture else { return };
+    let bytes = Cursor::new(picture.asset.bytes().unwrap_or_default());
     if word == "map_d" {
-        picture.has_alpha = matches!(raster.layout.channels, 2 | 4);
-    } else {
-        picture.is_normal_map = is_normal_map(&raster);
+        let head = raster_head(&picture.file, bytes, &Limits::default());
+        picture.has_alpha = head.is_ok_and(|head| matches!(head.layout.channels, 2 | 4));
+    } else if word == "bump" && reading == PictureReading::Whole {
+        let raster = decode_raster(&picture.file, bytes, &Limits::default());
+        picture.is_normal_map = raster.is_ok_and(|raster| is_normal_map(&raster));
     }
 }
 

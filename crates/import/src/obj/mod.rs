@@ -8,6 +8,7 @@
 //! | `files` | names of files, as other systems write them |
 //! | `materials` | materials as `principled` |
 //! | `pieces` | meshes by object and material, smoothing groups |
+//! | `needs` | memory that an OBJ needs |
 //!
 //! The faces are read by [`parse_obj`](juggler_mesh::parse_obj). All bytes may be hostile:
 //! sizes are limited, and errors name file and line.
@@ -17,6 +18,7 @@ mod format;
 mod library;
 mod materials;
 mod mtl;
+mod needs;
 mod pieces;
 
 pub(crate) use format::DEFAULT_MATERIAL;

@@ -129,3 +129,40 @@ fn colors_of_instances_equal_materials() {
         }
     }
 }
+
+/// A scene of `count` robots of three sizes, in a clip, while the shutter is open for `shutter` frames.
+fn crowd(count: usize, shutter: f64) -> Scene {
+    let robot = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/models/robot.glb");
+    let copy = |i: usize| {
+        let scale = 1 + i % 3;
+        format!(
+            r#"{{"model": {{"file": {robot:?}}}, "transform": [{{"scale": {scale}}}, {{"translate": [{i}, 0, 0]}}]}}"#
+        )
+    };
+    let objects: Vec<String> = (0..count).map(copy).collect();
+    let text =
+        format!(r#"{{"version": 1, "render": {{"shutter": [0, {shutter}]}}, "objects": [{}]}}"#, objects.join(", "));
+    juggler::loader().from_json(text, "crowd.json").unwrap()
+}
+
+/// A robot has two nodes with meshes, of seven primitives.
+#[test]
+fn copies_of_a_model_share_meshes_and_materials() {
+    for shutter in [0.0, 0.5] {
+        let [one, many] = [1, 12].map(|count| {
+            let scene = crowd(count, shutter);
+            let stats = scene.compile().unwrap().world.geometry_stats();
+            (scene.expanded_description().materials.len(), stats.unique_triangles, stats.geometry_bytes)
+        });
+        assert_eq!((one.0, one.1), (many.0, many.1), "shutter {shutter}");
+        assert!(many.2 - one.2 < 11 * 7 * 1000, "shutter {shutter}: {} and {} bytes", one.2, many.2);
+    }
+}
+
+/// The lights of a robot have 3,116 triangles; those of a crowd are one emitter for each mesh.
+#[test]
+fn a_crowd_with_lights_needs_little_memory() {
+    let [few, many] = [2, 100].map(|count| crowd(count, 0.0).compile().unwrap().world.geometry_stats());
+    assert_eq!((few.emitting_shapes, many.emitting_shapes), (4, 200));
+    assert!(many.emitter_bytes < few.emitter_bytes, "{} and {} bytes", few.emitter_bytes, many.emitter_bytes);
+}

@@ -14,11 +14,11 @@ impl Assembly {
     /// Builds the world and returns warnings about surfaces of unlike materials at one place,
     /// and about overlapping solids of equal priority; none in a scene of very many shapes.
     pub fn ambiguity_warnings(self) -> Vec<Finding> {
-        let Self { objects, materials, lights, background, labels, names, .. } = self;
+        let Self { objects, materials, labels, names, .. } = self;
         if objects.iter().map(Object::shapes).fold(0, u64::saturating_add) > MAX_SHAPES {
             return Vec::new();
         }
-        let Ok(world) = World::new(objects, materials, lights, background, &NEVER_CANCELLED) else { return Vec::new() };
+        let Ok(world) = World::without_emitters(objects, materials, &NEVER_CANCELLED) else { return Vec::new() };
         let found = world.with_labels(labels).ambiguities();
         let warning = |(kind, first, second): &(Ambiguity, u32, u32)| {
             let [first, second] = [first, second].map(|entry| names.object(*entry));

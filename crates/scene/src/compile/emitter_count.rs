@@ -7,17 +7,20 @@ use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use juggler_material::{AnyMaterial, MaterialRef};
-use std::collections::BTreeMap;
+use juggler_shape::Mesh;
+use juggler_world::MAX_SPLIT_TRIANGLES;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Number of emitters of a scene without recursive groups: emissive shapes, and all triangles of
 /// emissive inline meshes.
 pub fn emitters(scene: &Description) -> u64 {
-    EmitterCounter::new(scene).among(&scene.objects, false)
+    EmitterCounter::of_scene(scene).among(&scene.objects, false)
 }
 
 /// Error for a scene with too many emitters, at the object that exceeds the limit.
 pub fn too_many(scene: &Description) -> Option<Finding> {
-    let mut search = EmitterCounter::new(scene);
+    let mut search = EmitterCounter::of_scene(scene);
     let mut sum = 0u64;
     for (i, object) in scene.objects.iter().enumerate() {
         sum = sum.saturating_add(search.object(object, false));
@@ -33,17 +36,48 @@ pub fn too_many(scene: &Description) -> Option<Finding> {
     None
 }
 
+/// Address of the arrays of a mesh, which its copies share.
+fn address(mesh: &Mesh) -> usize {
+    Arc::as_ptr(mesh.arrays()).addr()
+}
+
+/// Adds to `repeated` the meshes that the objects place several times, outside of groups.
+fn repeated_meshes(objects: &[Item<Object>], times: u64, seen: &mut BTreeSet<usize>, repeated: &mut BTreeSet<usize>) {
+    for object in objects.iter().filter(|object| object.is_visible()) {
+        let times = times.saturating_mul(object.instance_count());
+        if let Some(mesh) = object.mesh().filter(|mesh| mesh.file.is_none())
+            && (!seen.insert(address(mesh)) || times > 1)
+        {
+            repeated.insert(address(mesh));
+        }
+        repeated_meshes(object.inner(), times, seen, repeated);
+    }
+}
+
 struct EmitterCounter<'s> {
     scene: &'s Description,
     /// Whether named materials emit.
     materials: BTreeMap<&'s str, bool>,
     /// Number of emitters of a group, by name and by whether the inherited material emits.
     groups: BTreeMap<(&'s str, bool), u64>,
+    /// Addresses of the arrays of meshes that are one emitter each.
+    whole: BTreeSet<usize>,
 }
 
 impl<'s> EmitterCounter<'s> {
     fn new(scene: &'s Description) -> Self {
-        Self { scene, materials: BTreeMap::new(), groups: BTreeMap::new() }
+        Self { scene, materials: BTreeMap::new(), groups: BTreeMap::new(), whole: BTreeSet::new() }
+    }
+
+    /// Counter of a scene, in which copies of a mesh are one emitter each if all have many triangles.
+    fn of_scene(scene: &'s Description) -> Self {
+        let mut counter = Self::new(scene);
+        if counter.among(&scene.objects, false) > MAX_SPLIT_TRIANGLES {
+            let mut seen = BTreeSet::new();
+            counter.groups.clear();
+            repeated_meshes(&scene.objects, 1, &mut seen, &mut counter.whole);
+        }
+        counter
     }
 
     fn among(&mut self, objects: &'s [Item<Object>], inherited: bool) -> u64 {
@@ -57,6 +91,7 @@ impl<'s> EmitterCounter<'s> {
         let emits = object.material.as_ref().map_or(inherited, |material| self.emits(material));
         let mut count = match object.mesh() {
             _ if !emits => 0,
+            Some(mesh) if self.whole.contains(&address(mesh)) => 1,
             Some(mesh) => (mesh.arrays().triangles.len() as u64).max(1),
             _ => shapes(object),
         };

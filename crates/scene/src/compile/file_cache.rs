@@ -1,6 +1,6 @@
 //! Cache of files, each read once.
 
-use super::meshes::{file_stamp, read_error_message};
+use super::meshes::read_error_message;
 use crate::store::Store;
 use juggler_math::BuildControl;
 use std::collections::BTreeMap;
@@ -99,4 +99,10 @@ pub fn hash(bytes: &[u8], control: &BuildControl) -> [u8; 32] {
         hasher.update(part);
     }
     hasher.finalize().into()
+}
+
+/// Length and modification time of a file.
+pub(crate) fn file_stamp(path: &Path) -> Option<(u64, SystemTime)> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.len(), metadata.modified().ok()?))
 }

@@ -1,7 +1,8 @@
 //! Image files of textures. Each file is read and prepared once and shared by all textures, frames
 //! and copies of a scene.
 
-use super::meshes::{AssetCache, Files, NEVER_CANCELLED, file_stamp, read_error_message};
+use super::file_cache::file_stamp;
+use super::meshes::{AssetCache, Files, NEVER_CANCELLED, read_error_message};
 use crate::description::Description;
 use crate::item::Item;
 use crate::path::Path;
@@ -9,14 +10,14 @@ use crate::report::Finding;
 use crate::store::{MAX_FILE_BYTES, Store};
 use crate::texel_array::TexelArray;
 pub use crate::texel_array::{MAX_SIDE, MAX_TEXELS};
-use juggler_imaging::raster::{RasterLayout, decode_raster, inspect_raster};
-use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction};
+use juggler_imaging::raster::{RasterLayout, decode_raster};
+use juggler_imaging::{ImageError, Raster, RasterSamples, TransferFunction, raster_head};
 use juggler_math::{BuildControl, Rgb};
 use juggler_texture::{AnyTexture, ColorSpace, Image, Images, MipMap};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
 /// Limits that are checked before an image is decoded.
@@ -26,9 +27,20 @@ pub(super) const IMAGE_LIMITS: juggler_imaging::Limits =
 /// File, and the color space that its samples are decoded from.
 pub type ImageKey = (PathBuf, ColorSpace);
 
-/// Cache of loaded images.
+/// What is read of the pictures of textures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureReading {
+    /// All pixels.
+    #[default]
+    Whole,
+    /// The heads, which are checked; one texel stands for the pixels.
+    Heads,
+}
+
+/// Cache of loaded images. Assets of equal bytes share an entry.
 #[derive(Clone, Debug, Default)]
 pub struct ImageCache {
+    reading: PictureReading,
     entries: Arc<Mutex<BTreeMap<ImageKey, Arc<ImageFile>>>>,
 }
 
@@ -47,34 +59,65 @@ struct ImageFile {
     is_first_of_several: bool,
 }
 
+/// Key of the image of a file: its canonical name, or the hash of an asset.
+pub(super) fn image_key(path: &std::path::Path, space: ColorSpace, store: &Store) -> ImageKey {
+    let is_encoded = store.assets.at(path).is_some_and(|asset| asset.bytes().is_some());
+    match path.to_str().and_then(|path| path.split_once('/')).filter(|_| is_encoded) {
+        Some((digest, _)) => (digest.into(), space),
+        None => (store.canonical_name(path), space),
+    }
+}
+
 impl ImageCache {
+    /// Empty cache.
+    pub fn new(reading: PictureReading) -> Self {
+        Self { reading, ..Self::default() }
+    }
+
     /// Cache without the files that have changed.
     pub fn without_changed_files(&self) -> Self {
-        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let entries = self.entries();
         let same = |path: &PathBuf, entry: &ImageFile| entry.stamp.is_some() && entry.stamp == file_stamp(path);
         let kept = entries.iter().filter(|((path, _), entry)| same(path, entry));
         let kept = kept.map(|(name, entry)| (name.clone(), Arc::clone(entry))).collect();
-        Self { entries: Arc::new(Mutex::new(kept)) }
+        Self { reading: self.reading, entries: Arc::new(Mutex::new(kept)) }
     }
 
-    /// Loaded image of this key.
-    fn loaded(&self, key: &ImageKey) -> Option<Arc<ImageFile>> {
-        self.entries.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    /// What is read of pictures.
+    pub(super) fn reading(&self) -> PictureReading {
+        self.reading
+    }
+
+    fn entries(&self) -> MutexGuard<'_, BTreeMap<ImageKey, Arc<ImageFile>>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether the image of a file is loaded.
+    pub(super) fn is_loaded(&self, (path, space): &ImageKey, store: &Store) -> bool {
+        self.loaded(path, *space, store).is_some()
+    }
+
+    /// Loaded image of a file.
+    fn loaded(&self, path: &std::path::Path, space: ColorSpace, store: &Store) -> Option<Arc<ImageFile>> {
+        let entries = self.entries();
+        // The message of a broken asset names it.
+        let found = entries.get(&image_key(path, space, store));
+        found.or_else(|| entries.get(&(store.canonical_name(path), space))).cloned()
     }
 
     /// Loads an image without holding the lock, as for meshes. If `control` is cancelled, the image
     /// has a message and is not kept.
     fn load(&self, path: &std::path::Path, space: ColorSpace, store: &Store, control: &BuildControl) -> Arc<ImageFile> {
-        let name = (store.canonical_name(path), space);
-        let entries = || self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = entries().get(&name) {
-            return Arc::clone(known);
+        if let Some(known) = self.loaded(path, space, store) {
+            return known;
         }
         if let Err(cancelled) = control.check() {
             return Arc::new(ImageFile::new([0; 32], Err(cancelled.to_string())));
         }
-        let image = Arc::new(ImageFile::load(path, space, store));
-        Arc::clone(entries().entry(name).or_insert(image))
+        let image = Arc::new(ImageFile::load(path, space, store, self.reading));
+        let is_broken = image.pixels.is_err();
+        let key = if is_broken { (store.canonical_name(path), space) } else { image_key(path, space, store) };
+        Arc::clone(self.entries().entry(key).or_insert(image))
     }
 }
 
@@ -85,7 +128,7 @@ impl AssetCache {
     }
 
     /// [`AssetCache::image`]; a message if `control` is cancelled.
-    fn image_with_control(
+    pub(super) fn image_with_control(
         &self,
         path: &std::path::Path,
         space: ColorSpace,
@@ -102,7 +145,7 @@ impl AssetCache {
 }
 
 impl ImageFile {
-    fn load(path: &std::path::Path, space: ColorSpace, store: &Store) -> Self {
+    fn load(path: &std::path::Path, space: ColorSpace, store: &Store, reading: PictureReading) -> Self {
         if let Some((image, digest)) = store.assets.image_at(path) {
             return Self::from_image(image, digest, &store.assets.origin(path));
         }
@@ -116,11 +159,23 @@ impl ImageFile {
                 return Self { stamp, ..Self::new([0; 32], Err(read_error_message(path, &error, store))) };
             }
         };
+        if reading == PictureReading::Heads {
+            return Self { stamp, ..Self::from_head(&bytes, &store.assets.origin(path)) };
+        }
         let digest = blake3::hash(&bytes).into();
         let origin = store.assets.origin(path);
         let raster = decode_raster(&origin, Cursor::new(&*bytes), &IMAGE_LIMITS);
         drop(bytes);
         Self { stamp, ..Self::from_raster(raster, digest, &origin, space) }
+    }
+
+    /// An image of one texel in place of the pixels of a file.
+    fn from_head(bytes: &[u8], origin: &str) -> Self {
+        let head = raster_head(origin, Cursor::new(bytes), &IMAGE_LIMITS);
+        let texel = |channels: u8| MipMap::from_bytes([1, 1], channels, vec![u8::MAX; channels.into()], |level| level);
+        let empty = || format!("`{origin}`: contains no image");
+        let pixels = head.map_err(|error| error.to_string());
+        Self::new([0; 32], pixels.and_then(|head| texel(head.layout.channels).map(Arc::new).ok_or_else(empty)))
     }
 
     fn from_raster(raster: Result<Raster, ImageError>, digest: [u8; 32], origin: &str, space: ColorSpace) -> Self {
@@ -165,8 +220,8 @@ pub(super) fn infinity_warning(file: &str, count: u64) -> Option<String> {
 pub(super) fn warn_of_images(scene: &Description, files: &Files<'_>, findings: &mut Vec<Finding>) {
     for (name, texture) in &scene.textures {
         let AnyTexture::Image(image) = &**texture else { continue };
-        let key = (files.asset_cache.store().canonical_name(&files.texture_file(name, image)), image.color_space);
-        let Some(loaded) = files.asset_cache.images().loaded(&key) else { continue };
+        let (file, store) = (files.texture_file(name, image), files.asset_cache.store());
+        let Some(loaded) = files.asset_cache.images().loaded(&file, image.color_space, store) else { continue };
         let several = format!("`{}` holds several pictures; the texture shows the first", image.file);
         let several = loaded.is_first_of_several.then_some(several);
         for message in infinity_warning(&image.file, loaded.infinite).into_iter().chain(several) {
@@ -277,32 +332,4 @@ pub fn image_files(scene: &Description, files: &Files<'_>) -> BTreeSet<ImageKey>
         _ => None,
     };
     scene.textures.iter().filter_map(image).collect()
-}
-
-/// Memory of an image file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Estimate {
-    /// Bytes that remain in memory.
-    pub resident_bytes: u64,
-    /// Peak in bytes while the file is read.
-    pub peak_bytes: u64,
-}
-
-/// Upper bound of the memory for an image file, from its size and header; zero for a file that
-/// cannot be read.
-pub fn estimate(path: &std::path::Path) -> Estimate {
-    let Ok(layout) = inspect_raster(path) else { return Estimate::default() };
-    let samples = u64::from(layout.width) * u64::from(layout.height) * u64::from(layout.channels);
-    if samples > MAX_TEXELS * 4 {
-        return Estimate::default();
-    }
-    // Pyramids store bytes or floats, a third more for the smaller levels. Decoders hold samples
-    // and blocks in addition.
-    let (sample_bytes, beside) = match layout.sample_bytes {
-        1 if layout.to_srgb.is_none() => (1, 4),
-        _ => (4, 8),
-    };
-    let resident_bytes = samples * sample_bytes * 4 / 3 + 64;
-    let file = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    Estimate { resident_bytes, peak_bytes: resident_bytes + samples * beside + file }
 }

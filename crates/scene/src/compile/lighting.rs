@@ -1,15 +1,15 @@
 //! Files of backgrounds and lights, each read once, and prepared backgrounds.
 
 use super::file_cache::{CachedFile, FileCache};
-use super::images::{Estimate, IMAGE_LIMITS, MAX_TEXELS, infinity_warning};
+use super::images::{IMAGE_LIMITS, infinity_warning};
 use super::meshes::{AssetCache, Files};
+use super::picture_needs::Estimate;
 use crate::description::{BackgroundInput, Description};
 use crate::item::Item;
 use crate::kind::name_of;
 use crate::path::Path;
 use crate::report::Finding;
-use crate::store::MAX_FILE_BYTES;
-use juggler_imaging::raster::inspect_raster;
+use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_light::background::{AnyBackground, Panorama};
 use juggler_light::{AnyLight, IesProfile};
 use std::collections::BTreeSet;
@@ -184,16 +184,12 @@ pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Find
     Some(background)
 }
 
-/// Upper bound of the memory for an environment map, from the file's header; zero for a file that
-/// cannot be read.
-pub fn estimate(path: &std::path::Path) -> Estimate {
-    let Ok(layout) = inspect_raster(path) else { return Estimate::default() };
-    let pixels = u64::from(layout.width) * u64::from(layout.height);
-    if pixels > MAX_TEXELS {
-        return Estimate::default();
-    }
+/// Upper bound of the memory for an environment map, from the head of its file or asset; zero for a
+/// file that cannot be read.
+pub fn estimate(path: &std::path::Path, store: &Store) -> Estimate {
+    let Some((head, length)) = store.picture_head(path, &IMAGE_LIMITS) else { return Estimate::default() };
+    let pixels = u64::from(head.layout.width) * u64::from(head.layout.height);
     // At the peak, decoders hold 8 bytes per pixel; later, three floats per pixel await the table.
-    let resident_bytes = Panorama::bytes(pixels as usize) as u64 + 8 * u64::from(layout.height) + 4096;
-    let file = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-    Estimate { resident_bytes, peak_bytes: resident_bytes + 12 * pixels + file }
+    let resident_bytes = Panorama::bytes(pixels as usize) as u64 + 8 * u64::from(head.layout.height) + 4096;
+    Estimate { resident_bytes, peak_bytes: resident_bytes + 12 * pixels + length }
 }

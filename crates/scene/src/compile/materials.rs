@@ -29,6 +29,7 @@ pub struct Materials {
 impl Materials {
     /// Compiles the scene's textures and collects its named materials.
     pub fn new(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
+        files.decode_pictures(scene);
         let named = scene.textures.iter().map(|(name, texture)| (name.clone(), (**texture).clone()));
         let (textures, errors) = TextureTable::compile(named, &files);
         // Unknown names are reported already by `validate::names`.

@@ -2,16 +2,15 @@
 //! frames and copies of a scene. For image files see [`super::images`], for files of lights and
 //! backgrounds [`super::lighting`].
 
-use super::file_cache::FileCache;
-use super::file_cache::hash;
-use super::images::ImageCache;
+use super::file_cache::{FileCache, file_stamp, hash};
+use super::images::{ImageCache, PictureReading};
 use super::lighting::LightFiles;
 use super::loaded_instances::LoadedInstances;
 use crate::asset::{Asset, display_name};
 use crate::description::Description;
 use crate::document::Sources;
 use crate::mesh_scene::MeshOverview;
-use crate::model::{ModelCache, OpenedModel};
+use crate::model::{ModelCache, ModelNeeds, OpenedModel};
 use crate::path::{Path, PathRef};
 use crate::report::{Finding, plain_io};
 use crate::store::{MAX_FILE_BYTES, Store};
@@ -48,22 +47,16 @@ struct Entry {
     stamp: Option<(u64, SystemTime)>,
 }
 
-/// Length and modification time of a file.
-pub(crate) fn file_stamp(path: &std::path::Path) -> Option<(u64, SystemTime)> {
-    let metadata = std::fs::metadata(path).ok()?;
-    Some((metadata.len(), metadata.modified().ok()?))
-}
-
 impl AssetCache {
     /// Creates an empty cache of files from a store.
     pub fn new(store: Store) -> Self {
         Self { store, ..Self::default() }
     }
 
-    /// Sets the cache of model files.
+    /// Sets the cache of model files, and what is read of pictures.
     #[must_use]
-    pub fn with_models(self, models: ModelCache) -> Self {
-        Self { models, ..self }
+    pub fn with_models(self, models: ModelCache, reading: PictureReading) -> Self {
+        Self { models, images: ImageCache::new(reading), ..self }
     }
 
     /// Model file.
@@ -74,6 +67,11 @@ impl AssetCache {
     /// Model file; one with a message, which is not kept, if `control` is cancelled.
     pub(crate) fn model_with_control(&self, path: &std::path::Path, control: &BuildControl) -> Arc<OpenedModel> {
         self.models.get(path, &self.store, control)
+    }
+
+    /// Memory that a model file needs.
+    pub(crate) fn model_needs(&self, path: &std::path::Path) -> ModelNeeds {
+        self.models.needs(path, &self.store)
     }
 
     /// Whether a file is in a known format of models, by its first bytes or its name.

@@ -34,6 +34,7 @@ mod locate;
 mod materials;
 mod meshes;
 mod needs;
+mod picture_needs;
 mod placer;
 mod placing;
 mod prepared_instances;
@@ -46,16 +47,18 @@ mod times;
 mod transform_motion;
 
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub(crate) use file_cache::file_stamp;
 pub use illuminance::Illuminance;
 pub(crate) use images::image_files;
-pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
+pub use images::{MAX_SIDE, MAX_TEXELS, PictureReading};
 pub use labels::{Names, REST};
+pub use lighting::Purpose;
 pub(crate) use lighting::files as light_files;
-pub use lighting::{Purpose, estimate as estimate_panorama};
 pub use locate::ShapePlace;
 pub use meshes::{AssetCache, Files};
-pub(crate) use meshes::{NEVER_CANCELLED, file_stamp, read_error_message};
+pub(crate) use meshes::{NEVER_CANCELLED, read_error_message};
 pub use needs::Needs;
+pub use picture_needs::{DECODED_AT_ONCE, Estimate, PictureNeeds};
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 
 /// Scene that is ready to render.

@@ -14,6 +14,7 @@ use crate::path::{Path, PathRef};
 use crate::report::Finding;
 use juggler_math::{Motion, Transform, Vec3};
 use juggler_shape::{AnyShape, Mesh, Sphere};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Places all objects of a scene whose groups are counted. Returns them with the index of the first
@@ -26,7 +27,7 @@ pub fn place(
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
 ) -> (Vec<juggler_world::Object>, Vec<u32>) {
-    let mut preparer = Preparer { scene, files, materials, findings, is_animated: false };
+    let mut preparer = Preparer { scene, files, materials, findings, is_animated: false, moving: BTreeMap::new() };
     let groups = PathRef::Root.key("groups");
     let still = ListTracks::new();
     let groups = scene.groups.iter().map(|(name, objects)| {
@@ -47,6 +48,13 @@ struct Preparer<'m> {
     findings: &'m mut Vec<Finding>,
     /// Whether an enclosing object depends on time.
     is_animated: bool,
+    /// Meshes that deform while the shutter is open, by the addresses of their arrays at all times.
+    moving: BTreeMap<Vec<usize>, Mesh>,
+}
+
+/// Address of the arrays of a mesh, which copies of a model share.
+fn address(mesh: &Mesh) -> usize {
+    Arc::as_ptr(mesh.arrays()).addr()
 }
 
 /// Whether the JSON of an object depends on time.
@@ -169,9 +177,20 @@ impl Preparer<'_> {
 
     fn mesh(&mut self, mesh: &Mesh, at: &[&AnyShape], path: &PathRef<'_>) -> Option<Mesh> {
         let moments: Option<Vec<&Mesh>> = at.iter().map(|shape| shape.mesh()).collect();
-        match self.files.moving(&moments.unwrap_or_default(), path, self.findings) {
+        let moments = moments.unwrap_or_default();
+        let is_plain =
+            |mesh: &&Mesh| mesh.file.is_none() && mesh.morphs.is_empty() && mesh.crease_angle_degrees.is_none();
+        let arrays: Vec<usize> = moments.iter().filter(|mesh| is_plain(mesh)).map(|mesh| address(mesh)).collect();
+        let arrays = Some(arrays).filter(|arrays| !arrays.is_empty() && arrays.len() == moments.len());
+        if let Some(known) = arrays.as_ref().and_then(|arrays| self.moving.get(arrays)) {
+            return Some(known.clone());
+        }
+        match self.files.moving(&moments, path, self.findings) {
             None => self.files.mesh(mesh, path, self.findings),
-            Some(Ok(moving)) => Some(moving),
+            Some(Ok(moving)) => {
+                arrays.into_iter().for_each(|arrays| drop(self.moving.insert(arrays, moving.clone())));
+                Some(moving)
+            }
             Some(Err(invalid)) => self.fail(invalid.message, Path::from(path).join(&invalid.field)),
         }
     }
@@ -212,7 +231,7 @@ impl Preparer<'_> {
         if let Err(wrong) = still.check() {
             return self.fail(wrong.message, path.join(wrong.field));
         }
-        let others = collect_all(at, |at| at.instances.as_ref());
+        let others = collect_all(at, |at| at.instances.as_deref());
         let moves = others.iter().any(|other| *other != still);
         let keys = if moves { collect_all(at, |at| at.instances.as_ref()?.transforms().ok()) } else { Vec::new() };
         let keys = if keys.iter().all(|list| list.len() == still.count()) { keys } else { Vec::new() };

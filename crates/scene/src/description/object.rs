@@ -44,17 +44,17 @@ pub struct Object {
     pub objects: Option<Objects>,
     /// Row of spheres between two end spheres.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub chain: Option<Chain>,
+    pub chain: Option<Box<Chain>>,
     /// Spheres along two bones that meet in a joint.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub limb: Option<Limb>,
+    pub limb: Option<Box<Limb>>,
     /// Model file of another format.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub model: Option<Model>,
+    pub model: Option<Box<Model>>,
     /// Instances of the object: it is placed once for each of them, then by `transform`. In memory, a
     /// scene may have millions.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub instances: Option<Instances>,
+    pub instances: Option<Box<Instances>>,
     /// Transform from the object's space to that of its parent: a list of steps, applied in order,
     /// or a single step. Defaults to the identity.
     #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "transform::steps")]
@@ -180,17 +180,17 @@ impl Object {
 
     /// Creates an object of spheres in a row.
     pub fn chain(chain: Chain) -> Self {
-        Self { chain: Some(chain), ..Self::default() }
+        Self { chain: Some(chain.into()), ..Self::default() }
     }
 
     /// Creates an object of spheres along two bones.
     pub fn limb(limb: Limb) -> Self {
-        Self { limb: Some(limb), ..Self::default() }
+        Self { limb: Some(limb.into()), ..Self::default() }
     }
 
     /// Creates an object of a model file.
     pub fn model(model: Model) -> Self {
-        Self { model: Some(model), ..Self::default() }
+        Self { model: Some(model.into()), ..Self::default() }
     }
 
     /// Sets the name.
@@ -221,6 +221,8 @@ impl Object {
     /// Appends a transform step.
     #[must_use]
     pub fn transformed(mut self, step: TransformStep) -> Self {
+        // Most objects have one step.
+        self.transform.reserve_exact(1);
         self.transform.push(step);
         self
     }
@@ -228,7 +230,7 @@ impl Object {
     /// Places the object once for each instance.
     #[must_use]
     pub fn instances(mut self, instances: Instances) -> Self {
-        self.instances = Some(instances);
+        self.instances = Some(instances.into());
         self
     }
 

@@ -1,8 +1,8 @@
 //! Model files of a scene. Each is opened once and shared by all objects, frames and copies of the
 //! scene.
 
-use super::{FileDigest, FileError, Files, ModelFile, ModelFormat};
-use crate::compile::file_stamp;
+use super::{FileDigest, FileError, Files, ModelFile, ModelFormat, ModelNeeds};
+use crate::compile::{PictureReading, file_stamp};
 use crate::report::plain_io;
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;
@@ -21,6 +21,7 @@ pub struct ModelCache {
     formats: &'static [&'static dyn ModelFormat],
     /// Whether pictures that are missing or broken are shown gray.
     is_lenient: bool,
+    pictures: PictureReading,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<OpenedModel>>>>,
 }
 
@@ -45,8 +46,8 @@ impl OpenedModel {
 
 impl ModelCache {
     /// Cache of these formats. With `is_lenient`, pictures that are missing or broken are shown gray.
-    pub fn new(formats: &'static [&'static dyn ModelFormat], is_lenient: bool) -> Self {
-        Self { formats, is_lenient, ..Self::default() }
+    pub fn new(formats: &'static [&'static dyn ModelFormat], is_lenient: bool, pictures: PictureReading) -> Self {
+        Self { formats, is_lenient, pictures, ..Self::default() }
     }
 
     /// Format of a file by its first bytes, or else by the extension of its name.
@@ -83,6 +84,14 @@ impl ModelCache {
         Arc::clone(self.entries().entry(name).or_insert(model))
     }
 
+    /// Memory that a model file needs; zero for other files.
+    pub fn needs(&self, path: &Path, store: &Store) -> ModelNeeds {
+        let Ok(bytes) = store.read_bytes(path, MAX_FILE_BYTES) else { return ModelNeeds::default() };
+        let beside = FolderFiles { folder: path.parent().unwrap_or(Path::new("")), store, models: self };
+        let format = self.format(path, &bytes);
+        format.map_or_else(ModelNeeds::default, |format| format.needs(bytes.into_owned(), &beside))
+    }
+
     fn open(&self, path: &Path, store: &Store, control: &BuildControl) -> OpenedModel {
         let (folder, shown) = (path.parent().unwrap_or(Path::new("")), path.display().to_string());
         let mut stamps = vec![(path.to_owned(), file_stamp(path))];
@@ -98,7 +107,7 @@ impl ModelCache {
             let unknown = || format!("`{shown}` is in no known format of models");
             return failed(foreign.map_or_else(unknown, |foreign| format!("`{shown}`: {foreign}")));
         };
-        let beside = FolderFiles { folder, store, is_lenient: self.is_lenient };
+        let beside = FolderFiles { folder, store, models: self };
         match format.open_with_control(&shown, bytes, &beside, control) {
             Ok(file) => {
                 let others = file.files().iter().map(|other| folder.join(&other.name));
@@ -109,7 +118,8 @@ impl ModelCache {
                 OpenedModel { file: Ok(file), digests, stamps }
             }
             Err(mut error) => {
-                let lenient = FolderFiles { is_lenient: true, ..beside };
+                let models = &Self { is_lenient: true, ..self.clone() };
+                let lenient = FolderFiles { models, ..beside };
                 let opens =
                     |bytes: Cow<'_, [u8]>| format.open_with_control(&shown, bytes.into_owned(), &lenient, control);
                 let helps =
@@ -131,7 +141,7 @@ impl ModelCache {
 struct FolderFiles<'f> {
     folder: &'f Path,
     store: &'f Store,
-    is_lenient: bool,
+    models: &'f ModelCache,
 }
 
 impl Files for FolderFiles<'_> {
@@ -147,7 +157,15 @@ impl Files for FolderFiles<'_> {
         })
     }
 
+    fn length(&self, name: &str) -> Option<u64> {
+        self.store.length(&self.folder.join(name))
+    }
+
     fn is_lenient(&self) -> bool {
-        self.is_lenient
+        self.models.is_lenient
+    }
+
+    fn pictures(&self) -> PictureReading {
+        self.models.pictures
     }
 }

@@ -5,8 +5,8 @@
 //! of all other objects stay. Models that move while the shutter is open are expanded at each
 //! sampled time too, which gives the tracks of their objects, lights and cameras.
 
-use super::instance::{ModelNames, Place};
-use super::{FileDigest, ModelChoice, find_camera};
+use super::instance::{ModelNames, Place, SharedCopies};
+use super::{FileDigest, find_camera};
 use crate::compile::{AssetCache, Files};
 use crate::description::{BackgroundInput, CameraName, Description, Instances, Object, Objects};
 use crate::item::Item;
@@ -21,6 +21,8 @@ use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_math::Transform;
 use juggler_math::range::format_number;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A scene whose models and files of instances are expanded.
@@ -36,6 +38,8 @@ pub struct Expansion {
     pub findings: Vec<Finding>,
     /// What determines the contents of the models, for fingerprints.
     pub identities: Vec<ModelIdentity>,
+    /// Memory in bytes that the opened model files hold.
+    pub model_bytes: u64,
 }
 
 /// What determines the content of a model of a scene.
@@ -131,6 +135,8 @@ fn expand_with(files: Files<'_>, tracks: &Tracks, time: SceneTime, instance_sour
         moments: time.moments(),
         seconds: time.seconds(),
         names: ModelNames::default(),
+        copies: SharedCopies::default(),
+        model_bytes: BTreeMap::new(),
         findings: Vec::new(),
         identities: Vec::new(),
         lights: IndexMap::new(),
@@ -175,6 +181,10 @@ pub(super) struct Expander<'s> {
     /// Time of the frame in seconds.
     seconds: f64,
     pub names: ModelNames,
+    /// Parts of the models that were expanded so far.
+    pub copies: SharedCopies,
+    /// Memory in bytes of the opened model files.
+    pub model_bytes: BTreeMap<PathBuf, u64>,
     pub findings: Vec<Finding>,
     pub identities: Vec<ModelIdentity>,
     /// Lights of models, by the path of the model and their index there.
@@ -206,6 +216,7 @@ impl Expander<'_> {
             asset_cache: self.asset_cache,
             findings: self.findings,
             identities: self.identities,
+            model_bytes: self.model_bytes.into_values().fold(0, u64::saturating_add),
         }
     }
 
@@ -239,7 +250,7 @@ impl Expander<'_> {
             let place = Place { light_group: object.light_group.as_deref(), ..place };
             let at_frame = self.object(object, self.seconds, &path, place);
             let track = tracks.get(&i);
-            if track.is_some() || self.moves(object, &path) {
+            if track.is_some() || !self.moments.is_empty() && self.moves(object, &path) {
                 let moments = self.moments.clone();
                 let key = |(moment, seconds): (usize, &f64)| {
                     let object = track_object(object, track, moment);
@@ -257,17 +268,15 @@ impl Expander<'_> {
         (expanded, moved)
     }
 
-    /// Whether the shutter is open and a model in an object shows a clip at the scene's time.
+    /// Whether a model in an object shows a clip at the scene's time.
     fn moves(&self, object: &Object, path: &PathRef<'_>) -> bool {
         let own = object.model.as_ref().is_some_and(|model| {
             let file = self.files.locate(&Path::from(&path.key("model").key("file")), &model.file);
             let opened = self.asset_cache.model_with_control(&file, self.files.control);
-            let summary = |choice: &ModelChoice| opened.file.as_ref().ok()?.summary(choice).ok();
-            model.at.is_none() && summary(&model.choice(self.seconds)).is_some_and(|summary| summary.clip.is_some())
+            model.at.is_none() && opened.file.as_ref().is_ok_and(|file| file.moves(&model.choice(self.seconds)))
         });
         let path = path.key("objects");
-        !self.moments.is_empty()
-            && (own || object.inner().iter().enumerate().any(|(i, inner)| self.moves(inner, &path.index(i))))
+        own || object.inner().iter().enumerate().any(|(i, inner)| self.moves(inner, &path.index(i)))
     }
 
     /// Expands the models and instances of an object at a time in seconds. At the frame, adds the other
@@ -286,13 +295,12 @@ impl Expander<'_> {
             expanded.objects = Some(inner.collect());
         }
         if let Some(instances) = &object.instances {
-            expanded.instances = Some(self.instances(instances, &path.key("instances"), place));
+            expanded.instances = Some(self.instances(instances, &path.key("instances"), place).into());
         }
         if let Some(model) = &object.model {
             expanded.model = None;
             let replaced = object.material.is_some();
-            let children = self.model(model, replaced, seconds, &path.key("model"), place);
-            expanded.objects = Some(children.into_iter().map(Item::from).collect());
+            expanded.objects = Some(self.model(model, replaced, seconds, &path.key("model"), place));
         }
         expanded
     }

@@ -1,5 +1,6 @@
 //! Reading of the files that a model file names: buffers, images and libraries of materials.
 
+use crate::compile::PictureReading;
 use std::collections::BTreeMap;
 
 /// Why a file cannot be read.
@@ -36,10 +37,20 @@ pub trait Files {
     /// bytes (known before memory is reserved), or cannot be read.
     fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, FileError>;
 
+    /// Length of a file in bytes, without reading it if possible; `None` if it cannot be read.
+    fn length(&self, name: &str) -> Option<u64> {
+        self.read(name, u64::MAX).ok().map(|bytes| bytes.len() as u64)
+    }
+
     /// Whether pictures that are missing or broken are shown gray, with a warning, instead of being
     /// errors. Defaults to `false`.
     fn is_lenient(&self) -> bool {
         false
+    }
+
+    /// What is read of pictures. Defaults to all pixels.
+    fn pictures(&self) -> PictureReading {
+        PictureReading::Whole
     }
 }
 

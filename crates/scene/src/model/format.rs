@@ -4,7 +4,25 @@ use super::{Files, ModelChoice, ModelParts, ModelSummary};
 use glam::DAffine3;
 use juggler_math::{BuildControl, Cancelled};
 use std::fmt::Debug;
+use std::ops::Add;
 use std::sync::Arc;
+
+/// Memory that a model needs before its world is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ModelNeeds {
+    /// Bytes to open the file and to translate it to parts of a scene, pictures as they are encoded.
+    pub bytes: u64,
+    /// Number of spheres and cylinders that its points and lines become.
+    pub solids: u64,
+}
+
+impl Add for ModelNeeds {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { bytes: self.bytes.saturating_add(other.bytes), solids: self.solids.saturating_add(other.solids) }
+    }
+}
 
 /// A format of model files.
 pub trait ModelFormat: Debug + Send + Sync {
@@ -23,10 +41,10 @@ pub trait ModelFormat: Debug + Send + Sync {
         false
     }
 
-    /// Number of spheres and cylinders that a file's points and lines become, from its head alone;
-    /// 0 for a file that is not valid. Defaults to 0: the format has neither.
-    fn solids(&self, _bytes: &[u8]) -> u64 {
-        0
+    /// Memory that a file needs, from its document and the lengths of the files that it names; zero
+    /// for a file that is not valid. Defaults to zero: the estimate of mesh files suffices.
+    fn needs(&self, _bytes: Vec<u8>, _files: &dyn Files) -> ModelNeeds {
+        ModelNeeds::default()
     }
 
     /// Opens a model file. `name` is the file's name in messages; `files` reads the files that it
@@ -67,6 +85,11 @@ pub trait ModelFile: Debug + Send + Sync {
     /// The files that the file names, relative to its folder, in the order of reading.
     fn files(&self) -> &[FileDigest];
 
+    /// Memory in bytes that the opened file holds beside its parts. Defaults to 0.
+    fn bytes(&self) -> u64 {
+        0
+    }
+
     /// Whether the z axis of the file points up. A scene around the file rotates it. Defaults to
     /// `false`: y points up.
     fn is_z_up(&self) -> bool {
@@ -106,6 +129,9 @@ pub trait ModelFile: Debug + Send + Sync {
     fn node_transform(&self, node: &str, _choice: &ModelChoice) -> Result<DAffine3, ModelError> {
         Err(ModelError::new(format!("there is no node `{node}`: files of this format have no nodes")))
     }
+
+    /// Whether a choice shows an animation, so that the parts depend on its time.
+    fn moves(&self, choice: &ModelChoice) -> bool;
 
     /// Describes the file for people and programs.
     ///

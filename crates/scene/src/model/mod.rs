@@ -18,7 +18,7 @@ pub use camera_names::find_camera;
 pub use choice::{AnimationChoice, ModelChoice, ModelRepeat, NameOrIndex};
 pub(crate) use expand::{Expansion, ModelIdentity, SceneTime, expand, expand_heads, has_instance_files, has_models};
 pub use files::{FileError, Files};
-pub use format::{FileDigest, ModelError, ModelFile, ModelFormat};
+pub use format::{FileDigest, ModelError, ModelFile, ModelFormat, ModelNeeds};
 pub use model_light::illuminance;
 pub(crate) use model_scene::{describe_model_scene, frames_of};
 pub use parts::ModelParts;

@@ -1,6 +1,6 @@
 //! Parts of a scene that a model file is translated to.
 
-use crate::{Asset, Object};
+use crate::{Asset, Item, Object};
 use indexmap::IndexMap;
 use juggler_camera::AnyCamera;
 use juggler_light::AnyLight;
@@ -25,7 +25,7 @@ pub struct ModelParts {
     pub lights: Vec<(String, AnyLight)>,
     /// Objects, one for each drawn node, in depth-first order. Their names are paths of node names,
     /// such as "Root/Body/Head". A hidden node's objects are there and not visible.
-    pub objects: Vec<Object>,
+    pub objects: Vec<Item<Object>>,
     /// Whether the objects depend on the size of the picture.
     pub depends_on_size: bool,
     /// Image-based light of the file.

@@ -1,6 +1,8 @@
 //! Models of a scene: expansion on first use, and scenes around model files.
 
-use super::{Expansion, ModelSummary, NameOrIndex, SceneTime, describe_model_scene};
+use super::{
+    Expansion, ModelChoice, ModelNeeds, ModelSummary, NameOrIndex, OpenedModel, SceneTime, describe_model_scene,
+};
 use super::{expand, expand_heads, has_instance_files, has_models};
 use crate::animate::posed_files;
 use crate::asset::Assets;
@@ -12,6 +14,7 @@ use crate::path::{Path as ScenePath, PathRef};
 use crate::{Scene, SceneError};
 use juggler_math::BuildControl;
 use std::collections::BTreeSet;
+use std::ops::Add;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -81,6 +84,8 @@ impl Scene {
         if let Some(known) = memo().as_ref().filter(is_current) {
             return Arc::clone(&known.expansion);
         }
+        // Two expansions of a large model would need twice the memory.
+        *memo() = None;
         // The lock is not held meanwhile: a thread that waits for parallel work may start other
         // work that needs it.
         let (tracks, _) = self.tracks_with_control(control);
@@ -187,8 +192,7 @@ impl Scene {
     pub(crate) fn has_moving_models(&self) -> bool {
         self.models().iter().any(|(path, model)| {
             let opened = self.opened(path, model);
-            let summary = opened.file.as_ref().ok().and_then(|file| file.summary(&model.choice(0.0)).ok());
-            model.at.is_none() && summary.is_some_and(|summary| summary.clip.is_some())
+            model.at.is_none() && opened.file.as_ref().is_ok_and(|file| file.moves(&model.choice(0.0)))
         })
     }
 
@@ -200,12 +204,30 @@ impl Scene {
 
     /// Models of the scene, each with a description of its file.
     pub fn model_summaries(&self) -> Vec<SceneModel> {
+        // Copies of a model have one description.
+        let mut known: Vec<(Arc<OpenedModel>, ModelChoice, ModelSummary)> = Vec::new();
         let summary = |(path, model): (ScenePath, Model)| {
-            let opened = self.opened(&path, &model);
-            let summary = opened.file.as_ref().ok()?.summary(&model.choice(0.0)).ok()?;
+            let (opened, choice) = (self.opened(&path, &model), model.choice(0.0));
+            let is_same =
+                |(other, chosen): (&Arc<OpenedModel>, &ModelChoice)| Arc::ptr_eq(other, &opened) && *chosen == choice;
+            let found = known.iter().find(|(other, chosen, _)| is_same((other, chosen)));
+            if let Some((.., summary)) = found {
+                return Some(SceneModel { path, model, summary: summary.clone() });
+            }
+            let summary = opened.file.as_ref().ok()?.summary(&choice).ok()?;
+            known.push((opened, choice, summary.clone()));
             Some(SceneModel { path, model, summary })
         };
         self.models().into_iter().filter_map(summary).collect()
+    }
+
+    /// Memory that the distinct model files of the scene need, before they are opened.
+    pub fn model_needs(&self) -> ModelNeeds {
+        let models = self.models();
+        let file = |(path, model): &(ScenePath, Model)| self.files().locate(&path.key("file"), &model.file);
+        let files: BTreeSet<PathBuf> =
+            models.iter().map(|model| self.asset_cache.store().canonical_name(&file(model))).collect();
+        files.iter().map(|file| self.asset_cache.model_needs(file)).fold(ModelNeeds::default(), ModelNeeds::add)
     }
 
     /// The scene's description with its models expanded to objects, materials, textures and lights, and
@@ -214,7 +236,7 @@ impl Scene {
         self.expanded().map_or_else(|| self.description.clone(), |expansion| expansion.description.clone())
     }
 
-    fn opened(&self, path: &ScenePath, model: &Model) -> Arc<super::OpenedModel> {
+    fn opened(&self, path: &ScenePath, model: &Model) -> Arc<OpenedModel> {
         self.asset_cache.model(&self.files().locate(&path.key("file"), &model.file))
     }
 
@@ -234,7 +256,7 @@ fn collect(objects: &[Item<Object>], path: &PathRef<'_>, found: &mut Vec<(SceneP
     for (i, object) in objects.iter().enumerate() {
         let path = path.index(i);
         if let Some(model) = &object.model {
-            found.push((ScenePath::from(&path.key("model")), model.clone()));
+            found.push((ScenePath::from(&path.key("model")), (**model).clone()));
         }
         collect(object.inner(), &path.key("objects"), found);
     }

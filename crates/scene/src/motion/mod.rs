@@ -119,7 +119,7 @@ impl ItemContent for Object {
             mesh.clear_arrays();
         }
         if let Some(instances) = &mut json_without_arrays.instances {
-            *instances = Instances { file: instances.file.take(), ..Instances::default() };
+            **instances = Instances { file: instances.file.take(), ..Instances::default() };
         }
         // Child objects are validated by themselves.
         json_without_arrays.objects = json_without_arrays.objects.map(|_| Objects::default());

@@ -209,7 +209,7 @@ fn joints_keep_the_lengths_of_bones() {
     // The limb's spheres meet at the joint too.
     let limb = r#"{"version": 1, "objects": [{"limb": {"from": [0, 1, 0], "to": [1, 4, 1], "lengths": [3, 2],
         "plane_normal": [1, 0, 3], "radii": [1, 1, 1]}}]}"#;
-    let limb = Scene::from_json(limb, "a.json").unwrap().description.objects[0].limb.unwrap();
+    let limb = Scene::from_json(limb, "a.json").unwrap().description.objects[0].limb.clone().unwrap();
     let joint = vector(&value(json!({"joint": bones}), 1.0));
     let sphere = limb.spheres().unwrap()[8].center.as_dvec3().to_array();
     assert!(distance(&joint, &sphere) < 1e-6);

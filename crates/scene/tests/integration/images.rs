@@ -2,7 +2,7 @@
 
 use juggler_imaging::{Header, ImageFormat, Options, Tone, create};
 use juggler_math::{Image, Rgb, color::srgb_decode};
-use juggler_scene::compile::{AssetCache, estimate_picture};
+use juggler_scene::compile::AssetCache;
 use juggler_scene::{Bundle, Scene};
 use juggler_texture::ColorSpace;
 use std::fs;
@@ -104,14 +104,16 @@ fn textures_keep_the_smallest_sufficient_sample_type() {
         let path = folder.path().join(name);
         let pixels = AssetCache::default().image(&path, ColorSpace::Auto).unwrap();
         assert_eq!(pixels.bytes(), 341 * 3 * bytes_a_sample, "{name}");
-        let estimate = estimate_picture(&path);
+        let needs = load(&folder, name, "").needs();
+        let estimate = needs.pictures[0].estimate;
+        assert_eq!((needs.pictures.len(), needs.pictures[0].name.as_str()), (1, name));
         assert!(
             estimate.resident_bytes >= pixels.bytes() as u64 && estimate.peak_bytes > estimate.resident_bytes,
             "{name}: {estimate:?}"
         );
         assert!(estimate.resident_bytes <= 4 * pixels.bytes() as u64 + 64, "{name}: {estimate:?}");
     }
-    assert_eq!(estimate_picture(Path::new("none.png")), Default::default());
+    assert_eq!(load(&folder, "none.png", "").needs().pictures, []);
 }
 
 #[test]

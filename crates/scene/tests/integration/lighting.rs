@@ -3,7 +3,6 @@
 use juggler_imaging::{Header, ImageFormat, create};
 use juggler_light::AnyLight;
 use juggler_math::{Image, Ray, Rgb, Vec3};
-use juggler_scene::compile::estimate_panorama;
 use juggler_scene::{Bundle, Scene};
 use juggler_world::World;
 use std::fs;
@@ -72,9 +71,10 @@ fn panorama_is_visible_and_loaded_once() {
         let world = scene.compile().unwrap().world;
         let seen = [Vec3::X, Vec3::NEG_X].map(|direction| towards(&world, direction));
         assert!((seen[0] - 2.0).abs() < 0.02 && (seen[1] - 1.0).abs() < 0.02, "{file}: {seen:?}");
-        assert_eq!(scene.needs().panoramas.len(), 1);
         let (path, bytes) = (folder.path().join(file), world.geometry_stats().background_bytes as u64);
-        let estimate = estimate_panorama(&path);
+        let panoramas = scene.needs().panoramas;
+        assert_eq!((panoramas.len(), panoramas[0].name.as_str()), (1, file));
+        let estimate = panoramas[0].estimate;
         assert!(
             bytes > 0 && estimate.resident_bytes >= bytes && estimate.peak_bytes > estimate.resident_bytes,
             "{file}: {estimate:?}"
@@ -93,7 +93,7 @@ fn panorama_is_visible_and_loaded_once() {
         assert!(!renewed.has_world_of(&scene) && later.has_world_of(&scene));
         assert!((towards(&renewed.compile().unwrap().world, Vec3::NEG_X) - 2.0).abs() < 0.02);
     }
-    assert_eq!(estimate_panorama(Path::new("none.exr")), Default::default());
+    assert_eq!(load(&folder, &panorama("none.exr", "")).needs().panoramas[0].estimate, Default::default());
 }
 
 #[test]

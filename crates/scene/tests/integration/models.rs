@@ -4,8 +4,9 @@ use glam::{DAffine3, DQuat, DVec3};
 use indexmap::IndexMap;
 use juggler_camera::{AnyCamera, Perspective};
 use juggler_light::{AnyLight, Point};
+use juggler_material::medium::Medium;
 use juggler_material::{AnyMaterial, MaterialRef, Principled};
-use juggler_math::Vec3;
+use juggler_math::{Rgb, Vec3};
 use juggler_scene::model::{
     AnimationChoice, FileDigest, FileError, Files, ModelChoice, ModelClip, ModelError, ModelFile, ModelFormat,
     ModelParts, ModelSummary, NameOrIndex,
@@ -93,10 +94,14 @@ impl ModelFile for Toy {
         &self.files
     }
 
+    fn moves(&self, choice: &ModelChoice) -> bool {
+        self.clip(choice).is_ok_and(|clip| clip.is_some())
+    }
+
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
         let x = self.clip(choice)?.map_or(0.0, |_| choice.seconds as f32);
         let mut fur = Principled::default();
-        fur.medium.distance = 1.0;
+        fur.medium = Medium { color: Rgb::splat(0.5), distance: 1.0, ..Medium::default() };
         if choice.variant.is_some() {
             fur.metallic = 1.0.into();
         }
@@ -111,7 +116,7 @@ impl ModelFile for Toy {
             groups: IndexMap::from([(format!("{prefix}mesh Foot"), vec![ball])]),
             cameras: IndexMap::from([(format!("{prefix}Eye"), camera.into())]),
             lights: if self.is_lit { vec![("Root/Bulb".into(), point.into())] } else { Vec::new() },
-            objects: vec![head, foot],
+            objects: vec![head.into(), foot.into()],
             warnings: vec!["the toy is approximated".into()],
             ..ModelParts::default()
         })
@@ -194,6 +199,22 @@ fn models_of_equal_content_share_their_parts_and_others_do_not() {
     assert_eq!(medium_distances(&scene), expected.map(|(name, distance)| (name.to_owned(), distance)));
     assert_eq!(scene.compile().unwrap().cameras.len(), 4);
     assert_eq!(points(&scene).len(), 4);
+}
+
+#[test]
+fn copies_of_a_model_share_their_objects() {
+    let walking = r#"{"model": {"file": "walk.toy"}}, {"model": {"file": "walk.toy", "at": 0.5}}"#;
+    let headless = r#"{"model": {"file": "still.toy", "hide": ["Head"]}}"#;
+    let scene = scene(&[STILL, STILL, headless, walking, r#"{"model": {"file": "walk.toy"}}"#].join(", ")).unwrap();
+    let objects = scene.expanded_description().objects;
+    let inner = |i: usize| objects[i].objects.clone().unwrap();
+    assert!(inner(0).is_same(&inner(1)) && inner(3).is_same(&inner(5)));
+    assert_eq!([0, 1, 2, 3, 4].map(|i| inner(i).len()), [2, 2, 1, 2, 2]);
+    assert!(inner(3) != inner(4), "the clip is at another time");
+    let hidden = r#"{"model": {"file": "still.toy", "hide": ["Hed"]}}"#;
+    let message = scene_with(&[hidden, hidden].join(", "), "").unwrap().check().to_string();
+    assert!(message.contains("objects[0].model.hide[0]") && message.contains("objects[1].model.hide[0]"), "{message}");
+    assert_eq!(message.matches("the toy is approximated").count(), 2, "{message}");
 }
 
 #[test]

@@ -17,6 +17,9 @@ use juggler::scene::Scene;
 /// as long as a third of a sample, and shorter renders are quickly repeated.
 const MIN_CHECKPOINT_SAMPLES: u32 = 8;
 
+/// Maximum number of components that a refusal lists.
+const MAX_LISTED: usize = 8;
+
 /// Memory estimate of a picture, before its files are read.
 pub fn estimate(plan: &Plan, scene: &Scene, frame_output: &FrameOutput) -> Result<Memory, Failure> {
     let mut memory = Memory::estimate(scene, &plan.settings)?;
@@ -73,7 +76,12 @@ fn refused(plan: &Plan, parts: &[MemoryPart], most: u64) -> Failure {
     let needed = sum(parts);
     let mut parts: Vec<&MemoryPart> = parts.iter().collect();
     parts.sort_by_key(|part| std::cmp::Reverse(part.bytes));
-    let each: Vec<String> = parts.iter().map(|part| format!("{} for {}", bytes(part.bytes), part.what)).collect();
+    let (listed, others) = parts.split_at(parts.len().min(MAX_LISTED));
+    let mut each: Vec<String> = listed.iter().map(|part| format!("{} for {}", bytes(part.bytes), part.what)).collect();
+    if !others.is_empty() {
+        let rest = others.iter().map(|part| part.bytes).fold(0, u64::saturating_add);
+        each.push(format!("{} for {} others", bytes(rest), others.len()));
+    }
     let help = parts.first().map(|largest| help(plan, largest, needed, most)).unwrap_or_default();
     Failure::Invalid(format!(
         "the render needs about {} of memory ({}), more than --max-memory {}{help}",
@@ -106,6 +114,7 @@ fn help(plan: &Plan, largest: &MemoryPart, needed: u64, most: u64) -> String {
         file if file.ends_with(" file") => {
             "PNG, EXR, HDR and PFM files are written row by row and need less, as does a smaller `--size`".into()
         }
+        picture if picture.starts_with("the picture `") => "pictures with fewer pixels need less".into(),
         mesh if mesh.contains("mesh") || mesh.contains("trees") => "a mesh of fewer triangles needs less".into(),
         _ => return String::new(),
     };

@@ -18,6 +18,24 @@ pub struct Vertices {
     pub colors: Vec<[f32; 4]>,
 }
 
+impl Vertices {
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        let Self { positions, normals, tangents, texcoords, colors } = self;
+        let vectors = size_of_val(&**positions) + size_of_val(&**normals) + size_of_val(&**tangents);
+        vectors + size_of_val(&**colors) + texcoords.iter().map(|set| size_of_val(&**set)).sum::<usize>()
+    }
+}
+
+impl MorphDeltas {
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        let Self { positions, normals, tangents, texcoords, colors } = self;
+        let vectors = size_of_val(&**positions) + size_of_val(&**normals) + size_of_val(&**tangents);
+        vectors + size_of_val(&**colors) + texcoords.iter().map(|set| size_of_val(&**set)).sum::<usize>()
+    }
+}
+
 /// Displacements of a morph target. Arrays have one element per vertex, or none where the target
 /// lacks the attribute. Displacements of attributes that the mesh lacks have no effect.
 #[derive(Clone, Debug, Default, PartialEq)]

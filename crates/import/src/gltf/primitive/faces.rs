@@ -31,6 +31,15 @@ impl Default for Faces {
 }
 
 impl Faces {
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Points(points) => size_of_val(&**points),
+            Self::Lines(lines) => size_of_val(&**lines),
+            Self::Triangles(triangles) => size_of_val(&**triangles),
+        }
+    }
+
     /// Number of faces.
     pub fn len(&self) -> usize {
         match self {

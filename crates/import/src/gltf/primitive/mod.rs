@@ -41,6 +41,15 @@ pub struct PrimitiveArrays {
     pub warnings: Warnings,
 }
 
+impl PrimitiveArrays {
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        let joints = self.joints.iter().map(|set| size_of_val(&*set.joints) + size_of_val(&*set.weights));
+        let targets = self.targets.iter().map(MorphDeltas::bytes);
+        self.vertices.bytes() + joints.chain(targets).sum::<usize>() + self.faces.bytes()
+    }
+}
+
 /// Result of the assembly of a primitive.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Assembly<'a> {

@@ -1,12 +1,13 @@
 //! Cameras of nodes. They look along -z of their node, with y upwards; scale has no effect.
 
-use super::names::unique;
+use super::names::{node_name, unique};
 use super::objects::View;
 use crate::gltf::document::{Camera, CameraType, Document};
 use glam::{DAffine3, DVec3};
 use indexmap::IndexMap;
 use juggler_camera::{AnyCamera, Orthographic, Perspective};
 use juggler_math::Vec3;
+use std::borrow::Cow;
 
 /// Cameras of the nodes of a scene by name.
 pub fn cameras(view: &View<'_>, document: &Document) -> IndexMap<String, AnyCamera> {
@@ -24,11 +25,14 @@ pub fn camera_aspects(view: &View<'_>, document: &Document) -> Vec<(String, Opti
 }
 
 /// Cameras with the names of their own or of their nodes, and the transforms of the nodes.
-fn placed<'v>(view: &'v View<'v>, document: &'v Document) -> impl Iterator<Item = (&'v str, &'v Camera, DAffine3)> {
+fn placed<'v>(
+    view: &'v View<'v>,
+    document: &'v Document,
+) -> impl Iterator<Item = (Cow<'v, str>, &'v Camera, DAffine3)> {
     view.nodes.iter().filter_map(|node| {
         let camera = document.cameras.get(document.nodes.get(node.index)?.camera?.get())?;
-        let of_node = || view.content.names.nodes.get(node.index).map(String::as_str);
-        let name = camera.name.as_deref().filter(|name| !name.is_empty()).or_else(of_node)?;
+        let name = camera.name.as_deref().filter(|name| !name.is_empty()).map(Cow::Borrowed);
+        let name = name.unwrap_or_else(|| node_name(document, node.index));
         Some((name, camera, view.worlds.get(node.index).copied().unwrap_or_default()))
     })
 }

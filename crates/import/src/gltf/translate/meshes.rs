@@ -102,9 +102,21 @@ impl Meshes {
         self.entries.iter().filter(|entry| !entry.is_excess).filter_map(solids).fold(0, u64::saturating_add)
     }
 
+    /// Distinct primitives that are not left out: indices of the mesh and of the primitive in it.
+    pub fn primitives(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.entries.iter().filter(|entry| !entry.is_excess).map(|entry| (entry.mesh, entry.part))
+    }
+
     /// Number of distinct primitives.
     pub fn distinct(&self) -> usize {
         self.entries.len()
+    }
+
+    /// Bytes of the arrays that are kept for deformations.
+    pub fn deformable_bytes(&self) -> u64 {
+        let decoded = self.entries.iter().filter_map(|entry| entry.decoded.get()?.as_ref().ok()?.0.as_ref());
+        let arrays = decoded.filter_map(|geometry| geometry.deformable.as_deref());
+        arrays.map(|arrays| arrays.bytes() as u64).fold(0, u64::saturating_add)
     }
 
     /// Slot of a primitive: equal for primitives with equal arrays.

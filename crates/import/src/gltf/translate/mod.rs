@@ -123,9 +123,15 @@ impl Content {
             faults.into_error(&self.data.gltf.name)
         })?;
         let pose = clips::pose_of(selection.clip.and_then(|clip| self.clips.get(clip)), choice);
-        let nodes = self.tree.scene(&self.data.gltf.document, &self.names, selection.scene);
-        let (worlds, visible) = (self.tree.world_transforms(&pose), self.tree.visibility(&pose));
+        let document = &self.data.gltf.document;
+        let nodes = self.tree.scene(document, selection.scene);
+        let (worlds, visible) = (self.tree.world_transforms(document, &pose), self.tree.visibility(&pose));
         Ok(Posed { selection, picture_size: choice.picture_size, nodes, pose, worlds, visible })
+    }
+
+    /// Whether a choice shows an animation clip.
+    pub fn moves(&self, choice: &ModelChoice) -> bool {
+        Selection::new(self, choice).is_ok_and(|selection| selection.clip.is_some())
     }
 
     /// Transform of a node to world space in the pose of a choice. `node` is a name or a path of
@@ -137,9 +143,10 @@ impl Content {
     /// file does not have.
     pub fn node_transform(&self, node: &str, choice: &ModelChoice) -> Result<DAffine3, GltfError> {
         let posed = self.posed(choice)?;
-        let nodes = self.tree.scene(&self.data.gltf.document, &self.names, None);
+        let document = &self.data.gltf.document;
+        let nodes = self.tree.scene(document, None);
         let found =
-            select::node(&self.names, &nodes, node).map_err(|fault| GltfError::new(&self.data.gltf.name, fault))?;
+            select::node(document, &nodes, node).map_err(|fault| GltfError::new(&self.data.gltf.name, fault))?;
         Ok(posed.worlds.get(found).copied().unwrap_or_default())
     }
 
@@ -174,7 +181,7 @@ impl Content {
             Findings { warnings: self.warnings.clone(), faults: Faults::new(self.data.gltf.limits.faults) };
         let scenes_missing = posed.selection.scene.is_none() && !self.data.gltf.document.nodes.is_empty();
         findings.warnings.add("", "there are no scenes; all nodes are shown", u64::from(scenes_missing));
-        let ignored = self.tree.ignored_poses(&posed.pose);
+        let ignored = NodeTree::ignored_poses(&self.data.gltf.document, &posed.pose);
         findings.warnings.add("/nodes", "nodes with a matrix are not animated", ignored as u64);
         let document = pointers::animated(&self.data.gltf.document, &posed.pose, &mut findings.warnings);
         let mut objects = Objects::new(view, MaterialSet::new(&document, &self.data, prefix));

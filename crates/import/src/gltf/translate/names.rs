@@ -2,6 +2,7 @@
 //! the order of the file, and a part without a name is called by its kind and index.
 
 use crate::gltf::document::{Document, Variants};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum number of bytes of a path of node names.
@@ -12,8 +13,6 @@ const MAX_PATH: usize = 1024;
 pub struct Names {
     /// Names of the scenes.
     pub scenes: Vec<String>,
-    /// Names of the nodes, which need not be unique: objects are called by paths of names.
-    pub nodes: Vec<String>,
     /// Names of the meshes.
     pub meshes: Vec<String>,
     /// Names of the materials.
@@ -29,11 +28,10 @@ pub struct Names {
 impl Names {
     /// Names of a document's parts.
     pub fn new(document: &Document) -> Self {
-        let Document { scenes, nodes, meshes, materials, images, animations, extensions, .. } = document;
+        let Document { scenes, meshes, materials, images, animations, extensions, .. } = document;
         let variants = extensions.variants.as_ref().map(|Variants { variants }| variants.as_slice());
         Self {
             scenes: unique("scene", scenes.iter().map(|scene| scene.name.as_deref())),
-            nodes: named("node", nodes.iter().map(|node| node.name.as_deref())).collect(),
             meshes: unique("mesh", meshes.iter().map(|mesh| mesh.name.as_deref())),
             materials: unique("material", materials.iter().map(|material| material.name.as_deref())),
             images: unique("image", images.iter().map(|image| image.name.as_deref())),
@@ -41,6 +39,12 @@ impl Names {
             variants: unique("variant", variants.unwrap_or_default().iter().map(|variant| Some(&*variant.name))),
         }
     }
+}
+
+/// Name of a node, which need not be unique: objects are called by paths of names.
+pub fn node_name(document: &Document, node: usize) -> Cow<'_, str> {
+    let name = document.nodes.get(node).and_then(|node| node.name.as_deref()).filter(|name| !name.is_empty());
+    name.map_or_else(|| Cow::Owned(format!("node {node}")), Cow::Borrowed)
 }
 
 /// Names in which missing and empty ones are the kind with the index.

@@ -20,7 +20,7 @@ use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 use indexmap::IndexMap;
 use juggler_math::{BuildControl, Vec3};
-use juggler_scene::{InstanceAttribute, Instances, Object};
+use juggler_scene::{InstanceAttribute, Instances, Item, Object};
 use juggler_shape::attribute::AttributeData;
 use juggler_shape::{Mesh, MeshData};
 use std::borrow::Cow;
@@ -64,7 +64,7 @@ pub struct Objects<'a> {
     /// Bytes of deformed arrays that may still be made.
     bytes_left: u64,
     pub groups: IndexMap<String, Vec<Object>>,
-    pub objects: Vec<Object>,
+    pub objects: Vec<Item<Object>>,
 }
 
 /// Problems that were found.
@@ -162,7 +162,7 @@ impl<'a> Objects<'a> {
             };
             let attributes = instances.attributes.iter().map(attribute).collect();
             let placed = Instances::from_matrices(rows.iter().flatten().copied());
-            self.objects.push(object.instances(Instances { attributes, ..placed }));
+            self.objects.push(object.instances(Instances { attributes, ..placed }).into());
         }
     }
 
@@ -177,7 +177,7 @@ impl<'a> Objects<'a> {
                 object = object.visible(false);
             }
         }
-        self.objects.push(object);
+        self.objects.push(object.into());
     }
 
     /// Object of a mesh: its only primitive if one node draws it, else a group; `None` if nothing of

@@ -9,7 +9,7 @@ use juggler_math::{Aabb, Vec3};
 pub fn rest_bounds(view: &View<'_>, faults: &mut Faults) -> Aabb {
     let content = view.content;
     let document = &content.data.gltf.document;
-    let worlds = content.tree.world_transforms(&Pose::default());
+    let worlds = content.tree.world_transforms(&content.data.gltf.document, &Pose::default());
     let mut bounds = Aabb::EMPTY;
     for node in view.nodes {
         let Some(mesh) = document.nodes.get(node.index).and_then(|node| node.mesh) else { continue };

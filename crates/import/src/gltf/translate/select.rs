@@ -1,8 +1,9 @@
 //! The scene, the clip and the variant that a choice selects.
 
 use super::Content;
-use super::names::Names;
+use super::names::node_name;
 use super::tree::SceneNode;
+use crate::gltf::document::Document;
 use crate::gltf::error::Fault;
 use juggler_math::suggest::did_you_mean_or_list;
 use juggler_scene::model::{AnimationChoice, ModelChoice, NameOrIndex};
@@ -46,15 +47,16 @@ impl Selection {
 }
 
 /// Index of the node with a path such as `Root/Body/Head`, or with a name that no other node has.
-pub fn node(names: &Names, nodes: &[SceneNode], wanted: &str) -> Result<usize, Fault> {
-    let name = |node: &SceneNode| names.nodes.get(node.index).map(String::as_str).unwrap_or_default();
+pub fn node(document: &Document, nodes: &[SceneNode], wanted: &str) -> Result<usize, Fault> {
+    let name = |node: &SceneNode| node_name(document, node.index);
     let by_path: Vec<&SceneNode> = nodes.iter().filter(|node| node.path == wanted).collect();
     let by_name = || nodes.iter().filter(|node| name(node) == wanted).collect();
     let found: Vec<&SceneNode> = if by_path.is_empty() { by_name() } else { by_path };
     match found.as_slice() {
         [node] => Ok(node.index),
         [] => {
-            let help = did_you_mean_or_list(wanted, nodes.iter().map(name));
+            let names: Vec<_> = nodes.iter().map(name).collect();
+            let help = did_you_mean_or_list(wanted, names.iter().map(|name| &**name));
             let help = help.unwrap_or_else(|| "there are none".to_owned());
             Err(Fault::at("/nodes", format!("there is no node `{wanted}`; {help}")))
         }

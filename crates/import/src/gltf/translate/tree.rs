@@ -2,18 +2,17 @@
 //! order.
 
 use super::faults::Faults;
-use super::names::{Names, joined};
+use super::names::{joined, node_name};
 use crate::gltf::document::{Document, Node};
 use crate::gltf::error::Fault;
 use crate::gltf::pose::{Hierarchy, NodeTransform, Pose};
 use crate::gltf::warning::Warnings;
 use glam::DAffine3;
 
-/// Nodes of a file with their transforms in the rest pose.
+/// Trees of the nodes of a file. Transforms stay in the document.
 #[derive(Clone, Debug, Default)]
 pub struct NodeTree {
     hierarchy: Hierarchy,
-    transforms: Vec<NodeTransform>,
     /// Visibility of each node itself (KHR_node_visibility).
     visible: Vec<bool>,
 }
@@ -40,25 +39,24 @@ impl NodeTree {
         }
         let hierarchy = Hierarchy::new(&parents).map_err(|error| Fault::at("/nodes", error));
         let hierarchy = faults.take(hierarchy).unwrap_or_default();
-        let transform = |(index, node): (usize, &Node)| {
+        for (index, node) in document.nodes.iter().enumerate() {
             let off = node.rotation.is_some_and(|rotation| !NodeTransform::has_unit_length(rotation));
             if off {
                 let text = "the rotation has not the length 1; it is normalized";
                 warnings.add(format_args!("/nodes/{index}"), text, 1);
             }
-            faults.take(transform(index, node)).unwrap_or_default()
-        };
-        let transforms = document.nodes.iter().enumerate().map(transform).collect();
+            faults.take(transform(index, node));
+        }
         let visibility = |node: &Node| node.extensions.as_ref().and_then(|extensions| extensions.visibility);
         let is_visible = |node| visibility(node).is_none_or(|visibility| visibility.visible);
         let visible = document.nodes.iter().map(is_visible).collect();
-        Self { hierarchy, transforms, visible }
+        Self { hierarchy, visible }
     }
 
     /// Transforms of all nodes to world space in a pose.
-    pub fn world_transforms(&self, pose: &Pose) -> Vec<DAffine3> {
+    pub fn world_transforms(&self, document: &Document, pose: &Pose) -> Vec<DAffine3> {
         self.hierarchy.world_transforms(|node| {
-            let transform = self.transforms.get(node);
+            let transform = known_transform(document, node);
             transform.map_or(DAffine3::IDENTITY, |transform| transform.to_parent(pose.nodes.get(&node)))
         })
     }
@@ -72,13 +70,14 @@ impl NodeTree {
     }
 
     /// Number of animated nodes whose transform is a matrix, which animations do not change.
-    pub fn ignored_poses(&self, pose: &Pose) -> usize {
-        let ignores = |(node, pose): (&usize, _)| self.transforms.get(*node).is_some_and(|node| node.ignores(pose));
+    pub fn ignored_poses(document: &Document, pose: &Pose) -> usize {
+        let ignores =
+            |(node, pose): (&usize, _)| known_transform(document, *node).is_some_and(|node| node.ignores(pose));
         pose.nodes.iter().filter(|(node, pose)| ignores((node, pose))).count()
     }
 
     /// Nodes of a scene in depth-first order; all nodes if there is no scene.
-    pub fn scene(&self, document: &Document, names: &Names, scene: Option<usize>) -> Vec<SceneNode> {
+    pub fn scene(&self, document: &Document, scene: Option<usize>) -> Vec<SceneNode> {
         let has_parent = |node: &usize| self.hierarchy.parent(*node).is_some();
         let roots: Vec<usize> = match scene.and_then(|scene| document.scenes.get(scene)) {
             Some(scene) => {
@@ -91,7 +90,6 @@ impl NodeTree {
             }
             None => (0..document.nodes.len()).filter(|node| !has_parent(node)).collect(),
         };
-        let name = |index: usize| names.nodes.get(index).map(String::as_str).unwrap_or_default();
         let mut found: Vec<SceneNode> = Vec::new();
         let mut is_found = vec![false; document.nodes.len()];
         // Each entry is a node and the position of its parent in the list.
@@ -103,12 +101,17 @@ impl NodeTree {
                 _ => continue,
             }
             let above = parent.and_then(|parent| found.get(parent)).map(|parent| parent.path.as_str());
-            let path = joined(above.unwrap_or_default(), name(index));
+            let path = joined(above.unwrap_or_default(), &node_name(document, index));
             stack.extend(node.children.iter().rev().map(|child| (child.get(), Some(found.len()))));
             found.push(SceneNode { index, path });
         }
         found
     }
+}
+
+/// Transform of a node of a tree to the space of its parent; the tree has checked it.
+fn known_transform(document: &Document, index: usize) -> Option<NodeTransform> {
+    transform(index, document.nodes.get(index)?).ok()
 }
 
 /// Transform of a node to the space of its parent.

@@ -87,8 +87,12 @@ impl<'a> Pictures<'a> {
         // A KTX2 picture becomes a PNG.
         let file = format!("{}{name}{}", self.prefix, if encoded.is_some() { ".png" } else { "" });
         if !self.assets.contains_key(&file) {
-            let decoded = encoded.map(|bytes| ktx2::decode(bytes, MAX_TEXELS).and_then(|picture| pixels(&picture)));
-            let decoded = decoded.transpose().map_err(|error| Fault::at(&at, error))?;
+            let convert = |bytes: &[u8]| {
+                let picture = ktx2::decode(bytes, MAX_TEXELS).and_then(|picture| pixels(&picture));
+                picture.map_err(|error| Fault::at(&at, error))
+            };
+            let decoded = encoded.map(|bytes| self.data.image_replacement(image.get(), || convert(bytes)));
+            let decoded = decoded.transpose()?;
             self.assets.insert(file.clone(), decoded.unwrap_or(asset));
         }
         let name = self.names.get_index(image.get()).cloned().unwrap_or_default();

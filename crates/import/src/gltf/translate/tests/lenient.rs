@@ -38,7 +38,8 @@ fn collapsing() -> Builder {
 #[test]
 fn parts_that_a_morph_target_collapses_are_hidden_at_that_time() {
     let model = open(&collapsing());
-    let visible = |seconds| parts_at(&model, seconds).objects.iter().map(Object::is_visible).collect::<Vec<_>>();
+    let visible =
+        |seconds| parts_at(&model, seconds).objects.iter().map(|object| object.is_visible()).collect::<Vec<_>>();
     assert_eq!([0.0, 0.5, 1.0].map(visible), [[true], [true], [false]]);
     assert!(has_warning(&parts_at(&model, 1.0), "the pose leaves no triangle with an area"));
     assert!(!has_warning(&parts_at(&model, 0.5), "the pose leaves"));
@@ -47,7 +48,7 @@ fn parts_that_a_morph_target_collapses_are_hidden_at_that_time() {
 #[test]
 fn parts_that_a_joint_collapses_are_hidden() {
     let found = parts(&animation::skinned(r#""scale": [0, 0, 0]"#));
-    assert_eq!(found.objects.iter().map(Object::is_visible).collect::<Vec<_>>(), [false]);
+    assert_eq!(found.objects.iter().map(|object| object.is_visible()).collect::<Vec<_>>(), [false]);
 }
 
 #[test]

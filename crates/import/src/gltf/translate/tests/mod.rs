@@ -9,7 +9,7 @@ mod views;
 use crate::gltf::GltfFormat;
 use crate::gltf::testing::Builder;
 use juggler_scene::model::{ModelChoice, ModelFile, ModelFormat, ModelParts};
-use juggler_scene::{Instances, Object, TransformStep};
+use juggler_scene::{Instances, Item, Object, TransformStep};
 use juggler_shape::{AnyShape, Mesh};
 use std::collections::BTreeMap;
 use std::sync::Arc;

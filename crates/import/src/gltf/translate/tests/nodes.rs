@@ -48,7 +48,7 @@ fn hidden_and_singular_nodes_are_there_but_not_visible() {
             {"mesh": 0, "scale": [1, 0, 1]}, {"mesh": 0}], "extensionsUsed": ["KHR_node_visibility"]"#,
     );
     let found = parts(&builder);
-    let visible: Vec<bool> = found.objects.iter().map(Object::is_visible).collect();
+    let visible: Vec<bool> = found.objects.iter().map(|object| object.is_visible()).collect();
     assert_eq!(visible, [false, false, true]);
     assert!(
         found.warnings.iter().any(|warning| warning.starts_with("/nodes/2: has a scale of 0")),
@@ -115,7 +115,8 @@ fn points_and_lines_are_solids_of_a_thousandth_of_the_diagonal() {
             "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1}]"#,
     );
     let found = parts(&builder);
-    let instances = |object: &Object| object.inner().iter().map(|inner| inner.instance_count()).collect::<Vec<u64>>();
+    let instances =
+        |object: &Item<Object>| object.inner().iter().map(|inner| inner.instance_count()).collect::<Vec<u64>>();
     let counts: Vec<Vec<u64>> = found.objects.iter().map(instances).collect();
     // Three points; three ends and two lines, one of which has almost no length.
     assert_eq!(counts, [vec![3], vec![3, 2]]);

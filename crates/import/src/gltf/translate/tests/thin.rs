@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gltf::Limits;
+use juggler_scene::model::ModelNeeds;
 
 /// A file of a strip of lines through `count` colored vertices, and of as many points.
 fn strip_and_points(count: usize) -> Builder {
@@ -27,7 +28,7 @@ fn bytes(instances: &Instances) -> usize {
 fn thin<'o>(objects: &mut dyn Iterator<Item = &'o Object>) -> Vec<&'o Instances> {
     let mut found = Vec::new();
     for object in objects {
-        found.extend(&object.instances);
+        found.extend(object.instances.as_deref());
         found.extend(thin(&mut object.inner().iter().map(|inner| &**inner)));
     }
     found
@@ -36,7 +37,7 @@ fn thin<'o>(objects: &mut dyn Iterator<Item = &'o Object>) -> Vec<&'o Instances>
 #[test]
 fn points_and_lines_need_at_most_100_bytes_each() {
     let parts = parts(&strip_and_points(1000));
-    let all = thin(&mut parts.groups.values().flatten().chain(&parts.objects));
+    let all = thin(&mut parts.groups.values().flatten().chain(parts.objects.iter().map(|object| &**object)));
     let found: Vec<(usize, usize)> = all.iter().map(|all| (all.count(), bytes(all) / all.count())).collect();
     // Ends and segments of the strip, and points; each with its colors.
     assert_eq!(found, [(1000, 12 + 16), (999, 48 + 32), (1000, 12 + 16)]);
@@ -53,15 +54,15 @@ fn the_limit_of_points_and_lines_counts_the_whole_file() {
         let glb = strip_and_points(1000).glb();
         let model = format.open("a.glb", glb.clone(), &BTreeMap::new()).unwrap();
         let parts = model.parts(&ModelChoice::default(), "").unwrap();
-        let all = thin(&mut parts.groups.values().flatten().chain(&parts.objects));
+        let all = thin(&mut parts.groups.values().flatten().chain(parts.objects.iter().map(|object| &**object)));
         let warnings = parts.warnings.into_iter().filter(|warning| warning.contains("left out")).collect::<Vec<_>>();
-        (all.iter().map(|all| all.count()).sum::<usize>(), format.solids(&glb), warnings)
+        (all.iter().map(|all| all.count()).sum::<usize>(), format.needs(glb, &BTreeMap::new()).solids, warnings)
     };
     assert_eq!(count(1999), (2999, 2999, Vec::new()));
     let text = "/meshes/0/primitives/1: is left out: the file has more than 1998 points and lines, the limit";
     assert_eq!(count(1998), (1999, 1999, vec![text.to_owned()]));
     assert_eq!(count(1).0, 0);
-    assert_eq!(GltfFormat::default().solids(b"no file"), 0);
+    assert_eq!(GltfFormat::default().needs(b"no file".to_vec(), &BTreeMap::new()), ModelNeeds::default());
 }
 
 #[test]
@@ -69,7 +70,7 @@ fn points_and_lines_are_wider_in_small_pictures() {
     let radius = |picture_size| {
         let choice = ModelChoice { picture_size, ..ModelChoice::default() };
         let parts = open(&strip_and_points(3)).parts(&choice, "").unwrap();
-        let objects = parts.groups.values().flatten().chain(&parts.objects);
+        let objects = parts.groups.values().flatten().chain(parts.objects.iter().map(|object| &**object));
         let inner = objects.flat_map(Object::inner).find_map(|object| match &object.shape {
             Some(AnyShape::Sphere(sphere)) => Some(f64::from(sphere.radius)),
             _ => None,
