@@ -74,11 +74,11 @@ pub struct Effort {
 #[derive(Clone, Debug)]
 pub struct Memory {
     building: Vec<MemoryPart>,
-    /// Bytes that the reading of the largest file needs meanwhile, since files are read one after the
-    /// other.
+    /// Bytes that the reading of the largest file needs meanwhile, since files are read one after
+    /// the other.
     reading: u64,
-    /// Bytes that the decoding of each picture needs meanwhile, in descending order. Several pictures
-    /// are decoded at once.
+    /// Bytes that the decoding of each picture needs meanwhile, in descending order. Several
+    /// pictures are decoded at once.
     decoding: Vec<u64>,
     /// Components of the built world.
     world: Vec<MemoryPart>,
@@ -273,8 +273,8 @@ impl Memory {
     }
 }
 
-/// Bytes to open models and to build a world of the spheres and cylinders that their points and lines
-/// become; 0 without models.
+/// Bytes to open models and to build a world of the spheres and cylinders that their points and
+/// lines become; 0 without models.
 pub fn model_bytes(needs: &ModelNeeds) -> u64 {
     let solids = needs.solids.saturating_mul(SOLID.saturating_add(INSTANCE));
     let bytes = needs.bytes.saturating_add(solids);

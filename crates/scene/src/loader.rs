@@ -32,8 +32,8 @@ impl Loader {
         Self { is_lenient: true, ..self }
     }
 
-    /// The same loader, whose scenes read only the heads of the pictures of textures, for programs that
-    /// render nothing.
+    /// The same loader, whose scenes read only the heads of the pictures of textures, for programs
+    /// that render nothing.
     #[must_use]
     pub const fn with_picture_heads(self) -> Self {
         Self { pictures: PictureReading::Heads, ..self }
@@ -92,8 +92,8 @@ impl Loader {
         cache.is_model(path) && !cache.is_plain_mesh(path)
     }
 
-    /// Memory that a model file needs, from its document and the lengths of the files that it names;
-    /// zero for other files.
+    /// Memory that a model file needs, from its document and the lengths of the files that it
+    /// names; zero for other files.
     pub fn model_needs(self, path: &Path) -> ModelNeeds {
         self.models().needs(path, &Store::default())
     }

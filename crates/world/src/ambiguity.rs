@@ -41,8 +41,8 @@ struct Search {
 }
 
 impl World {
-    /// Builds the hierarchy over the objects as [`World::new`] does, without light sampling: shapes that
-    /// emit light are hit by rays and are no emitters. For programs that only trace rays.
+    /// Builds the hierarchy over the objects as [`World::new`] does, without light sampling: shapes
+    /// that emit light are hit by rays and are no emitters. For programs that only trace rays.
     ///
     /// # Errors
     ///

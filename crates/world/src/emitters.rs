@@ -13,8 +13,8 @@ use juggler_math::{BuildControl, Cancelled, Ray, Rgb, Vec2, Vec3, robust};
 use std::collections::BTreeSet;
 
 /// Maximum number of triangles of all emissive meshes up to which each triangle is an emitter. With
-/// more, a mesh that is placed several times is one emitter per placement, whose points are sampled by
-/// area.
+/// more, a mesh that is placed several times is one emitter per placement, whose points are sampled
+/// by area.
 pub const MAX_SPLIT_TRIANGLES: u64 = 1 << 18;
 
 /// All emitters of a world.

@@ -22,8 +22,8 @@ fn chunk(kind: &[u8], data: &[u8]) -> Vec<u8> {
     [&(data.len() as u32).to_be_bytes(), body.as_slice(), &(!crc).to_be_bytes()].concat()
 }
 
-/// A PNG of RGB pixels that declares `side`² of them, as many as its length allows, and ends in the first
-/// rows.
+/// A PNG of RGB pixels that declares `side`² of them, as many as its length allows, and ends in the
+/// first rows.
 fn cut_png(side: u32) -> Vec<u8> {
     let size = [side.to_be_bytes(), side.to_be_bytes()].concat();
     let head = chunk(b"IHDR", &[size.as_slice(), &[8, 2, 0, 0, 0]].concat());

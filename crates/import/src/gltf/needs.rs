@@ -84,8 +84,8 @@ fn embedded(gltf: &Gltf, view: usize) -> Option<&[u8]> {
     binary.get(start..)?.get(..usize::try_from(view.byte_length.get()).ok()?)
 }
 
-/// Bytes of the nodes, and of the objects that they become; of meshes that deform, each node has its
-/// own.
+/// Bytes of the nodes, and of the objects that they become; of meshes that deform, each node has
+/// its own.
 fn objects_bytes(document: &Document) -> u64 {
     let groups = document.meshes.iter().map(|mesh| mesh.primitives.len() as u64);
     let groups = groups.fold(0, u64::saturating_add).saturating_mul(OBJECT);
@@ -167,7 +167,8 @@ mod tests {
         };
         let more_nodes = (model(30, "", 2000) - model(30, "", 1000)) / 1000;
         assert!((800..=1300).contains(&more_nodes), "{more_nodes}");
-        // A vertex takes its positions in the file and decoded, a third of a triangle, and tangents.
+        // A vertex takes its positions in the file and decoded, a third of a triangle, and
+        // tangents.
         let more_vertices = (model(60_000, "", 1) - model(30_000, "", 1)) / 30_000;
         assert_eq!(more_vertices, 12 + 12 + 4 + 16);
         let targets = r#", "targets": [{"POSITION": 0}]"#;

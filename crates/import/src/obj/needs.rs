@@ -1,6 +1,6 @@
-//! Memory to open an OBJ and to translate it to parts of a scene, from a count of its statements and
-//! from its libraries. Pictures count as they are encoded; those that are decoded to recognize normal
-//! maps count by their heads.
+//! Memory to open an OBJ and to translate it to parts of a scene, from a count of its statements
+//! and from its libraries. Pictures count as they are encoded; those that are decoded to recognize
+//! normal maps count by their heads.
 
 use super::files::{Reader, folder_of};
 use super::mtl::{MtlMaterial, parse_mtl};
@@ -130,9 +130,11 @@ impl Pictures {
             let is_new = known.insert((format!("{folder}/{}", map.file), is_decoded));
             let Some((name, bytes)) = is_new.then(|| read(folder, &map.file, reader)).flatten() else { continue };
             self.encoded = self.encoded.saturating_add(bytes.len() as u64);
+            // Decoders copy some files.
+            let length = bytes.len() as u64;
             let head = raster_head(&name, Cursor::new(&bytes), &Limits::default()).ok().filter(|_| is_decoded);
-            let decoding = head.map_or(0, |head| head.samples_bytes().saturating_add(head.decoder_bytes));
-            self.decoding = self.decoding.max(decoding.saturating_add(bytes.len() as u64));
+            let decoding = head.map(|head| head.samples_bytes().saturating_add(head.decoder_bytes));
+            self.decoding = self.decoding.max(decoding.map_or(0, |bytes| bytes.saturating_add(length)));
         }
     }
 }
@@ -166,7 +168,8 @@ mod tests {
         let without = needs(&text, &files).bytes;
         let color = with("a.pfm", 1000, &mut files);
         assert!((12_000_000..12_002_000).contains(&(color - without)), "{color} - {without}");
-        // The picture for relief is decoded when the file is opened; that of another material is not read.
+        // The picture for relief is decoded when the file is opened; that of another material is
+        // not read.
         let relief = with("b.pfm", 1000, &mut files);
         assert!((60_000_000..70_000_000).contains(&(relief - color)), "{relief} - {color}");
         assert_eq!(with("c.pfm", 1000, &mut files), relief);

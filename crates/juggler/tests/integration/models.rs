@@ -130,7 +130,8 @@ fn colors_of_instances_equal_materials() {
     }
 }
 
-/// A scene of `count` robots of three sizes, in a clip, while the shutter is open for `shutter` frames.
+/// A scene of `count` robots of three sizes, in a clip, while the shutter is open for `shutter`
+/// frames.
 fn crowd(count: usize, shutter: f64) -> Scene {
     let robot = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/models/robot.glb");
     let copy = |i: usize| {

@@ -69,7 +69,8 @@ impl<'s> EmitterCounter<'s> {
         Self { scene, materials: BTreeMap::new(), groups: BTreeMap::new(), whole: BTreeSet::new() }
     }
 
-    /// Counter of a scene, in which copies of a mesh are one emitter each if all have many triangles.
+    /// Counter of a scene, in which copies of a mesh are one emitter each if all have many
+    /// triangles.
     fn of_scene(scene: &'s Description) -> Self {
         let mut counter = Self::new(scene);
         if counter.among(&scene.objects, false) > MAX_SPLIT_TRIANGLES {

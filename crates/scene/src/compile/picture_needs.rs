@@ -65,8 +65,8 @@ fn pyramid_samples(width: u32, height: u32) -> u64 {
     sizes.map(|[width, height]| u64::from(width) * u64::from(height)).sum()
 }
 
-/// Memory for an image file or asset that is decoded from a color space, from its size and head; zero
-/// for a file that cannot be read.
+/// Memory for an image file or asset that is decoded from a color space, from its size and head;
+/// zero for a file that cannot be read.
 fn of_file(path: &Path, space: ColorSpace, store: &Store) -> Estimate {
     let is_file = store.assets.at(path).is_none();
     let head = store.picture_head(path, &IMAGE_LIMITS);
@@ -74,8 +74,8 @@ fn of_file(path: &Path, space: ColorSpace, store: &Store) -> Estimate {
 }
 
 impl Files<'_> {
-    /// Pictures of a scene's textures, each once; without those that cannot be read and those that are
-    /// pixels in memory already.
+    /// Pictures of a scene's textures, each once; without those that cannot be read and those that
+    /// are pixels in memory already.
     pub(super) fn picture_needs(&self, scene: &Description) -> Vec<PictureNeeds> {
         let estimate = |(file, space): &ImageKey| of_file(file, *space, self.asset_cache.store());
         let needs = |key: ImageKey| PictureNeeds { name: self.picture_name(&key.0), estimate: estimate(&key) };
@@ -124,8 +124,8 @@ impl Files<'_> {
     }
 }
 
-/// Splits pictures that need these bytes until they are decoded into runs of those that are decoded at
-/// once; returns their lengths.
+/// Splits pictures that need these bytes until they are decoded into runs of those that are decoded
+/// at once; returns their lengths.
 fn counts_at_once(bytes: &[u64]) -> Vec<usize> {
     let (mut counts, mut sum) = (Vec::new(), u64::MAX);
     for bytes in bytes {

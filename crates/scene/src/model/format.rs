@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// Memory that a model needs before its world is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ModelNeeds {
-    /// Bytes to open the file and to translate it to parts of a scene, pictures as they are encoded.
+    /// Bytes to open the file and to translate it to parts of a scene, pictures as they are
+    /// encoded.
     pub bytes: u64,
     /// Number of spheres and cylinders that its points and lines become.
     pub solids: u64,

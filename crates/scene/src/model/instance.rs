@@ -57,8 +57,8 @@ pub struct ModelNames {
     camera_counts: BTreeMap<String, u32>,
 }
 
-/// What distinguishes copies of a model: the prefix of the names of its parts, the bits of its time in
-/// seconds, and the names of nodes that it shows and hides.
+/// What distinguishes copies of a model: the prefix of the names of its parts, the bits of its time
+/// in seconds, and the names of nodes that it shows and hides.
 type CopyKey = (String, u64, Vec<String>, Vec<String>);
 
 /// Parts of models that copies share.
@@ -119,7 +119,8 @@ impl Expander<'_> {
         copy.objects.clone()
     }
 
-    /// Parts of a copy of a model. The first copy opens them and, at the frame, adds them to the scene.
+    /// Parts of a copy of a model. The first copy opens them and, at the frame, adds them to the
+    /// scene.
     fn copy(
         &mut self,
         model: &Model,
@@ -197,8 +198,8 @@ impl Expander<'_> {
         std::iter::once(format!("{stem}/")).chain(numbered).find(is_free).unwrap_or_default()
     }
 
-    /// Moves materials, textures, groups and pictures of a model to the scene; those at a sample of the
-    /// shutter interval are the same as at the frame.
+    /// Moves materials, textures, groups and pictures of a model to the scene; those at a sample of
+    /// the shutter interval are the same as at the frame.
     fn add_parts(&mut self, parts: &mut ModelParts, place: Place<'_>) {
         let ModelParts { assets, textures, materials, groups, .. } = parts;
         let (assets, textures) = (std::mem::take(assets), std::mem::take(textures));
