@@ -188,13 +188,14 @@ impl RasterHead {
 /// messages.
 pub fn raster_head(file: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Result<RasterHead, ImageError> {
     let mut bytes = bytes;
-    let layout = codec::layout(source(file, &mut bytes, limits)?, &mut bytes)?;
+    let image = source(file, &mut bytes, limits)?;
+    let layout = codec::layout(image, &mut bytes)?;
     let per_sample = match layout.format {
         // A copy that Exif turns, and of 16 bits the bytes before they become words.
         ImageFormat::Png if layout.sample_bytes == 1 => 1,
         ImageFormat::Png => 4,
         // A copy that Exif turns, and the coefficients of all blocks if several scans refine them.
-        ImageFormat::Jpeg if !codec::has_several_scans(file, &mut bytes)? => 1,
+        ImageFormat::Jpeg if !codec::jpeg::has_several_scans(image, &mut bytes)? => 1,
         ImageFormat::Jpeg => 3,
         // Planes of the colors, and colors with alpha.
         ImageFormat::Webp => 3,

@@ -6,7 +6,7 @@ use crate::named;
 use crate::suggest::closest;
 use juggler_imaging::regular::{self, ReadError};
 use juggler_imaging::{Limits, RasterHead, raster_head};
-use juggler_mesh::{FileContent, PointEstimate, estimate_points, points_of_head};
+use juggler_mesh::{FileContent, PointEstimate, estimate_bytes, estimate_points, points_of_head};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{BufReader, Cursor, ErrorKind};

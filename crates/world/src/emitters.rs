@@ -171,8 +171,8 @@ impl Emitters {
         self
     }
 
-    /// Adds the emitters of shapes, not all if `control` is cancelled. Moves the list of shapes before the lists of emitters grow, so
-    /// that millions of emissive shapes are never stored twice.
+    /// Adds the emitters of shapes, not all if `control` is cancelled. Moves the list of shapes before
+    /// the lists of emitters grow, so that millions of emissive shapes are never stored twice.
     fn add(&mut self, emissive_shapes: Vec<EmissiveShape>, bounds: &mut Vec<LightBounds>, control: &BuildControl) {
         let entry = |shape| EmissiveShapeEntry { shape, first_emitter: 0, emitter_indices: Box::default() };
         self.shapes = emissive_shapes.into_iter().map(entry).collect();

@@ -179,6 +179,12 @@ impl Geometry {
         self.bounds
     }
 
+    /// Radius of a sphere around all bounded contents; 1 if there are none.
+    pub fn radius(&self) -> f32 {
+        let radius = 0.5 * self.bounds.extent().length();
+        if radius > 0.0 && radius < f32::INFINITY { radius } else { 1.0 }
+    }
+
     /// Whether any content moves while the shutter is open.
     pub fn moves(&self) -> bool {
         self.moves

@@ -9,7 +9,7 @@ use crate::tone::LevelEncoder;
 use crate::{ImageError, ImageFormat};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
 use juggler_math::{Image, PixelRows};
-use std::io::{self, Cursor, Read, Write};
+use std::io::{Cursor, Read, Write};
 use zune_core::bytestream::ZByteReaderTrait;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
@@ -123,12 +123,13 @@ pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32
     Ok(orientation(&decoder).size(size))
 }
 
-/// Whether more than one scan begins in a file: those of thumbnails count too. Entropy-coded data
-/// cannot contain the marker.
-pub(super) fn has_several_scans(bytes: &mut dyn ReadSeek) -> io::Result<bool> {
+/// Whether more than one scan begins in a file, so that a decoder holds the coefficients of all blocks
+/// until the last scan: scans of thumbnails count too. Entropy-coded data cannot contain the marker.
+pub(crate) fn has_several_scans(source: Source, bytes: &mut dyn ReadSeek) -> Result<bool, ImageError> {
+    bytes.rewind().map_err(|e| source.failed(e))?;
     let (mut last, mut scans) = (0, 0);
     loop {
-        let block = bytes.fill_buf()?;
+        let block = bytes.fill_buf().map_err(|e| source.failed(e))?;
         let Some(end) = block.last().copied() else { return Ok(false) };
         let begins = |pair: &&[u8]| **pair == [0xff, 0xda];
         scans += usize::from(last == 0xff && block.first() == Some(&0xda)) + block.windows(2).filter(begins).count();

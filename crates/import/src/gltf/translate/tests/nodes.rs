@@ -75,7 +75,7 @@ fn instances_are_placed_in_the_space_of_their_node() {
         [1.0, 0.0, 0.0, 11.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
         [3.0, 0.0, 0.0, 10.0, 0.0, 3.0, 0.0, 5.0, 0.0, 0.0, 3.0, 0.0],
     ];
-    assert_eq!(tree.instances, Some(Instances::from_matrices(matrices)));
+    assert_eq!(tree.instances, Some(Box::new(Instances::from_matrices(matrices))));
     let summary = open(&builder).summary(&ModelChoice::default()).unwrap();
     assert_eq!((summary.distinct_triangles, summary.drawn_triangles, summary.nodes), (1, 2, 1));
 }
