@@ -1,6 +1,9 @@
 //! Linear RGB with the primaries and white point of sRGB, and the sRGB transfer function.
 
+mod css;
 mod json;
+
+pub use css::{color_names, hex_of_name};
 
 use crate::portable;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
@@ -147,21 +150,6 @@ pub fn srgb_decode_f64(encoded: f64) -> f64 {
     if v <= 0.040_45 { v / 12.92 } else { portable::pow_f64((v + 0.055) / 1.055, 2.4) }
 }
 
-impl Rgb {
-    /// Parses `#rrggbb`, or `#rgb` with each digit doubled, as sRGB; `None` for any other text.
-    pub fn from_hex(text: &str) -> Option<Self> {
-        let digits = text.strip_prefix('#').filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
-        let value = u32::from_str_radix(digits, 16).ok()?;
-        let levels = match digits.len() {
-            6 => [value >> 16, value >> 8 & 0xff, value & 0xff],
-            // Double each digit: `d` becomes `dd`.
-            3 => [value >> 8, value >> 4 & 0xf, value & 0xf].map(|digit| 0x11 * digit),
-            _ => return None,
-        };
-        Some(levels.map(|level| srgb_decode(level as f32 / 255.0)).into())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,20 +188,6 @@ mod tests {
             let v = srgb_encode(i as f32 * 1e-5);
             assert!(v > last, "{i}");
             last = v;
-        }
-    }
-
-    #[test]
-    fn hexadecimal_colors_are_parsed() {
-        assert_eq!(Rgb::from_hex("#ff0000"), Some(Rgb::new(1.0, 0.0, 0.0)));
-        assert_eq!(Rgb::from_hex("#00800A").map(|c| c.g), Some(srgb_decode(128.0 / 255.0)));
-        assert_eq!(Rgb::from_hex("#f0A"), Rgb::from_hex("#ff00aa"));
-        assert_eq!(Rgb::from_hex("#fff"), Some(Rgb::WHITE));
-        for wrong in [
-            "", "#", "ff0000", "f00", "#ff", "#ff00", "#ff000", "#ff00000", "#+f0", "#gg0000", "#+f0000", "#ffé00",
-            "#ff 000",
-        ] {
-            assert_eq!(Rgb::from_hex(wrong), None, "{wrong}");
         }
     }
 

@@ -125,7 +125,7 @@ fn gains(text: &str, set: &AovSet) -> Result<Vec<Rgb>, Failure> {
         juggler::check_name("light group", name.trim(), groups.iter().map(String::as_str))?;
         let number =
             factor.trim().parse().ok().filter(|number: &f32| (0.0..=MAX_GAIN).contains(number)).map(Rgb::splat);
-        let factor = number.or_else(|| Rgb::from_hex(factor.trim())).ok_or_else(wrong)?;
+        let factor = number.or_else(|| Rgb::from_css(factor.trim())).ok_or_else(wrong)?;
         let group = groups.iter().position(|group| group == name.trim());
         if let Some(gain) = group.and_then(|group| gains.get_mut(group)) {
             *gain = factor;

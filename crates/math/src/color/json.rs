@@ -1,4 +1,4 @@
-//! JSON form of a color: linear `[r, g, b]`, sRGB `"#rrggbb"`, or one number for a gray.
+//! JSON form of a color: linear `[r, g, b]`, sRGB `"#rrggbb"`, a name of CSS, or one number for a gray.
 
 use super::Rgb;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -7,7 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// A color: linear `[red, green, blue]`, one linear number for a gray, or sRGB as `"#rrggbb"`.
+/// A color: linear `[red, green, blue]`, one linear number for a gray, or sRGB as `"#rrggbb"` or as a
+/// name of CSS such as `"tomato"`.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Color")]
@@ -17,8 +18,8 @@ enum ColorForm {
     Channels([f32; 3]),
     /// Linear value of all three channels.
     Gray(f32),
-    /// sRGB as `#rrggbb`, or `#rgb` with each digit doubled.
-    Hex(#[schemars(regex(pattern = r"^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"))] String),
+    /// sRGB as `#rrggbb`, as `#rgb` with each digit doubled, or as a name of CSS.
+    Css(#[schemars(regex(pattern = r"^(#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})|[a-zA-Z]+)$"))] String),
 }
 
 impl Serialize for Rgb {
@@ -48,7 +49,7 @@ impl<'de> Visitor<'de> for Reader {
     type Value = Rgb;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a color: linear [r, g, b], sRGB \"#rrggbb\", or one number for a gray")
+        f.write_str("a color: linear [r, g, b], sRGB \"#rrggbb\" or a name of CSS, or one number for a gray")
     }
 
     fn visit_f64<E: Error>(self, v: f64) -> Result<Rgb, E> {
@@ -64,6 +65,7 @@ impl<'de> Visitor<'de> for Reader {
     }
 
     fn visit_str<E: Error>(self, v: &str) -> Result<Rgb, E> {
+        // Names of CSS are replaced before: another text may be the name of a texture.
         Rgb::from_hex(v).ok_or_else(|| E::custom(format!("`{v}` is not a color; write `#rrggbb`")))
     }
 

@@ -11,7 +11,7 @@ use juggler_math::Rgb;
 impl Validator<'_> {
     pub(super) fn choice(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule) -> Option<Plain> {
         let alternative = match &node.value {
-            NodeValue::String(text) => alternative_of_text(text, &rule.alternatives),
+            NodeValue::String(text) => self.alternative_of_text(text, &rule.alternatives),
             _ => rule.alternatives.iter().find(|form| fits(node, &form.rule) && inline::suits(node, form)),
         };
         let Some(alternative) = alternative else {
@@ -41,6 +41,19 @@ impl Validator<'_> {
 }
 
 impl Validator<'_> {
+    /// Chooses the form of a string: a color if it is one or begins with `#`, unless a texture has the
+    /// name of the color; else a name, else a kind, else any form that allows strings.
+    fn alternative_of_text<'w>(&self, text: &str, alternatives: &'w [Alternative]) -> Option<&'w Alternative> {
+        let is_text = |alternative: &&Alternative| alternative.rule.types.string && !alternative.rule.is_color;
+        let color = alternatives.iter().find(|alternative| alternative.rule.is_color);
+        let is_color = text.starts_with('#') || Rgb::from_css(text).is_some() && !self.has_texture(text);
+        color
+            .filter(|_| is_color)
+            .or_else(|| alternatives.iter().find(is_text))
+            .or_else(|| alternatives.iter().find(|alternative| alternative.rule.is_family()))
+            .or(color)
+    }
+
     /// Warns if a color looks like 8-bit levels from 0 to 255.
     fn check_range(&mut self, node: &Node, at: &PathRef<'_>, channels: &[Node]) {
         let key = at.last_key().unwrap_or_default();
@@ -88,19 +101,4 @@ fn fits(node: &Node, rule: &Rule) -> bool {
         NodeValue::Object(_) => rule.types.object || !rule.kinds.is_empty(),
         NodeValue::String(_) | NodeValue::Invalid => false,
     }
-}
-
-/// Chooses the form of a string: a color if it is one or begins with `#`, else a name, else a kind,
-/// else any form that allows strings.
-fn alternative_of_text<'w>(text: &str, alternatives: &'w [Alternative]) -> Option<&'w Alternative> {
-    let is_text = |alternative: &&Alternative| alternative.rule.types.string && !alternative.rule.is_color;
-    let color = alternatives.iter().find(|alternative| alternative.rule.is_color);
-    if Rgb::from_hex(text).is_some() || text.starts_with('#') && color.is_some() {
-        return color.or_else(|| alternatives.iter().find(is_text));
-    }
-    alternatives
-        .iter()
-        .find(is_text)
-        .or_else(|| alternatives.iter().find(|alternative| alternative.rule.is_family()))
-        .or(color)
 }

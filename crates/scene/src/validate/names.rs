@@ -82,6 +82,11 @@ impl<'t> NameScope<'t> {
 }
 
 impl Validator<'_> {
+    /// Whether the scene defines a texture of this name.
+    pub(super) fn has_texture(&self, name: &str) -> bool {
+        self.known.has(NamedFamily::Texture.words().0, name)
+    }
+
     /// Reports an error if the scene does not define a name.
     pub(super) fn check_reference(&mut self, family: NamedFamily, node: &Node, name: &str, at: &PathRef<'_>) {
         let (part, noun) = family.words();
@@ -106,7 +111,9 @@ impl Validator<'_> {
 /// Help where the scene defines no names of a family.
 fn none_known(family: NamedFamily, part: &str) -> String {
     match family {
-        NamedFamily::Texture => "the scene has no `textures`; a color is written [r, g, b] or \"#rrggbb\"".into(),
+        NamedFamily::Texture => {
+            "the scene has no `textures`; a color is written [r, g, b], \"#rrggbb\" or as a name of CSS".into()
+        }
         _ => format!("the scene has no `{part}`"),
     }
 }

@@ -6,8 +6,14 @@ use super::{Plain, Validator};
 use crate::document::Node;
 use crate::path::PathRef;
 use crate::report::Finding;
+use crate::suggest::{closest, did_you_mean};
 use juggler_math::Rgb;
+use juggler_math::color::{color_names, hex_of_name};
 use serde_json::{Number, Value};
+
+/// How a color is written.
+const COLOR_HELP: &str =
+    "a color is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\", or as a name of CSS";
 
 impl Validator<'_> {
     pub(super) fn number(
@@ -69,9 +75,14 @@ impl Validator<'_> {
         if let Some(family) = family {
             self.check_reference(family, node, text, at);
         }
-        if rule.is_color && Rgb::from_hex(text).is_none() {
-            let help = "a color is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\"";
+        if rule.is_color && Rgb::from_css(text).is_none() {
+            let near = || closest(text, color_names()).map(did_you_mean).filter(|_| !text.starts_with('#'));
+            let help = self.suggestion(near).unwrap_or_else(|| COLOR_HELP.to_owned());
             return self.report(node, at, Finding::error(format!("`{text}` is not a color")).help(help));
+        }
+        // Where textures are allowed, any other text names a texture.
+        if let Some(hex) = hex_of_name(text).filter(|_| rule.is_color) {
+            return Some(Plain::String(hex));
         }
         Some(Plain::String(text.to_owned()))
     }

@@ -52,7 +52,7 @@ fn in_words(all: &Schema, name: Option<&str>, target: &Value) -> String {
 /// Describes a choice of forms; `name` is the definition that offers it.
 fn choice(all: &Schema, name: Option<&str>, branches: &[Value]) -> String {
     match name {
-        Some("Color") => "a color ([r, g, b], \"#rrggbb\" or one number)".into(),
+        Some("Color") => "a color ([r, g, b], \"#rrggbb\", a name of CSS or one number)".into(),
         Some("MaterialRef") => "a material {...} or the name of one".into(),
         name => alternatives(all, branches, name),
     }

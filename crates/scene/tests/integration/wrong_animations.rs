@@ -176,7 +176,7 @@ fn wrong_values() -> Vec<(String, &'static str)> {
         ),
         (translate(r#"{"animate": {"keys": [[0, [1, 2]]]}}"#), "expected 3 numbers"),
         (
-            top(r#""background": {"animate": {"keys": [[0, "red"]], "interpolation": "step"}}"#),
+            top(r#""background": {"animate": {"keys": [[0, "redd"]], "interpolation": "step"}}"#),
             "unknown kind of background",
         ),
         (slerp("[0, [0, 0, 1]]"), "a rotation is a quaternion"),

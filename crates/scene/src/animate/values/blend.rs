@@ -7,9 +7,9 @@ use juggler_math::Rgb;
 use juggler_math::quaternion;
 use std::sync::Arc;
 
-/// Linear red, green and blue of a hexadecimal color.
+/// Linear red, green and blue of a color that is written as CSS does.
 fn linear_rgb(text: &str) -> Option<[f64; 3]> {
-    let Rgb { r, g, b } = Rgb::from_hex(text)?;
+    let Rgb { r, g, b } = Rgb::from_css(text)?;
     Some([r, g, b].map(f64::from))
 }
 
@@ -29,7 +29,7 @@ pub fn interpolation_error(node: &Node) -> Option<String> {
         Value::Number(_) => None,
         Value::String(text) if linear_rgb(text).is_some() => None,
         Value::String(text) if text.starts_with('#') => Some(format!(
-            "`{text}` is not a color: a color is written \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\""
+            "`{text}` is not a color: a color is written \"#rrggbb\" with six digits 0-9 or a-f, \"#rgb\", or as a name of CSS"
         )),
         Value::Array(elements) if elements.is_empty() => Some("an array without numbers cannot be interpolated".into()),
         Value::Array(elements) => elements.iter().find_map(interpolation_error),
