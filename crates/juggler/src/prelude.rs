@@ -34,7 +34,7 @@ pub use juggler_texture as texture;
 pub use juggler_scene::animate::{
     Along, Animate, Ease, Easing, Extrapolation, Frames, Interpolation, Joint, PathName, Posed, Seconds,
 };
-pub use juggler_scene::description::{Animation, LookAt, Rotate, ScenePath};
+pub use juggler_scene::description::{Animation, LookAt, Rotate, Rotation, ScenePath};
 pub use juggler_scene::{
     Animated, Asset, Chain, ControlSphere, InstanceArray, InstanceAttribute, InstanceFile, Instances, Limb, Model,
     NamedAttributes, Object, ScaleFactors, Scene, TransformStep, ValueSource,

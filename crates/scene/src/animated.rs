@@ -93,7 +93,7 @@ impl Animated<Object> {
     #[must_use]
     pub fn rotated(self, axis: impl Into<Vec3>, source: impl Into<ValueSource>) -> Self {
         let axis = axis.into();
-        self.step([0.0, 1.0].map(|degrees| TransformStep::Rotate(Rotate { axis, degrees })), source)
+        self.step([0.0, 1.0].map(|degrees| TransformStep::Rotate(Rotate { axis, degrees }.into())), source)
     }
 
     /// Appends a rotation about the origin by a quaternion `[x, y, z, w]` from a source, such as keys

@@ -78,7 +78,7 @@ fn with_shapes(scene: Scene) -> Scene {
         .add(Object::chain(Chain::new(ends[0], ends[1], 3)))
         .add(Object::limb(limb).transformed(TransformStep::LookAt(LookAt::new([0.0, 1.0, 0.0], [1.0, 1.0, 1.0]))))
         .add(Object::new(Sphere::new(0.1)).instances(Instances::at([Vec3::X, Vec3::Z])))
-        .add(Object::new(Sphere::new(0.1)).transformed(TransformStep::Rotate(Rotate::new(Vec3::Y, 30.0))))
+        .add(Object::new(Sphere::new(0.1)).transformed(TransformStep::Rotate(Rotate::new(Vec3::Y, 30.0).into())))
 }
 
 fn with_lights(scene: Scene) -> Scene {

@@ -3,7 +3,7 @@
 //! Between the times, each step is interpolated by its own numbers, so a rotation is one by an angle
 //! in between, about its own center and by any number of turns.
 
-use crate::description::{LookAt, Rotate, ScaleFactors, TransformStep};
+use crate::description::{LookAt, Rotate, Rotation, ScaleFactors, TransformStep};
 use juggler_math::motion::{STEP_RADIANS, interpolate_parts};
 use juggler_math::{Motion, Transform, Vec3};
 use juggler_shape::{AnyShape, Sphere};
@@ -75,9 +75,16 @@ fn substeps(at: &[&[TransformStep]]) -> usize {
 /// angle of steps without an angle is small enough to be found in their matrices.
 fn turn(from: &TransformStep, to: &TransformStep) -> Option<f64> {
     match (from, to) {
-        (TransformStep::Rotate(from), TransformStep::Rotate(to)) => {
-            Some((f64::from(to.degrees) - f64::from(from.degrees)).abs().to_radians())
-        }
+        (TransformStep::Rotate(from), TransformStep::Rotate(to)) => match (from, to) {
+            (Rotation::About(from), Rotation::About(to)) => {
+                Some((f64::from(to.degrees) - f64::from(from.degrees)).abs().to_radians())
+            }
+            (Rotation::Angles(from), Rotation::Angles(to)) => {
+                let turns = (to.as_dvec3() - from.as_dvec3()).abs();
+                Some(turns.element_sum().to_radians())
+            }
+            _ => None,
+        },
         _ => (std::mem::discriminant(from) == std::mem::discriminant(to)).then_some(0.0),
     }
 }
@@ -92,10 +99,14 @@ fn step_between(from: &TransformStep, to: &TransformStep, fraction: f64) -> Opti
     let lerp = |from: Vec3, to: Vec3| from.as_dvec3().lerp(to.as_dvec3(), fraction).as_vec3();
     let step = match (from, to) {
         (TransformStep::Translate(from), TransformStep::Translate(to)) => TransformStep::Translate(lerp(*from, *to)),
-        (TransformStep::Rotate(from), TransformStep::Rotate(to)) => TransformStep::Rotate(Rotate {
-            axis: if from.axis == to.axis { from.axis } else { lerp(from.axis.normalize(), to.axis.normalize()) },
-            degrees: (f64::from(from.degrees) * (1.0 - fraction) + f64::from(to.degrees) * fraction) as f32,
-        }),
+        (TransformStep::Rotate(Rotation::About(from)), TransformStep::Rotate(Rotation::About(to))) => {
+            let axis = if from.axis == to.axis { from.axis } else { lerp(from.axis.normalize(), to.axis.normalize()) };
+            let degrees = f64::from(from.degrees) * (1.0 - fraction) + f64::from(to.degrees) * fraction;
+            TransformStep::Rotate(Rotate::new(axis, degrees as f32).into())
+        }
+        (TransformStep::Rotate(Rotation::Angles(from)), TransformStep::Rotate(Rotation::Angles(to))) => {
+            TransformStep::Rotate(Rotation::Angles(lerp(*from, *to)))
+        }
         (TransformStep::Scale(from), TransformStep::Scale(to)) => {
             TransformStep::Scale(ScaleFactors::Each(lerp(from.factors(), to.factors())))
         }

@@ -54,7 +54,7 @@ pub(crate) use read::deserialize_scene;
 pub use render::{CameraName, Render};
 pub(crate) use source_section::SourceSection;
 pub use spheres::{Chain, ChainSphere, ControlSphere, Limb};
-pub use transform::{LookAt, Rotate, ScaleFactors, TransformStep};
+pub use transform::{LookAt, Rotate, Rotation, ScaleFactors, TransformStep};
 
 /// List of objects.
 pub type Objects = Shared<Vec<Item<Object>>>;

@@ -209,7 +209,7 @@ impl Object {
     /// Appends a rotation about an axis through the origin, by an angle in degrees.
     #[must_use]
     pub fn rotated(self, axis: impl Into<Vec3>, degrees: f32) -> Self {
-        self.transformed(TransformStep::Rotate(Rotate { axis: axis.into(), degrees }))
+        self.transformed(TransformStep::Rotate(Rotate::new(axis, degrees).into()))
     }
 
     /// Appends a uniform scaling about the origin.

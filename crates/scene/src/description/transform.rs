@@ -22,8 +22,10 @@ use std::fmt;
 pub enum TransformStep {
     /// Translates by a vector.
     Translate(#[schemars(with = "[f32; 3]", extend("x-unit" = "scene units"))] Vec3),
-    /// Rotates about an axis through the origin.
-    Rotate(Rotate),
+    /// Rotates about the origin: about an axis, or by three angles in degrees, such as `[0, 90, 0]`:
+    /// first about the x axis, then about the y axis, then about the z axis of the parent's space. Each
+    /// angle is counterclockwise as seen from the tip of its axis.
+    Rotate(Rotation),
     /// Scales about the origin.
     Scale(ScaleFactors),
     /// Rotates about the origin by a quaternion `[x, y, z, w]` as in glTF. It is normalized and
@@ -78,8 +80,34 @@ pub fn steps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Transform
     })
 }
 
+/// Rotation about the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Rotation {
+    /// Rotation about an axis.
+    About(Rotate),
+    /// Angles about the x axis, then the y axis, then the z axis, which stay where they are.
+    Angles(#[schemars(with = "[f32; 3]", extend("x-unit" = "degrees"))] Vec3),
+}
+
+impl Rotation {
+    fn transform(&self) -> Result<Transform, PlacementError> {
+        match self {
+            Self::About(Rotate { axis, degrees }) => Transform::rotation(*axis, degrees.to_radians())
+                .ok_or_else(|| PlacementError::new("rotate.axis", "`axis` must not be zero")),
+            Self::Angles(degrees) => {
+                let wrong = || PlacementError::new("rotate", "the angles of `rotate` are too large");
+                let turn = |axis: Vec3, degrees: f32| Transform::rotation(axis, degrees.to_radians()).ok_or_else(wrong);
+                let [x, y, z] = degrees.to_array();
+                Ok(turn(Vec3::X, x)?.then(&turn(Vec3::Y, y)?).then(&turn(Vec3::Z, z)?))
+            }
+        }
+    }
+}
+
 /// Right-handed rotation about an axis through the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "AxisRotation")]
 pub struct Rotate {
     /// Rotation axis, of any length except zero.
     #[schemars(with = "[f32; 3]")]
@@ -87,6 +115,12 @@ pub struct Rotate {
     /// Rotation angle, counterclockwise as seen from the tip of the axis.
     #[schemars(extend("x-unit" = "degrees"))]
     pub degrees: f32,
+}
+
+impl From<Rotate> for Rotation {
+    fn from(rotate: Rotate) -> Self {
+        Self::About(rotate)
+    }
 }
 
 impl Rotate {
@@ -190,8 +224,7 @@ impl TransformStep {
     pub fn transform(&self) -> Result<Transform, PlacementError> {
         match self {
             Self::Translate(by) => Ok(Transform::translation(*by)),
-            Self::Rotate(Rotate { axis, degrees }) => Transform::rotation(*axis, degrees.to_radians())
-                .ok_or_else(|| PlacementError::new("rotate.axis", "`axis` must not be zero")),
+            Self::Rotate(rotation) => rotation.transform(),
             Self::Scale(axes) => Transform::scale(axes.factors())
                 .ok_or_else(|| PlacementError::new("scale", "`scale` must not be 0: the object would be flat")),
             Self::Orient(quaternion) => {
@@ -240,8 +273,7 @@ mod tests {
         let quarter = TransformStep::Orient([0.0, 3.0, 0.0, 3.0]).transform().unwrap();
         assert!(near(quarter.point(Vec3::X), [0.0, 0.0, -1.0]) && near(quarter.point(Vec3::Y), [0.0, 1.0, 0.0]));
         assert!(TransformStep::Orient([0.0; 4]).transform().is_err());
-        let rotate =
-            TransformStep::Rotate(Rotate { axis: Vec3::new(1.0, 2.0, 3.0), degrees: 40.0 }).transform().unwrap();
+        let rotate = TransformStep::Rotate(Rotate::new([1.0, 2.0, 3.0], 40.0).into()).transform().unwrap();
         let turn = quaternion::from_axis_degrees(DVec3::new(1.0, 2.0, 3.0), 40.0)
             .unwrap()
             .to_array()
@@ -250,6 +282,21 @@ mod tests {
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             assert!(rotate.point(axis).abs_diff_eq(orient.point(axis), 1e-6));
         }
+    }
+
+    /// Angles turn about x, then y, then z, as `<x, y, z>` of POV-Ray and the order XYZ of Blender.
+    #[test]
+    fn angles_turn_about_x_then_y_then_z() {
+        let angles =
+            |x: f32, y: f32, z: f32| TransformStep::Rotate(Rotation::Angles(Vec3::new(x, y, z))).transform().unwrap();
+        assert!(near(angles(90.0, 90.0, 0.0).point(Vec3::Y), [1.0, 0.0, 0.0]));
+        assert!(near(angles(0.0, 90.0, 90.0).point(Vec3::X), [0.0, 0.0, -1.0]));
+        let about =
+            |axis: Vec3, degrees: f32| TransformStep::Rotate(Rotate::new(axis, degrees).into()).transform().unwrap();
+        let steps = about(Vec3::X, 20.0).then(&about(Vec3::Y, -70.0)).then(&about(Vec3::Z, 130.0));
+        assert!(near(angles(20.0, -70.0, 130.0).point(Vec3::ONE), steps.point(Vec3::ONE).to_array()));
+        let read: TransformStep = serde_json::from_str(r#"{"rotate": [0, 90, 0]}"#).unwrap();
+        assert_eq!(read, TransformStep::Rotate(Rotation::Angles(Vec3::new(0.0, 90.0, 0.0))));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 
 use super::merge_edits::sources_in;
 use crate::animate::{Programs, Resolver};
-use crate::description::{Object, ScaleFactors, TransformStep};
+use crate::description::{Object, Rotation, ScaleFactors, TransformStep};
 use crate::document::Node;
 use crate::item::Item;
 use crate::path::{Path, Step};
@@ -63,7 +63,8 @@ fn number_mut<'t>(step: &'t mut TransformStep, path: &[Step]) -> Option<&'t mut 
     let (_, path) = path.split_first()?;
     match step {
         TransformStep::Translate(by) => component_mut(by, path),
-        TransformStep::Rotate(rotate) => match path {
+        TransformStep::Rotate(Rotation::Angles(degrees)) => component_mut(degrees, path),
+        TransformStep::Rotate(Rotation::About(rotate)) => match path {
             [Step::Key(key)] if key == "degrees" => Some(&mut rotate.degrees),
             [Step::Key(key), rest @ ..] if key == "axis" => component_mut(&mut rotate.axis, rest),
             _ => None,
