@@ -1,4 +1,4 @@
-//! Field of view of a perspective camera, given by one of four alternatives.
+//! Field of view of a perspective camera, given by one of five alternatives.
 
 use super::InvalidCamera;
 use juggler_math::{UVec2, Vec2, portable};
@@ -53,8 +53,15 @@ pub(super) struct FieldOfView {
     pub horizontal_degrees: Option<f32>,
     pub screen: Option<VirtualScreen>,
     pub view_plane: Option<ViewPlane>,
+    /// Focal length in millimeters.
+    pub focal_length: Option<f32>,
+    /// Width of the sensor in millimeters.
+    pub sensor_width: Option<f32>,
     pub fit_aspect: Option<f32>,
 }
+
+/// Width of a full-frame sensor in millimeters.
+pub(super) const FULL_FRAME: f32 = 36.0;
 
 const DEFAULT_VERTICAL_DEGREES: f32 = 40.0;
 
@@ -72,7 +79,7 @@ impl FieldOfView {
             portable::atan2(tangent(now), 1.0).to_degrees() * 2.0
         };
         let distance = |width: f32, distance: f32| width * 0.5 / tangent(width * 0.5 / distance);
-        let nothing = self.horizontal_degrees.is_none() && self.screen.is_none() && self.view_plane.is_none();
+        let nothing = !self.gives_width();
         let vertical = self.vertical_degrees.or(nothing.then_some(DEFAULT_VERTICAL_DEGREES));
         let screen = |s: VirtualScreen| VirtualScreen { distance: distance(s.width, s.distance), ..s };
         let plane = |p: ViewPlane| ViewPlane { distance: distance(p.width, p.distance), ..p };
@@ -81,15 +88,28 @@ impl FieldOfView {
             horizontal_degrees: self.horizontal_degrees.map(angle),
             screen: self.screen.map(screen),
             view_plane: self.view_plane.map(plane),
+            focal_length: self.focal_length.map(|length| distance(self.sensor_width(), length)),
+            sensor_width: self.sensor_width,
             fit_aspect: self.fit_aspect,
         }
+    }
+
+    fn sensor_width(&self) -> f32 {
+        self.sensor_width.unwrap_or(FULL_FRAME)
+    }
+
+    /// Whether a field gives the width of what the picture shows.
+    fn gives_width(&self) -> bool {
+        self.horizontal_degrees.is_some()
+            || self.screen.is_some()
+            || self.view_plane.is_some()
+            || self.focal_length.is_some()
     }
 
     /// Half of the width and height of the film at unit distance from the eye.
     pub fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
         self.check_single()?;
-        let gives_width = self.horizontal_degrees.is_some() || self.screen.is_some() || self.view_plane.is_some();
-        check_fit_aspect(self.fit_aspect, gives_width, "vertical_fov_degrees")?;
+        check_fit_aspect(self.fit_aspect, self.gives_width(), "vertical_fov_degrees")?;
         let size = size.max(UVec2::ONE).as_vec2();
         let from_width = |x: f32| Vec2::new(x, x * size.y / size.x);
         let (field, half) = if let Some(degrees) = self.horizontal_degrees {
@@ -102,6 +122,9 @@ impl FieldOfView {
                 [("view_plane.width", width), ("view_plane.height", height), ("view_plane.distance", distance)];
             positive(fields)?;
             ("view_plane", Vec2::new(width, height) * 0.5 / distance)
+        } else if let Some(length) = self.focal_length {
+            positive([("focal_length", length), ("sensor_width", self.sensor_width())])?;
+            ("focal_length", from_width(self.sensor_width() * 0.5 / length))
         } else {
             let degrees = self.vertical_degrees.unwrap_or(DEFAULT_VERTICAL_DEGREES);
             let y = half_tangent("vertical_fov_degrees", degrees)?;
@@ -124,6 +147,7 @@ impl FieldOfView {
             ("horizontal_fov_degrees", self.horizontal_degrees.is_some()),
             ("screen", self.screen.is_some()),
             ("view_plane", self.view_plane.is_some()),
+            ("focal_length", self.focal_length.is_some()),
         ];
         let mut given = given.iter().filter(|(_, given)| *given).map(|(field, _)| *field);
         match (given.next(), given.next()) {

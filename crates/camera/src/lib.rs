@@ -16,6 +16,7 @@ use juggler_math::{Transform, UVec2, Vec3};
 pub mod aov;
 mod field_of_view;
 pub mod film;
+mod framing;
 mod orthographic;
 mod perspective;
 mod pose;
@@ -31,6 +32,7 @@ mod constructors;
 mod contract;
 
 pub use field_of_view::{ViewPlane, VirtualScreen};
+pub use framing::Framing;
 pub use pose::{CameraAxes, LocalTranslation};
 pub use projection::{LANES, Projection};
 pub use shutter_camera::ShutterCamera;
@@ -79,6 +81,10 @@ pub trait Camera: Send + Sync {
     fn zoom(&mut self, factor: f32);
     /// Sets the focus distance of a camera with a lens.
     fn focus(&mut self, _distance: f32) {}
+    /// Name of the object whose middle is in focus, if the description gives one.
+    fn focused_object(&self) -> Option<&str> {
+        None
+    }
 }
 
 juggler_math::closed_set! {

@@ -48,7 +48,8 @@ pub struct Perspective {
     /// Translation along the camera's axes, after the rotations.
     pub r#move: LocalTranslation,
     /// Vertical field of view in degrees, between 0 and 180. At most one of `vertical_fov_degrees`,
-    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; the default is 40.
+    /// `horizontal_fov_degrees`, `screen`, `view_plane` and `focal_length` may be given; the default is
+    /// 40.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180, "x-unit" = "degrees"))]
     pub vertical_fov_degrees: Option<f32>,
@@ -62,6 +63,16 @@ pub struct Perspective {
     /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
+    /// Focal length in millimeters, above 0, of a lens before a sensor of width `sensor_width`: it
+    /// gives the field of view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
+    pub focal_length: Option<f32>,
+    /// Width of the sensor in millimeters, above 0, which the picture's width stands for. The default
+    /// is 36, a full frame.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
+    pub sensor_width: Option<f32>,
     /// Aspect ratio, width / height, of the narrowest picture that keeps `vertical_fov_degrees`. A
     /// narrower picture keeps the width that a picture of this aspect ratio has and shows more above
     /// and below, so nothing at its sides is lost. By default `vertical_fov_degrees` holds for every picture.
@@ -85,6 +96,8 @@ impl Default for Perspective {
             horizontal_fov_degrees: None,
             screen: None,
             view_plane: None,
+            focal_length: None,
+            sensor_width: None,
             fit_aspect: None,
         }
     }
@@ -109,12 +122,23 @@ impl Perspective {
         }
     }
 
+    /// Fails for the width of a sensor without a focal length.
+    fn check_sensor(&self) -> Result<(), InvalidCamera> {
+        if self.sensor_width.is_none() || self.focal_length.is_some() {
+            return Ok(());
+        }
+        let message = "`sensor_width` has an effect only with `focal_length`";
+        Err(InvalidCamera::new("sensor_width", message))
+    }
+
     fn field_of_view(&self) -> FieldOfView {
         FieldOfView {
             vertical_degrees: self.vertical_fov_degrees,
             horizontal_degrees: self.horizontal_fov_degrees,
             screen: self.screen,
             view_plane: self.view_plane,
+            focal_length: self.focal_length,
+            sensor_width: self.sensor_width,
             fit_aspect: self.fit_aspect,
         }
     }
@@ -122,6 +146,7 @@ impl Perspective {
 
 impl Camera for Perspective {
     fn projection(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+        self.check_sensor()?;
         let half = self.field_of_view().half_extent(size)?;
         Ok(Projection::pinhole(&self.pose().axes()?, half, size))
     }
@@ -147,7 +172,7 @@ impl Camera for Perspective {
     fn zoom(&mut self, factor: f32) {
         let zoomed = self.field_of_view().zoomed(factor);
         (self.vertical_fov_degrees, self.horizontal_fov_degrees) = (zoomed.vertical_degrees, zoomed.horizontal_degrees);
-        (self.screen, self.view_plane) = (zoomed.screen, zoomed.view_plane);
+        (self.screen, self.view_plane, self.focal_length) = (zoomed.screen, zoomed.view_plane, zoomed.focal_length);
     }
 }
 

@@ -8,12 +8,14 @@
 //! A point at depth d has a circle of confusion of radius `lens_radius` · |d − `focus_distance`| /
 //! `focus_distance`, measured on the plane at depth d.
 
-use super::field_of_view::{FieldOfView, ViewPlane, VirtualScreen, positive};
+use super::field_of_view::{FULL_FRAME, FieldOfView, ViewPlane, VirtualScreen, positive};
 use super::pose::{CameraAxes, LocalTranslation, Pose};
 use super::{Camera, InvalidCamera, Projection};
-use juggler_math::{UVec2, Vec3};
+use juggler_math::{UVec2, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+const METERS_PER_MILLIMETER: f32 = 1e-3;
 
 /// Thin-lens camera: a plane in focus, depth-of-field blur before and behind it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,7 +50,8 @@ pub struct ThinLens {
     /// Translation along the camera's axes, after the rotations.
     pub r#move: LocalTranslation,
     /// Vertical field of view in degrees, between 0 and 180. At most one of `vertical_fov_degrees`,
-    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; the default is 40.
+    /// `horizontal_fov_degrees`, `screen`, `view_plane` and `focal_length` may be given; the default is
+    /// 40.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180, "x-unit" = "degrees"))]
     pub vertical_fov_degrees: Option<f32>,
@@ -62,6 +65,16 @@ pub struct ThinLens {
     /// Field of view as a rectangle at a given distance; the picture is stretched over it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_plane: Option<ViewPlane>,
+    /// Focal length in millimeters, above 0, of a lens before a sensor of width `sensor_width`: it
+    /// gives the field of view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
+    pub focal_length: Option<f32>,
+    /// Width of the sensor in millimeters, above 0, which the picture's width stands for. The default
+    /// is 36, a full frame.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
+    pub sensor_width: Option<f32>,
     /// Aspect ratio, width / height, of the narrowest picture that keeps `vertical_fov_degrees`. A
     /// narrower picture keeps the width that a picture of this aspect ratio has and shows more above
     /// and below, so nothing at its sides is lost. By default `vertical_fov_degrees` holds for every picture.
@@ -72,6 +85,20 @@ pub struct ThinLens {
     /// plane; 0 is a pinhole.
     #[schemars(range(min = 0), extend("x-unit" = "scene units"))]
     pub lens_radius: f32,
+    /// f-number of the lens, above 0: the focal length divided by the diameter of the lens. It replaces
+    /// `lens_radius`. Without `focal_length`, the focal length is the one that gives the field of view
+    /// with `sensor_width`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub f_stop: Option<f32>,
+    /// Length of a scene unit in meters, above 0, for `f_stop`. The default is 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "m"))]
+    pub unit: Option<f32>,
+    /// Name of an object whose middle is in focus; it replaces `focus_distance`. The object must be
+    /// in front of the camera.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focus_on: Option<String>,
     /// Distance from the eye to the plane in focus along the view direction, in scene units. It
     /// must be above 0.
     #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "scene units"))]
@@ -93,8 +120,13 @@ impl Default for ThinLens {
             horizontal_fov_degrees: None,
             screen: None,
             view_plane: None,
+            focal_length: None,
+            sensor_width: None,
             fit_aspect: None,
             lens_radius: 0.05,
+            f_stop: None,
+            unit: None,
+            focus_on: None,
             focus_distance: 5.0,
         }
     }
@@ -119,12 +151,31 @@ impl ThinLens {
         }
     }
 
+    /// Radius of the lens in scene units; `half` is half of the width and height of the film at unit
+    /// distance.
+    fn radius(&self, half: Vec2) -> Result<f32, InvalidCamera> {
+        let Some(f_stop) = self.f_stop else {
+            return match self.unit {
+                Some(_) => Err(InvalidCamera::new("unit", "`unit` has an effect only with `f_stop`")),
+                None => Ok(self.lens_radius),
+            };
+        };
+        let sensor_width = self.sensor_width.unwrap_or(FULL_FRAME);
+        let unit = self.unit.unwrap_or(1.0);
+        positive([("f_stop", f_stop), ("sensor_width", sensor_width), ("unit", unit)])?;
+        let focal_length = self.focal_length.unwrap_or(sensor_width * 0.5 / half.x);
+        let radius = focal_length * 0.5 / f_stop * (METERS_PER_MILLIMETER / unit);
+        if radius.is_finite() { Ok(radius) } else { Err(InvalidCamera::new("f_stop", "the lens would be too large")) }
+    }
+
     fn field_of_view(&self) -> FieldOfView {
         FieldOfView {
             vertical_degrees: self.vertical_fov_degrees,
             horizontal_degrees: self.horizontal_fov_degrees,
             screen: self.screen,
             view_plane: self.view_plane,
+            focal_length: self.focal_length,
+            sensor_width: self.sensor_width,
             fit_aspect: self.fit_aspect,
         }
     }
@@ -134,11 +185,12 @@ impl Camera for ThinLens {
     fn projection(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
         let half = self.field_of_view().half_extent(size)?;
         positive([("focus_distance", self.focus_distance)])?;
+        let radius = self.radius(half)?;
         if !(self.lens_radius >= 0.0 && self.lens_radius.is_finite()) {
             let message = format!("`lens_radius` must be 0 or more, it is {}", self.lens_radius);
             return Err(InvalidCamera::new("lens_radius", message));
         }
-        Ok(Projection::thin_lens(&self.pose().axes()?, half, size, self.lens_radius, self.focus_distance))
+        Ok(Projection::thin_lens(&self.pose().axes()?, half, size, radius, self.focus_distance))
     }
 
     fn axes(&self) -> Result<CameraAxes, InvalidCamera> {
@@ -162,11 +214,15 @@ impl Camera for ThinLens {
     fn zoom(&mut self, factor: f32) {
         let zoomed = self.field_of_view().zoomed(factor);
         (self.vertical_fov_degrees, self.horizontal_fov_degrees) = (zoomed.vertical_degrees, zoomed.horizontal_degrees);
-        (self.screen, self.view_plane) = (zoomed.screen, zoomed.view_plane);
+        (self.screen, self.view_plane, self.focal_length) = (zoomed.screen, zoomed.view_plane, zoomed.focal_length);
     }
 
     fn focus(&mut self, distance: f32) {
-        self.focus_distance = distance;
+        (self.focus_distance, self.focus_on) = (distance, None);
+    }
+
+    fn focused_object(&self) -> Option<&str> {
+        self.focus_on.as_deref()
     }
 }
 
@@ -183,8 +239,8 @@ impl ThinLens {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler_math::Ray;
     use juggler_math::testing::{Random, close3};
-    use juggler_math::{Ray, Vec2};
 
     const SIZE: UVec2 = UVec2::new(80, 60);
 
@@ -229,9 +285,44 @@ mod tests {
         }
     }
 
+    /// A lens of 50 mm at f/2 has a diameter of 25 mm, and a sensor of 36 mm gives 39.6°.
+    #[test]
+    fn f_stops_give_the_radius_of_the_lens() {
+        let radius = |json: &str| {
+            let lens: ThinLens = serde_json::from_str(json).unwrap();
+            let half = lens.field_of_view().half_extent(SIZE).unwrap();
+            (lens.radius(half).unwrap() * 1e6).round() / 1e6
+        };
+        assert_eq!(radius(r#"{"focal_length": 50, "f_stop": 2}"#), 0.0125);
+        assert_eq!(radius(r#"{"focal_length": 50, "f_stop": 2, "unit": 0.001}"#), 12.5);
+        // The field of view gives the focal length: 18 mm / tan(45°).
+        assert_eq!(radius(r#"{"horizontal_fov_degrees": 90, "f_stop": 4}"#), 0.00225);
+        assert_eq!(radius(r#"{"horizontal_fov_degrees": 90, "f_stop": 4, "sensor_width": 24}"#), 0.0015);
+        assert_eq!(radius(r#"{"lens_radius": 0.3}"#), 0.3);
+        let wide: ThinLens = serde_json::from_str(r#"{"focal_length": 50}"#).unwrap();
+        let degrees = 2.0 * wide.field_of_view().half_extent(SIZE).unwrap().x.atan().to_degrees();
+        assert!((degrees - 39.6).abs() < 0.01, "{degrees}");
+    }
+
+    #[test]
+    fn zooming_changes_the_focal_length() {
+        let mut lens = ThinLens { focal_length: Some(50.0), ..ThinLens::default() };
+        lens.zoom(2.0);
+        assert!(
+            lens.focal_length.is_some_and(|length| (length - 100.0).abs() < 1e-3)
+                && lens.vertical_fov_degrees.is_none()
+        );
+    }
+
     #[test]
     fn invalid_fields_are_named() {
         for (json, field) in [
+            (r#"{"f_stop": 0}"#, "f_stop"),
+            (r#"{"unit": 0.01}"#, "unit"),
+            (r#"{"f_stop": 2, "unit": -1}"#, "unit"),
+            (r#"{"focal_length": 0}"#, "focal_length"),
+            (r#"{"focal_length": 50, "sensor_width": -1}"#, "sensor_width"),
+            (r#"{"focal_length": 50, "vertical_fov_degrees": 30}"#, "focal_length"),
             (r#"{"lens_radius": -1}"#, "lens_radius"),
             (r#"{"focus_distance": 0}"#, "focus_distance"),
             (r#"{"screen": {"width": 1, "distance": 1}, "horizontal_fov_degrees": 3}"#, "screen"),

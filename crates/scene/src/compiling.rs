@@ -4,7 +4,7 @@ use crate::compile::{Assembly, Compiled, Files, Illuminance, NEVER_CANCELLED};
 use crate::report::{Finding, Problems};
 use crate::scene::merge_findings;
 use crate::{Scene, SceneError};
-use juggler_math::{BuildControl, BuildStage};
+use juggler_math::{BuildControl, BuildStage, Vec3};
 
 impl Scene {
     /// Finds all errors and warnings of the scene without building the world.
@@ -22,6 +22,19 @@ impl Scene {
         let illuminance = assembly.illuminance.clone();
         let order = if findings.iter().any(Finding::is_error) { Vec::new() } else { assembly.ambiguity_warnings() };
         (self.report(merge_findings(findings, order)), illuminance)
+    }
+
+    /// The points of the scene's objects that reach farthest in directions spread over the sphere, for
+    /// cameras that see all objects ([`Framing`](juggler_camera::Framing)). They are the corners of a cube
+    /// around the origin if nothing is bounded. Lights with a shape do not count.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::Problems`] as [`Scene::compile`].
+    pub fn extreme_points(&self) -> Result<Vec<Vec3>, SceneError> {
+        let (assembly, wrong, more) = self.assembly(&NEVER_CANCELLED);
+        self.warnings(wrong, more)?;
+        Ok(assembly.extreme_points())
     }
 
     /// Builds the world.

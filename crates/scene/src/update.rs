@@ -37,11 +37,15 @@ impl Scene {
             files = self.files_of(expansion);
         }
         let found = if self.has_world(before, &change) {
-            let (cameras, camera_keys, findings) = compile::cameras_of(description, &tracks, &earlier.bounds);
-            let settings = (*self.description.render).clone();
-            let integrator = self.integrator_choice();
-            let hidden = earlier.clone().with_hidden_background(settings.transparent);
-            Some((Compiled { cameras, camera_keys, settings, integrator, ..hidden }, findings))
+            let mut findings = Vec::new();
+            compile::check_settings(&self.description.render, &mut findings);
+            let found = compile::cameras_of(description, &tracks, &earlier.subjects, &mut findings);
+            found.map(|(cameras, camera_keys)| {
+                let settings = (*self.description.render).clone();
+                let integrator = self.integrator_choice();
+                let hidden = earlier.clone().with_hidden_background(settings.transparent);
+                (Compiled { cameras, camera_keys, settings, integrator, ..hidden }, findings)
+            })
         } else if !self.has_models() && !before.has_models() && self.has_objects(before, &change) {
             compile::with_shading(description, &tracks, Files { control, ..files }, earlier)
         } else {

@@ -23,6 +23,7 @@ mod differential;
 mod emissive_shape;
 mod emissive_surfaces;
 mod emitters;
+mod extreme_points;
 pub mod frames;
 mod geometry;
 mod geometry_stats;
@@ -56,6 +57,7 @@ use cluster::starts_at;
 pub use cluster::{Cluster, Member};
 pub use differential::SurfaceDifferential;
 pub use emitters::{EmitterId, EmitterSample, LightSampleContext, MAX_SPLIT_TRIANGLES};
+pub use extreme_points::extreme_points;
 pub use geometry::{Geometry, GeometryTotals, MAX_DEPTH, MAX_OBJECTS};
 pub use geometry_stats::GeometryStats;
 pub use instance_attributes::{AttributeArrays, AttributeList, InstanceAttributes};
@@ -93,12 +95,6 @@ impl WorldHit {
             *self = Self { hit, shape };
         }
     }
-}
-
-/// Radius of a sphere around all bounded objects; 1 if there are none.
-fn radius(bounds: &Aabb) -> f32 {
-    let radius = 0.5 * bounds.extent().length();
-    if radius > 0.0 && radius < f32::INFINITY { radius } else { 1.0 }
 }
 
 /// A point where a path hits a surface.
@@ -198,7 +194,7 @@ impl World {
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient);
         lights.retain(|light| light.ambient.is_black());
         let shapes = EmissiveShape::collect(&top, &materials);
-        let emitters = Emitters::new(&lights, shapes, &background, radius(&top.bounds()), control)?;
+        let emitters = Emitters::new(&lights, shapes, &background, top.radius(), control)?;
         Ok(Self::from_emitters(top, materials, (lights, ambient), background, emitters))
     }
 

@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::report::Finding;
 use juggler_camera::AnyCamera;
 use juggler_material::{MaterialId, MaterialTable, Sides};
-use juggler_math::{Aabb, Ray, Transform, Vec3};
+use juggler_math::{Ray, Transform, Vec3};
 use juggler_shape::SolidAngleShape;
 use juggler_world::{Content, Object};
 
@@ -100,7 +100,7 @@ impl Emitter {
         others.peek().is_some()
             && !others.any(|(_, object)| match plane(object) {
                 Some(plane) => plane.normal(Vec3::Y).dot(self.normal).abs() < 0.9999 || is_ahead(plane.origin()),
-                None => object.bounds().is_empty() || corners(&object.bounds()).into_iter().any(is_ahead),
+                None => object.bounds().is_empty() || object.bounds().corners().into_iter().any(is_ahead),
             })
             && !scene_objects.scene.camera.iter().chain(scene_objects.scene.cameras.values()).any(|camera| eye(camera))
     }
@@ -177,10 +177,4 @@ impl SceneObjects<'_> {
 /// Transform of a static object that is an infinite plane.
 fn plane(object: &Object) -> Option<Transform> {
     object.content.as_shape().filter(|shape| shape.is_plane()).and_then(|_| object.motion.still())
-}
-
-fn corners(bounds: &Aabb) -> [Vec3; 8] {
-    let pick = |i: usize, bit: usize, low: f32, high: f32| if i & bit == 0 { low } else { high };
-    let Aabb { min, max } = *bounds;
-    std::array::from_fn(|i| Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z)))
 }

@@ -4,20 +4,20 @@
 use crate::description::{Description, Render};
 use crate::integrator::IntegratorChoice;
 use crate::motion::Tracks;
-use crate::path::Path;
 use crate::report::{Finding, Problems};
 use bounds::{bounds, farthest_object};
 use juggler_camera::{AnyCamera, InvalidCamera, Perspective, ShutterCamera};
 use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::{MaterialId, MaterialTable};
-use juggler_math::{Aabb, BuildControl, BuildStage, Cancelled, UVec2};
+use juggler_math::{Aabb, BuildControl, BuildStage, Cancelled, UVec2, Vec3};
 use juggler_world::{Labels, Object, SceneLight, World};
 use std::sync::Arc;
 
 mod ambiguities;
 pub(crate) mod area_lights;
 mod bounds;
+mod cameras;
 mod count;
 mod darkness;
 mod defaults;
@@ -46,6 +46,7 @@ mod surface_coordinates;
 mod times;
 mod transform_motion;
 
+pub use cameras::{Subjects, cameras_of};
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub(crate) use file_cache::file_stamp;
 pub use illuminance::Illuminance;
@@ -59,6 +60,7 @@ pub use meshes::{AssetCache, Files};
 pub(crate) use meshes::{NEVER_CANCELLED, read_error_message};
 pub use needs::Needs;
 pub use picture_needs::{DECODED_AT_ONCE, Estimate, PictureNeeds};
+pub(crate) use settings::check as check_settings;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 
 /// Scene that is ready to render.
@@ -77,6 +79,8 @@ pub struct Compiled {
     pub integrator: IntegratorChoice,
     /// World-space bounding box of all bounded objects except area lights.
     pub bounds: Aabb,
+    /// What the cameras frame and focus on.
+    pub subjects: Subjects,
     /// Warnings about the scene.
     pub warnings: Problems,
     /// Names of objects, materials and light groups, for masks and AOVs.
@@ -111,7 +115,11 @@ pub struct Assembly {
     pub integrator: IntegratorChoice,
     /// As [`Compiled::bounds`].
     pub bounds: Aabb,
+    /// As [`Compiled::subjects`].
+    pub subjects: Subjects,
     pub(crate) object_materials: Arc<Vec<MaterialId>>,
+    /// Number of objects before those of area lights.
+    own_objects: usize,
     /// Whether each of the scene's objects is a shadow catcher.
     shadow_catchers: Vec<bool>,
 }
@@ -151,10 +159,11 @@ impl Assembly {
             SceneInputs::from_scene(scene, files, &mut findings);
         let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
         let (bounds, farthest_object) = (bounds(&placed.0), farthest_object(&placed.0, &placed.1));
-        let has_emission = materials.has_emission();
+        let subjects = Subjects::new(scene, &placed.0, &placed.1, &bounds);
+        let (has_emission, own_objects) = (materials.has_emission(), placed.0.len());
         area_lights::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
-        let (cameras, camera_keys) = cameras(scene, tracks, &bounds, &farthest_object, &mut findings);
+        let (cameras, camera_keys) = cameras::cameras(scene, tracks, &subjects, &farthest_object, &mut findings);
         let inputs =
             LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
         let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
@@ -174,13 +183,22 @@ impl Assembly {
             illuminance,
             integrator,
             bounds,
+            subjects,
             object_materials,
+            own_objects,
             shadow_catchers: scene.objects.iter().map(|object| object.shadow_catcher).collect(),
         };
         findings.extend(darkness::warning(scene, &assembly));
         Self::check_shadow_catchers(scene, &mut findings);
         assembly.check_sight(scene, &mut findings);
         (assembly, findings)
+    }
+
+    /// Extreme points of the objects without area lights; the corners of [`Compiled::bounds`] if nothing
+    /// is bounded.
+    pub fn extreme_points(&self) -> Vec<Vec3> {
+        let own = self.objects.get(..self.own_objects).unwrap_or_default();
+        self.subjects.framed_points.as_deref().map_or_else(|| cameras::points_of(own, &self.bounds), <[Vec3]>::to_vec)
     }
 
     /// Builds the world with its bounding volume hierarchies.
@@ -198,7 +216,8 @@ impl Assembly {
             let unoccluded = World::new(objects, materials, lights, background, control)?;
             world = world.with_shadow_catchers(self.shadow_catchers, unoccluded);
         }
-        let Self { cameras, camera_keys, names, integrator, bounds, illuminance, object_materials, .. } = self;
+        let Self { cameras, camera_keys, names, integrator, bounds, subjects, .. } = self;
+        let Self { illuminance, object_materials, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
         Ok(Compiled {
             world,
@@ -207,6 +226,7 @@ impl Assembly {
             settings,
             integrator,
             bounds,
+            subjects,
             warnings,
             names,
             illuminance,
@@ -288,7 +308,7 @@ pub fn with_shading(
     let has_emission = materials.has_emission();
     area_lights::request_materials(scene, &mut materials, &mut names, &mut findings);
     let bounds = earlier.bounds;
-    let (cameras, camera_keys) = cameras(scene, tracks, &bounds, &Path::root().key("objects"), &mut findings);
+    let (cameras, camera_keys) = cameras_of(scene, tracks, &earlier.subjects, &mut findings)?;
     let inputs = LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
     let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
     let labels = names.labels(scene, earlier.world.labels().entries.clone());
@@ -329,63 +349,4 @@ fn compile_sources(sources: &[AnyLight], tracks: &Tracks, files: Files<'_>, name
     let mut lights = shutter_motion::lights(sources, tracks, files);
     names.assign_groups(&mut lights, sources);
     lights
-}
-
-/// Cameras by name, the selected one first, and the selected camera over the shutter interval.
-type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
-
-/// Cameras of a scene whose world is compiled already; `bounds` is the bounding box of its objects.
-pub fn cameras_of(
-    scene: &Description,
-    tracks: &Tracks,
-    bounds: &Aabb,
-) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
-    let mut findings = Vec::new();
-    settings::check(&scene.render, &mut findings);
-    let (cameras, camera_keys) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
-    (cameras, camera_keys, findings)
-}
-
-/// Cameras of the scene or the default camera, each of them checked, the selected one first.
-/// Reports an invalid default camera at `farthest_object`, the object that makes it invalid.
-fn cameras(
-    scene: &Description,
-    tracks: &Tracks,
-    bounds: &Aabb,
-    farthest_object: &Path,
-    findings: &mut Vec<Finding>,
-) -> Cameras {
-    let [width, height] = scene.render.size;
-    let size = UVec2::new(width.max(1), height.max(1));
-    let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
-    if let Some(camera) = &scene.camera {
-        defaults::check_camera(camera, size, &Path::root().key("camera"), findings);
-        cameras.push(("camera".into(), (**camera).clone()));
-        if !scene.cameras.is_empty() {
-            let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
-            findings.push(problem.at(Path::root().key("camera")).help("move it into `cameras` under a name"));
-        }
-    }
-    for (name, camera) in &scene.cameras {
-        defaults::check_camera(camera, size, &Path::root().key("cameras").key(name.as_str()), findings);
-        cameras.push((name.clone(), (**camera).clone()));
-    }
-    if cameras.is_empty() {
-        cameras.push(("default".into(), defaults::checked_camera(bounds, size, farthest_object, findings)));
-    }
-    if let Some(chosen) = &scene.render.camera
-        && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
-    {
-        cameras[..=at].rotate_right(1);
-    }
-    let camera_keys = cameras.first().map(|(name, _)| shutter_motion::camera(tracks, name, scene)).unwrap_or_default();
-    for camera in &camera_keys {
-        // The same error at the frame itself is reported already.
-        if let (Err(invalid), true) = (camera.projection(size), !findings.iter().any(Finding::is_error)) {
-            let path = Path::root().key(if scene.camera.is_some() { "camera" } else { "cameras" });
-            let message = format!("while the shutter is open, {}", invalid.message);
-            findings.push(Finding::error(message).at(path.join(invalid.field)));
-        }
-    }
-    (cameras, camera_keys)
 }

@@ -59,6 +59,11 @@ pub fn check_lights(scene: &Description, lights: &[AnyLight], findings: &mut Vec
 /// Warns about lights that have no effect with the integrator.
 pub fn check_fit(scene: &Description, choice: &IntegratorChoice, findings: &mut Vec<Finding>) {
     let name = choice.integrator.name();
+    if scene.tone.backdrop.is_some() && !scene.render.transparent {
+        let message = "`backdrop` has no effect: the background hides it";
+        let at = Path::root().key("tone").key("backdrop");
+        findings.push(Finding::warning(message).at(at).help("write \"transparent\": true in `render`"));
+    }
     let lights = Path::root().key("lights");
     if choice.follows_paths() {
         if let Some(i) = scene.lights.iter().position(|light| !light.ambient().is_black()) {

@@ -134,6 +134,13 @@ impl Scene {
             && matches!(self.description.objects.as_slice(), [object] if object.model.is_some())
     }
 
+    /// Whether the scene shows one model or mesh file that was given in place of a scene.
+    pub fn is_around_file(&self) -> bool {
+        let is_mesh_file = |object: &Item<Object>| object.mesh().is_some_and(|mesh| mesh.file.is_some());
+        let is_generated = self.sources().names().next().is_none();
+        self.is_around_model() || is_generated && self.description.objects.first().is_some_and(is_mesh_file)
+    }
+
     /// Selects what the model of a scene around a model file shows; `None` keeps a choice of the
     /// file. Returns `false`, without an effect, for other scenes.
     pub fn choose_model(

@@ -30,7 +30,7 @@ pub struct Unit {
 }
 
 /// All units.
-pub const UNITS: [Unit; 19] = [
+pub const UNITS: [Unit; 21] = [
     Unit {
         name: "scene units",
         meaning: "Length, in the coordinate space that the field belongs to.",
@@ -60,6 +60,8 @@ pub const UNITS: [Unit; 19] = [
     },
     Unit { name: "frames", meaning: "Time, or the length of a movie.", phrases: &["in frames", "Number of frames"] },
     Unit { name: "frames/second", meaning: "Frame rate.", phrases: &["Frame rate"] },
+    Unit { name: "mm", meaning: "Length on the sensor of a camera, in millimeters.", phrases: &["in millimeters"] },
+    Unit { name: "m", meaning: "Length of a scene unit, in meters.", phrases: &["in meters"] },
     Unit { name: "pixels", meaning: "Length in the picture.", phrases: &["in pixels"] },
     Unit {
         name: "samples",

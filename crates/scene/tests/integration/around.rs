@@ -46,7 +46,8 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
     assert!(edited.compile().is_ok() && !edited.has_world_of(&scene));
     fs::write(&path, TETRAHEDRON.replace("v 0 2 0", "v 0 5.5 0")).unwrap();
     let again = scene.reload(&path).unwrap();
-    assert_ne!(again.description.camera, scene.description.camera);
+    let camera = |scene: &Scene| scene.compile().unwrap().cameras;
+    assert_ne!(camera(&again), camera(&scene));
 }
 
 #[test]

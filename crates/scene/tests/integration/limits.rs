@@ -183,8 +183,9 @@ fn a_scene_that_passes_the_check_has_a_camera() {
     let (mut passed, mut refused) = (0, 0);
     for exponent in -38..39 {
         let scene = format!(
-            r#"{{"version": 1, "objects": [{{"shape": "plane"}}, {{"shape": "sphere", "transform": [{{"translate": [1, 2, 3]}}]}},
-                {{"shape": "sphere", "transform": [{{"scale": 1e{exponent}}}]}}]}}"#
+            r#"{{"version": 1, "objects": [{{"shape": "plane"}},
+                {{"shape": "sphere", "transform": [{{"scale": 1e{exponent}}}, {{"translate": [-1e{exponent}, 2, 3]}}]}},
+                {{"shape": "sphere", "transform": [{{"scale": 1e{exponent}}}, {{"translate": [2e{exponent}, 0, 0]}}]}}]}}"#
         );
         let Ok(scene) = Scene::from_json(scene, "large.json") else { continue };
         let problems = scene.check();
@@ -202,7 +203,8 @@ fn a_scene_that_passes_the_check_has_a_camera() {
             }
         }
     }
-    assert!(passed > 20 && refused > 3, "{passed} {refused}");
+    // The camera is computed in double precision, so that only the largest scale is out of reach.
+    assert!(passed > 70 && refused > 0, "{passed} {refused}");
 }
 
 /// Suggestions take the time to look at all names, so only the first 50 of many errors have one.

@@ -1,0 +1,220 @@
+//! Extreme points of objects, for cameras that see all objects: the points that reach farthest in
+//! directions spread over the sphere. Their convex hull is that of the objects, but for rounded
+//! slivers of at most 3 % of the size.
+
+use super::{Content, Object};
+use juggler_math::{Aabb, Motion, Transform, Vec3};
+use juggler_shape::{AnyShape, Mesh};
+
+/// Largest coordinate of the directions, which are all vectors of whole numbers without a common
+/// factor.
+const LARGEST: i8 = 2;
+/// Number of directions; the opposite of each is another one.
+const DIRECTIONS: usize = 98;
+/// Number of vertices that are looked at together.
+const BLOCK: usize = 256;
+/// Maximum number of objects that are looked at one by one; of later ones, corners of boxes count.
+const MAX_OBJECTS: u32 = 1 << 21;
+
+/// The points of the bounded parts of `objects` that reach farthest in 98 directions; none if nothing
+/// is bounded. The order of objects and vertices does not matter. Of parts that move, the corners of
+/// their bounding box over the shutter interval count.
+pub fn extreme_points(objects: &[Object]) -> Vec<Vec3> {
+    let mut search = Search::default();
+    for object in objects {
+        search.add(&object.content, &object.motion, &Transform::IDENTITY);
+    }
+    let found = search.farthest.iter().filter(|(reach, _)| *reach > f32::NEG_INFINITY);
+    found.map(|(_, point)| *point).collect()
+}
+
+/// The farthest points found so far.
+struct Search {
+    directions: [Vec3; DIRECTIONS],
+    /// For each direction, the largest dot product with it and the point that has it.
+    farthest: [(f32, Vec3); DIRECTIONS],
+    /// Number of objects that may still be looked at.
+    left: u32,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        let range = || -LARGEST..=LARGEST;
+        let all = range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])));
+        // Twice a vector of ones and zeros has the same direction.
+        let primitive = all.filter(|v| v.iter().any(|c| c % 2 != 0));
+        let mut directions = [Vec3::ZERO; DIRECTIONS];
+        for (own, [x, y, z]) in directions.iter_mut().zip(primitive) {
+            *own = Vec3::new(x.into(), y.into(), z.into());
+        }
+        Self { directions, farthest: [(f32::NEG_INFINITY, Vec3::ZERO); DIRECTIONS], left: MAX_OBJECTS }
+    }
+}
+
+impl Search {
+    /// Adds a content that `motion` places in a space, which `outer` places in the world.
+    fn add(&mut self, content: &Content, motion: &Motion, outer: &Transform) {
+        let own = content.bounds(motion);
+        if own.is_empty() || !self.may_extend(&outer.aabb(&own)) {
+            return;
+        }
+        let still = motion.still().filter(|_| self.left > 0);
+        self.left = self.left.saturating_sub(1);
+        match (content, still) {
+            (Content::Geometry(geometry), Some(still)) => {
+                let outer = still.then(outer);
+                geometry.objects.iter().for_each(|inner| self.add(&inner.content, &inner.motion, &outer));
+            }
+            (Content::Shape(shape), Some(still)) => self.add_shape(shape, &still.then(outer)),
+            (_, None) => own.corners().into_iter().for_each(|corner| self.add_point(outer.point(corner))),
+        }
+    }
+
+    fn add_shape(&mut self, shape: &AnyShape, to_world: &Transform) {
+        match (shape.mesh().filter(|mesh| !mesh.moves()), shape.sphere()) {
+            (Some(mesh), _) => self.add_mesh(mesh, to_world),
+            (None, Some(sphere)) => {
+                for direction in self.directions {
+                    // The tangent plane of the ellipsoid with this normal touches it here. Squares of
+                    // large and small scales are beyond single precision.
+                    let local = (to_world.matrix().transpose() * direction).as_dvec3();
+                    let normal = local.normalize_or_zero().as_vec3();
+                    self.add_point(to_world.point(normal * sphere.radius));
+                }
+            }
+            _ => shape.bounds().corners().into_iter().for_each(|corner| self.add_point(to_world.point(corner))),
+        }
+    }
+
+    fn add_mesh(&mut self, mesh: &Mesh, to_world: &Transform) {
+        let mut block = Vec::with_capacity(BLOCK);
+        for vertices in mesh.arrays().positions.chunks(BLOCK) {
+            block.clear();
+            block.extend(vertices.iter().map(|vertex| to_world.point(*vertex)));
+            self.add_block(&block);
+        }
+    }
+
+    /// Adds points. Few blocks hold a farthest point, so that the largest dot product comes first.
+    fn add_block(&mut self, block: &[Vec3]) {
+        for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
+            let most = block.iter().fold(f32::NEG_INFINITY, |most, point| most.max(direction.dot(*point)));
+            if most >= farthest.0 {
+                block.iter().for_each(|point| keep_farther(farthest, *direction, *point));
+            }
+        }
+    }
+
+    fn add_point(&mut self, point: Vec3) {
+        for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
+            keep_farther(farthest, *direction, point);
+        }
+    }
+
+    /// Whether a part of a box reaches as far as the points found so far.
+    fn may_extend(&self, bounds: &Aabb) -> bool {
+        let (center, half) = (bounds.center(), bounds.extent() * 0.5);
+        let reach = |direction: &Vec3| direction.dot(center) + direction.abs().dot(half);
+        // Rounding must not hide a point of the box.
+        let slack = 1e-5 * (center.abs().max_element() + half.max_element());
+        self.directions.iter().zip(&self.farthest).any(|(direction, (most, _))| reach(direction) + slack >= *most)
+    }
+}
+
+/// Keeps the point that is farther in a direction; of equally far points, the one whose coordinates
+/// come first, so that the order of points does not matter.
+fn keep_farther(farthest: &mut (f32, Vec3), direction: Vec3, point: Vec3) {
+    let reach = direction.dot(point);
+    let is_before = || point.to_array() < farthest.1.to_array();
+    if reach > farthest.0 || (reach == farthest.0 && is_before()) {
+        *farthest = (reach, point);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Geometry;
+    use juggler_material::MaterialId;
+    use juggler_math::{BuildControl, Mat3};
+    use juggler_shape::{Plane, Sphere};
+    use std::sync::Arc;
+
+    fn sphere(radius: f32, motion: impl Into<Motion>) -> Object {
+        Object::new(Sphere::new(radius).into(), motion, MaterialId::NONE)
+    }
+
+    fn mesh(positions: Vec<Vec3>) -> Object {
+        let triangles: Vec<[u32; 3]> = (0..positions.len() as u32 - 2).map(|i| [i, i + 1, i + 2]).collect();
+        let mut shape = AnyShape::from(Mesh::from_triangles(positions, triangles));
+        shape.prepare().unwrap();
+        Object::new(shape, Transform::IDENTITY, MaterialId::NONE)
+    }
+
+    fn reach(points: &[Vec3], direction: Vec3) -> f32 {
+        points.iter().map(|point| point.dot(direction)).fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    #[test]
+    fn there_are_98_directions_and_none_twice() {
+        let directions = Search::default().directions.map(Vec3::normalize);
+        assert!(directions.iter().all(|direction| direction.is_finite()));
+        let is_same = |a: &Vec3, b: &Vec3| a.dot(*b) > 0.9999;
+        assert!(directions.iter().all(|a| directions.iter().filter(|b| is_same(a, b)).count() == 1));
+    }
+
+    #[test]
+    fn an_ellipsoid_is_reached_in_all_directions() {
+        let matrix = Mat3::from_cols(Vec3::new(2.0, 0.5, 0.0), Vec3::new(0.0, 1.0, 0.3), Vec3::new(0.1, 0.0, 0.7));
+        let to_world = Transform::new(matrix, Vec3::new(3.0, -1.0, 5.0)).unwrap();
+        let points = extreme_points(&[sphere(1.5, to_world)]);
+        for direction in [Vec3::X, Vec3::new(0.3, -0.8, 0.5), Vec3::new(-0.7, 0.1, 0.2)].map(Vec3::normalize) {
+            let exact = direction.dot(to_world.origin()) + 1.5 * (matrix.transpose() * direction).length();
+            let found = reach(&points, direction);
+            assert!(found <= exact + 1e-5 && found > exact - 0.1, "{direction}: {found} {exact}");
+        }
+    }
+
+    #[test]
+    fn huge_and_tiny_spheres_have_their_size() {
+        for scale in [1e-30, 1e30_f32] {
+            let to_world = Transform::scale(Vec3::splat(scale)).unwrap();
+            let points = extreme_points(&[sphere(1.0, to_world)]);
+            assert!((reach(&points, Vec3::X) / scale - 1.0).abs() < 1e-5, "{scale}");
+        }
+    }
+
+    #[test]
+    fn the_order_of_objects_and_vertices_does_not_matter() {
+        let grid = (0..1000).map(|i| Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32));
+        let grid: Vec<Vec3> = grid.collect();
+        let reversed: Vec<Vec3> = grid.iter().rev().copied().collect();
+        let ball = || sphere(1.0, Transform::translation(Vec3::new(9.0, 9.0, 9.0)));
+        let one = extreme_points(&[mesh(grid), ball()]);
+        assert_eq!(one, extreme_points(&[ball(), mesh(reversed)]));
+        // Corners of the grid, and the sphere around the last corner.
+        assert_eq!((reach(&one, -Vec3::ONE), reach(&one, Vec3::X)), (0.0, 10.0));
+    }
+
+    #[test]
+    fn instances_are_placed_and_planes_are_left_out() {
+        let geometry =
+            Arc::new(Geometry::new(vec![sphere(1.0, Transform::IDENTITY)], &BuildControl::default()).unwrap());
+        let motion = Transform::translation(Vec3::new(10.0, 0.0, 0.0)).into();
+        let content = Content::Geometry(geometry);
+        let instance = Object { content, motion, material: None, attributes: None };
+        let plane = Object::new(Plane {}.into(), Transform::IDENTITY, MaterialId::NONE);
+        assert!(extreme_points(std::slice::from_ref(&plane)).is_empty());
+        let points = extreme_points(&[plane, instance]);
+        assert_eq!((reach(&points, Vec3::X), reach(&points, -Vec3::X)), (11.0, -9.0));
+    }
+
+    #[test]
+    fn of_moving_objects_the_corners_of_the_whole_box_count() {
+        let keys = [0.0, 4.0].map(|x| Transform::translation(Vec3::new(x, 0.0, 0.0)));
+        let points = extreme_points(&[sphere(1.0, Motion::from_keys(keys.to_vec()).unwrap())]);
+        for (direction, expected) in [(Vec3::X, 5.0), (-Vec3::X, 1.0), (Vec3::ONE, 7.0)] {
+            assert!((reach(&points, direction) - expected).abs() < 1e-4, "{direction}: {}", reach(&points, direction));
+        }
+    }
+}
