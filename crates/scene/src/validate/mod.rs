@@ -158,6 +158,11 @@ impl<'t> Validator<'t> {
     }
 }
 
+/// Whether a text may be the name of a variable.
+fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_alphabetic()) && text.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
 impl Validator<'_> {
     /// Validates a value. Returns its plain JSON; `None` if it is invalid and must be left out.
     fn value(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule) -> Option<Plain> {
@@ -193,7 +198,10 @@ impl Validator<'_> {
             NodeValue::Null if node.place.is_none() => {
                 Finding::error(format!("expected {expected}, found a value that is not finite"))
             }
-            NodeValue::String(text) if expected.contains("number") && crate::animate::looks_like_expression(text) => {
+            NodeValue::String(text)
+                if expected.contains("number") && crate::animate::looks_like_expression(text)
+                    || expected.ends_with("number") && is_name(text) =>
+            {
                 Finding::error(format!("expected {expected}, found a string"))
                     .help(format!("an expression begins with `=`: \"={text}\""))
             }

@@ -154,7 +154,10 @@ impl Validator<'_> {
 pub(super) fn suggest_key(key: &str, rule: &'static Rule, written: Written<'_>) -> Option<String> {
     let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
     let other = || other_programs::suggest_key(key, rule, Some(written));
-    parent_key(key, rule).or_else(other).or_else(|| did_you_mean_or_list(key, known.iter().copied()))
+    // Advice with the user's value comes first.
+    let with_value = other().filter(|advice| !advice.contains("..."));
+    let or_form = || parent_key(key, rule).or_else(other);
+    with_value.or_else(or_form).or_else(|| did_you_mean_or_list(key, known.iter().copied()))
 }
 
 /// Suggests the key of an object under which a kind of this name belongs: `sphere` is a kind of

@@ -121,14 +121,12 @@ fn units_of_lights_are_converted() {
 fn values_of_cameras_are_converted() {
     let note = "(the sensor's size and the focal length in the same unit)";
     check(&[
+        (camera(r#""lens": 85"#), r#"write "focal_length": 85 (millimeters)"#),
         (
-            camera(r#""lens": 85"#),
-            &format!(r#"write "view_plane": {{"width": 36, "height": 24, "distance": 85}} {note}"#),
+            camera(r#""lens": 50, "sensor_width": 23.5, "sensor_height": 15"#),
+            &format!(r#"write "view_plane": {{"width": 23.5, "height": 15, "distance": 50}} {note}"#),
         ),
-        (
-            camera(r#""focal_length": 50, "sensor_width": 23.5"#),
-            &format!(r#"write "view_plane": {{"width": 23.5, "height": 24, "distance": 50}} {note}"#),
-        ),
+        (camera(r#""f_stop": 2.8"#), r#"write "f_stop": 2.8"#),
         (camera(r#""fov": 60"#), r#"write "vertical_fov_degrees": 60"#),
         (camera(r#""fov": "wide""#), r#"write "vertical_fov_degrees": ..."#),
         (camera(r#""yfov": 0.5"#), r#"write "vertical_fov_degrees": 28.6479 (degrees)"#),
@@ -151,7 +149,18 @@ fn values_of_objects_are_converted() {
             sphere(r#""transform": [{"rotate_x": 45}]"#),
             r#"write {"rotate": {"axis": [1, 0, 0], "degrees": 45}} (degrees)"#,
         ),
-        (sphere(r#""rotation": [0, 1.57, 0]"#), r#"write "transform": {"rotate": {"axis": [...], "degrees": ...}}"#),
+        (
+            sphere(r#""rotation": [0, 1.5707963, 0]"#),
+            r#"write "transform": {"rotate": [0, 90, 0]} (degrees about the x axis, then y, then z)"#,
+        ),
+        (
+            sphere(r#""rotation": [0, 45, 90]"#),
+            r#"write "transform": {"rotate": [0, 45, 90]} (degrees about the x axis, then y, then z)"#,
+        ),
+        (
+            sphere(r#""rotate": [0, 30, 0]"#),
+            r#"write "transform": {"rotate": [0, 30, 0]} (degrees about the x axis, then y, then z)"#,
+        ),
         (sphere(r##""color": "#f80""##), r##"write "material": {"diffuse": {"reflectance": "#f80"}}"##),
         (
             mesh(r#""position": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"#),

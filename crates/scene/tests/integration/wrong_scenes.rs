@@ -154,7 +154,7 @@ wrong! {
     matrix_of_thirteen: object(r#"{"shape": "sphere", "transform": [{"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5]}]}"#);
     bad_color: with(r##""background": "#12345g""##);
     color_of_four: with(r#""background": [1, 2, 3, 4]"#);
-    color_by_name: with(r#""lights": [{"point": {"color": "red"}}]"#);
+    color_by_name: with(r#""lights": [{"point": {"color": "tomatoe"}}]"#);
     limb_out_of_reach: object(r#"{"limb": {"from": [0, 0, 0], "to": [0, 9, 0], "lengths": [2, 3], "plane_normal": [0, 0, 1], "radii": [1, 1, 1]}}"#);
     limb_along_its_normal: object(r#"{"limb": {"from": [0, 0, 0], "to": [0, 4, 0], "lengths": [2, 3], "plane_normal": [0, 1, 0], "radii": [1, 1, 1]}}"#);
     picture_of_nothing: with(r#""render": {"size": [0, 0]}"#);
