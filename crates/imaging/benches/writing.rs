@@ -46,11 +46,14 @@ fn tone(pixels: &[Rgb]) {
     for top in [255, 65_535] {
         let table = milliseconds(|| drop(Quantizer::new(&Tone::default(), top)));
         let quantizer = Quantizer::new(&Tone::default(), top);
-        let append = if top == 255 { Quantizer::append_bytes } else { Quantizer::append_words };
         let mut bytes = Vec::with_capacity(pixels.len() * 6);
         let all = milliseconds(|| {
             bytes.clear();
-            append(&quantizer, pixels, &mut bytes);
+            if top == 255 {
+                quantizer.append_bytes(pixels, &mut bytes);
+            } else {
+                quantizer.append_words(pixels, &mut bytes);
+            }
         });
         println!("tone, {top:>5} levels: table {table:.2} ms, picture {all:.1} ms");
     }

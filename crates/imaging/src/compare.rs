@@ -20,6 +20,21 @@ pub struct Difference {
     pub same_bits: bool,
 }
 
+impl Difference {
+    /// The larger errors of both.
+    #[must_use]
+    pub fn larger(&self, other: &Self) -> Self {
+        let most = if other.largest > self.largest { other } else { self };
+        Self {
+            rmse: self.rmse.max(other.rmse),
+            relative_mse: self.relative_mse.max(other.relative_mse),
+            largest: most.largest,
+            largest_at: most.largest_at,
+            same_bits: self.same_bits && other.same_bits,
+        }
+    }
+}
+
 /// Compares an image with a reference. A channel that is not finite in either image counts as an
 /// infinite difference, unless the bits are equal.
 ///
@@ -95,7 +110,7 @@ mod tests {
         assert!((found.relative_mse - (400.0 + 1.0 / 16.01) / 3.0).abs() < 1e-9);
         assert_eq!((found.largest, found.largest_at, found.same_bits), (2.0, Some([0, 0]), false));
         // The largest difference of 2 is in the second row, first column; an equal one follows it.
-        let (mut picture, reference) = (Image::new(2, 2), Image::new(2, 2));
+        let (mut picture, reference) = (Image::filled(2, 2, Rgb::BLACK), Image::filled(2, 2, Rgb::BLACK));
         for (pixel, value) in picture.pixels_mut().iter_mut().zip([0.0, 1.0, -2.0, 2.0]) {
             *pixel = Rgb::new(0.0, value, 0.0);
         }

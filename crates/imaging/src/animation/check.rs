@@ -99,7 +99,7 @@ impl AnimationFormat {
                 format!("{self} does not support {frames_per_second} frames per second, only {least} to {most}");
             return Err(refused(file, message));
         }
-        if header.transparent && !self.stores_alpha() {
+        if header.has_alpha() && !self.stores_alpha() {
             return Err(refused(
                 file,
                 format!("{self} cannot be transparent; use .webp, .apng or .gif, or a background"),

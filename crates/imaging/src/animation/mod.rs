@@ -108,6 +108,11 @@ impl AnimationHeader {
         let (tone, quality) = (Tone::default(), DEFAULT_QUALITY);
         Self { width, height, tone, frames, frames_per_second, plays: 0, quality, transparent: false }
     }
+
+    /// Whether the movie has alpha: colors over the backdrop of the tone are opaque.
+    fn has_alpha(&self) -> bool {
+        self.transparent && self.tone.backdrop.is_none()
+    }
 }
 
 /// Encoder that takes frames in order.
@@ -129,6 +134,7 @@ pub fn animation_writer(
 ) -> Result<Box<dyn FrameWriter>, ImageError> {
     let file = destination.name().to_owned();
     format.check(&file, header)?;
+    let header = &AnimationHeader { transparent: header.has_alpha(), ..header.clone() };
     let inner: Box<dyn FrameWriter> = match format {
         AnimationFormat::Apng => Box::new(apng::Writer::new(destination, header)?),
         AnimationFormat::Gif => Box::new(gif::Writer::new(destination, header)?),

@@ -5,8 +5,9 @@ mod bmp;
 pub(crate) mod exr;
 mod gif;
 mod hdr;
+mod header;
 mod image_crate;
-mod jpeg;
+pub(crate) mod jpeg;
 mod pfm;
 mod png;
 mod row_count;
@@ -17,8 +18,9 @@ mod webp;
 use crate::look::{self, DisplayLook};
 use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
-use crate::tone::{Curve, Matrix, Srgb, Tone};
-use crate::{ClampCount, CropFrame, ExrWindows, ImageError, ImageFormat, Limits, Viewpoint};
+use crate::tone::{Curve, Matrix, Srgb};
+use crate::{ExrWindows, ImageError, ImageFormat, Limits};
+pub use header::Header;
 use juggler_math::message::excerpt;
 use juggler_math::{Image, PixelRows, Rgb};
 use row_count::RowCountCheck;
@@ -32,61 +34,6 @@ pub trait RowWriter: Send {
 
     /// Completes the file after the last row; without this call the file is invalid.
     fn finish(self: Box<Self>) -> Result<(), ImageError>;
-}
-
-/// Properties of an image file besides its pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Header {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// Tone mapping from linear RGB to levels, for formats with integer samples.
-    pub tone: Tone,
-    /// Options of particular formats.
-    pub options: Options,
-    /// Whether the file stores alpha: PNG and WebP with straight colors, EXR with premultiplied ones.
-    pub transparent: bool,
-    /// Metadata as pairs of key and text, in order, such as program, fingerprint and seed. PNG, EXR
-    /// and HDR store them.
-    pub metadata: Vec<(String, String)>,
-    /// Camera matrices, if known; EXR stores them.
-    pub viewpoint: Option<Viewpoint>,
-    /// Frame that the image is a crop of, if it is one; EXR stores it as its display window.
-    pub crop: Option<CropFrame>,
-    /// Receives the number of values that a writer clamps to the range of half floats.
-    pub clamped: ClampCount,
-}
-
-impl Header {
-    /// A header for this image size with default settings.
-    pub fn new(width: u32, height: u32) -> Self {
-        let (tone, options) = (Tone::default(), Options::default());
-        let (crop, clamped) = (None, ClampCount::default());
-        Self { width, height, tone, options, transparent: false, metadata: Vec::new(), viewpoint: None, crop, clamped }
-    }
-
-    /// Checks that the format can store the tone's primaries, and alpha if the image is transparent;
-    /// called before rendering.
-    pub fn check(&self, format: ImageFormat) -> Result<(), ImageError> {
-        let stores_alpha = format.stores_alpha() && self.options.look == DisplayLook::Plain;
-        if self.transparent && !stores_alpha {
-            return Err(ImageError::Transparency { format, look: self.options.look });
-        }
-        let primaries = self.tone.primaries;
-        let takes = match format {
-            ImageFormat::Exr => true,
-            ImageFormat::Png => primaries.code_point().is_some(),
-            _ => primaries.is_srgb(),
-        };
-        // Display looks quantize for the sRGB displays of their time.
-        let takes = takes && (primaries.is_srgb() || self.options.look == DisplayLook::Plain);
-        if takes { Ok(()) } else { Err(ImageError::Primaries { format, primaries }) }
-    }
-
-    fn pixels(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height)
-    }
 }
 
 /// Options of particular formats.
@@ -148,6 +95,7 @@ pub fn writer(
 ) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
     header.check(format)?;
+    let header = &Header { transparent: header.has_alpha(format), ..header.clone() };
     let inner = if format.supports_display_looks() {
         look::Writer::wrap(header, |header| encoder(format, destination, header))?
     } else {
@@ -304,12 +252,6 @@ fn stored(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError
         ImageFormat::Bmp => bmp::raster(source, bytes),
         ImageFormat::Gif => gif::raster(source, bytes),
     }
-}
-
-/// Whether a JPEG has several scans, whose coefficients a decoder holds until the last of them.
-pub(crate) fn has_several_scans(file: &str, bytes: &mut dyn ReadSeek) -> Result<bool, ImageError> {
-    let found = bytes.rewind().and_then(|()| jpeg::has_several_scans(bytes));
-    found.map_err(|source| ImageError::Read { file: file.to_owned(), source })
 }
 
 /// Reads the layout of [`raster`] from the header.

@@ -72,7 +72,7 @@ impl Writer {
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: PixelRows) -> Result<(), ImageError> {
-        self.quantizer.append_bytes(rows.colors, &mut self.bytes);
+        self.quantizer.append_bytes(rows, &mut self.bytes);
         Ok(())
     }
 

@@ -7,7 +7,7 @@
 //! differs by less than one level, and values within 1/512 of a level always yield that level.
 
 use super::{Quantizer, Tone};
-use juggler_math::{PixelRows, Rgb};
+use juggler_math::PixelRows;
 
 /// Steps per level.
 const STEPS: u16 = 256;
@@ -55,14 +55,14 @@ impl LevelEncoder {
         if self.has_alpha { 4 } else { 3 }
     }
 
-    /// Quantizes the next pixels to three levels each, and one of alpha if there is any. Colors are
-    /// over black without it.
+    /// Quantizes the next pixels to three levels each, and one of alpha if there is any. Without it,
+    /// colors are over the backdrop of the tone, or over black.
     pub fn append(&mut self, rows: PixelRows, bytes: &mut Vec<u8>) {
         if !self.has_alpha {
-            return self.append_colors(rows.colors, bytes);
+            return self.append_colors(rows, bytes);
         }
         let mut colors = Vec::new();
-        self.append_colors(&rows.straight(), &mut colors);
+        self.append_colors((&*rows.straight()).into(), &mut colors);
         let mut alpha = rows.alpha.unwrap_or_default().iter();
         let mut alpha = || alpha.next().map_or(1.0, |alpha| alpha.clamp(0.0, 1.0));
         if matches!(self.depth, Depth::Words) {
@@ -79,19 +79,19 @@ impl LevelEncoder {
     }
 
     /// Quantizes the colors of the next pixels.
-    fn append_colors(&mut self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
+    fn append_colors(&mut self, rows: PixelRows, bytes: &mut Vec<u8>) {
         match self.depth {
-            Depth::Words => self.quantizer.append_words(pixels, bytes),
-            Depth::Bytes => self.quantizer.append_bytes(pixels, bytes),
+            Depth::Words => self.quantizer.append_words(rows, bytes),
+            Depth::Bytes => self.quantizer.append_bytes(rows, bytes),
             Depth::Dithered => {
-                bytes.reserve(pixels.len() * 3);
-                for (number, pixel) in (self.pixels_done..).zip(pixels) {
+                bytes.reserve(rows.len() * 3);
+                for (number, levels) in (self.pixels_done..).zip(self.quantizer.all_levels(rows)) {
                     let up = threshold((number % self.width) as u32, (number / self.width) as u32);
-                    bytes.extend(self.quantizer.levels(*pixel).map(|fine| ((fine + up) / STEPS) as u8));
+                    bytes.extend(levels.map(|fine| ((fine + up) / STEPS) as u8));
                 }
             }
         }
-        self.pixels_done += pixels.len() as u64;
+        self.pixels_done += rows.len() as u64;
     }
 }
 
@@ -106,6 +106,7 @@ fn threshold(x: u32, y: u32) -> u16 {
 mod tests {
     use super::*;
     use crate::tone::{AnyCurve, Linear};
+    use juggler_math::Rgb;
 
     fn bytes(tone: &Tone, width: u32, pixels: &[Rgb], piece: usize) -> Vec<u8> {
         let (mut levels, mut bytes) = (LevelEncoder::bytes(tone, width), Vec::new());

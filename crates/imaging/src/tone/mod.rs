@@ -139,6 +139,10 @@ pub struct Tone {
     #[serde(skip_serializing_if = "is_true")]
     #[schemars(extend("default" = true))]
     pub dither: bool,
+    /// Color behind a transparent picture (`render.transparent`) as displays show it: the curve leaves it
+    /// as it is, so that white stays white. By default the file has alpha; EXR files always have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub backdrop: Option<Rgb>,
 }
 
 impl Default for Tone {
@@ -154,7 +158,8 @@ fn is_true(value: &bool) -> bool {
 impl Tone {
     /// The given curve with default settings.
     pub const fn new(curve: AnyCurve) -> Self {
-        Self { curve, exposure_stops: 0.0, white_balance: None, primaries: Primaries::Srgb, dither: true }
+        let (primaries, dither) = (Primaries::Srgb, true);
+        Self { curve, exposure_stops: 0.0, white_balance: None, primaries, dither, backdrop: None }
     }
 
     /// Exposure as a factor.

@@ -4,7 +4,7 @@
 //! search among thresholds. Operations that mix channels come before the table.
 
 use super::{ColorPipeline, Tone, level};
-use juggler_math::Rgb;
+use juggler_math::{PixelRows, Rgb};
 
 /// Low bits of an `f32` dropped for the second table's index, which keeps exponent and 8 mantissa
 /// bits.
@@ -21,6 +21,27 @@ pub struct Quantizer {
     thresholds: Vec<f32>,
     /// `start[i]`: level of the smallest input in cell i.
     start: Vec<u16>,
+    /// What shows through transparent pixels; black if `None`.
+    backdrop: Option<Backdrop>,
+}
+
+/// Color behind transparent pixels.
+#[derive(Clone, Debug)]
+struct Backdrop {
+    /// Display-linear color with the primaries of the file.
+    color: Rgb,
+    /// Display-linear values of all levels.
+    decoded: Vec<f32>,
+}
+
+impl Backdrop {
+    fn new(tone: &Tone, top: u16) -> Option<Self> {
+        let color = tone.backdrop?;
+        let color = tone.primaries.matrix_from_srgb().map_or(color, |matrix| matrix.color(color));
+        let curve = tone.curve.channel_curve();
+        let decoded = (0..=top).map(|level| curve.decode(f64::from(level) / f64::from(top)) as f32);
+        Some(Self { color, decoded: decoded.collect() })
+    }
 }
 
 impl Quantizer {
@@ -46,7 +67,8 @@ impl Quantizer {
             reached as u16
         });
         let start = start.collect();
-        Self { gain: tone.gain(), pipeline: ColorPipeline::new(tone), thresholds, start }
+        let backdrop = Backdrop::new(tone, top);
+        Self { gain: tone.gain(), pipeline: ColorPipeline::new(tone), thresholds, start, backdrop }
     }
 
     /// Levels of a pixel; NaN becomes 0.
@@ -55,6 +77,17 @@ impl Quantizer {
             None => pixel.to_array().map(|v| self.level(v * self.gain)),
             Some(pipeline) => pipeline.apply(pixel).to_array().map(|v| self.level(v)),
         }
+    }
+
+    /// Levels of a pixel, premultiplied by its alpha, over the backdrop of the tone or over black. The
+    /// display's light is mixed, so that edges look the same over all colors.
+    pub fn levels_over(&self, pixel: Rgb, alpha: f32) -> [u16; 3] {
+        let Some(backdrop) = self.backdrop.as_ref().filter(|_| alpha < 1.0) else { return self.levels(pixel) };
+        let backdrop_share = 1.0 - alpha.max(0.0);
+        let straight = if alpha > 0.0 { pixel / alpha } else { Rgb::BLACK };
+        let shown = self.levels(straight).map(|level| backdrop.decoded.get(usize::from(level)).copied());
+        let mixed = Rgb::from(shown.map(Option::unwrap_or_default)) * alpha.max(0.0) + backdrop.color * backdrop_share;
+        mixed.to_array().map(|channel| self.level(channel))
     }
 
     /// Level of one channel.
@@ -73,22 +106,28 @@ impl Quantizer {
     }
 
     /// Appends three 8-bit levels per pixel, for a quantizer with top level 255.
-    pub fn append_bytes(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
-        let start = bytes.len();
-        bytes.resize(start + pixels.len() * 3, 0);
-        for (target, pixel) in bytes[start..].chunks_exact_mut(3).zip(pixels) {
-            target.copy_from_slice(&self.levels(*pixel).map(|level| level as u8));
+    pub fn append_bytes<'p>(&self, rows: impl Into<PixelRows<'p>>, bytes: &mut Vec<u8>) {
+        let (rows, start) = (rows.into(), bytes.len());
+        bytes.resize(start + rows.len() * 3, 0);
+        for (target, levels) in bytes[start..].chunks_exact_mut(3).zip(self.all_levels(rows)) {
+            target.copy_from_slice(&levels.map(|level| level as u8));
         }
     }
 
     /// Appends three big-endian 16-bit levels per pixel.
-    pub fn append_words(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
-        let start = bytes.len();
-        bytes.resize(start + pixels.len() * 6, 0);
-        for (target, pixel) in bytes[start..].chunks_exact_mut(6).zip(pixels) {
-            let [r, g, b] = self.levels(*pixel).map(u16::to_be_bytes);
+    pub fn append_words<'p>(&self, rows: impl Into<PixelRows<'p>>, bytes: &mut Vec<u8>) {
+        let (rows, start) = (rows.into(), bytes.len());
+        bytes.resize(start + rows.len() * 6, 0);
+        for (target, levels) in bytes[start..].chunks_exact_mut(6).zip(self.all_levels(rows)) {
+            let [r, g, b] = levels.map(u16::to_be_bytes);
             target.copy_from_slice(&[r[0], r[1], g[0], g[1], b[0], b[1]]);
         }
+    }
+
+    /// Levels of all pixels, over the backdrop where they are transparent.
+    pub fn all_levels<'p>(&'p self, rows: PixelRows<'p>) -> impl Iterator<Item = [u16; 3]> + 'p {
+        let alpha = rows.alpha.unwrap_or_default().iter().copied().chain(std::iter::repeat(1.0));
+        rows.colors.iter().zip(alpha).map(|(pixel, alpha)| self.levels_over(*pixel, alpha))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Files with alpha, read by other decoders.
 
 use crate::common::Shared;
-use juggler_imaging::tone::Quantizer;
+use juggler_imaging::tone::{Agx, AnyCurve, Gamma, Quantizer};
 use juggler_imaging::{
     AnimationFormat, AnimationHeader, Destination, DisplayLook, Header, ImageFormat, Options, Tone, animation_writer,
     create, create_animation, read, read_with_alpha, to_memory, writer,
@@ -102,6 +102,44 @@ fn edges_have_no_fringe() {
     for (straight, alpha) in straight.pixels().iter().zip(&alpha).filter(|(_, alpha)| **alpha > 0.0) {
         let color = Rgb::new(0.9, 0.2, 0.05);
         assert!((*straight - color).map(f32::abs).max_channel() < 1e-4, "{straight:?} at alpha {alpha}");
+    }
+}
+
+/// A backdrop keeps its levels under every curve, opaque pixels keep theirs, and between them the
+/// display's light is mixed. Files have no alpha.
+#[test]
+fn backdrops_are_mixed_in_the_light_of_the_display() {
+    let backdrop = Rgb::from_css("#3080f0").unwrap();
+    let color = Rgb::new(0.6, 0.3, 0.1);
+    let folder = tempfile::tempdir().unwrap();
+    let alpha = [0.0, 0.25, 1.0, 2.0, -1.0, 0.5];
+    let colors = alpha.map(|alpha| color * f32::clamp(alpha, 0.0, 1.0));
+    let rows = PixelRows { colors: &colors, alpha: Some(&alpha) };
+    for curve in [AnyCurve::default(), AnyCurve::Agx(Agx::default()), AnyCurve::Gamma(Gamma { gamma: 1.8 })] {
+        let tone = Tone { dither: false, backdrop: Some(backdrop), ..Tone::new(curve.clone()) };
+        let quantizer = Quantizer::new(&tone, 65_535);
+        let levels: Vec<[u16; 3]> = quantizer.all_levels(rows).collect();
+        let display = Tone { backdrop: None, ..tone.clone() };
+        assert_eq!(levels[2], display.levels(color, 65_535), "{curve:?}");
+        assert_eq!((levels[3], levels[4]), (levels[2], levels[0]));
+        let decode = |level: u16| curve.channel_curve().decode(f64::from(level) / 65_535.0);
+        for (channel, own) in backdrop.to_array().into_iter().enumerate() {
+            let [behind, mixed, front] = [0, 1, 2].map(|pixel| decode(levels[pixel][channel]));
+            assert!((behind - f64::from(own)).abs() < 1e-4, "{curve:?}: {behind} {own}");
+            assert!((mixed - (0.25 * front + 0.75 * behind)).abs() < 1e-4, "{curve:?}: {mixed}");
+        }
+        let header = Header { tone, transparent: true, ..Header::new(6, 1) };
+        for format in [ImageFormat::Png, ImageFormat::Webp, ImageFormat::Jpeg] {
+            assert!(to_memory(format, &header, rows).is_ok(), "{format}");
+        }
+        let png = to_memory(ImageFormat::Png, &header, rows).unwrap();
+        let reader = png::Decoder::new(Cursor::new(&png)).read_info().unwrap();
+        assert_eq!(reader.output_color_type().0, png::ColorType::Rgb);
+        // EXR files store light, so that the backdrop has no place there.
+        let path = folder.path().join("a.exr");
+        std::fs::write(&path, to_memory(ImageFormat::Exr, &header, rows).unwrap()).unwrap();
+        assert!(read_with_alpha(&path).unwrap().alpha.is_some());
+        assert!(to_memory(ImageFormat::Hdr, &header, rows).is_err());
     }
 }
 

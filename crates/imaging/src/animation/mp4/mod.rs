@@ -138,7 +138,7 @@ fn quantizer_for_quality(quality: u8) -> usize {
 impl FrameWriter for Writer {
     fn write_frame(&mut self, pixels: PixelRows) -> Result<(), ImageError> {
         self.bytes.clear();
-        self.quantizer.append_bytes(pixels.colors, &mut self.bytes);
+        self.quantizer.append_bytes(pixels, &mut self.bytes);
         let mut frame = self.context.new_frame();
         for (plane, (bytes, width)) in frame.planes.iter_mut().zip(self.planes.convert(&self.bytes)) {
             plane.copy_from_raw_u8(bytes, width, 1);
