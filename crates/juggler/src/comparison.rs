@@ -1,20 +1,25 @@
 //! Comparison of two images: error metrics, and a test of whether noise explains the difference.
 
 use crate::image::of_pixels;
-use crate::{Error, RenderedImage, SAMPLES, estimate};
+use crate::{AovSet, Error, RenderedImage, SAMPLES, estimate};
 use juggler_camera::film::{BLOCK_SAMPLES, Rect};
 use juggler_film::{Merge, MergeGoal, RenderDescription};
+use juggler_imaging::flip::{self, DynamicRange, Flip};
 use juggler_imaging::layered::read_layer;
 use juggler_imaging::significance::{NoisyImage, Significance, significance};
-use juggler_imaging::{ImageFormat, ImageInfo, inspect, read, regular};
+use juggler_imaging::{
+    AlphaImage, Difference, ImageError, ImageFormat, ImageInfo, compare, inspect, read_with_alpha, regular,
+};
 use juggler_math::{Image, Rgb};
 use std::path::Path;
 
 /// Image to compare, with the variances of its pixels if they are known.
 #[derive(Clone, Debug)]
 pub struct ComparedImage {
-    /// Pixels.
+    /// Pixels, over black if the source has alpha.
     pub image: Image,
+    /// Alpha of the pixels, if the source has it.
+    pub alpha: Option<Vec<f32>>,
     /// Pixels with their variances, if the source contains variances.
     pub estimate: Option<NoisyImage>,
     /// Whether the pixels are display values instead of linear radiance.
@@ -47,6 +52,7 @@ impl ComparedImage {
         let estimate = variance.map(|variance| noisy_image([width, height], &pixels, &variance, &samples));
         Self {
             image: of_pixels([width, height], pixels),
+            alpha: rendered.alpha().map(<[f32]>::to_vec),
             estimate,
             is_tone_mapped: false,
             is_denoised: rendered.aovs().denoiser().is_some(),
@@ -60,28 +66,96 @@ impl ComparedImage {
         let region = *region;
         let mut estimate = estimate::empty(region);
         let mut pixels: Vec<Rgb> = Vec::with_capacity(region.area() as usize);
-        merge.tile_rows(|_, tiles, rows| {
+        let mut alpha: Option<Vec<f32>> = None;
+        let set = AovSet::from_description(&merge.description().aovs)?;
+        merge.tile_rows(|band, tiles, rows| {
             tiles.iter().for_each(|tile| estimate::add(&mut estimate, region, tile));
             pixels.extend_from_slice(rows);
+            if let Some(rows) = set.alpha(band, tiles) {
+                alpha.get_or_insert_default().extend(rows);
+            }
             Ok::<(), Error>(())
         })?;
         let Rect { width, height, .. } = region;
         let (image, metadata) = (of_pixels([width, height], pixels), metadata.clone());
-        Ok(Self { image, estimate: Some(estimate), is_tone_mapped: false, is_denoised: false, metadata })
+        Ok(Self { image, alpha, estimate: Some(estimate), is_tone_mapped: false, is_denoised: false, metadata })
     }
 
     fn from_file(path: &Path) -> Result<Self, Error> {
-        let image = read(path)?;
+        let AlphaImage { colors: image, alpha } = read_with_alpha(path)?;
         let ImageInfo { format, is_tone_mapped, metadata, .. } = inspect(path)?;
         let estimate = if format == ImageFormat::Exr { variances(path, &image, &metadata)? } else { None };
         let command = text(&metadata, "Command");
         let is_denoised = command.is_some_and(|command| command.contains(" --denoise"));
-        Ok(Self { image, estimate, is_tone_mapped, is_denoised, metadata })
+        Ok(Self { image, alpha, estimate, is_tone_mapped, is_denoised, metadata })
+    }
+
+    /// The image over a gray, opaque.
+    fn over(&self, gray: f32) -> Image {
+        let Some(alpha) = self.alpha.as_ref().filter(|_| gray != 0.0) else { return self.image.clone() };
+        let mut image = self.image.clone();
+        let pixels = image.pixels_mut().iter_mut().zip(alpha);
+        pixels.for_each(|(pixel, alpha)| *pixel += Rgb::splat((1.0 - alpha) * gray));
+        image
     }
 
     fn text(&self, key: &str) -> Option<&str> {
         text(&self.metadata, key)
     }
+}
+
+/// Grays over which transparent images are compared: what differs in color or alpha differs over one of
+/// them.
+const GRAYS: [f32; 2] = [0.0, 1.0];
+
+/// Grays over which two images are compared; black alone if both are opaque.
+fn grays(a: &ComparedImage, b: &ComparedImage) -> &'static [f32] {
+    if a.alpha.is_some() || b.alpha.is_some() { &GRAYS } else { &GRAYS[..1] }
+}
+
+/// Compares an image with a reference. Transparent images are compared over black and over white; the
+/// larger errors count.
+///
+/// # Errors
+///
+/// [`ImageError::SizesDiffer`] if the sizes differ.
+pub fn difference(image: &ComparedImage, reference: &ComparedImage) -> Result<Difference, ImageError> {
+    let mut found: Option<Difference> = None;
+    for gray in grays(image, reference) {
+        let next = compare(&image.over(*gray), &reference.over(*gray))?;
+        let same_alpha = same_bits(image.alpha.as_deref(), reference.alpha.as_deref());
+        let next = Difference { same_bits: next.same_bits && same_alpha, ..next };
+        found = Some(found.map_or(next, |before| before.larger(&next)));
+    }
+    found.map_or_else(|| compare(&image.image, &reference.image), Ok)
+}
+
+/// Whether alpha is equal to the bit.
+fn same_bits(a: Option<&[f32]>, b: Option<&[f32]>) -> bool {
+    let bits = |alpha: Option<&[f32]>| alpha.map(|alpha| alpha.iter().map(|value| value.to_bits()).collect::<Vec<_>>());
+    bits(a) == bits(b)
+}
+
+/// Whether two images are compared as display values: if both hold such, as tone-mapped files do.
+pub fn dynamic_range(image: &ComparedImage, reference: &ComparedImage) -> DynamicRange {
+    if image.is_tone_mapped && reference.is_tone_mapped { DynamicRange::Ldr } else { DynamicRange::Hdr }
+}
+
+/// Perceived difference of an image and a reference (FLIP) as [`dynamic_range`] says. Of transparent images, the larger difference over black and
+/// over white counts.
+///
+/// # Errors
+///
+/// [`ImageError::SizesDiffer`] if the sizes differ.
+pub fn perceived_difference(image: &ComparedImage, reference: &ComparedImage) -> Result<Flip, ImageError> {
+    let range = dynamic_range(image, reference);
+    let over = |gray: f32| flip::flip(&image.over(gray), &reference.over(gray), range, flip::PIXELS_PER_DEGREE);
+    let mut found = over(0.0)?;
+    for gray in grays(image, reference).iter().skip(1) {
+        let next = over(*gray)?;
+        found = if next.mean > found.mean { next } else { found };
+    }
+    Ok(found)
 }
 
 /// Whether a file is a partial render, by its first bytes.

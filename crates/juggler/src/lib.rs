@@ -47,6 +47,7 @@ mod render_stats;
 mod rendered_image;
 mod scene_fingerprint;
 mod settings;
+pub mod stage;
 mod viewpoint;
 
 pub use aovs::{Aov, AovSet, MAX_GAIN};
@@ -77,3 +78,4 @@ pub use picture::{Picture, View};
 pub use render_stats::RenderStats;
 pub use rendered_image::{RenderedImage, SAMPLES, SAMPLES_PER_TILE, TONE};
 pub use settings::{Limit, Settings};
+pub use stage::Stage;

@@ -22,11 +22,11 @@ impl RenderedImage {
         Ok(to_memory(format, &header, PixelRows { colors: &colors, alpha: alpha.as_deref() })?)
     }
 
-    /// Returns 8-bit red, green and blue levels of all pixels over black, row by row from the top, without
-    /// dithering: an array of shape (height, width, 3).
+    /// Returns 8-bit red, green and blue levels of all pixels over the backdrop of `tone` or over
+    /// black, row by row from the top, without dithering: an array of shape (height, width, 3).
     pub fn to_rgb8(&self, tone: &Tone) -> Vec<u8> {
         let mut bytes = Vec::new();
-        Quantizer::new(tone, 255).append_bytes(&self.pixels, &mut bytes);
+        Quantizer::new(tone, 255).append_bytes(self.pixel_rows(), &mut bytes);
         bytes
     }
 
