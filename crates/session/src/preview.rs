@@ -26,13 +26,21 @@ impl Integrator for IndexColors {
     }
 }
 
-/// Renders one sample per pixel with the light groups scaled by their gains.
-fn relit(job: &Job, region: Rect, layers: &AovSet, gains: &[Rgb], control: &Control) -> Result<Vec<Rgb>, Cancelled> {
+/// Renders one sample per pixel into a film, which has light groups and alpha. The light groups are scaled
+/// by their gains, if there are any.
+fn developed(job: &Job, region: Rect, layers: &AovSet, gains: &[Rgb], control: &Control) -> Result<Preview, Cancelled> {
     let film = Film::new(Tiling::new(region), 0..1);
     render::render_progressive(job, &film, StopCriterion::Samples, control)?;
     let mut pixels = vec![Rgb::BLACK; region.area() as usize];
-    film.tiles().for_each(|(_, tile)| tile.pixels().copy_into(&layers.relight(&tile, gains), &region, &mut pixels));
-    Ok(pixels)
+    let mut alpha = layers.is_transparent().then(|| vec![0.0; pixels.len()]);
+    for (_, tile) in film.tiles() {
+        let area = tile.pixels();
+        let colors = if gains.is_empty() { tile.means() } else { layers.relight(&tile, gains) };
+        area.copy_into(&colors, &region, &mut pixels);
+        let own = layers.alpha(&area, std::slice::from_ref(&tile));
+        own.iter().zip(&mut alpha).for_each(|(own, all)| area.copy_into(own, &region, all));
+    }
+    Ok(Preview { size: [region.width, region.height], pixels, alpha })
 }
 
 /// Renders a preview of `size` pixels with one ray per pixel, on the threads of the current rayon
@@ -59,8 +67,9 @@ pub fn render_preview(
     };
     let job = Job { camera: &camera, integrator, samples: 1, ..job };
     let region = Rect { x: 0, y: 0, width, height };
-    if !gains.is_empty() && channel.is_light() {
-        return Ok(Preview { size, pixels: relit(&job, region, picture.aovs(), gains, control)? });
+    let needs_film = !gains.is_empty() || picture.aovs().is_transparent();
+    if needs_film && channel.is_light() {
+        return developed(&job, region, picture.aovs(), gains, control);
     }
     let job = Job { aovs: &aov::NO_AOVS, ..job };
     let mut pixels = Vec::new();
@@ -79,5 +88,5 @@ pub fn render_preview(
         let scale = if far > 0.0 { 1.0 / far } else { 0.0 };
         pixels.iter_mut().for_each(|pixel| *pixel = *pixel * scale);
     }
-    Ok(Preview { size, pixels })
+    Ok(Preview { size, pixels, alpha: None })
 }

@@ -11,6 +11,7 @@ use crate::subject::Subject;
 use crate::worker_state::Worker;
 use juggler::Picture;
 use juggler::camera::film::{Film, Rect, Tiling};
+use juggler::math::PixelRows;
 use juggler::render::{self, Control, StopCriterion};
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -56,7 +57,7 @@ impl Worker {
         let (channel, scheduler) = (self.status.channel, self.threads.scheduler);
         let drawn = self.run_cancellable(patience, &control, || {
             let preview = render_preview(picture, size, channel, &gains, scheduler, &control).ok()?;
-            let rgba = transform.rgba_image(&preview.pixels);
+            let rgba = transform.rgba_image(preview.rows(), size[0]);
             Some((preview, rgba))
         });
         let seconds = began.elapsed().as_secs_f64();
@@ -167,7 +168,8 @@ impl Worker {
         let (size, target, transform) = (self.status.size, self.status.samples_wanted, &self.display.transform);
         let gains = subject.gains();
         if let Some(pixels) = self.denoised_pixels(&subject).filter(|_| self.status.channel == Channel::Color) {
-            let rgba = transform.rgba_image(&pixels);
+            let alpha = subject.picture().alpha(&film);
+            let rgba = transform.rgba_image(PixelRows { colors: &pixels, alpha: alpha.as_deref() }, size[0]);
             self.status.denoised = true;
             let frame = self.frame(size, rgba, samples);
             return self.publish(Some(frame));
@@ -178,7 +180,11 @@ impl Worker {
         let least = if self.display.preview.size == size { target.min(4) } else { 1 };
         match self.status.channel {
             Channel::Color => {
-                canvas.paint(&film, least, |tile| screen::radiance_to_rgba(transform, subject.light(tile, &gains)));
+                canvas.paint(&film, least, |tile| {
+                    let (area, colors) = (tile.pixels(), subject.light(tile, &gains));
+                    let alpha = subject.picture().aovs().alpha(&area, std::slice::from_ref(tile));
+                    screen::radiance_to_rgba(transform, area, PixelRows { colors: &colors, alpha: alpha.as_deref() })
+                });
             }
             Channel::Samples => canvas.paint(&film, 0, |tile| screen::samples(tile, target)),
             Channel::Noise => canvas.paint(&film, 0, screen::noise),

@@ -1,9 +1,9 @@
 //! Display transform from linear radiance to 8-bit pixels. Large images use the current rayon pool.
 
-use juggler::camera::film::{Film, Tile};
+use juggler::camera::film::{Film, Rect, Tile};
 use juggler::imaging::tone::{AnyCurve, Linear, Quantizer};
 use juggler::imaging::{Primaries, Tone};
-use juggler::math::Rgb;
+use juggler::math::{PixelRows, Rgb};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -15,19 +15,32 @@ const WHITE_ERROR: f64 = 0.1;
 /// Tone for channels that are no radiance: linear, values from 0 to 1.
 pub const LINEAR_TONE: Tone = Tone::new(AnyCurve::Linear(Linear {}));
 
-/// Display transform from linear radiance to 8-bit RGBA. Creation takes about a millisecond; clones
-/// share the table.
+/// Edge of the squares behind transparent pixels, in pixels of the display.
+const SQUARE: u32 = 8;
+/// Linear grays of these squares: #999 and #666.
+const SQUARE_GRAYS: [f32; 2] = [0.318_547, 0.132_868];
+
+/// Display transform from linear radiance to 8-bit RGBA. Transparent pixels lie over the backdrop of the
+/// tone, or over gray squares. Creation takes about a millisecond; clones share the tables.
 #[derive(Clone)]
 pub struct DisplayTransform {
     tone: Tone,
-    quantizer: Arc<Quantizer>,
+    /// For light and for dark squares; the same if the tone has a backdrop.
+    quantizers: [Arc<Quantizer>; 2],
 }
 
 impl DisplayTransform {
     /// Creates the transform of a tone for an sRGB display, whatever the tone's file primaries.
     pub fn new(tone: &Tone) -> Self {
-        let srgb = Tone { primaries: Primaries::Srgb, ..tone.clone() };
-        Self { tone: tone.clone(), quantizer: Arc::new(Quantizer::new(&srgb, 255)) }
+        let over = |backdrop: Rgb| {
+            let srgb = Tone { primaries: Primaries::Srgb, backdrop: Some(backdrop), ..tone.clone() };
+            Arc::new(Quantizer::new(&srgb, 255))
+        };
+        let quantizers = match tone.backdrop.map(over) {
+            Some(one) => [Arc::clone(&one), one],
+            None => SQUARE_GRAYS.map(|gray| over(Rgb::splat(gray))),
+        };
+        Self { tone: tone.clone(), quantizers }
     }
 
     /// Returns the transform of another tone; a clone if the tone is the same.
@@ -36,18 +49,29 @@ impl DisplayTransform {
         if self.tone == *tone { self.clone() } else { Self::new(tone) }
     }
 
-    /// Transforms one pixel to RGBA with alpha 255.
+    /// Transforms one opaque pixel to RGBA with alpha 255.
     pub fn rgba(&self, pixel: Rgb) -> [u8; 4] {
-        let [r, g, b] = self.quantizer.levels(pixel).map(|level| level as u8);
+        self.rgba_over(pixel, 1.0, [0, 0])
+    }
+
+    /// Transforms one pixel, premultiplied by its alpha, at a column and row of the display.
+    pub fn rgba_over(&self, pixel: Rgb, alpha: f32, [x, y]: [u32; 2]) -> [u8; 4] {
+        let [light, dark] = &self.quantizers;
+        let is_light = (x / SQUARE + y / SQUARE).is_multiple_of(2);
+        let [r, g, b] = if is_light { light } else { dark }.levels_over(pixel, alpha).map(|level| level as u8);
         [r, g, b, 255]
     }
 
-    /// Transforms all pixels of an image.
-    pub fn rgba_image(&self, pixels: &[Rgb]) -> Vec<u8> {
-        let mut rgba = vec![0; pixels.len() * 4];
-        rgba.par_chunks_mut(TASK_PIXELS * 4).zip(pixels.par_chunks(TASK_PIXELS)).for_each(|(rgba, pixels)| {
-            for (target, pixel) in rgba.chunks_exact_mut(4).zip(pixels) {
-                target.copy_from_slice(&self.rgba(*pixel));
+    /// Transforms all pixels of an image of a width.
+    pub fn rgba_image(&self, rows: PixelRows, width: u32) -> Vec<u8> {
+        let mut rgba = vec![0; rows.len() * 4];
+        let width = width.max(1) as usize;
+        let tasks = rgba.par_chunks_mut(TASK_PIXELS * 4).zip(rows.colors.par_chunks(TASK_PIXELS)).enumerate();
+        tasks.for_each(|(task, (rgba, pixels))| {
+            for (number, (target, pixel)) in (task * TASK_PIXELS..).zip(rgba.chunks_exact_mut(4).zip(pixels)) {
+                let alpha = rows.alpha.and_then(|alpha| alpha.get(number)).copied().unwrap_or(1.0);
+                let at = [number % width, number / width].map(|place| place as u32);
+                target.copy_from_slice(&self.rgba_over(*pixel, alpha, at));
             }
         });
         rgba
@@ -61,14 +85,23 @@ pub struct Preview {
     pub size: [u32; 2],
     /// Linear radiance, row by row from the top.
     pub pixels: Vec<Rgb>,
+    /// Alpha of the pixels, if the picture is transparent.
+    pub alpha: Option<Vec<f32>>,
 }
 
 impl Preview {
-    /// Returns the nearest preview pixel for a pixel of an image of size `of`.
-    pub fn at(&self, [x, y]: [u32; 2], of: [u32; 2]) -> Rgb {
+    /// Returns color and alpha of the nearest preview pixel for a pixel of an image of size `of`.
+    pub fn at(&self, [x, y]: [u32; 2], of: [u32; 2]) -> (Rgb, f32) {
         let place = |at: u32, of: u32, size: u32| (u64::from(at) * u64::from(size) / u64::from(of.max(1))) as usize;
         let (column, row) = (place(x, of[0], self.size[0]), place(y, of[1], self.size[1]));
-        self.pixels.get(row * self.size[0] as usize + column).copied().unwrap_or(Rgb::BLACK)
+        let pixel = row * self.size[0] as usize + column;
+        let alpha = self.alpha.as_ref().and_then(|alpha| alpha.get(pixel)).copied();
+        (self.pixels.get(pixel).copied().unwrap_or(Rgb::BLACK), alpha.unwrap_or(1.0))
+    }
+
+    /// The pixels with their alpha.
+    pub fn rows(&self) -> PixelRows<'_> {
+        PixelRows { colors: &self.pixels, alpha: self.alpha.as_deref() }
     }
 }
 
@@ -84,7 +117,7 @@ impl Canvas {
     /// Creates the image from a preview, scaled up to `size` by nearest neighbors.
     pub fn new(preview: &Preview, size: [u32; 2], transform: &DisplayTransform) -> Self {
         let [width, height] = size;
-        let coarse = transform.rgba_image(&preview.pixels);
+        let coarse = transform.rgba_image(preview.rows(), preview.size[0]);
         if preview.size == size {
             return Self { size, rgba: coarse, painted_samples: Vec::new() };
         }
@@ -131,9 +164,12 @@ impl Canvas {
     }
 }
 
-/// Transforms radiance for display.
-pub fn radiance_to_rgba(transform: &DisplayTransform, pixels: Vec<Rgb>) -> Vec<[u8; 4]> {
-    pixels.into_iter().map(|pixel| transform.rgba(pixel)).collect()
+/// Transforms the pixels of an area of the picture for display.
+pub fn radiance_to_rgba(transform: &DisplayTransform, area: Rect, rows: PixelRows) -> Vec<[u8; 4]> {
+    let places = (0..area.height).flat_map(|y| (0..area.width).map(move |x| [area.x + x, area.y + y]));
+    let alpha = rows.alpha.unwrap_or_default().iter().copied().chain(std::iter::repeat(1.0));
+    let pixels = rows.colors.iter().zip(alpha).zip(places);
+    pixels.map(|((pixel, alpha), at)| transform.rgba_over(*pixel, alpha, at)).collect()
 }
 
 /// Returns the number of a tile's samples relative to `target`, as gray pixels.

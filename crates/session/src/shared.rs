@@ -81,13 +81,18 @@ impl Snapshot {
             return pixels.chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
         }
         let (size, preview, gains) = (self.picture().size(), &self.preview, self.subject.gains());
-        let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| preview.at([x, y], size)).collect() };
-        let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows((&row(y)).into())) };
+        let row = |y: u32| (0..size[0]).map(move |x| preview.at([x, y], size));
+        let is_transparent = self.picture().aovs().is_transparent();
+        let Some(film) = &self.film else {
+            return (0..size[1]).try_for_each(|y| {
+                let (colors, alpha): (Vec<Rgb>, Vec<f32>) = row(y).unzip();
+                rows(PixelRows { colors: &colors, alpha: is_transparent.then_some(&*alpha) })
+            });
+        };
         for (number, band) in (0..).zip(film.tiling().bands()) {
-            let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
-            // The preview is opaque.
+            let (mut pixels, alpha): (Vec<Rgb>, Vec<f32>) = (band.y..band.y + band.height).flat_map(row).unzip();
             let aovs = self.picture().aovs();
-            let mut alpha = aovs.is_transparent().then(|| vec![1.0; pixels.len()]);
+            let mut alpha = is_transparent.then_some(alpha);
             for tile in film.tiling().tiles_of_band(number).filter_map(|tile| film.tile(tile as usize)) {
                 if tile.samples_per_pixel() > 0 {
                     tile.pixels().copy_into(&self.subject.light(&tile, &gains), &band, &mut pixels);

@@ -10,7 +10,6 @@ use juggler::camera::sampler::SamplerKind;
 use juggler::imaging::ToneCurveKind;
 use juggler::integrator::IntegratorKind;
 use juggler::math::{Rgb, Vec3};
-use juggler::mesh::FileContent;
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
 use juggler::scene::{Scene, with_camera};
@@ -88,17 +87,26 @@ impl Subject {
         self.choices.bookmarks.push((name.to_owned(), self.picture.view().camera));
     }
 
-    /// Returns the text of the scene's file with the current camera added under a name; `None` if
-    /// no file holds the scene.
-    pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
-        let path = Path::new(&self.name);
+    /// Returns the scene file that holds bookmarks, and its text with the current camera added under a
+    /// name; `None` if no file holds the scene. Bookmarks of a model or mesh are in a scene beside it,
+    /// `car.json` for `car.glb`, which shows the model as it is shown now if there is no such scene yet.
+    pub fn with_bookmark(&self, name: &str) -> Option<Result<(PathBuf, String), String>> {
+        let path = PathBuf::from(&self.name);
         let file = self.scene.file();
-        if file.is_in_memory() || FileContent::detect(path).is_mesh() || file.is_around_model() {
+        if file.is_in_memory() {
             return None;
         }
-        let text = read_text(path).ok()?;
+        let path = if file.is_around_file() { path.with_extension("json") } else { path };
+        let text = if file.is_around_file() && !path.exists() {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            // The model is in the folder of the scene, so that both may move.
+            self.scene().to_json_in(folder).replace(&format!("\"{}/", folder.display()), "\"")
+        } else {
+            read_text(&path).ok()?
+        };
         let edited = with_camera(&text, name, &self.picture.view().camera);
-        Some(edited.map_err(|error| format!("error: cannot save the camera in `{}`: {error}", self.name)))
+        let wrong = |error: String| format!("error: cannot save the camera in `{}`: {error}", path.display());
+        Some(edited.map_err(wrong).map(|text| (path.clone(), text)))
     }
 
     /// Returns the files of the scene, including its meshes; none if they are in memory.

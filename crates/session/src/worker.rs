@@ -184,11 +184,15 @@ impl Worker {
         let Some(subject) = &mut self.subject else { return Ok(()) };
         match subject.with_bookmark(name) {
             None => Arc::make_mut(subject).add_bookmark(name),
-            Some(text) => {
-                let (text, file) = (text?, subject.name.clone());
-                let wrong = |error| format!("error: cannot write `{file}`: {error}");
-                atomic::write(Path::new(&file), text.as_bytes()).map_err(wrong)?;
-                self.apply_to_subject(&Edit::Reload)?;
+            Some(found) => {
+                let (file, text) = found?;
+                let wrong = |error| format!("error: cannot write `{}`: {error}", file.display());
+                atomic::write(&file, text.as_bytes()).map_err(wrong)?;
+                if file == Path::new(&subject.name) {
+                    self.apply_to_subject(&Edit::Reload)?;
+                } else {
+                    Arc::make_mut(subject).add_bookmark(name);
+                }
             }
         }
         self.update_status();

@@ -25,7 +25,7 @@ pub struct RenderInfo {
     pub metadata: Vec<(String, String)>,
 }
 
-/// Framebuffer with linear radiance, its alpha, and its display pixels over black.
+/// Framebuffer with linear radiance, its alpha, and its display pixels.
 #[derive(Default)]
 struct Framebuffer {
     size: [u32; 2],
@@ -55,9 +55,10 @@ impl Framebuffer {
                 return;
             };
             let own = colors.iter_mut().zip(alphas).zip(rgba.as_chunks_mut::<4>().0);
-            for (((color, own_alpha), rgba), [r, g, b, alpha]) in own.zip(row.as_chunks::<PIXEL_VALUES>().0) {
+            let values = own.zip(row.as_chunks::<PIXEL_VALUES>().0).zip(pixels.x..);
+            for ((((color, own_alpha), rgba), [r, g, b, alpha]), x) in values {
                 (*color, *own_alpha) = (Rgb::new(*r, *g, *b), *alpha);
-                *rgba = transform.rgba(*color);
+                *rgba = transform.rgba_over(*color, *alpha, [x, y as u32]);
             }
         }
     }
@@ -68,8 +69,10 @@ impl Framebuffer {
     }
 
     fn redisplay(&mut self, transform: &DisplayTransform) {
-        for (rgba, radiance) in self.rgba.as_chunks_mut::<4>().0.iter_mut().zip(&self.radiance) {
-            *rgba = transform.rgba(*radiance);
+        let width = self.size[0].max(1) as usize;
+        let pixels = self.rgba.as_chunks_mut::<4>().0.iter_mut().zip(&self.radiance).zip(&self.alpha);
+        for (number, ((rgba, radiance), alpha)) in pixels.enumerate() {
+            *rgba = transform.rgba_over(*radiance, *alpha, [number % width, number / width].map(|place| place as u32));
         }
     }
 }

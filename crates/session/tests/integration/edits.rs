@@ -269,6 +269,27 @@ fn bookmarks_go_into_the_file_or_into_memory() {
     assert_eq!(after(&built_in, Edit::Camera("camera".into())).error, None);
 }
 
+/// Bookmarks of a mesh go into a scene beside it, which shows the mesh as the window did.
+#[test]
+fn bookmarks_of_a_mesh_go_into_a_scene_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = folder.path().join("tri.obj");
+    fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let session = opened(mesh.to_str().unwrap());
+    for name in ["first", "second"] {
+        after(&session, Edit::Zoom(1.5));
+        let kept = after(&session, Edit::Bookmark(name.into()));
+        assert!(kept.error.is_none() && kept.cameras.iter().any(|camera| camera == name), "{:?}", kept.error);
+    }
+    let text = fs::read_to_string(folder.path().join("tri.json")).unwrap();
+    let scene: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(scene["objects"][0]["shape"]["mesh"]["file"], "tri.obj");
+    let cameras: Vec<&String> = scene["cameras"].as_object().unwrap().keys().collect();
+    assert_eq!(cameras, ["first", "second"]);
+    let beside = opened(folder.path().join("tri.json").to_str().unwrap());
+    assert_eq!(after(&beside, Edit::Camera("second".into())).camera, session.status().camera);
+}
+
 #[test]
 fn scenes_are_switched_and_unknown_names_keep_the_current_scene() {
     let session = opened("juggler");

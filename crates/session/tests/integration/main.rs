@@ -16,6 +16,7 @@ mod pictures;
 mod preview;
 mod protocol;
 mod thumbnails;
+mod transparency;
 
 use juggler_session::{Session, Status};
 use std::sync::Arc;
