@@ -186,7 +186,7 @@ pub struct RenderArgs {
     /// Write statistics as JSON; `-` is standard output
     ///
     /// Statistics are counts of rays and objects, times, memory, and a hash of the picture.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub stats: Option<String>,
 
     /// Progress reports on standard error
@@ -227,14 +227,14 @@ pub struct RenderArgs {
     /// Region of the picture to render
     ///
     /// Left, top, width and height in pixels.
-    #[arg(long, value_name = "X,Y,W,H", value_parser = value::crop)]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = value::crop, hide_short_help = true)]
     pub crop: Option<Rect>,
 
     /// Checkpoint file (.jfilm) to write and to resume from
     ///
     /// If the render is interrupted, the same command resumes from the checkpoint. A finished
     /// picture can be resumed with more samples.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub checkpoint: Option<String>,
 
     /// Time between checkpoints
@@ -247,7 +247,7 @@ pub struct RenderArgs {
     /// JOB_COMPLETION_INDEX or HQ_TASK_ID. For a picture, the part is a partial render (.jfilm).
     /// For a movie or numbered pictures, it is every N-th frame; for a movie, the same command
     /// without --shard then encodes all frames.
-    #[arg(long, value_name = "I/N", value_parser = value::shard)]
+    #[arg(long, value_name = "I/N", value_parser = value::shard, hide_short_help = true)]
     pub shard: Option<Shard>,
 
     /// Samples A to B-1 of each pixel, as a partial render; multiples of 16

@@ -3,7 +3,9 @@
 use crate::command::Command;
 use crate::{flags, value};
 use clap::{Arg, ColorChoice, CommandFactory, FromArgMatches, Parser};
+use juggler::scene::built_in_scenes;
 use std::ffi::OsString;
+use std::path::Path;
 
 /// Renders 3D scenes and models to pictures and movies, bit-identical on every machine.
 #[derive(Debug, Parser)]
@@ -43,8 +45,19 @@ fn optional_value(flag: &str, word: &str) -> Option<(&'static str, bool)> {
     match flag {
         "--denoise" => Some(("own", value::denoiser(word).is_ok())),
         "--fireflies" => Some(("10", word.parse::<u32>().is_ok())),
+        "--floor" => Some(("solid", value::stage::floor(word).is_ok())),
         _ => None,
     }
+}
+
+/// Whether a word is certainly no value of a flag: another flag, or a scene.
+fn is_no_value(word: &str) -> bool {
+    let is_built_in = || built_in_scenes().iter().any(|scene| scene.name == word);
+    word.is_empty()
+        || word.starts_with('-')
+        || word.contains(['.', '/', '\\'])
+        || Path::new(word).exists()
+        || is_built_in()
 }
 
 /// Inserts the omitted optional values of a command line: `--denoise scene.json` uses the default
@@ -54,7 +67,7 @@ fn with_optional_values(words: &[OsString]) -> Vec<OsString> {
     let filled = |(at, word): (usize, &OsString)| {
         let next = words.get(at + 1).and_then(|next| next.to_str()).unwrap_or_default();
         match word.to_str().filter(|_| at < end).and_then(|flag| Some((flag, optional_value(flag, next)?))) {
-            Some((flag, (default, false))) => format!("{flag}={default}").into(),
+            Some((flag, (default, false))) if is_no_value(next) => format!("{flag}={default}").into(),
             _ => word.clone(),
         }
     };
@@ -79,5 +92,9 @@ mod tests {
         assert_eq!(filled("probe --fireflies juggler"), "probe --fireflies=10 juggler");
         assert_eq!(filled("probe --fireflies 20 juggler"), "probe --fireflies 20 juggler");
         assert_eq!(filled("render -- --denoise"), "render -- --denoise");
+        assert_eq!(filled("render a.glb --floor b.glb"), "render a.glb --floor=solid b.glb");
+        assert_eq!(filled("render a.glb --floor shadow"), "render a.glb --floor shadow");
+        // A misspelled value is an error, not a scene.
+        assert_eq!(filled("render a.json --denoise owl"), "render a.json --denoise owl");
     }
 }

@@ -17,6 +17,7 @@ mod plan;
 mod progress;
 mod reproduce;
 mod source;
+mod stage_args;
 mod stats;
 mod target;
 mod value;

@@ -1,9 +1,15 @@
-//! Flags that select what a model file shows.
+//! Flags that select what a model file shows, and how.
 
+use crate::args::ViewArgs;
 use crate::failure::Failure;
+use crate::stage_args::{self, StageArgs};
 use clap::Args;
+use juggler::Stage;
 use juggler::scene::model::NameOrIndex;
 use juggler::scene::{Loader, Scene};
+
+/// Flags that make a camera.
+const CAMERA_FLAGS: [&str; 5] = ["--view", "--eye", "--look-at", "--fov", "--fit"];
 
 /// Flags for model files (glTF).
 #[derive(Clone, Debug, Default, Args)]
@@ -23,6 +29,17 @@ pub struct ModelArgs {
     /// Render a model although image files of its textures are missing or broken: gray, with a warning
     #[arg(long, hide_short_help = true)]
     pub lenient: bool,
+
+    #[command(flatten)]
+    pub stage: StageArgs,
+
+    /// Size of the picture in pixels, for cameras that frame all objects; `None` is the size of the scene.
+    #[arg(skip)]
+    pub size: Option<[u32; 2]>,
+
+    /// Whether a turntable keeps the cameras of the file.
+    #[arg(skip)]
+    pub keeps_camera: bool,
 }
 
 impl ModelArgs {
@@ -42,12 +59,41 @@ impl ModelArgs {
         if self.lenient { juggler::loader().lenient() } else { juggler::loader() }
     }
 
-    /// Selects what the model shows.
+    /// The same flags for pictures with these flags of the view.
+    ///
+    /// # Errors
+    ///
+    /// Both choose the camera.
+    pub fn for_view(self, view: &ViewArgs) -> Result<Self, Failure> {
+        let given = self.stage.words().into_iter();
+        let mut of_camera = given.map(|(name, _)| name).filter(|name| CAMERA_FLAGS.contains(name));
+        if let (Some(flag), Some(camera)) = (of_camera.next(), &view.camera) {
+            let message = format!("{flag} makes a camera, and --camera {camera} chooses another one: give one of them");
+            return Err(Failure::Invalid(message));
+        }
+        Ok(Self { size: view.size, keeps_camera: view.camera.is_some(), ..self })
+    }
+
+    /// Selects what the model shows, and how.
     ///
     /// # Errors
     ///
     /// A flag is given and the scene is not one model file, or has no models.
     pub fn apply(&self, name: &str, scene: &mut Scene) -> Result<(), Failure> {
+        self.choose(name, scene)?;
+        if self.stage.is_given() {
+            *scene = self.stage().apply(scene).map_err(stage_args::failure)?;
+        }
+        Ok(())
+    }
+
+    /// Light, backdrop, floor, turntable and camera.
+    pub fn stage(&self) -> Stage {
+        self.stage.stage(self.size, self.keeps_camera)
+    }
+
+    /// Selects what the model shows.
+    pub fn choose(&self, name: &str, scene: &mut Scene) -> Result<(), Failure> {
         if self.lenient && !scene.has_models() {
             return Err(Failure::Invalid(format!("--lenient is for models; `{name}` has none")));
         }

@@ -127,7 +127,7 @@ impl Plan {
         Ok(Self {
             settings: Settings { aovs, ..settings(&args, output_kind)? },
             scene: args.scene,
-            model: args.model,
+            model: args.model.for_view(&args.view)?,
             times,
             resume: args.resume,
             output,

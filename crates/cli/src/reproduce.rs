@@ -1,6 +1,7 @@
 //! The command in a picture's metadata: it reproduces the picture, and omits flags that cannot
 //! change it (output, threads, progress), so that equal pictures are equal files.
 
+use crate::model_args::ModelArgs;
 use crate::plan::{FrameOutput, Plan, TimeSelection};
 use juggler::camera::film::Rect;
 use juggler::imaging::{DisplayLook, Options, Primaries, SampleDepth, WhiteBalance};
@@ -35,6 +36,7 @@ pub fn command(plan: &Plan, frame_output: &FrameOutput) -> String {
         dither: _,
     } = &plan.settings;
     let mut words = CommandLine(format!("juggler render {}", quoted(&plan.scene)));
+    words.model(&plan.model);
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
     match limit {
         Limit::Time { .. } => words.flag("--samples-from", Some(THIS_FILE)),
@@ -68,6 +70,15 @@ pub fn with_file_name(file: &str, command: &str) -> String {
 struct CommandLine(String);
 
 impl CommandLine {
+    /// Flags that select what a model shows, and how.
+    fn model(&mut self, model: &ModelArgs) {
+        let chosen =
+            [("--variant", &model.variant), ("--animation", &model.animation), ("--model-scene", &model.model_scene)];
+        chosen.into_iter().for_each(|(name, value)| self.flag(name, value.as_deref().map(quoted)));
+        self.switch("--lenient", model.lenient);
+        model.stage.words().into_iter().for_each(|(name, value)| self.flag(name, Some(quoted(&value))));
+    }
+
     /// Time or frame of the picture.
     fn time(&mut self, times: &TimeSelection, frame: f64) {
         match times {

@@ -3,6 +3,8 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use crate::model_args::ModelArgs;
+#[cfg(any(feature = "view", feature = "serve"))]
+use crate::stage_args;
 use juggler::memory::model_bytes;
 use juggler::mesh::{FileContent, estimate};
 use juggler::scene::document::{bytes_to_read, read_text};
@@ -70,16 +72,18 @@ pub fn load_outline(name: &str, model: &ModelArgs) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// Values of the scene `name` by JSON pointer that select what its model shows.
+/// Values of the scene `name` by JSON pointer that select what its model shows, and how.
 ///
 /// # Errors
 ///
 /// As [`load_model`].
 #[cfg(any(feature = "view", feature = "serve"))]
 pub fn model_values(name: &str, model: &ModelArgs) -> Result<Vec<(String, serde_json::Value)>, Failure> {
-    let values = model.values();
-    if model.lenient || !values.is_empty() {
-        load_model(name, model, None)?;
+    let mut values = model.values();
+    if model.lenient || model.stage.is_given() || !values.is_empty() {
+        let mut scene = load_by(model.loader(), name, None)?;
+        model.choose(name, &mut scene)?;
+        values.extend(model.stage().edits(&scene).map_err(stage_args::failure)?);
     }
     Ok(values)
 }

@@ -1,6 +1,8 @@
 //! Parsers of flag values: sizes, ranges, amounts of memory. Error messages give an example of a
 //! valid value.
 
+pub mod stage;
+
 use juggler::Denoiser;
 use juggler::camera::film::{BLOCK_SAMPLES, Rect};
 use juggler::imaging::animation::FRAME_RATES;

@@ -10,8 +10,8 @@ use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::value;
 use clap::Args;
-use juggler::comparison::{ComparedImage, NoiseTest};
-use juggler::imaging::flip::{self, DynamicRange, Flip};
+use juggler::comparison::{self, ComparedImage, NoiseTest};
+use juggler::imaging::flip::{self, Flip};
 use juggler::imaging::{self, Difference, Header, ImageFormat, Tone};
 use juggler::math::Image;
 use result::{CompareLimits, Comparison};
@@ -85,12 +85,8 @@ impl Compare {
         let has_room = memory::has_room_for_flip(names, needs_flip, self.max_memory)?;
         let (picture, reference) =
             (ComparedImage::read(Path::new(&self.picture))?, ComparedImage::read(Path::new(&self.reference))?);
-        let difference = imaging::compare(&picture.image, &reference.image)?;
-        // Tone-mapped files contain display values. If one file contains linear radiance, compare
-        // both as HDR.
-        let range =
-            if picture.is_tone_mapped && reference.is_tone_mapped { DynamicRange::Ldr } else { DynamicRange::Hdr };
-        let flip = if has_room { measured(&picture.image, &reference.image, range, &difference)? } else { None };
+        let difference = comparison::difference(&picture, &reference)?;
+        let flip = if has_room { measured(&picture, &reference, &difference)? } else { None };
         if flip.is_none() && needs_flip {
             let flag = if self.flip.is_some() { "--flip" } else { "--difference" };
             return Err(Failure::Invalid(format!("{flag} is for pictures of up to {MAX_PIXELS} pixels")));
@@ -103,19 +99,19 @@ impl Compare {
 
 /// Measures FLIP, unless the pictures are too large.
 fn measured(
-    picture: &Image,
-    reference: &Image,
-    range: DynamicRange,
+    picture: &ComparedImage,
+    reference: &ComparedImage,
     difference: &Difference,
 ) -> Result<Option<Flip>, Failure> {
-    let pixels = reference.pixels().len();
-    if difference.same_bits && pixels <= MAX_PIXELS {
-        return Ok(Some(Flip { mean: 0.0, range, map: vec![0.0; pixels] }));
-    }
+    let pixels = reference.image.pixels().len();
     if pixels > MAX_PIXELS {
         return Ok(None);
     }
-    Ok(Some(flip::flip(picture, reference, range, flip::PIXELS_PER_DEGREE)?))
+    if difference.same_bits {
+        let range = comparison::dynamic_range(picture, reference);
+        return Ok(Some(Flip { mean: 0.0, range, map: vec![0.0; pixels] }));
+    }
+    Ok(Some(comparison::perceived_difference(picture, reference)?))
 }
 
 /// Writes the map in colors.

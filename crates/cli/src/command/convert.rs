@@ -7,7 +7,7 @@ use crate::model_args::ModelArgs;
 use crate::output;
 use crate::source;
 use clap::Args;
-use juggler::scene::Scene;
+use juggler::scene::{Scene, camera_json};
 use std::path::Path;
 
 /// Flags of `juggler convert`.
@@ -40,6 +40,7 @@ impl Convert {
             Some(frame) => scene.at_frame(f64::from(frame))?.still(),
             None => scene,
         };
+        let scene = with_shown_camera(scene)?;
         if let Some(folder) = &self.unpack {
             return self.unpack(&scene, folder);
         }
@@ -76,5 +77,24 @@ impl Convert {
         self.check_replaced(&path, &unpacked.to_json_in(Path::new(folder)))?;
         unpacked.save(&path)?;
         console::print_result(&path.display().to_string())
+    }
+}
+
+/// The scene with the camera that frames its model or mesh, if the scene was made for one that has no
+/// camera.
+fn with_shown_camera(scene: Scene) -> Result<Scene, Failure> {
+    if !scene.is_around_file() || scene.description.camera.is_some() {
+        return Ok(scene);
+    }
+    match juggler::stage::default_camera(&scene) {
+        Ok(Some(camera)) => Ok(scene.with_value("/camera", camera_json(&camera))?),
+        Ok(None) => Ok(scene),
+        Err(error) => {
+            console::print_message(
+                "note: no camera is written, since the scene has mistakes; `juggler check` names them",
+            );
+            console::print_message(&error.to_string());
+            Ok(scene)
+        }
     }
 }

@@ -19,7 +19,7 @@ use juggler::imaging::{self, ExrWindows, ImageFormat, ImageInfo, PixelWindow, re
 use juggler::light::background::AnyBackground;
 use juggler::math::message;
 use juggler::mesh::FileContent;
-use juggler::scene::{Compiled, Illuminance, Scene};
+use juggler::scene::{Compiled, Illuminance, Scene, camera_json};
 use juggler::world::GeometryStats;
 use rows::{bounds_text, corners, row};
 use serde_json::{Map, Value, json};
@@ -128,11 +128,12 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     let brightest = compiled.illuminance.as_ref().map(|light| format!(", {light}")).unwrap_or_default();
     row("lights", format!("{}{brightest}", geometry.lights));
     row("emissive", emissive_text(geometry.emitting_shapes));
-    row("background", background_text(compiled.world.background()));
+    row("background", background_text(scene, compiled.world.background()));
     row("infinite", infinite_lights_text(&compiled.world.infinite_lights()));
     row("materials", shown.materials.len().to_string());
     row("textures", textures_text(shown.textures.len(), picture_bytes(scene)));
     row("cameras", cameras.join(", "));
+    row("camera", selected_camera(compiled).to_string());
     row("bounds", bounds_text(&compiled.world.bounds()));
     row("memory", memory_text(geometry.geometry_bytes, geometry.bvh_bytes));
     motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
@@ -150,14 +151,21 @@ fn triangles_text(geometry: &GeometryStats) -> String {
     }
 }
 
+/// The selected camera, as a scene file describes it.
+fn selected_camera(compiled: &Compiled) -> Value {
+    compiled.cameras.first().map_or(Value::Null, |(_, camera)| camera_json(camera))
+}
+
 fn memory_text(geometry: usize, bvh: usize) -> String {
     format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
 }
 
-/// `gradient, 0.2 0.3 0.5 on average`.
-fn background_text(background: &AnyBackground) -> String {
+/// `gradient, 0.2 0.3 0.5 on average`, with its description if it was made for a model or mesh.
+fn background_text(scene: &Scene, background: &AnyBackground) -> String {
     let [r, g, b] = background.mean_radiance().to_array().map(|channel| (channel * 1e4).round() / 1e4);
-    format!("{}, {r} {g} {b} on average", background.name())
+    let description = scene.description.background.as_ref().filter(|_| scene.is_around_file());
+    let description = description.map(|described| format!(": {}", json!(&**described)));
+    format!("{}, {r} {g} {b} on average{}", background.name(), description.unwrap_or_default())
 }
 
 /// Infinite lights with their probabilities of being light-sampled: `directional 85 %, sky 15 %`.
@@ -213,6 +221,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "far_lights": far,
         "materials": shown.materials.len(),
         "textures": shown.textures.len(),
+        "camera": selected_camera(compiled),
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         "bounds": corners(&compiled.world.bounds()),
         "memory": {

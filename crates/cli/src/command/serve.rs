@@ -60,7 +60,8 @@ impl Serve {
         }
         let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values, lenient) = (self.size, source::model_values(name, &self.model)?, self.model.lenient);
+        let model = ModelArgs { size: self.size, ..self.model };
+        let (size, values, lenient) = (self.size, source::model_values(name, &model)?, model.lenient);
         let (watch, max_memory) = (true, self.max_memory);
         let options =
             juggler_session::SessionOptions { size, values, lenient, threads, watch, max_memory, ..Default::default() };

@@ -33,7 +33,8 @@ impl View {
         let name = self.scene.unwrap_or_else(|| FIRST.into());
         source::find(&name)?;
         let threads = self.threads.map_or(0, usize::from);
-        let (size, values, lenient) = (self.size, source::model_values(&name, &self.model)?, self.model.lenient);
+        let model = ModelArgs { size: self.size, ..self.model };
+        let (size, values, lenient) = (self.size, source::model_values(&name, &model)?, model.lenient);
         let options = SessionOptions { size, values, lenient, threads, watch: true, ..SessionOptions::default() };
         let session = Session::open(&name, options);
         Ok(juggler_viewer::run(session, juggler_viewer::ViewerOptions { choose })?)

@@ -10,6 +10,8 @@ const OUTPUT: &str = "Output";
 const PARTIAL_RENDERS: &str = "Partial renders";
 /// Heading of flags for model files.
 const MODELS: &str = "Models";
+/// Heading of flags for light, backdrop and camera.
+const STAGE: &str = "Light and camera";
 /// Heading of flags for threads and memory.
 const MACHINE: &str = "Machine";
 /// Heading of all other flags.
@@ -57,7 +59,7 @@ pub const FLAGS: &[Flag] = &[
     flag("integrator", PICTURE),
     flag("max-depth", PICTURE)
         .tip("--max-depth N allows N - 1 bounces: 2 is direct light", &["--bounces", "--max-bounces", "--depth", "--path-depth"]),
-    flag("camera", PICTURE).tip("--camera NAME chooses one of the scene's cameras", &["--cam", "--view"]),
+    flag("camera", PICTURE).tip("--camera NAME chooses one of the scene's cameras", &["--cam"]),
     flag("frame", PICTURE).idle(&[(Targets::Movies, NOT_ONE_FRAME)]),
     flag("at", PICTURE).idle(&[(Targets::Movies, NOT_ONE_FRAME)]),
     flag("shutter", PICTURE),
@@ -81,6 +83,16 @@ pub const FLAGS: &[Flag] = &[
     flag("animation", MODELS),
     flag("model-scene", MODELS),
     flag("lenient", MODELS),
+
+    flag("environment", STAGE).tip("--environment FILE lights a model with a picture", &["--env", "--hdri", "--hdr", "--ibl", "--envmap", "--skybox"]),
+    flag("background", STAGE).tip("--background COLOR shows a color where nothing is", &["--bg", "--backdrop", "--background-color"]),
+    flag("floor", STAGE).tip("--floor stands a model on a floor, --floor shadow on one of which only shadows show", &["--ground", "--plane", "--shadow", "--shadow-catcher"]),
+    flag("turntable", STAGE).tip("--turntable FRAMES turns a model once", &["--spin", "--orbit", "--turn"]),
+    flag("view", STAGE),
+    flag("eye", STAGE).tip("--eye X,Y,Z sets the position of the camera", &["--from", "--position", "--camera-position", "--origin"]),
+    flag("look-at", STAGE).tip("--look-at X,Y,Z sets the point that the camera looks at", &["--target", "--to", "--lookat"]),
+    flag("fov", STAGE).tip("--fov DEGREES sets the vertical field of view", &["--field-of-view", "--vfov", "--angle"]),
+    flag("fit", STAGE).tip("--fit PART sets how much of the picture the objects fill", &["--fill", "--zoom", "--margin", "--padding"]),
 
     flag("threads", MACHINE).tip("--threads N sets the number of threads", &["-t", "-j", "--jobs", "--nthreads", "--num-threads"]),
     flag("max-memory", MACHINE),

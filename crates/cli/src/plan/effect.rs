@@ -36,6 +36,7 @@ pub fn ignored_tone_warning(target: Target, tone: &Tone) -> Option<String> {
         ("curve", tone.curve != usual.curve),
         ("exposure_stops", tone.exposure_stops != usual.exposure_stops),
         ("white_balance", tone.white_balance != usual.white_balance),
+        ("backdrop", tone.backdrop != usual.backdrop),
     ];
     let names: Vec<String> =
         idle.iter().filter(|(_, is_set)| *is_set).map(|(name, _)| format!("`tone.{name}`")).collect();

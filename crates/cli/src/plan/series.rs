@@ -80,7 +80,7 @@ fn scenes_of(name: &str) -> Result<Vec<String>, Failure> {
         }
     }
     if scenes.is_empty() {
-        return Err(Failure::Invalid(format!("the folder `{name}` has no scenes: their names end in .{SCENE}")));
+        return Err(Failure::Invalid(format!("`{name}` is a folder without scenes: their names end in .{SCENE}")));
     }
     scenes.sort();
     Ok(scenes)
@@ -197,7 +197,7 @@ mod tests {
     fn folders_stand_for_their_scenes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_str().unwrap();
-        assert!(refused(path).contains("has no scenes"));
+        assert!(refused(path).contains("without scenes"));
         for name in ["b.json", "a.JSON", "c.txt", "readme.md", "z.png"] {
             std::fs::write(folder.path().join(name), "{}").unwrap();
         }

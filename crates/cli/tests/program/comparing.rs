@@ -22,6 +22,36 @@ fn comparisons_answer_with_their_status() {
     assert_eq!(keys, ["version", "equal", "same_bits", "rmse", "relative_mse", "max", "max_at", "flip", "limits"]);
 }
 
+/// Pictures that differ in alpha alone are different, over white if not over black.
+#[test]
+fn alpha_is_compared() {
+    let folder = Folder::new();
+    let write = |name: &str, alpha: f32| {
+        let (colors, alpha) = (vec![Rgb::BLACK; 64], vec![alpha; 64]);
+        let header = Header { transparent: true, ..Header::new(8, 8) };
+        let mut file = imaging::create(&folder.path(name), ImageFormat::Exr, &header).unwrap();
+        file.write_rows(juggler::math::PixelRows { colors: &colors, alpha: Some(&alpha) }).unwrap();
+        file.finish().unwrap();
+    };
+    write("a.exr", 0.25);
+    write("b.exr", 0.75);
+    write("c.exr", 1.0);
+    imaging::write_image(
+        imaging::create(&folder.path("black.exr"), ImageFormat::Exr, &Header::new(8, 8)).unwrap(),
+        &Image::filled(8, 8, Rgb::BLACK),
+    )
+    .unwrap();
+    assert!(folder.good("compare a.exr a.exr").stdout.starts_with("identical"));
+    let stats: serde_json::Value = serde_json::from_str(&folder.run("compare a.exr b.exr --stats -").stdout).unwrap();
+    assert!(stats["equal"] == false && (stats["rmse"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{stats}");
+    assert!(stats["flip"]["mean"].as_f64().unwrap() > 0.1, "{stats}");
+    assert_eq!(folder.run("compare a.exr b.exr --tolerance 0.4").status, 1);
+    folder.good("compare a.exr b.exr --tolerance 0.51");
+    // A picture without alpha is opaque.
+    folder.good("compare c.exr black.exr --tolerance 0");
+    assert_eq!(folder.run("compare a.exr black.exr --tolerance 0.1").status, 1);
+}
+
 #[test]
 fn compare_reports_the_perceived_difference_and_its_location() {
     let folder = Folder::new();

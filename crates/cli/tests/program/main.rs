@@ -22,5 +22,6 @@ mod readme;
 mod series;
 mod serving;
 mod signals;
+mod staging;
 mod statistics;
 mod transparency;

@@ -1,4 +1,5 @@
-//! Runs the commands in the console blocks of README.md and compares their output.
+//! Runs the commands in the console blocks of README.md and of the documentation and compares their
+//! output.
 #![cfg(target_os = "linux")]
 
 use crate::harness::{self, Folder, Run, wait_until};
@@ -6,7 +7,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-const README: &str = include_str!("../../../../README.md");
+/// Pages with console blocks.
+const PAGES: [(&str, &str); 2] = [
+    ("README.md", include_str!("../../../../README.md")),
+    ("docs/probe.md", include_str!("../../../../docs/probe.md")),
+];
 
 /// Scene whose mistakes README shows.
 const WRONG: &str = r##"{
@@ -19,15 +24,16 @@ const WRONG: &str = r##"{
 }
 "##;
 
-/// A command of a console block, with the output that README shows.
+/// A command of a console block, with the output that the page shows; a last line `...` stands for lines
+/// that it leaves out.
 struct Step {
     command: String,
     shown: Vec<String>,
 }
 
-/// Steps of each console block.
-fn blocks() -> Vec<Vec<Step>> {
-    let blocks = README.split("```console\n").skip(1).filter_map(|rest| rest.split("```").next());
+/// Steps of each console block of a page.
+fn blocks(page: &str) -> Vec<Vec<Step>> {
+    let blocks = page.split("```console\n").skip(1).filter_map(|rest| rest.split("```").next());
     blocks.map(|block| steps(block).collect()).collect()
 }
 
@@ -92,17 +98,27 @@ fn is_measured(word: &str) -> bool {
 }
 
 #[test]
-fn the_readme_shows_what_is_printed() {
+fn pages_show_what_is_printed() {
+    for (page, text) in PAGES {
+        check_page(page, &blocks(text));
+    }
+}
+
+fn check_page(page: &str, blocks: &[Vec<Step>]) {
     let folder = Folder::new();
     fs::write(folder.path("wrong.json"), WRONG).unwrap();
-    let blocks = blocks();
-    assert!(blocks.iter().flatten().count() >= 6);
+    assert!(blocks.iter().flatten().count() >= 5, "{page}");
     for step in blocks.iter().flatten() {
-        let printed = run(&folder, step);
-        let same = printed.len() == step.shown.len();
+        let mut printed = run(&folder, step);
+        let left_out = step.shown.last().is_some_and(|line| line == "...");
+        let shown = step.shown.len() - usize::from(left_out);
+        if left_out {
+            printed.truncate(shown);
+        }
+        let same = printed.len() == shown;
         assert!(
             same && step.shown.iter().zip(&printed).all(|(shown, printed)| alike(shown, printed)),
-            "`{}` prints\n{}\nREADME shows\n{}",
+            "`{}` prints\n{}\n{page} shows\n{}",
             step.command,
             printed.join("\n"),
             step.shown.join("\n")
