@@ -3,9 +3,9 @@
 use crate::errors::settings_error;
 use crate::image::Image;
 use crate::task::{self, Fault};
-use juggler::comparison::{ComparedImage, NoiseTest};
-use juggler::imaging::flip::{self, DynamicRange, Flip};
-use juggler::imaging::{self, Difference};
+use juggler::comparison::{self, ComparedImage, NoiseTest};
+use juggler::imaging::Difference;
+use juggler::imaging::flip::Flip;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::PathBuf;
@@ -88,9 +88,8 @@ fn source(source: Source) -> Box<dyn FnOnce() -> Result<ComparedImage, Fault> + 
 }
 
 fn measure(a: &ComparedImage, b: &ComparedImage, significance: f64, with_flip: bool) -> Result<Compared, Fault> {
-    let difference = imaging::compare(&a.image, &b.image)?;
-    let range = if a.is_tone_mapped && b.is_tone_mapped { DynamicRange::Ldr } else { DynamicRange::Hdr };
-    let flip = with_flip.then(|| flip::flip(&a.image, &b.image, range, flip::PIXELS_PER_DEGREE)).transpose()?;
+    let difference = comparison::difference(a, b)?;
+    let flip = with_flip.then(|| comparison::perceived_difference(a, b)).transpose()?;
     let noise = if difference.same_bits { None } else { NoiseTest::new(a, b, significance) };
     Ok(Compared { difference, flip, noise, size: [b.image.width(), b.image.height()] })
 }
