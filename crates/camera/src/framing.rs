@@ -1,4 +1,4 @@
-//! Cameras that frame points: the points fill a part of the picture and are in its middle.
+//! Cameras that frame points: the points fill a fraction of the picture and are in its middle.
 
 use super::Perspective;
 use juggler_math::{DVec3, Vec3, portable};
@@ -21,7 +21,7 @@ pub struct Framing {
     pub towards_camera: Vec3,
     /// Vertical field of view in degrees, between 0 and 180.
     pub vertical_fov_degrees: f32,
-    /// Part of the picture's width or height that the points fill, above 0 and at most 1.
+    /// Fraction of the picture's width or height that the points fill, above 0 and at most 1.
     pub fill: f32,
 }
 
@@ -34,7 +34,7 @@ impl Default for Framing {
 }
 
 impl Framing {
-    /// The nearest camera in the direction that sees all `points` within the part `fill` of a picture of
+    /// The nearest camera in the direction that sees all `points` within the fraction `fill` of a picture of
     /// `size` pixels, with the points in the middle of the picture. Its coordinates have few digits.
     pub fn camera(&self, points: &[Vec3], [width, height]: [u32; 2]) -> Perspective {
         let (vertical, horizontal) = self.slopes(f64::from(width.max(1)) / f64::from(height.max(1)));
@@ -59,7 +59,7 @@ impl Framing {
         }
     }
 
-    /// Largest tangents of angles up and right within the filled part of a picture.
+    /// Largest tangents of angles up and right within the filled fraction of a picture.
     fn slopes(&self, aspect: f64) -> (f64, f64) {
         let half = f64::from(self.vertical_fov_degrees).to_radians() * 0.5;
         let vertical = portable::tan_f64(half) * f64::from(self.fill);
@@ -162,9 +162,9 @@ mod tests {
 
     const SIZES: [[u32; 2]; 3] = [[800, 600], [300, 900], [1, 1]];
 
-    /// Largest and smallest film coordinates of points, as parts of the picture from its middle to its
+    /// Largest and smallest film coordinates of points, as fractions of the way from its middle to its
     /// edge.
-    fn extent(camera: Perspective, points: &[Vec3], [width, height]: [u32; 2]) -> [[f64; 2]; 2] {
+    fn extent(camera: &Perspective, points: &[Vec3], [width, height]: [u32; 2]) -> [[f64; 2]; 2] {
         let projection = camera.projection(UVec2::new(width, height)).unwrap();
         let film = WorldToFilm::new(&projection).unwrap();
         let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -197,7 +197,7 @@ mod tests {
             for (size, fill) in SIZES.into_iter().zip([0.8, 0.5, 1.0]) {
                 let framing = Framing { towards_camera, fill, ..Framing::default() };
                 let points = cloud(scale, center);
-                let [[left, right], [top, bottom]] = extent(framing.camera(&points, size), &points, size);
+                let [[left, right], [top, bottom]] = extent(&framing.camera(&points, size), &points, size);
                 let case = format!("{scale} {towards_camera} {size:?}: {left} {right} {top} {bottom}");
                 assert!((left + right).abs() < 0.01 && (top + bottom).abs() < 0.01, "{case}");
                 let filled = (right - left).max(bottom - top) * 0.5;

@@ -1,8 +1,9 @@
 //! Loading of scenes by programs that know formats of models.
 
 use crate::asset::Asset;
-use crate::compile::{AssetCache, NEVER_CANCELLED, PictureReading};
+use crate::compile::{AssetCache, NEVER_CANCELLED};
 use crate::model::{ModelCache, ModelFormat, ModelNeeds};
+use crate::picture_reading::PictureReading;
 use crate::store::{Bundle, Store};
 use crate::{Scene, SceneError};
 use juggler_math::BuildControl;

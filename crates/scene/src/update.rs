@@ -39,7 +39,7 @@ impl Scene {
         let found = if self.has_world(before, &change) {
             let mut findings = Vec::new();
             compile::check_settings(&self.description.render, &mut findings);
-            let found = compile::cameras_of(description, &tracks, &earlier.subjects, &mut findings);
+            let found = earlier.subjects.cameras_again(description, &tracks, &mut findings);
             found.map(|(cameras, camera_keys)| {
                 let settings = (*self.description.render).clone();
                 let integrator = self.integrator_choice();

@@ -189,9 +189,9 @@ mod tests {
         let grid = (0..1000).map(|i| Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32));
         let grid: Vec<Vec3> = grid.collect();
         let reversed: Vec<Vec3> = grid.iter().rev().copied().collect();
-        let ball = || sphere(1.0, Transform::translation(Vec3::new(9.0, 9.0, 9.0)));
-        let one = extreme_points(&[mesh(grid), ball()]);
-        assert_eq!(one, extreme_points(&[ball(), mesh(reversed)]));
+        let extra = || sphere(1.0, Transform::translation(Vec3::new(9.0, 9.0, 9.0)));
+        let one = extreme_points(&[mesh(grid), extra()]);
+        assert_eq!(one, extreme_points(&[extra(), mesh(reversed)]));
         // Corners of the grid, and the sphere around the last corner.
         assert_eq!((reach(&one, -Vec3::ONE), reach(&one, Vec3::X)), (0.0, 10.0));
     }

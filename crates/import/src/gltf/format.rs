@@ -9,7 +9,7 @@ use super::translate::Content;
 use super::{is_binary, needs, summary};
 use glam::DAffine3;
 use juggler_math::BuildControl;
-use juggler_scene::compile::PictureReading;
+use juggler_scene::PictureReading;
 use juggler_scene::model::{
     FileDigest, FileError, Files, ModelChoice, ModelError, ModelFile, ModelFormat, ModelNeeds, ModelParts, ModelSummary,
 };

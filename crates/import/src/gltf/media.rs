@@ -9,7 +9,7 @@ use super::ktx2;
 use juggler_imaging::{Limits as ImageLimits, decode_raster, raster_head};
 use juggler_math::BuildControl;
 use juggler_scene::Asset;
-use juggler_scene::compile::PictureReading;
+use juggler_scene::PictureReading;
 use std::io::Cursor;
 use std::sync::OnceLock;
 

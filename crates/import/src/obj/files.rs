@@ -2,7 +2,7 @@
 //! files in the folder of the OBJ are read.
 
 use crate::gltf::Warnings;
-use juggler_scene::compile::PictureReading;
+use juggler_scene::PictureReading;
 use juggler_scene::model::{FileDigest, FileError, Files};
 
 /// Maximum number of bytes of all files that an OBJ names.

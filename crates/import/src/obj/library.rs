@@ -7,7 +7,7 @@ use crate::textures::picture_asset_name;
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster, raster_head};
 use juggler_math::message::{MAX_QUOTE, excerpt};
 use juggler_scene::Asset;
-use juggler_scene::compile::PictureReading;
+use juggler_scene::PictureReading;
 use juggler_scene::model::FileError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;

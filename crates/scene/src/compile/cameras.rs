@@ -1,6 +1,7 @@
 //! Cameras of a scene, and the default camera, which sees all objects.
 
 use super::shutter_motion;
+use super::subjects::{Subjects, points_of};
 use crate::description::Description;
 use crate::motion::Tracks;
 use crate::path::Path;
@@ -8,24 +9,73 @@ use crate::report::Finding;
 use crate::suggest::did_you_mean_or_list;
 use juggler_camera::{AnyCamera, Framing};
 use juggler_math::{Aabb, UVec2, Vec3};
-use juggler_world::{Object, extreme_points};
-use std::collections::BTreeMap;
+use juggler_world::Object;
 use std::sync::Arc;
 
 /// Cameras by name, the selected one first, and the selected camera over the shutter interval.
 type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
 
-/// What the cameras of a scene frame and focus on.
-#[derive(Clone, Debug, Default)]
-pub struct Subjects {
-    /// Points that the default camera frames: the extreme points of all objects, or the corners of their
-    /// bounding box if nothing is bounded. `None` if the scene has a camera of its own.
-    pub framed_points: Option<Arc<[Vec3]>>,
-    /// Middles of the objects that cameras focus on, by name; `None` if no object of the name is bounded.
-    middles: Arc<BTreeMap<String, Option<Vec3>>>,
-}
-
 impl Subjects {
+    /// Cameras of a scene whose world is compiled already, and has these subjects; `None` if the cameras need
+    /// others.
+    pub fn cameras_again(&self, scene: &Description, tracks: &Tracks, findings: &mut Vec<Finding>) -> Option<Cameras> {
+        let objects = || Path::root().key("objects");
+        self.suffice(scene).then(|| self.cameras(scene, tracks, &objects(), findings))
+    }
+
+    /// Cameras of the scene or the default camera, each of them focused and checked, the selected one first.
+    /// Reports an invalid default camera at `farthest_object`, the object that makes it invalid.
+    pub fn cameras(
+        &self,
+        scene: &Description,
+        tracks: &Tracks,
+        farthest_object: &Path,
+        findings: &mut Vec<Finding>,
+    ) -> Cameras {
+        let [width, height] = scene.render.size;
+        let size = UVec2::new(width.max(1), height.max(1));
+        let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
+        let focused = |camera: &AnyCamera, path: &Path, findings: &mut Vec<Finding>| {
+            let mut camera = camera.clone();
+            self.focus(scene, &mut camera, path, findings);
+            check_camera(&camera, size, path, findings);
+            camera
+        };
+        if let Some(camera) = &scene.camera {
+            cameras.push(("camera".into(), focused(camera, &Path::root().key("camera"), findings)));
+            if !scene.cameras.is_empty() {
+                let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
+                findings.push(problem.at(Path::root().key("camera")).help("move it into `cameras` under a name"));
+            }
+        }
+        for (name, camera) in &scene.cameras {
+            let path = Path::root().key("cameras").key(name.as_str());
+            cameras.push((name.clone(), focused(camera, &path, findings)));
+        }
+        if cameras.is_empty() {
+            let points = self.framed_points.as_deref().unwrap_or_default();
+            cameras.push(("default".into(), checked_camera(points, size, farthest_object, findings)));
+        }
+        if let Some(chosen) = &scene.render.camera
+            && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
+        {
+            cameras[..=at].rotate_right(1);
+        }
+        let keys = cameras.first().map(|(name, _)| shutter_motion::camera(tracks, name, scene));
+        let mut camera_keys = keys.unwrap_or_default();
+        for camera in &mut camera_keys {
+            // The camera at the frame has the same object, which is reported once.
+            self.focus(scene, camera, &Path::root(), &mut Vec::new());
+            // The same error at the frame itself is reported already.
+            if let (Err(invalid), true) = (camera.projection(size), !findings.iter().any(Finding::is_error)) {
+                let path = Path::root().key(if scene.camera.is_some() { "camera" } else { "cameras" });
+                let message = format!("while the shutter is open, {}", invalid.message);
+                findings.push(Finding::error(message).at(path.join(invalid.field)));
+            }
+        }
+        (cameras, camera_keys)
+    }
+
     /// Subjects among `objects`, whose bounding box is `bounds`; `entries` holds the index of the first
     /// shape of each scene entry.
     pub fn new(scene: &Description, objects: &[Object], entries: &[u32], bounds: &Aabb) -> Self {
@@ -84,79 +134,8 @@ fn cameras_in(scene: &Description) -> impl Iterator<Item = &AnyCamera> {
     scene.camera.iter().chain(scene.cameras.values()).map(|camera| &**camera)
 }
 
-/// Extreme points of objects, or the corners of `bounds` if nothing is bounded.
-pub fn points_of(objects: &[Object], bounds: &Aabb) -> Vec<Vec3> {
-    let points = extreme_points(objects);
-    if points.is_empty() { bounds.corners().into() } else { points }
-}
-
 fn has_cameras(scene: &Description) -> bool {
     scene.camera.is_some() || !scene.cameras.is_empty()
-}
-
-/// Cameras of a scene whose world is compiled already, and has these subjects; `None` if the cameras need
-/// others.
-pub fn cameras_of(
-    scene: &Description,
-    tracks: &Tracks,
-    subjects: &Subjects,
-    findings: &mut Vec<Finding>,
-) -> Option<Cameras> {
-    let objects = || Path::root().key("objects");
-    subjects.suffice(scene).then(|| cameras(scene, tracks, subjects, &objects(), findings))
-}
-
-/// Cameras of the scene or the default camera, each of them focused and checked, the selected one first.
-/// Reports an invalid default camera at `farthest_object`, the object that makes it invalid.
-pub fn cameras(
-    scene: &Description,
-    tracks: &Tracks,
-    subjects: &Subjects,
-    farthest_object: &Path,
-    findings: &mut Vec<Finding>,
-) -> Cameras {
-    let [width, height] = scene.render.size;
-    let size = UVec2::new(width.max(1), height.max(1));
-    let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
-    let focused = |camera: &AnyCamera, path: &Path, findings: &mut Vec<Finding>| {
-        let mut camera = camera.clone();
-        subjects.focus(scene, &mut camera, path, findings);
-        check_camera(&camera, size, path, findings);
-        camera
-    };
-    if let Some(camera) = &scene.camera {
-        cameras.push(("camera".into(), focused(camera, &Path::root().key("camera"), findings)));
-        if !scene.cameras.is_empty() {
-            let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
-            findings.push(problem.at(Path::root().key("camera")).help("move it into `cameras` under a name"));
-        }
-    }
-    for (name, camera) in &scene.cameras {
-        let path = Path::root().key("cameras").key(name.as_str());
-        cameras.push((name.clone(), focused(camera, &path, findings)));
-    }
-    if cameras.is_empty() {
-        let points = subjects.framed_points.as_deref().unwrap_or_default();
-        cameras.push(("default".into(), checked_camera(points, size, farthest_object, findings)));
-    }
-    if let Some(chosen) = &scene.render.camera
-        && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
-    {
-        cameras[..=at].rotate_right(1);
-    }
-    let keys = cameras.first().map(|(name, _)| shutter_motion::camera(tracks, name, scene));
-    let mut camera_keys = keys.unwrap_or_default();
-    for camera in &mut camera_keys {
-        // The camera at the frame has the same object, which is reported once.
-        subjects.focus(scene, camera, &Path::root(), &mut Vec::new());
-        // The same error at the frame itself is reported already.
-        if let (Err(invalid), true) = (camera.projection(size), !findings.iter().any(Finding::is_error)) {
-            let path = Path::root().key(if scene.camera.is_some() { "camera" } else { "cameras" });
-            let message = format!("while the shutter is open, {}", invalid.message);
-            findings.push(Finding::error(message).at(path.join(invalid.field)));
-        }
-    }
-    (cameras, camera_keys)
 }
 
 /// Camera that frames `points`, the extreme points of all objects. Reports the camera at

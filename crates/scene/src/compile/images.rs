@@ -6,6 +6,7 @@ use super::meshes::{AssetCache, Files, NEVER_CANCELLED, read_error_message};
 use crate::description::Description;
 use crate::item::Item;
 use crate::path::Path;
+use crate::picture_reading::PictureReading;
 use crate::report::Finding;
 use crate::store::{MAX_FILE_BYTES, Store};
 use crate::texel_array::TexelArray;
@@ -26,16 +27,6 @@ pub(super) const IMAGE_LIMITS: juggler_imaging::Limits =
 
 /// File, and the color space that its samples are decoded from.
 pub type ImageKey = (PathBuf, ColorSpace);
-
-/// What is read of the pictures of textures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PictureReading {
-    /// All pixels.
-    #[default]
-    Whole,
-    /// The heads, which are checked; one texel stands for the pixels.
-    Heads,
-}
 
 /// Cache of loaded images. Assets of equal bytes share an entry.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,7 @@
 use super::file_cache::{CachedFile, FileCache};
 use super::images::{IMAGE_LIMITS, infinity_warning};
 use super::meshes::{AssetCache, Files};
-use super::picture_needs::Estimate;
+use super::picture_estimate::Estimate;
 use crate::description::{BackgroundInput, Description};
 use crate::item::Item;
 use crate::kind::name_of;

@@ -3,7 +3,7 @@
 //! backgrounds [`super::lighting`].
 
 use super::file_cache::{FileCache, file_stamp, hash};
-use super::images::{ImageCache, PictureReading};
+use super::images::ImageCache;
 use super::lighting::LightFiles;
 use super::loaded_instances::LoadedInstances;
 use crate::asset::{Asset, display_name};
@@ -12,6 +12,7 @@ use crate::document::Sources;
 use crate::mesh_scene::MeshOverview;
 use crate::model::{ModelCache, ModelNeeds, OpenedModel};
 use crate::path::{Path, PathRef};
+use crate::picture_reading::PictureReading;
 use crate::report::{Finding, plain_io};
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;

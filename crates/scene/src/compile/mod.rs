@@ -34,6 +34,7 @@ mod locate;
 mod materials;
 mod meshes;
 mod needs;
+mod picture_estimate;
 mod picture_needs;
 mod placer;
 mod placing;
@@ -42,16 +43,16 @@ mod settings;
 mod shadow_catchers;
 mod shutter_motion;
 mod sight;
+mod subjects;
 mod surface_coordinates;
 mod times;
 mod transform_motion;
 
-pub use cameras::{Subjects, cameras_of};
 pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub(crate) use file_cache::file_stamp;
 pub use illuminance::Illuminance;
 pub(crate) use images::image_files;
-pub use images::{MAX_SIDE, MAX_TEXELS, PictureReading};
+pub use images::{MAX_SIDE, MAX_TEXELS};
 pub use labels::{Names, REST};
 pub use lighting::Purpose;
 pub(crate) use lighting::files as light_files;
@@ -59,9 +60,10 @@ pub use locate::ShapePlace;
 pub use meshes::{AssetCache, Files};
 pub(crate) use meshes::{NEVER_CANCELLED, read_error_message};
 pub use needs::Needs;
-pub use picture_needs::{DECODED_AT_ONCE, Estimate, PictureNeeds};
+pub use picture_estimate::{DECODED_AT_ONCE, Estimate, PictureNeeds};
 pub(crate) use settings::check as check_settings;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
+pub use subjects::Subjects;
 
 /// Scene that is ready to render.
 #[derive(Clone)]
@@ -163,7 +165,7 @@ impl Assembly {
         let (has_emission, own_objects) = (materials.has_emission(), placed.0.len());
         area_lights::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
-        let (cameras, camera_keys) = cameras::cameras(scene, tracks, &subjects, &farthest_object, &mut findings);
+        let (cameras, camera_keys) = subjects.cameras(scene, tracks, &farthest_object, &mut findings);
         let inputs =
             LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
         let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
@@ -198,7 +200,7 @@ impl Assembly {
     /// is bounded.
     pub fn extreme_points(&self) -> Vec<Vec3> {
         let own = self.objects.get(..self.own_objects).unwrap_or_default();
-        self.subjects.framed_points.as_deref().map_or_else(|| cameras::points_of(own, &self.bounds), <[Vec3]>::to_vec)
+        self.subjects.framed_points.as_deref().map_or_else(|| subjects::points_of(own, &self.bounds), <[Vec3]>::to_vec)
     }
 
     /// Builds the world with its bounding volume hierarchies.
@@ -308,7 +310,7 @@ pub fn with_shading(
     let has_emission = materials.has_emission();
     area_lights::request_materials(scene, &mut materials, &mut names, &mut findings);
     let bounds = earlier.bounds;
-    let (cameras, camera_keys) = cameras_of(scene, tracks, &earlier.subjects, &mut findings)?;
+    let (cameras, camera_keys) = earlier.subjects.cameras_again(scene, tracks, &mut findings)?;
     let inputs = LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
     let (lights, illuminance, background) = inputs.compile_lights(has_emission, background, &names, &mut findings);
     let labels = names.labels(scene, earlier.world.labels().entries.clone());

@@ -6,7 +6,7 @@ use super::emitter_count::emitters;
 use super::images::image_files;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
-use super::picture_needs::PictureNeeds;
+use super::picture_estimate::PictureNeeds;
 use crate::asset::Asset;
 use crate::description::{Description, InstanceFile, Object};
 use crate::item::Item;

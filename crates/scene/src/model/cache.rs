@@ -2,7 +2,8 @@
 //! scene.
 
 use super::{FileDigest, FileError, Files, ModelFile, ModelFormat, ModelNeeds};
-use crate::compile::{PictureReading, file_stamp};
+use crate::compile::file_stamp;
+use crate::picture_reading::PictureReading;
 use crate::report::plain_io;
 use crate::store::{MAX_FILE_BYTES, Store};
 use juggler_imaging::regular::ReadError;

@@ -1,6 +1,6 @@
 //! Reading of the files that a model file names: buffers, images and libraries of materials.
 
-use crate::compile::PictureReading;
+use crate::picture_reading::PictureReading;
 use std::collections::BTreeMap;
 
 /// Why a file cannot be read.

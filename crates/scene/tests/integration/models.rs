@@ -100,8 +100,8 @@ impl ModelFile for Toy {
 
     fn parts(&self, choice: &ModelChoice, prefix: &str) -> Result<ModelParts, ModelError> {
         let x = self.clip(choice)?.map_or(0.0, |_| choice.seconds as f32);
-        let mut fur = Principled::default();
-        fur.medium = Medium { color: Rgb::splat(0.5), distance: 1.0, ..Medium::default() };
+        let medium = Medium { color: Rgb::splat(0.5), distance: 1.0, ..Medium::default() };
+        let mut fur = Principled { medium, ..Principled::default() };
         if choice.variant.is_some() {
             fur.metallic = 1.0.into();
         }
