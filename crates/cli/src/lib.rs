@@ -14,6 +14,7 @@ mod memory;
 mod model_args;
 mod output;
 mod plan;
+mod plans;
 mod progress;
 mod reproduce;
 mod source;

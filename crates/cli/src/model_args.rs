@@ -1,6 +1,5 @@
 //! Flags that select what a model file shows, and how.
 
-use crate::args::ViewArgs;
 use crate::failure::Failure;
 use crate::stage_args::{self, StageArgs};
 use clap::Args;
@@ -59,19 +58,19 @@ impl ModelArgs {
         if self.lenient { juggler::loader().lenient() } else { juggler::loader() }
     }
 
-    /// The same flags for pictures with these flags of the view.
+    /// The same flags for pictures of a size that a camera of the scene shows, if one is chosen.
     ///
     /// # Errors
     ///
-    /// Both choose the camera.
-    pub fn for_view(self, view: &ViewArgs) -> Result<Self, Failure> {
+    /// Flags make a camera beside the chosen one.
+    pub fn for_view(self, size: Option<[u32; 2]>, camera: Option<&str>) -> Result<Self, Failure> {
         let given = self.stage.words().into_iter();
         let mut of_camera = given.map(|(name, _)| name).filter(|name| CAMERA_FLAGS.contains(name));
-        if let (Some(flag), Some(camera)) = (of_camera.next(), &view.camera) {
+        if let (Some(flag), Some(camera)) = (of_camera.next(), camera) {
             let message = format!("{flag} makes a camera, and --camera {camera} chooses another one: give one of them");
             return Err(Failure::Invalid(message));
         }
-        Ok(Self { size: view.size, keeps_camera: view.camera.is_some(), ..self })
+        Ok(Self { size, keeps_camera: camera.is_some(), ..self })
     }
 
     /// Selects what the model shows, and how.

@@ -4,12 +4,10 @@ pub mod aovs;
 pub mod effect;
 mod movie;
 mod parts;
-mod series;
 mod view;
 
 pub use movie::Movie;
 pub use parts::{Checkpoint, Cut, Shard};
-pub use series::Plans;
 pub use view::end_warning;
 
 use crate::args::RenderArgs;
@@ -127,7 +125,7 @@ impl Plan {
         Ok(Self {
             settings: Settings { aovs, ..settings(&args, output_kind)? },
             scene: args.scene,
-            model: args.model.for_view(&args.view)?,
+            model: args.model.for_view(args.view.size, args.view.camera.as_deref())?,
             times,
             resume: args.resume,
             output,

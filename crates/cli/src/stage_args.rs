@@ -55,8 +55,8 @@ pub struct StageArgs {
     #[arg(long, value_name = "DEGREES", value_parser = value::stage::field_of_view, hide_short_help = true)]
     pub fov: Option<f32>,
 
-    /// Part of the picture that all objects fill [default: 0.8]
-    #[arg(long, value_name = "PART", value_parser = value::stage::part, conflicts_with = "eye", hide_short_help = true)]
+    /// Fraction of the picture that all objects fill [default: 0.8]
+    #[arg(long, value_name = "FRACTION", value_parser = value::stage::part, conflicts_with = "eye", hide_short_help = true)]
     pub fit: Option<f32>,
 }
 

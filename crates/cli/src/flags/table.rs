@@ -92,7 +92,7 @@ pub const FLAGS: &[Flag] = &[
     flag("eye", STAGE).tip("--eye X,Y,Z sets the position of the camera", &["--from", "--position", "--camera-position", "--origin"]),
     flag("look-at", STAGE).tip("--look-at X,Y,Z sets the point that the camera looks at", &["--target", "--to", "--lookat"]),
     flag("fov", STAGE).tip("--fov DEGREES sets the vertical field of view", &["--field-of-view", "--vfov", "--angle"]),
-    flag("fit", STAGE).tip("--fit PART sets how much of the picture the objects fill", &["--fill", "--zoom", "--margin", "--padding"]),
+    flag("fit", STAGE).tip("--fit FRACTION sets how much of the picture the objects fill", &["--fill", "--zoom", "--margin", "--padding"]),
 
     flag("threads", MACHINE).tip("--threads N sets the number of threads", &["-t", "-j", "--jobs", "--nthreads", "--num-threads"]),
     flag("max-memory", MACHINE),

@@ -46,7 +46,7 @@ fn a_turntable_is_a_movie_in_one_command() {
     assert_eq!(bytes.windows(3).filter(|start| start == b"\x21\xf9\x04").count(), 5);
 }
 
-/// What a command shows is what `convert` writes with the same flags, and `info` tells the camera.
+/// What a command shows is what `convert` writes with the same flags, and `info` prints the camera.
 #[test]
 fn converted_scenes_show_what_the_flags_show() {
     let folder = with_solid();
@@ -57,8 +57,8 @@ fn converted_scenes_show_what_the_flags_show() {
     assert_eq!(written["camera"]["perspective"]["vertical_fov_degrees"], 20.0);
     let hash = |line: &str| folder.hash(&format!("{line} --size 80x60 --samples 2 -o a.png"));
     assert_eq!(hash("a.json"), hash(&format!("solid.obj {flags}")));
-    let told: Value = serde_json::from_str(&folder.good("info a.json --json").stdout).unwrap();
-    assert_eq!(told["camera"]["perspective"]["eye"], written["camera"]["perspective"]["eye"]);
+    let printed: Value = serde_json::from_str(&folder.good("info a.json --json").stdout).unwrap();
+    assert_eq!(printed["camera"]["perspective"]["eye"], written["camera"]["perspective"]["eye"]);
     assert!(folder.good("info a.json").stdout.contains("{\"perspective\":{"));
     // Without flags, the camera that frames the mesh is written, too.
     folder.good("convert solid.obj b.json");
@@ -69,9 +69,9 @@ fn converted_scenes_show_what_the_flags_show() {
 fn the_command_in_a_picture_has_the_flags_of_its_stage() {
     let folder = with_solid();
     folder.good("render solid.obj -q --background White --view top --fit 0.5 --size 20x16 --samples 2 -o a.png");
-    let told = folder.good("info a.png").stdout;
+    let printed = folder.good("info a.png").stdout;
     let command = "juggler render solid.obj --background '#ffffff' --view top --fit 0.5 --size 20x16 --samples 2";
-    assert!(told.contains(command), "{told}");
+    assert!(printed.contains(command), "{printed}");
 }
 
 #[test]

@@ -74,7 +74,8 @@ pub struct Probe {
 impl Probe {
     /// Probes the pixel, or finds the fireflies of the picture, and prints the report.
     pub fn run(self) -> Result<(), Failure> {
-        let scene = source::load_model(&self.scene, &self.model.clone().for_view(&self.view)?, None)?;
+        let model = self.model.clone().for_view(self.view.size, self.view.camera.as_deref())?;
+        let scene = source::load_model(&self.scene, &model, None)?;
         let frame = self.view.frame(scene.description.animation.frames_per_second);
         let beyond = self.view.frame.and_then(|frame| end_warning(frame, scene.description.animation.frames));
         beyond.iter().for_each(|warning| console::print_message(warning));

@@ -1,9 +1,9 @@
 //! Several scenes of one command: a plan for each, whose files are named after the scene.
 
-use super::Plan;
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
+use crate::plan::Plan;
 use crate::source;
 use juggler::imaging::{AnimationFormat, ImageFormat};
 use std::collections::BTreeMap;
