@@ -37,6 +37,7 @@ SCENE_TYPES = (
     "Model",
     "Instances",
     "InstanceAttribute",
+    "AxisRotation",
     "Attenuation",
     "Ies",
     "Animation",

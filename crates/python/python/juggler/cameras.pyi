@@ -31,14 +31,18 @@ class Perspective(Node):
             in degrees, after pitch; its top leans to the right.
         move (`Move`): Translation along the camera's axes, after the rotations.
         vertical_fov_degrees (number above 0 below 180): Vertical field of view in degrees, between
-            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen` and
-            `view_plane` may be given; the default is 40.
+            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen`,
+            `view_plane` and `focal_length` may be given; the default is 40.
         horizontal_fov_degrees (number above 0 below 180): Horizontal field of view in degrees,
             between 0 and 180.
         screen (`Screen`): Field of view as a screen of a given width at a given distance; pixels
             are square.
         view_plane (`ViewPlane`): Field of view as a rectangle at a given distance; the picture is
             stretched over it.
+        focal_length (number above 0; mm): Focal length in millimeters, above 0, of a lens before a
+            sensor of width `sensor_width`: it gives the field of view.
+        sensor_width (number above 0; mm): Width of the sensor in millimeters, above 0, which the
+            picture's width stands for. The default is 36, a full frame.
         fit_aspect (number above 0): Aspect ratio, width / height, of the narrowest picture that
             keeps `vertical_fov_degrees`. A narrower picture keeps the width that a picture of this
             aspect ratio has and shows more above and below, so nothing at its sides is lost. By
@@ -60,6 +64,8 @@ class Perspective(Node):
         "horizontal_fov_degrees",
         "screen",
         "view_plane",
+        "focal_length",
+        "sensor_width",
         "fit_aspect",
     )
     eye: list[float | Any] | Any
@@ -74,6 +80,8 @@ class Perspective(Node):
     horizontal_fov_degrees: float | Any
     screen: scene_types.Screen | Any
     view_plane: scene_types.ViewPlane | Any
+    focal_length: float | Any
+    sensor_width: float | Any
     fit_aspect: float | Any
     def __init__(
         self,
@@ -90,6 +98,8 @@ class Perspective(Node):
         horizontal_fov_degrees: t.Number | None = None,
         screen: t.ScreenLike | None = None,
         view_plane: t.ViewPlaneLike | None = None,
+        focal_length: t.Number | None = None,
+        sensor_width: t.Number | None = None,
         fit_aspect: t.Number | None = None,
     ) -> None: ...
     def replace(
@@ -107,6 +117,8 @@ class Perspective(Node):
         horizontal_fov_degrees: t.Number | None = ...,
         screen: t.ScreenLike | None = ...,
         view_plane: t.ViewPlaneLike | None = ...,
+        focal_length: t.Number | None = ...,
+        sensor_width: t.Number | None = ...,
         fit_aspect: t.Number | None = ...,
     ) -> Self: ...
 
@@ -128,20 +140,31 @@ class ThinLens(Node):
             in degrees, after pitch; its top leans to the right.
         move (`Move`): Translation along the camera's axes, after the rotations.
         vertical_fov_degrees (number above 0 below 180): Vertical field of view in degrees, between
-            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen` and
-            `view_plane` may be given; the default is 40.
+            0 and 180. At most one of `vertical_fov_degrees`, `horizontal_fov_degrees`, `screen`,
+            `view_plane` and `focal_length` may be given; the default is 40.
         horizontal_fov_degrees (number above 0 below 180): Horizontal field of view in degrees,
             between 0 and 180.
         screen (`Screen`): Field of view as a screen of a given width at a given distance; pixels
             are square.
         view_plane (`ViewPlane`): Field of view as a rectangle at a given distance; the picture is
             stretched over it.
+        focal_length (number above 0; mm): Focal length in millimeters, above 0, of a lens before a
+            sensor of width `sensor_width`: it gives the field of view.
+        sensor_width (number above 0; mm): Width of the sensor in millimeters, above 0, which the
+            picture's width stands for. The default is 36, a full frame.
         fit_aspect (number above 0): Aspect ratio, width / height, of the narrowest picture that
             keeps `vertical_fov_degrees`. A narrower picture keeps the width that a picture of this
             aspect ratio has and shows more above and below, so nothing at its sides is lost. By
             default `vertical_fov_degrees` holds for every picture.
         lens_radius (number from 0; default 0.05): Radius of the lens in scene units, 0 or more.
             Larger lenses blur more outside the focal plane; 0 is a pinhole.
+        f_stop (number above 0): f-number of the lens, above 0: the focal length divided by the
+            diameter of the lens. It replaces `lens_radius`. Without `focal_length`, the focal
+            length is the one that gives the field of view with `sensor_width`.
+        unit (number above 0): Length of a scene unit in meters, above 0, for `f_stop`. The default
+            is 1.
+        focus_on (string): Name of an object whose middle is in focus; it replaces `focus_distance`.
+            The object must be in front of the camera.
         focus_distance (number above 0; default 5): Distance from the eye to the plane in focus
             along the view direction, in scene units. It must be above 0.
 
@@ -161,8 +184,13 @@ class ThinLens(Node):
         "horizontal_fov_degrees",
         "screen",
         "view_plane",
+        "focal_length",
+        "sensor_width",
         "fit_aspect",
         "lens_radius",
+        "f_stop",
+        "unit",
+        "focus_on",
         "focus_distance",
     )
     eye: list[float | Any] | Any
@@ -177,8 +205,13 @@ class ThinLens(Node):
     horizontal_fov_degrees: float | Any
     screen: scene_types.Screen | Any
     view_plane: scene_types.ViewPlane | Any
+    focal_length: float | Any
+    sensor_width: float | Any
     fit_aspect: float | Any
     lens_radius: float | Any
+    f_stop: float | Any
+    unit: float | Any
+    focus_on: str | Any
     focus_distance: float | Any
     def __init__(
         self,
@@ -195,8 +228,13 @@ class ThinLens(Node):
         horizontal_fov_degrees: t.Number | None = None,
         screen: t.ScreenLike | None = None,
         view_plane: t.ViewPlaneLike | None = None,
+        focal_length: t.Number | None = None,
+        sensor_width: t.Number | None = None,
         fit_aspect: t.Number | None = None,
         lens_radius: t.Number | None = None,
+        f_stop: t.Number | None = None,
+        unit: t.Number | None = None,
+        focus_on: str | t.ValueForm | None = None,
         focus_distance: t.Number | None = None,
     ) -> None: ...
     def replace(
@@ -214,8 +252,13 @@ class ThinLens(Node):
         horizontal_fov_degrees: t.Number | None = ...,
         screen: t.ScreenLike | None = ...,
         view_plane: t.ViewPlaneLike | None = ...,
+        focal_length: t.Number | None = ...,
+        sensor_width: t.Number | None = ...,
         fit_aspect: t.Number | None = ...,
         lens_radius: t.Number | None = ...,
+        f_stop: t.Number | None = ...,
+        unit: t.Number | None = ...,
+        focus_on: str | t.ValueForm | None = ...,
         focus_distance: t.Number | None = ...,
     ) -> Self: ...
 

@@ -28,6 +28,7 @@ __all__ = [
     "Model",
     "Instances",
     "InstanceAttribute",
+    "AxisRotation",
     "Attenuation",
     "Ies",
     "Animation",
@@ -178,12 +179,15 @@ class Tone(Node):
         dither (True or False; default True): Dithers 8-bit images, so that gradients show no
             banding; exact levels are preserved. Movies, images with a display look and interactive
             previews are never dithered.
+        backdrop (color): Color behind a transparent picture (`render.transparent`) as displays show
+            it: the curve leaves it as it is, so that white stays white. By default the file has
+            alpha; EXR files always have it.
 
     Example:
         Tone(curve=curves.Agx(), exposure_stops=1)
     """
 
-    __slots__ = ("curve", "exposure_stops", "white_balance", "primaries", "dither")
+    __slots__ = ("curve", "exposure_stops", "white_balance", "primaries", "dither", "backdrop")
 
 
 class WhiteBalance(Node):
@@ -609,6 +613,20 @@ class InstanceAttribute(Node):
     __slots__ = ("channels", "data")
     _positional = ("channels", "data")
     _required = ("channels", "data")
+
+
+class AxisRotation(Node):
+    """Right-handed rotation about an axis through the origin.
+
+    Args:
+        axis (3 numbers; required): Rotation axis, of any length except zero.
+        degrees (number; degrees; required): Rotation angle, counterclockwise as seen from the tip
+            of the axis.
+    """
+
+    __slots__ = ("axis", "degrees")
+    _positional = ("axis", "degrees")
+    _required = ("axis", "degrees")
 
 
 class Attenuation(Node):

@@ -32,6 +32,7 @@ __all__ = [
     "Model",
     "Instances",
     "InstanceAttribute",
+    "AxisRotation",
     "Attenuation",
     "Ies",
     "Animation",
@@ -280,16 +281,27 @@ class Tone(Node):
         dither (True or False; default True): Dithers 8-bit images, so that gradients show no
             banding; exact levels are preserved. Movies, images with a display look and interactive
             previews are never dithered.
+        backdrop (color): Color behind a transparent picture (`render.transparent`) as displays show
+            it: the curve leaves it as it is, so that white stays white. By default the file has
+            alpha; EXR files always have it.
 
     Example:
         Tone(curve=curves.Agx(), exposure_stops=1)
     """
-    __match_args__ = ("curve", "exposure_stops", "white_balance", "primaries", "dither")
+    __match_args__ = (
+        "curve",
+        "exposure_stops",
+        "white_balance",
+        "primaries",
+        "dither",
+        "backdrop",
+    )
     curve: t.Curve | Any
     exposure_stops: float | Any
     white_balance: WhiteBalance | Any
     primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | Any
     dither: bool | Any
+    backdrop: Any
     def __init__(
         self,
         *,
@@ -298,6 +310,7 @@ class Tone(Node):
         white_balance: t.WhiteBalanceLike | None = None,
         primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | t.ValueForm | None = None,
         dither: bool | t.ValueForm | None = None,
+        backdrop: t.ColorLike | None = None,
     ) -> None: ...
     def replace(
         self,
@@ -307,6 +320,7 @@ class Tone(Node):
         white_balance: t.WhiteBalanceLike | None = ...,
         primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | t.ValueForm | None = ...,
         dither: bool | t.ValueForm | None = ...,
+        backdrop: t.ColorLike | None = ...,
     ) -> Self: ...
 
 class WhiteBalance(Node):
@@ -1043,6 +1057,29 @@ class InstanceAttribute(Node):
         *,
         channels: t.Integer = ...,
         data: t.AttributeArrayLike = ...,
+    ) -> Self: ...
+
+class AxisRotation(Node):
+    """Right-handed rotation about an axis through the origin.
+
+    Args:
+        axis (3 numbers; required): Rotation axis, of any length except zero.
+        degrees (number; degrees; required): Rotation angle, counterclockwise as seen from the tip
+            of the axis.
+    """
+    __match_args__ = ("axis", "degrees")
+    axis: list[float | Any] | Any
+    degrees: float | Any
+    def __init__(
+        self,
+        axis: t.Vec3Like,
+        degrees: t.Number,
+    ) -> None: ...
+    def replace(
+        self,
+        *,
+        axis: t.Vec3Like = ...,
+        degrees: t.Number = ...,
     ) -> Self: ...
 
 class Attenuation(Node):

@@ -228,6 +228,8 @@ class PerspectiveCameraDict(TypedDict, total=False):
     horizontal_fov_degrees: Number
     screen: ScreenLike
     view_plane: ViewPlaneLike
+    focal_length: Number
+    sensor_width: Number
     fit_aspect: Number
 
 
@@ -244,8 +246,13 @@ class ThinLensCameraDict(TypedDict, total=False):
     horizontal_fov_degrees: Number
     screen: ScreenLike
     view_plane: ViewPlaneLike
+    focal_length: Number
+    sensor_width: Number
     fit_aspect: Number
     lens_radius: Number
+    f_stop: Number
+    unit: Number
+    focus_on: str | ValueForm
     focus_distance: Number
 
 
@@ -992,6 +999,7 @@ class ToneDict(TypedDict, total=False):
     white_balance: WhiteBalanceLike
     primaries: Literal["srgb", "display_p3", "rec2020", "acescg"] | ValueForm
     dither: bool | ValueForm
+    backdrop: ColorLike
 
 
 ToneLike: TypeAlias = "scene_types.Tone | ToneDict | ValueForm"
@@ -1186,6 +1194,14 @@ class InstanceAttributeDict(TypedDict, total=False):
 InstanceAttributeLike: TypeAlias = "scene_types.InstanceAttribute | InstanceAttributeDict | ValueForm"
 
 
+class AxisRotationDict(TypedDict, total=False):
+    axis: Required[Vec3Like]
+    degrees: Required[Number]
+
+
+AxisRotationLike: TypeAlias = "scene_types.AxisRotation | AxisRotationDict | ValueForm"
+
+
 class AttenuationDict(TypedDict, total=False):
     constant: Number
     linear: Number
@@ -1224,7 +1240,7 @@ AttributeArrayLike: TypeAlias = "AttributeArrayDict | ValueForm"
 
 class TransformStepDict(TypedDict, total=False):
     translate: Vec3Like
-    rotate: RotateLike
+    rotate: AxisRotationLike | Vec3Like
     scale: Number | Vec3Like
     orient: Vec4Like
     look_at: LookAtLike
@@ -1232,14 +1248,6 @@ class TransformStepDict(TypedDict, total=False):
 
 
 TransformStepLike: TypeAlias = "TransformStepDict | ValueForm"
-
-
-class RotateDict(TypedDict, total=False):
-    axis: Required[Vec3Like]
-    degrees: Required[Number]
-
-
-RotateLike: TypeAlias = "RotateDict | ValueForm"
 
 
 LookAtDict = TypedDict(
