@@ -8,7 +8,7 @@ use juggler::integrator::IntegratorKind;
 use juggler::math::vec3;
 use juggler::render::Scheduler;
 use juggler::scene::{Scene, built_in_scenes};
-use juggler_session::{Channel, Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status, wire};
+use juggler_session::{Channel, Edit, Fly, Orbit, Session, SessionOptions, Setting, Stage, Status};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -26,12 +26,12 @@ fn settled(session: &Session, revision: u64) -> Arc<Status> {
     until(session, |status| status.revision >= revision && status.stage == Stage::Finished)
 }
 
-fn after(session: &Session, edit: Edit) -> Arc<Status> {
+pub fn after(session: &Session, edit: Edit) -> Arc<Status> {
     let revision = session.edit(edit);
     settled(session, revision)
 }
 
-fn opened(name: &str) -> Session {
+pub fn opened(name: &str) -> Session {
     let session = Session::open(name, options());
     settled(&session, 0);
     session
@@ -48,7 +48,7 @@ const SMALL: &str = r#"{
     "objects": [{"shape": {"sphere": {"radius": "=1 + frame/10"}}, "material": "red"}]
 }"#;
 
-fn in_folder() -> (tempfile::TempDir, String) {
+pub fn in_folder() -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("small.json");
     fs::write(&file, SMALL).unwrap();
@@ -247,47 +247,6 @@ fn cameras_move_focus_and_are_chosen() {
     assert_eq!(after(&session, Edit::Look(look.clone())).camera, Some(look));
     let wide = Perspective { vertical_fov_degrees: Some(400.0), ..Perspective::default() };
     assert!(after(&session, Edit::Look(wide.into())).error.is_some());
-}
-
-#[test]
-fn bookmarks_go_into_the_file_or_into_memory() {
-    let (_folder, name) = in_folder();
-    let session = opened(&name);
-    after(&session, Edit::Fly(Fly { up: 1.0, ..Fly::default() }));
-    let moved = session.status().camera.clone();
-    let kept = after(&session, Edit::Bookmark("above".into()));
-    assert_eq!((kept.cameras.as_slice(), &kept.camera), (["camera".to_owned(), "above".to_owned()].as_slice(), &moved));
-    let text = fs::read_to_string(&name).unwrap();
-    assert!(text.contains("// Stays.") && text.contains("\"above\""), "{text}");
-    assert_eq!(after(&session, Edit::Camera("above".into())).camera, moved);
-    let built_in = opened("juggler");
-    after(&built_in, Edit::Zoom(2.0));
-    after(&built_in, Edit::Bookmark("near".into()));
-    let bookmarks = built_in.bookmarks();
-    assert!(matches!(&bookmarks[..], [(name, AnyCamera::Perspective(_))] if name == "near"), "{bookmarks:?}");
-    assert!(wire::bookmarks(&bookmarks)["near"]["perspective"].is_object());
-    assert_eq!(after(&built_in, Edit::Camera("camera".into())).error, None);
-}
-
-/// Bookmarks of a mesh go into a scene beside it, which shows the mesh as the window did.
-#[test]
-fn bookmarks_of_a_mesh_go_into_a_scene_beside_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let mesh = folder.path().join("tri.obj");
-    fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    let session = opened(mesh.to_str().unwrap());
-    for name in ["first", "second"] {
-        after(&session, Edit::Zoom(1.5));
-        let kept = after(&session, Edit::Bookmark(name.into()));
-        assert!(kept.error.is_none() && kept.cameras.iter().any(|camera| camera == name), "{:?}", kept.error);
-    }
-    let text = fs::read_to_string(folder.path().join("tri.json")).unwrap();
-    let scene: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(scene["objects"][0]["shape"]["mesh"]["file"], "tri.obj");
-    let cameras: Vec<&String> = scene["cameras"].as_object().unwrap().keys().collect();
-    assert_eq!(cameras, ["first", "second"]);
-    let beside = opened(folder.path().join("tri.json").to_str().unwrap());
-    assert_eq!(after(&beside, Edit::Camera("second".into())).camera, session.status().camera);
 }
 
 #[test]

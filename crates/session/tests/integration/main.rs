@@ -9,6 +9,7 @@
     reason = "a test fails by panicking and prints its figures"
 )]
 
+mod bookmarks;
 mod edits;
 mod files;
 mod lights;
