@@ -111,7 +111,7 @@ WRONG = {
     "singular matrix": moved({"matrix": [1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0]}),
     "matrix of 13 numbers": moved({"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5]}),
     "wrong color": scene(background={"solid": {"radiance": "#12345g"}}),
-    "color by name": scene(lights=[{"point": {"color": "red"}}]),
+    "color by name": scene(lights=[{"point": {"color": "tomatoe"}}]),
     "limb out of reach": {
         "version": 1,
         "objects": [{"limb": {**LIMB, "to": [0, 9, 0], "plane_normal": [0, 0, 1]}}],

@@ -622,6 +622,9 @@ class AxisRotation(Node):
         axis (3 numbers; required): Rotation axis, of any length except zero.
         degrees (number; degrees; required): Rotation angle, counterclockwise as seen from the tip
             of the axis.
+
+    Example:
+        AxisRotation(axis=(0, 1, 0), degrees=30)
     """
 
     __slots__ = ("axis", "degrees")

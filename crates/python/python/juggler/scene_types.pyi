@@ -1066,6 +1066,9 @@ class AxisRotation(Node):
         axis (3 numbers; required): Rotation axis, of any length except zero.
         degrees (number; degrees; required): Rotation angle, counterclockwise as seen from the tip
             of the axis.
+
+    Example:
+        AxisRotation(axis=(0, 1, 0), degrees=30)
     """
     __match_args__ = ("axis", "degrees")
     axis: list[float | Any] | Any
