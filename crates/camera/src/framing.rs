@@ -1,7 +1,8 @@
 //! Cameras that frame points: the points fill a fraction of the picture and are in its middle.
 
 use super::Perspective;
-use juggler_math::{DVec3, Vec3, portable};
+use juggler_math::portable::{self, power_of_ten};
+use juggler_math::{DVec3, Vec3};
 
 /// Size of points that are further apart, relative to their coordinates; others count as one point.
 const MIN_SIZE: f64 = 1e-6;
@@ -11,7 +12,8 @@ const MIN_DISTANCE: f64 = 1e-3;
 const SINGLE_DISTANCE: f64 = 5.0;
 /// Steps of the bisection that moves the points to the middle, for all bits of a position.
 const STEPS: u32 = 60;
-/// Coordinates are rounded to this part of the power of ten below the distance of the nearest point.
+/// Coordinates are rounded to this part of the power of ten below the distance of the nearest
+/// point.
 const ROUNDING: f64 = 1e-3;
 
 /// How a camera frames points.
@@ -26,16 +28,17 @@ pub struct Framing {
 }
 
 impl Default for Framing {
-    /// From the front, slightly right and above, with the field of view of a portrait lens; the points
-    /// fill 80 % of the picture.
+    /// From the front, slightly right and above, with the field of view of a portrait lens; the
+    /// points fill 80 % of the picture.
     fn default() -> Self {
         Self { towards_camera: Vec3::new(0.45, 0.4, 1.0), vertical_fov_degrees: 30.0, fill: 0.8 }
     }
 }
 
 impl Framing {
-    /// The nearest camera in the direction that sees all `points` within the fraction `fill` of a picture of
-    /// `size` pixels, with the points in the middle of the picture. Its coordinates have few digits.
+    /// The nearest camera in the direction that sees all `points` within the fraction `fill` of a
+    /// picture of `size` pixels, with the points in the middle of the picture. Its coordinates have
+    /// few digits.
     pub fn camera(&self, points: &[Vec3], [width, height]: [u32; 2]) -> Perspective {
         let (vertical, horizontal) = self.slopes(f64::from(width.max(1)) / f64::from(height.max(1)));
         let axes = Axes::looking_from(self.towards_camera);
@@ -105,8 +108,8 @@ struct Side<'p> {
 impl Side<'_> {
     /// Distance from which the points fill the picture exactly between two slopes of opposite sign.
     fn distance(&self, slope: f64) -> f64 {
-        // A camera at (x, d) sees a point (p, z) if |p − x| ≤ slope (d − z). The boundaries of the two
-        // conditions meet at the distance that leaves no room.
+        // A camera at (x, d) sees a point (p, z) if |p − x| ≤ slope (d − z). The boundaries of the
+        // two conditions meet at the distance that leaves no room.
         let most = |sign: f64| {
             let needed = self.points.iter().map(|point| sign * point.to_array()[self.axis] + slope * point.z);
             needed.fold(f64::NEG_INFINITY, f64::max)
@@ -141,19 +144,6 @@ fn bounds(points: &[Vec3]) -> (DVec3, DVec3) {
     (low, all().reduce(DVec3::max).unwrap_or_default())
 }
 
-/// Largest power of ten up to `value`, computed by multiplications and divisions only, which give
-/// the same bits on every machine.
-fn power_of_ten(value: f64) -> f64 {
-    let mut power = 1.0;
-    while power > value && power > 1e-300 {
-        power /= 10.0;
-    }
-    while power * 10.0 <= value && power < 1e300 {
-        power *= 10.0;
-    }
-    power
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -162,8 +152,8 @@ mod tests {
 
     const SIZES: [[u32; 2]; 3] = [[800, 600], [300, 900], [1, 1]];
 
-    /// Largest and smallest film coordinates of points, as fractions of the way from its middle to its
-    /// edge.
+    /// Largest and smallest film coordinates of points, as fractions of the way from its middle to
+    /// its edge.
     fn extent(camera: &Perspective, points: &[Vec3], [width, height]: [u32; 2]) -> [[f64; 2]; 2] {
         let projection = camera.projection(UVec2::new(width, height)).unwrap();
         let film = WorldToFilm::new(&projection).unwrap();

@@ -25,14 +25,16 @@ pub struct ModelArgs {
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub model_scene: Option<String>,
 
-    /// Render a model although image files of its textures are missing or broken: gray, with a warning
+    /// Render a model although image files of its textures are missing or broken: gray, with a
+    /// warning
     #[arg(long, hide_short_help = true)]
     pub lenient: bool,
 
     #[command(flatten)]
     pub stage: StageArgs,
 
-    /// Size of the picture in pixels, for cameras that frame all objects; `None` is the size of the scene.
+    /// Size of the picture in pixels, for cameras that frame all objects; `None` is the size of the
+    /// scene.
     #[arg(skip)]
     pub size: Option<[u32; 2]>,
 

@@ -39,7 +39,8 @@ pub struct StageArgs {
 
     /// View from front, back, left, right, top, bottom or iso
     ///
-    /// The camera frames all objects; iso is from the front right above. The front of a scene faces the positive z axis.
+    /// The camera frames all objects; iso is from the front right above. The front of a scene faces
+    /// the positive z axis.
     #[arg(long, value_name = "SIDE", value_parser = value::stage::side, conflicts_with = "eye")]
     pub view: Option<Vec3>,
 

@@ -204,6 +204,19 @@ pub fn floor_f64(x: f64) -> f64 {
     x.floor()
 }
 
+/// Largest power of ten up to `value`, computed by multiplications and divisions only, which give
+/// the same bits on every machine.
+pub fn power_of_ten(value: f64) -> f64 {
+    let mut power = 1.0;
+    while power > value && power > 1e-300 {
+        power /= 10.0;
+    }
+    while power * 10.0 <= value && power < 1e300 {
+        power *= 10.0;
+    }
+    power
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,6 +9,7 @@ use juggler_integrator::Path as PathIntegrator;
 use juggler_light::background::Gradient;
 use juggler_light::{AnyLight, Directional};
 use juggler_material::{AnyMaterial, Diffuse, Principled};
+use juggler_math::portable::power_of_ten;
 use juggler_math::{Aabb, DVec3, Rgb, Vec3};
 use juggler_shape::{Mesh, Plane};
 use juggler_texture::{AnyTexture, Attribute, Image, Input};
@@ -123,19 +124,6 @@ impl ModelBounds {
         // Far from the origin, the conversion to single precision may round up.
         if f64::from(height) < self.low.y { height } else { height.next_down() }
     }
-}
-
-/// Largest power of ten up to `value`, computed by multiplications and divisions only, which give
-/// the same bits on every machine.
-fn power_of_ten(value: f64) -> f64 {
-    let mut power = 1.0;
-    while power > value && power > 1e-300 {
-        power /= 10.0;
-    }
-    while power * 10.0 <= value {
-        power *= 10.0;
-    }
-    power
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! `juggler convert`: writes any readable scene as scene JSON, with its animation or at one frame;
-//! a mesh becomes a scene around it, and a model a scene that refers to it or consists of its parts.
+//! a mesh becomes a scene around it, and a model a scene that refers to it or consists of its
+//! parts.
 
 use crate::console;
 use crate::failure::Failure;
@@ -80,8 +81,8 @@ impl Convert {
     }
 }
 
-/// The scene with the camera that frames its model or mesh, if the scene was made for one that has no
-/// camera.
+/// The scene with the camera that frames its model or mesh, if the scene was made for one that has
+/// no camera.
 fn with_shown_camera(scene: Scene) -> Result<Scene, Failure> {
     if !scene.is_around_file() || scene.description.camera.is_some() {
         return Ok(scene);
