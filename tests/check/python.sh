@@ -23,12 +23,24 @@ step_python() {
   heading "python: the package by itself, in $(python3 --version)"
   environment "$folder/bare" python3 "$wheel" || return 0
   test_package "$folder/bare" installed
+  count_instructions "$folder/bare/bin/juggler"
   heading "python: the package beside NumPy and others, in $(python3 --version)"
   mapfile -t packages < <(packages_for_tests | grep -vE "^($large_packages)")
   environment "$folder/numpy" python3 "$wheel" "${packages[@]}" || return 0
   test_package "$folder/numpy"
   heading "python: types"
   if command -v pyright >/dev/null; then check_types "$folder/numpy"; else skip "python: pyright is not installed (pip install pyright)"; fi
+}
+
+# Counts the instructions of rendering by the program of the wheel, which is optimized and has all
+# that renders.
+count_instructions() {
+  heading "python: instructions of rendering"
+  if ! command -v valgrind >/dev/null; then
+    skip "instructions: valgrind is not installed (apt-get install valgrind)"
+    return
+  fi
+  tests/instructions/compare.py "$1"
 }
 
 # Checks the stubs of the package, and uses and mistakes of it, as strictly as pyright can.

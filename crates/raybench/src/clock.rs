@@ -30,7 +30,8 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts the stopwatch. [`Stopwatch::elapsed`] must be called from the same thread.
+    /// Starts the stopwatch. With [`CpuClock::Thread`], [`Stopwatch::elapsed`] must be called from the
+    /// same thread.
     pub fn start(clock: CpuClock) -> Self {
         Self { clock, wall: Instant::now(), cpu: cpu_time(clock) }
     }

@@ -19,6 +19,7 @@ mod parts;
 mod pictures;
 mod probing;
 mod readme;
+mod scene_costs;
 mod series;
 mod serving;
 mod signals;

@@ -5,8 +5,8 @@ mod report;
 use crate::console;
 use crate::failure::Failure;
 use crate::source;
+use crate::value::one_of;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use juggler::math::Aabb;
 use juggler::mesh::{self, MeshError, MeshErrorKind, MeshLimits};
 use juggler_bvh::{Quality, TriangleBvh};
@@ -53,15 +53,6 @@ pub struct Rays {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-/// Parser of the names of an enumeration.
-fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
-    all: [T; N],
-    name: fn(T) -> &'static str,
-) -> impl TypedValueParser<Value = T> {
-    let value = move |text: String| all.into_iter().find(|value| name(*value) == text).ok_or("no such name");
-    PossibleValuesParser::new(all.map(name)).try_map(value)
 }
 
 fn built_in_meshes() -> String {
