@@ -2,8 +2,9 @@
 //! differ, so no code that decides a pixel may call them.
 //!
 //! Sine and cosine are polynomials fitted at Chebyshev nodes, since sampling calls them at every
-//! bounce. All other functions come from the crate `libm`, which is plain arithmetic. Names ending
-//! in `_f64` are in double precision.
+//! bounce. All other functions come from the crate `libm`, which is plain arithmetic; of the
+//! processor it uses roots and the like, which are exact. Names ending in `_f64` are in double
+//! precision.
 
 const SIGN: u32 = 1 << 31;
 
@@ -199,9 +200,30 @@ pub fn sqrt_f64(x: f64) -> f64 {
     x.sqrt()
 }
 
-/// Largest integer not above `x`.
+/// Largest integer not above `x`, without a call of the platform's function.
+#[inline]
+pub fn floor(x: f32) -> f32 {
+    // Larger numbers are whole, or not finite.
+    const WHOLE: f32 = 8_388_608.0;
+    if x.abs() >= WHOLE || x.is_nan() {
+        return x;
+    }
+    // Adding 2^23 rounds to the nearest integer.
+    let near = (x + WHOLE.copysign(x)) - WHOLE.copysign(x);
+    let below = if near > x { near - 1.0 } else { near };
+    below.copysign(x)
+}
+
+/// Largest integer not above `x`, without a call of the platform's function.
+#[inline]
 pub fn floor_f64(x: f64) -> f64 {
-    x.floor()
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if x.abs() >= WHOLE || x.is_nan() {
+        return x;
+    }
+    let near = (x + WHOLE.copysign(x)) - WHOLE.copysign(x);
+    let below = if near > x { near - 1.0 } else { near };
+    below.copysign(x)
 }
 
 /// Largest power of ten up to `value`, computed by multiplications and divisions only, which give
@@ -320,6 +342,26 @@ mod tests {
             );
             assert!(near(pow_f64(y, x / 4.0), y.powf(x / 4.0)) && near(cbrt_f64(x), x.cbrt()), "{x} {y}");
             assert!(sqrt_f64(y) == y.sqrt() && floor_f64(x) == x.floor());
+        }
+    }
+
+    #[test]
+    fn floors_have_the_bits_of_the_platforms() {
+        let mut random = Random::new(14);
+        let edges = [0.0, 0.5, 1.0, 1.5, 2.0, 1e-40, 8_388_607.5, 8_388_608.0, 8_388_609.0, 1e30];
+        let edges = edges.into_iter().chain([f32::MIN_POSITIVE, f32::INFINITY, f32::NAN, f32::MAX]);
+        let numbers = (0..10_000).map(|_| random.range(-4.0, 4.0)).chain((0..10_000).map(|i| (i - 5000) as f32 * 0.25));
+        let mut more = Random::new(15);
+        let bits = (0..100_000).map(|_| f32::from_bits(more.bits()));
+        for x in edges.flat_map(|x| [x, -x, x.next_up(), -x.next_down()]).chain(numbers).chain(bits) {
+            assert_eq!(floor(x).to_bits(), x.floor().to_bits(), "{x}");
+            let wide = f64::from(x);
+            assert_eq!(floor_f64(wide).to_bits(), wide.floor().to_bits(), "{x}");
+        }
+        for x in
+            [4_503_599_627_370_495.5, 4_503_599_627_370_496.0, -4_503_599_627_370_495.5, 0.1_f64.next_down(), 1e300]
+        {
+            assert_eq!(floor_f64(x).to_bits(), x.floor().to_bits(), "{x}");
         }
     }
 

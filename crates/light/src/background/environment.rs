@@ -180,7 +180,7 @@ impl Panorama {
         let ring = (direction.x * direction.x + direction.z * direction.z).sqrt();
         let down = portable::atan2(ring, direction.y) * std::f32::consts::FRAC_1_PI;
         let (x, y) = (azimuth_turns(direction) * width as f32 - 0.5, down * height as f32 - 0.5);
-        let (left, top) = (x.floor(), y.floor());
+        let (left, top) = (portable::floor(x), portable::floor(y));
         let (right_share, low_share) = (x - left, y - top);
         let column = |step: i64| match left as i64 + step {
             -1 => width.saturating_sub(1),

@@ -84,40 +84,41 @@ impl MipMap {
     #[inline]
     pub fn texel(&self, level: usize, x: u32, y: u32) -> Texel {
         match self.levels.get(level) {
-            Some(mip) if x < mip.width && y < mip.height => {
-                self.read(mip, x as usize + y as usize * mip.width as usize)
-            }
+            Some(mip) if x < mip.width && y < mip.height => self.read(mip, [mip.index(x, y)])[0],
             _ => [0.0; 4],
         }
     }
 
+    /// Texels of a level in two columns of an upper and of a lower row, all inside of the level.
     #[inline]
-    fn read(&self, mip: &MipLevel, index: usize) -> Texel {
-        let start = index * self.channels;
-        let mut samples = [0.0; 4];
-        match &mip.texels {
-            Texels::Bytes(bytes) => {
-                let texel = bytes.get(start..start + self.channels).unwrap_or_default();
-                for (channel, (sample, level)) in samples.iter_mut().zip(texel).enumerate() {
-                    *sample =
-                        if self.is_alpha(channel) { alpha_from_level(*level) } else { self.decoding.light(*level) };
-                }
-            }
-            Texels::Halves(halves) => {
-                let texel = halves.get(start..start + self.channels).unwrap_or_default();
-                samples.iter_mut().zip(texel).for_each(|(sample, bits)| *sample = half::to_f32(*bits));
-            }
-            Texels::Floats(floats) => {
-                let texel = floats.get(start..start + self.channels).unwrap_or_default();
-                samples.iter_mut().zip(texel).for_each(|(sample, number)| *sample = *number);
-            }
-        }
-        let [a, b, c, d] = samples;
+    pub fn quad(&self, level: usize, [left, right]: [u32; 2], [top, bottom]: [u32; 2]) -> [Texel; 4] {
+        let Some(mip) = self.levels.get(level) else { return [[0.0; 4]; 4] };
+        self.read(mip, [mip.index(left, top), mip.index(right, top), mip.index(left, bottom), mip.index(right, bottom)])
+    }
+
+    /// Texels at the indices, which are decoded together.
+    #[inline]
+    fn read<const N: usize>(&self, mip: &MipLevel, indices: [usize; N]) -> [Texel; N] {
         match self.channels {
-            1 => [a, a, a, 1.0],
-            2 => [a, a, a, b],
-            3 => [a, b, c, 1.0],
-            _ => [a, b, c, d],
+            1 => self.read_channels::<1, N>(&mip.texels, indices),
+            2 => self.read_channels::<2, N>(&mip.texels, indices),
+            3 => self.read_channels::<3, N>(&mip.texels, indices),
+            _ => self.read_channels::<4, N>(&mip.texels, indices),
+        }
+    }
+
+    /// [`MipMap::read`] of texels of `C` samples.
+    #[inline]
+    fn read_channels<const C: usize, const N: usize>(&self, texels: &Texels, indices: [usize; N]) -> [Texel; N] {
+        match texels {
+            Texels::Bytes(bytes) => decoded::<u8, C, N>(bytes, indices, |levels| {
+                std::array::from_fn(|channel| match (self.is_alpha(channel), levels[channel]) {
+                    (true, level) => alpha_from_level(level),
+                    (false, level) => self.decoding.light(level),
+                })
+            }),
+            Texels::Halves(halves) => decoded::<u16, C, N>(halves, indices, |bits| bits.map(half::to_f32)),
+            Texels::Floats(floats) => decoded::<f32, C, N>(floats, indices, |numbers| numbers),
         }
     }
 
@@ -164,7 +165,7 @@ impl MipMap {
         let (mut sum, mut all) = ([0.0; 4], 0.0);
         for (row, tall) in rows {
             for (column, wide) in columns.clone() {
-                let texel = self.read(mip, row * mip.width as usize + column);
+                let [texel] = self.read(mip, [row * mip.width as usize + column]);
                 // Convert back to samples: the alpha of gray images is the second one.
                 let samples = if self.channels == 2 { [texel[0], texel[3], 0.0, 0.0] } else { texel };
                 sum.iter_mut().zip(samples).for_each(|(sum, sample)| *sum += f64::from(sample) * tall * wide);
@@ -173,6 +174,31 @@ impl MipMap {
         }
         sum.map(|sum| sum / all)
     }
+}
+
+impl MipLevel {
+    /// Index of a texel.
+    #[inline]
+    fn index(&self, x: u32, y: u32) -> usize {
+        x as usize + y as usize * self.width as usize
+    }
+}
+
+/// Texels of `C` samples at the indices, by the function that decodes one of them.
+#[inline]
+fn decoded<T: Copy, const C: usize, const N: usize>(
+    samples: &[T],
+    indices: [usize; N],
+    decode: impl Fn([T; C]) -> [f32; C],
+) -> [Texel; N] {
+    let (texels, _) = samples.as_chunks::<C>();
+    indices.map(|index| match texels.get(index).map_or([0.0; C], |texel| decode(*texel)).as_slice() {
+        [gray] => [*gray, *gray, *gray, 1.0],
+        [gray, alpha] => [*gray, *gray, *gray, *alpha],
+        [red, green, blue] => [*red, *green, *blue, 1.0],
+        [red, green, blue, alpha, ..] => [*red, *green, *blue, *alpha],
+        [] => [0.0; 4],
+    })
 }
 
 /// Texels of a row of `from` that texel `i` of a row of `to` covers, with the covered share of

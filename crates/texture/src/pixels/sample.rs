@@ -64,6 +64,16 @@ impl Wrap {
         };
         u32::try_from(found).ok()
     }
+
+    /// [`Wrap::texel`] at index `i` and the next one.
+    #[inline]
+    fn neighbors(self, i: i64, size: u32) -> [Option<u32>; 2] {
+        match u32::try_from(i) {
+            // Most footprints lie inside of the image.
+            Ok(first) if first < size.saturating_sub(1) => [Some(first), Some(first + 1)],
+            _ => [self.texel(i, size), self.texel(i + 1, size)],
+        }
+    }
 }
 
 impl MipMap {
@@ -109,15 +119,18 @@ impl MipMap {
         let neighbors = |axis: usize| {
             let x = at[axis] * f64::from(size[axis]) - 0.5;
             let floor = portable::floor_f64(x);
-            let index = floor as i64;
-            (wrap[axis].texel(index, size[axis]), wrap[axis].texel(index + 1, size[axis]), (x - floor) as f32)
+            (wrap[axis].neighbors(floor as i64, size[axis]), (x - floor) as f32)
         };
-        let ((left, right, across), (top, bottom, down)) = (neighbors(0), neighbors(1));
-        let texel = |x: Option<u32>, y: Option<u32>| match (x, y) {
-            (Some(x), Some(y)) => self.texel(level, x, y),
-            _ => [0.0; 4],
+        let ((columns, across), (rows, down)) = (neighbors(0), neighbors(1));
+        let [a, b, c, d] = match (columns, rows) {
+            ([Some(left), Some(right)], [Some(top), Some(bottom)]) => self.quad(level, [left, right], [top, bottom]),
+            ([left, right], [top, bottom]) => {
+                [(left, top), (right, top), (left, bottom), (right, bottom)].map(|texel| match texel {
+                    (Some(x), Some(y)) => self.texel(level, x, y),
+                    _ => [0.0; 4],
+                })
+            }
         };
-        let (a, b, c, d) = (texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom));
         std::array::from_fn(|i| {
             let upper = a[i] * (1.0 - across) + b[i] * across;
             let lower = c[i] * (1.0 - across) + d[i] * across;
