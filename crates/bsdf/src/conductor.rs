@@ -25,11 +25,13 @@
 
 use super::energy::{self, SampleRng};
 use super::ggx::{Ggx, MicrofacetReflection};
+use super::lanes::lanes;
 use super::lobe::{Deltas, delta};
 use super::{BsdfSample, Fresnel, Scatter};
 use crate::ScatteringLobe;
+use crate::quadrature::{self, Azimuth, NODES};
 use juggler_math::{Rgb, Vec2, Vec3};
-use std::f32::consts::FRAC_1_PI;
+use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Conductor lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,11 +116,12 @@ impl Conductor {
 
     /// Adds multiple scattering to the value and the density of single scattering.
     fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
-        let (loss, scaled) = (self.energy_loss(wo), self.scaled_fraction());
-        if scaled == 0.0 {
-            let more = loss * self.energy_loss(wi) * wi.z;
+        if self.is_isotropic() {
+            let [loss, other] = energy::isotropic_mirror_losses([wo.z, wi.z], self.ggx.mean_alpha());
+            let more = loss * other * wi.z;
             return (single + self.multiple * more, density + self.normalization * more);
         }
+        let (loss, scaled) = (self.energy_loss(wo), self.scaled_fraction());
         let more = scaled * loss / (1.0 - loss);
         let (mut value, mut pdf) = (single + single * self.bounced * more, density + density * more);
         if scaled < 1.0 {
@@ -170,16 +173,29 @@ impl Conductor {
         delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.reflectance(wo.z), 1.0)
     }
 
-    /// Albedo of single scattering. On an anisotropic surface, the angles at visible microfacets
+    /// Albedos at several cosines above 0 on a rough isotropic surface, by channel.
+    #[inline(always)]
+    fn isotropic_albedos<const N: usize>(&self, cos: [f32; N]) -> [[f32; N]; 3] {
+        let alpha = self.ggx.mean_alpha();
+        let losses = energy::isotropic_mirror_losses(cos, alpha);
+        let single = self.fresnel.rough_albedos(cos, alpha, losses);
+        if self.multiple.is_black() {
+            return single;
+        }
+        let all = |single: &[f32; N], multiple: f32| {
+            lanes(|lane| single[lane] + multiple * (losses[lane] * self.mean_loss * PI))
+        };
+        let ([r, g, b], multiple) = (&single, self.multiple);
+        [all(r, multiple.r), all(g, multiple.g), all(b, multiple.b)]
+    }
+
+    /// Albedo of single scattering on an anisotropic surface. The angles at visible microfacets
     /// depend on the slopes along `wo`: an isotropic surface of these slopes gives the mean Fresnel
     /// reflectance, a table of anisotropic surfaces the loss. That isotropic surface is as rough
     /// across `wo` as along it; see [`Conductor::isotropic_cosine`]. `lost` is the energy loss along
     /// `wo`.
-    fn single_albedo(&self, wo: Vec3, lost: f32) -> Rgb {
+    fn anisotropic_albedo(&self, wo: Vec3, lost: f32) -> Rgb {
         let alpha = self.ggx.alpha_towards(wo);
-        if self.ggx.is_isotropic() {
-            return self.fresnel.rough_albedo(wo.z, alpha, lost);
-        }
         let cos = self.isotropic_cosine(wo, alpha);
         let isotropic_loss = energy::isotropic_mirror_loss(cos, alpha);
         let isotropic = self.fresnel.rough_albedo(cos, alpha, isotropic_loss);
@@ -245,17 +261,26 @@ impl ScatteringLobe for Conductor {
         if self.is_smooth() {
             return self.fresnel.reflectance(wo.z);
         }
+        if self.is_isotropic() {
+            let [[r], [g], [b]] = self.isotropic_albedos([wo.z]);
+            return Rgb::new(r, g, b);
+        }
         let loss = self.energy_loss(wo);
-        let single = self.single_albedo(wo, loss);
+        let single = self.anisotropic_albedo(wo, loss);
         if self.multiple.is_black() {
             return single;
         }
         let scaled = self.scaled_fraction();
-        let apart = self.multiple * (loss * self.mean_loss * std::f32::consts::PI);
-        if scaled == 0.0 {
-            return single + apart;
-        }
+        let apart = self.multiple * (loss * self.mean_loss * PI);
         single + single * self.bounced * (scaled * loss / (1.0 - loss)) + apart * (1.0 - scaled)
+    }
+
+    fn max_albedos(&self, azimuth: Azimuth) -> [f32; NODES] {
+        if self.is_smooth() || !self.is_isotropic() {
+            return azimuth.directions().map(|w| self.albedo(w).max_channel());
+        }
+        let [r, g, b] = self.isotropic_albedos(quadrature::cosines());
+        lanes(|node| r[node].max(g[node]).max(b[node]))
     }
 
     /// Mirror reflection, if smooth.

@@ -4,6 +4,7 @@ use super::energy;
 use super::fresnel::{
     conductor_reflectance, dielectric_reflectance, f0_from_ior, mean_dielectric_reflectance, schlick,
 };
+use super::lanes::lanes;
 use super::thin_film::ThinFilm;
 use juggler_math::Rgb;
 
@@ -102,23 +103,41 @@ impl Fresnel {
     /// Directional albedo of single scattering at an angle of cosine `cos`, for isotropic `alpha`, at
     /// which a perfect mirror loses `lost`: [`energy::isotropic_mirror_loss`].
     pub fn rough_albedo(&self, cos: f32, alpha: f32, lost: f32) -> Rgb {
+        let [[r], [g], [b]] = self.rough_albedos([cos], alpha, [lost]);
+        Rgb::new(r, g, b)
+    }
+
+    /// [`Fresnel::rough_albedo`] at several cosines, by channel.
+    #[inline(always)]
+    pub(crate) fn rough_albedos<const N: usize>(&self, cos: [f32; N], alpha: f32, lost: [f32; N]) -> [[f32; N]; 3] {
         if alpha == 0.0 {
-            return self.reflectance(cos);
+            return channels(cos.map(|cos| self.reflectance(cos)));
         }
         if let Self::Dielectric { ior, color } = self {
-            return *color * energy::dielectric_reflection_albedo(cos, alpha, *ior, lost);
+            let albedos = energy::dielectric_reflection_albedos(cos, alpha, *ior, lost);
+            let tinted = |color: f32| lanes(|lane| color * albedos[lane]);
+            return [tinted(color.r), tinted(color.g), tinted(color.b)];
         }
-        let grazing = energy::grazing_albedo(cos, alpha, lost);
         // Evaluate bend and film at the typical angle of visible microfacets, which tilt towards
         // the viewer.
-        let tilted = cos + (1.0 - cos) * 1.2 * alpha / (1.0 + alpha);
+        let tilted = |cos: f32| cos + (1.0 - cos) * 1.2 * alpha / (1.0 + alpha);
         if let Self::ThinFilm { .. } = self {
-            return self.reflectance(tilted) * (1.0 - lost);
+            return channels(std::array::from_fn(|i| self.reflectance(tilted(cos[i])) * (1.0 - lost[i])));
         }
+        let grazing = energy::grazing_albedos(cos, alpha, lost);
         let (f0, f90, bend) = self.schlick_fit();
-        let m = 1.0 - tilted;
-        let bent = bend * (tilted * m * m * m * m * m * m * (1.0 - lost));
-        (f0 * (1.0 - lost - grazing) + f90 * grazing - bent).map(|share| share.clamp(0.0, 1.0))
+        let bent = |cos: f32, lost: f32| {
+            let (tilted, m) = (tilted(cos), 1.0 - tilted(cos));
+            tilted * m * m * m * m * m * m * (1.0 - lost)
+        };
+        let bends = if bend.is_black() { [0.0; N] } else { lanes(|lane| bent(cos[lane], lost[lane])) };
+        let channel = |f0: f32, f90: f32, bend: f32| {
+            lanes(|lane| {
+                let (lost, grazing, bent) = (lost[lane], grazing[lane], bends[lane]);
+                (f0 * (1.0 - lost - grazing) + f90 * grazing - bend * bent).clamp(0.0, 1.0)
+            })
+        };
+        [channel(f0.r, f90.r, bend.r), channel(f0.g, f90.g, bend.g), channel(f0.b, f90.b, bend.b)]
     }
 
     /// Cosine-weighted mean over all directions: the reflectance of uniform light. Exact for colors
@@ -136,6 +155,12 @@ impl Fresnel {
         let (f0, f90, bend) = self.schlick_fit();
         (f0 + (f90 - f0) / 21.0 - bend / 126.0).map(|share| share.clamp(0.0, 1.0))
     }
+}
+
+/// The channels of several colors.
+#[inline]
+fn channels<const N: usize>(colors: [Rgb; N]) -> [[f32; N]; 3] {
+    [colors.map(|color| color.r), colors.map(|color| color.g), colors.map(|color| color.b)]
 }
 
 #[cfg(test)]

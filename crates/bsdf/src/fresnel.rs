@@ -5,6 +5,7 @@
 //! takes its inverse, the index behind over that in front (Pharr, Jakob, Humphreys, PBR 4th ed.,
 //! section 9.3).
 
+use super::lanes::lanes;
 use juggler_math::{Rgb, Vec3, portable};
 
 /// Mirror direction of `wo` about `normal`.
@@ -44,6 +45,21 @@ pub fn dielectric_reflectance(cos: f32, relative_ior: f32) -> f32 {
     let parallel = (relative_ior * cos - cos_behind) / (relative_ior * cos + cos_behind);
     let perpendicular = (cos - relative_ior * cos_behind) / (cos + relative_ior * cos_behind);
     (parallel * parallel + perpendicular * perpendicular) * 0.5
+}
+
+/// [`dielectric_reflectance`] at several cosines, without branches.
+#[inline(always)]
+pub(crate) fn dielectric_reflectances<const N: usize>(cos: [f32; N], relative_ior: f32) -> [f32; N] {
+    lanes(|lane| {
+        let cos = cos[lane].clamp(0.0, 1.0);
+        let sin_squared = (1.0 - cos * cos) / (relative_ior * relative_ior);
+        // NaN under total internal reflection.
+        let cos_behind = (1.0 - sin_squared).sqrt();
+        let parallel = (relative_ior * cos - cos_behind) / (relative_ior * cos + cos_behind);
+        let perpendicular = (cos - relative_ior * cos_behind) / (cos + relative_ior * cos_behind);
+        let partial = (parallel * parallel + perpendicular * perpendicular) * 0.5;
+        if sin_squared >= 1.0 { 1.0 } else { partial }
+    })
 }
 
 /// Cosine-weighted mean of [`dielectric_reflectance`] over all directions: the reflectance of

@@ -24,12 +24,14 @@ pub mod fresnel;
 pub mod ggx;
 pub mod highlight;
 pub mod lambert;
+mod lanes;
 pub mod lobe;
 pub mod metals;
 pub mod oren_nayar;
 mod phong;
 pub mod plastic;
 pub mod principled;
+pub mod quadrature;
 pub mod sheen;
 mod specular_weight;
 mod sum;
@@ -49,8 +51,9 @@ pub use lobe::{Deltas, ScatteringLobe};
 pub use phong::{ConeSampling, Highlight, PhongParameters};
 pub use plastic::Plastic;
 pub use principled::Principled;
+use quadrature::{Azimuth, NODES};
 pub use specular_weight::SpecularWeight;
-pub use sum::{Bsdf, MAX_LOBES};
+pub use sum::{Bsdf, BsdfView, MAX_LOBES};
 pub use thin_film::ThinFilm;
 
 juggler_math::closed_set! {
@@ -72,6 +75,7 @@ juggler_math::closed_set! {
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
     fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample>;
     fn albedo(&self, wo: Vec3) -> Rgb;
+    fn max_albedos(&self, azimuth: Azimuth) -> [f32; NODES];
     fn deltas(&self, wo: Vec3) -> Deltas;
     fn is_specular(&self) -> bool;
     fn uses_u_choice(&self) -> bool;

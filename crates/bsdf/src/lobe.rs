@@ -1,6 +1,7 @@
 //! Lobes, the parts of a [`Bsdf`](super::Bsdf): a closed set, each kind in a file of its own.
 
 use super::{BsdfSample, Lobe, Scatter};
+use crate::quadrature::{Azimuth, NODES};
 use arrayvec::ArrayVec;
 use juggler_math::{Rgb, Vec2, Vec3};
 
@@ -21,6 +22,11 @@ pub trait ScatteringLobe: Copy {
     /// Directional albedo: fraction of light along `wo` that the lobe scatters into all directions;
     /// see [`Bsdf::albedo`](super::Bsdf::albedo). Never black where the lobe is not.
     fn albedo(&self, wo: Vec3) -> Rgb;
+
+    /// Largest channel of [`albedo`](Self::albedo) for each direction of a quadrature.
+    fn max_albedos(&self, azimuth: Azimuth) -> [f32; NODES] {
+        azimuth.directions().map(|w| self.albedo(w).max_channel())
+    }
 
     /// Every delta with its full weight, not divided by a probability.
     fn deltas(&self, _wo: Vec3) -> Deltas {

@@ -7,6 +7,8 @@
 
 use super::{BsdfSample, Scatter, energy};
 use crate::ScatteringLobe;
+use crate::lanes::lanes;
+use crate::quadrature::{self, Azimuth, NODES};
 use juggler_math::{Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::TAU;
 
@@ -74,7 +76,13 @@ impl ScatteringLobe for Sheen {
 
     /// Directional albedo, from a table.
     fn albedo(&self, wo: Vec3) -> Rgb {
-        if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen_albedo(wo.z, self.alpha) }
+        if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen_albedos([wo.z], self.alpha)[0] }
+    }
+
+    fn max_albedos(&self, _azimuth: Azimuth) -> [f32; NODES] {
+        let Rgb { r, g, b } = self.color;
+        let white = energy::sheen_albedos(quadrature::cosines(), self.alpha);
+        lanes(|node| (r * white[node]).max(g * white[node]).max(b * white[node]))
     }
 
     #[inline]

@@ -13,12 +13,16 @@
 
 mod below;
 mod horizon;
+mod view;
 
 use super::{BsdfSample, Lobe, Scatter};
+use crate::lanes::lanes;
+use crate::quadrature::{self, Azimuth, NODES};
 use arrayvec::ArrayVec;
 use below::Role;
 use horizon::Horizon;
 use juggler_math::{Rgb, Vec2, Vec3};
+pub use view::BsdfView;
 
 /// Maximum number of lobes of a [`Bsdf`].
 pub const MAX_LOBES: usize = 9;
@@ -160,161 +164,43 @@ impl Bsdf {
     /// Cosine-weighted mean transmittance of all layers.
     fn mean_transmittance(&self) -> f32 {
         let is_anisotropic = self.lobes.iter().any(|one| one.cover > 0.0 && one.lobe.is_anisotropic());
-        mean(is_anisotropic, |w| self.lobes.iter().fold(1.0, |transmittance, one| transmittance * one.transmittance(w)))
+        quadrature::mean(is_anisotropic, |azimuth| layer_transmittances(&self.lobes, azimuth))
     }
 
-    /// Sum of f |cos θi| over all lobes, without deltas.
+    /// [`BsdfView::eval`] for a single direction of light.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        self.eval_pdf(wo, wi).0
+        self.view(wo).eval(wi)
     }
 
-    /// Density of [`Bsdf::sample`] at `wi`, per steradian, without deltas.
+    /// [`BsdfView::pdf`] for a single direction of light.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.eval_pdf(wo, wi).1
+        self.view(wo).pdf(wi)
     }
 
-    /// [`Bsdf::eval`] and [`Bsdf::pdf`] in one call.
+    /// [`BsdfView::eval_pdf`] for a single direction of light.
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        match &self.horizon {
-            None => self.eval_pdf_of_lobes(wo, wi),
-            Some(horizon) => self.eval_pdf_above(horizon, wo, wi),
-        }
+        self.view(wo).eval_pdf(wi)
     }
 
-    #[inline]
-    fn eval_pdf_of_lobes(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        match self.lobes.as_slice() {
-            [] => (Rgb::BLACK, 0.0),
-            [one] => {
-                let (value, pdf) = self.eval_pdf_of_one(one, wo, wi);
-                (value * one.weight, pdf)
-            }
-            _ => self.eval_pdf_of_many(&self.selection_probabilities(wo), wo, wi, None),
-        }
-    }
-
-    /// Samples a direction by a point `u` in the unit square; `None` if the light is absorbed.
-    /// `u.x` selects the lobe (and events within it) and is remapped to the unit interval;
-    /// `u_choice`, in [0, 1), selects reflection or transmission at a microfacet and is used only
-    /// where [`Bsdf::uses_u_choice`].
+    /// [`BsdfView::sample`] for a single sample.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        match &self.horizon {
-            None => self.sample_of_lobes(wo, u, u_choice),
-            Some(horizon) => self.sample_above(horizon, wo, u, u_choice),
-        }
+        self.view(wo).sample(u, u_choice)
     }
 
+    /// [`BsdfView::deltas`] where nothing else is evaluated.
     #[inline]
-    fn sample_of_lobes(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        match self.lobes.as_slice() {
-            [] => None,
-            [one] => {
-                let sample = self.sample_of_one(one, wo, u, u_choice)?;
-                Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
-            }
-            _ => self.sample_one_of_many(wo, u, u_choice),
-        }
+    pub fn deltas(&self, wo: Vec3) -> impl Iterator<Item = BsdfSample> {
+        self.view(wo).deltas()
     }
 
-    fn sample_one_of_many(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        let probabilities = self.selection_probabilities(wo);
-        let mut rest = u.x;
-        // Rounding may leave a remainder at the end, which goes to the last lobe of nonzero
-        // probability.
-        let mut picked = None;
-        for (index, probability) in probabilities.iter().enumerate().filter(|(_, probability)| **probability > 0.0) {
-            picked = Some((index, *probability, (rest / probability).clamp(0.0, 1f32.next_down())));
-            if rest < *probability {
-                break;
-            }
-            rest -= probability;
-        }
-        let (index, probability, x) = picked?;
-        let one = self.lobes.get(index)?;
-        let u = Vec2::new(x, u.y);
-        let returning = self.returning(index).filter(|_| wo.z < 0.0);
-        let sample = match returning {
-            Some(returning) => self.sample_under_layers(index, returning, wo, u, u_choice)?,
-            None => self.sample_of_one(one, wo, u, u_choice)?,
-        };
-        if sample.scatter == Scatter::Specular {
-            let weight = sample.weight * (one.weight * self.layer_attenuation(index, wo, sample.wi) / probability);
-            return Some(BsdfSample { weight, pdf: sample.pdf * probability, ..sample });
-        }
-        let own = (index, (sample.weight * sample.pdf, sample.pdf));
-        let (value, pdf) = self.eval_pdf_of_many(&probabilities, wo, sample.wi, returning.is_none().then_some(own));
-        (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, ..sample })
-    }
-
-    /// Whether [`Bsdf::sample`] uses `u_choice`.
+    /// Whether [`BsdfView::sample`] uses `u_choice`.
     #[inline]
     pub fn uses_u_choice(&self) -> bool {
         self.lobes.iter().any(|one| one.lobe.uses_u_choice())
-    }
-
-    /// Sum over all lobes; value and density of one lobe may be `known`.
-    fn eval_pdf_of_many(
-        &self,
-        probabilities: &[f32; MAX_LOBES],
-        wo: Vec3,
-        wi: Vec3,
-        known: Option<(usize, (Rgb, f32))>,
-    ) -> (Rgb, f32) {
-        let (mut value, mut density) = (Rgb::BLACK, 0.0);
-        let (mut transmittance_o, mut transmittance_i) = (1.0, 1.0);
-        for (index, (one, probability)) in self.lobes.iter().zip(probabilities).enumerate() {
-            let (part, pdf) = match known {
-                Some((same, known)) if same == index => known,
-                _ => self.eval_pdf_of_one(one, wo, wi),
-            };
-            let attenuation = one.attenuation(wo, wi, transmittance_o, transmittance_i);
-            value += part * (one.weight * attenuation);
-            density += match one.role.glass().and_then(|glass| probabilities.get(glass)) {
-                Some(probability) => pdf * probability,
-                // Some samples of the glass become samples of the lobe that returns light below.
-                None if wo.z < 0.0 && wi.z > 0.0 && self.returning(index).is_some() => pdf * probability * attenuation,
-                None => pdf * probability,
-            };
-            if one.cover > 0.0 {
-                (transmittance_o, transmittance_i) =
-                    (transmittance_o * one.transmittance(wo), transmittance_i * one.transmittance(wi));
-            }
-        }
-        (value, density)
-    }
-
-    /// Attenuation of a lobe by the layers over it; 1 for the first lobe.
-    #[inline]
-    fn layer_attenuation(&self, index: usize, wo: Vec3, wi: Vec3) -> f32 {
-        if index == 0 {
-            return 1.0;
-        }
-        let over = self.lobes.iter().take(index);
-        let (transmittance_o, transmittance_i) =
-            over.fold((1.0, 1.0), |(o, i), one| (o * one.transmittance(wo), i * one.transmittance(wi)));
-        self.lobes.get(index).map_or(0.0, |one| one.attenuation(wo, wi, transmittance_o, transmittance_i))
-    }
-
-    /// Probability of selecting each lobe; all 0 where every albedo is black.
-    fn selection_probabilities(&self, wo: Vec3) -> [f32; MAX_LOBES] {
-        let mut probabilities = [0.0; MAX_LOBES];
-        let (mut sum, mut transmittance) = (0.0, 1.0);
-        for (probability, one) in probabilities.iter_mut().zip(&self.lobes) {
-            let albedo = self.albedo_of_one(one, wo);
-            *probability = super::lobe::channel_sum(albedo) * one.weight * transmittance;
-            sum += *probability;
-            if one.cover > 0.0 && wo.z > 0.0 {
-                transmittance *= (1.0 - one.cover * albedo.max_channel()).max(0.0);
-            }
-        }
-        if sum > 0.0 {
-            probabilities.iter_mut().for_each(|probability| *probability /= sum);
-        }
-        probabilities
     }
 
     /// Directional albedo: fraction of light along `wo` that is scattered into all directions,
@@ -360,41 +246,12 @@ impl Bsdf {
     pub fn has_specular(&self) -> bool {
         self.lobes.iter().any(|one| one.lobe.is_specular())
     }
-
-    /// Every delta with its full weight, not divided by a probability; `pdf` is 1.
-    #[inline]
-    pub fn deltas(&self, wo: Vec3) -> impl Iterator<Item = BsdfSample> {
-        let lobes = self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.is_specular());
-        lobes.flat_map(move |(index, one)| {
-            self.deltas_of_one(one, wo).into_iter().map(move |delta| {
-                let weight = one.weight * self.layer_attenuation(index, wo, delta.wi);
-                self.delta_above(BsdfSample { weight: delta.weight * weight, ..delta })
-            })
-        })
-    }
 }
 
-/// Cosine-weighted mean of a function over directions above: ∫ 2 μ f(μ) dμ = ∫ 4 s³ f(s²) ds by
-/// five-point Gauss-Legendre quadrature. Functions of anisotropic surfaces are evaluated at
-/// azimuths of 22.5 and 67.5 degrees, others at 45.
-fn mean(is_anisotropic: bool, f: impl Fn(Vec3) -> f32) -> f32 {
-    const NODES: [(f32, f32); 5] = [
-        (0.046_910_077, 0.118_463_44),
-        (0.230_765_34, 0.239_314_34),
-        (0.5, 0.284_444_45),
-        (0.769_234_66, 0.239_314_34),
-        (0.953_089_9, 0.118_463_44),
-    ];
-    // Squared cosine of 22.5 and of 45 degrees.
-    let (near, scale) = if is_anisotropic { (0.853_553_4, 0.5) } else { (0.5, 1.0) };
-    NODES.iter().fold(0.0, |sum, (s, weight)| {
-        let cos = s * s;
-        let sin2 = 1.0 - cos * cos;
-        let (x, y) = ((sin2 * near).max(0.0).sqrt(), (sin2 * (1.0 - near)).max(0.0).sqrt());
-        let mut value = f(Vec3::new(x, y, cos));
-        if is_anisotropic {
-            value += f(Vec3::new(y, x, cos));
-        }
-        sum + weight * 4.0 * s * cos * value * scale
+/// Transmittance of layers for each direction of a quadrature.
+fn layer_transmittances(layers: &[WeightedLobe], azimuth: Azimuth) -> [f32; NODES] {
+    layers.iter().filter(|one| one.cover != 0.0).fold([1.0; NODES], |transmittances, one| {
+        let albedos = one.lobe.max_albedos(azimuth);
+        lanes(|node| transmittances[node] * (1.0 - one.cover * albedos[node]).max(0.0))
     })
 }

@@ -249,13 +249,15 @@ impl VertexOutput<'_> {
     /// Whether AOVs or a log are recorded.
     #[inline]
     pub fn is_recording(&self) -> bool {
-        self.buffers.record.is_some()
+        // Of the camera rays of a sample, the one that continues is recorded.
+        let record = self.buffers.record.as_ref();
+        record.is_some_and(|record| record.log.is_some() || !self.path.history.is_split)
     }
 
     /// Records that the ray left the world.
     pub fn record_miss(&mut self, ray: &Ray) {
         let slot = self.path.slot as usize;
-        let Some(record) = &mut self.buffers.record else { return };
+        let Some(record) = self.buffers.record.as_mut().filter(|_| !self.path.history.is_split) else { return };
         if self.path.history.sees_backdrop {
             record.record_transparency(slot, self.beta);
         }
@@ -293,6 +295,9 @@ impl VertexOutput<'_> {
         let Some(record) = &mut self.buffers.record else { return };
         if let Some(log) = &mut record.log {
             log.record_hit(slot, hit);
+        }
+        if history.is_split {
+            return;
         }
         if self.path.is_camera_ray() {
             record.record_hit(slot, hit);

@@ -5,6 +5,7 @@ mod energy;
 mod examples;
 mod grid;
 mod horizon;
+mod lanes;
 mod metals;
 mod needles;
 mod numbers;

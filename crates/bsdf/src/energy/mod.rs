@@ -30,6 +30,7 @@ mod interface_tests;
 mod tests;
 
 use super::fresnel;
+use super::lanes::lanes;
 pub use anisotropic::{mean_mirror_loss, mirror_loss, sample_mirror_loss};
 pub use interface::InterfaceLoss;
 use interface_reflection::{REFLECTION, REFLECTION_MEAN};
@@ -62,23 +63,39 @@ type Means = [[[i16; ALPHA_CLEAR]; IOR]; 2];
 const UNIT: f32 = 1e-4;
 
 /// Index of the entry at or below `x`, 0 to 1, among `count`, and the fraction towards the next.
-#[inline]
+#[inline(always)]
 fn table_position(x: f32, count: usize) -> (usize, f32) {
     let at = x.clamp(0.0, 1.0) * (count - 1) as f32;
-    let below = (at as usize).min(count - 2);
-    (below, at - below as f32)
+    // Conversions to 16 bits take few instructions.
+    let below = (at as u16).min(count as u16 - 2);
+    (usize::from(below), at - f32::from(below))
 }
 
-#[inline]
+#[inline(always)]
 fn lerp_row<const N: usize>(row: &[i16; N], (i, t): (usize, f32)) -> f32 {
     let (a, b) = (f32::from(row[i]), f32::from(row[i + 1]));
     (a + (b - a) * t) * UNIT
 }
 
-#[inline]
-fn lerp_table<const N: usize>(plane: &Plane<N>, (i, t): (usize, f32), cos: (usize, f32)) -> f32 {
-    let (a, b) = (lerp_row(&plane[i], cos), lerp_row(&plane[i + 1], cos));
-    a + (b - a) * t
+/// Interpolates a table in a row at coordinates of several cosines, 0 to 1.
+#[inline(always)]
+fn lerp_table<const ROWS: usize, const N: usize>(
+    plane: &Plane<ROWS>,
+    (i, t): (usize, f32),
+    coordinates: [f32; N],
+) -> [f32; N] {
+    let (below, above) = (&plane[i], &plane[i + 1]);
+    lanes(|lane| {
+        let at = table_position(coordinates[lane], COS);
+        let (a, b) = (lerp_row(below, at), lerp_row(above, at));
+        a + (b - a) * t
+    })
+}
+
+/// Square roots of several numbers.
+#[inline(always)]
+fn roots<const N: usize>(numbers: [f32; N]) -> [f32; N] {
+    lanes(|lane| numbers[lane].sqrt())
 }
 
 /// Coordinate of a mirror's cosine, see above; 0 / 0 counts as 0.
@@ -87,32 +104,40 @@ fn coordinate(cos: f32, alpha: f32) -> f32 {
     (cos * (1.0 + alpha) / (cos + alpha).max(f32::MIN_POSITIVE)).sqrt()
 }
 
-/// 1 - E: fraction of light at an angle of cosine `cos` that a rough perfect mirror loses.
-#[inline]
-pub fn isotropic_mirror_loss(cos: f32, alpha: f32) -> f32 {
-    lerp_table(&MIRROR_LOSS, table_position(alpha.sqrt(), ALPHA), table_position(coordinate(cos, alpha), COS))
+/// 1 - E: fraction of light at angles of these cosines that a rough perfect mirror loses.
+#[inline(always)]
+pub fn isotropic_mirror_losses<const N: usize>(cos: [f32; N], alpha: f32) -> [f32; N] {
+    lerp_table(&MIRROR_LOSS, table_position(alpha.sqrt(), ALPHA), lanes(|lane| coordinate(cos[lane], alpha)))
 }
 
-/// Directional albedo, at an angle of cosine `cos`, of single scattering at microfacets of
-/// reflectance (1 - cos θ)⁵: the weight of the grazing color in Schlick's curve. `lost` is
-/// [`isotropic_mirror_loss`].
+/// [`isotropic_mirror_losses`] at a single cosine.
 #[inline]
-pub fn grazing_albedo(cos: f32, alpha: f32, lost: f32) -> f32 {
-    let more = lerp_table(&MIRROR_GRAZING, table_position(alpha.sqrt(), ALPHA), table_position(cos.sqrt(), COS));
-    (plain_grazing(cos, alpha, lost) + more).clamp(0.0, 1.0)
+pub fn isotropic_mirror_loss(cos: f32, alpha: f32) -> f32 {
+    let [lost] = isotropic_mirror_losses([cos], alpha);
+    lost
+}
+
+/// Directional albedos, at angles of these cosines, of single scattering at microfacets of
+/// reflectance (1 - cos θ)⁵: the weights of the grazing color in Schlick's curve. `lost` is
+/// [`isotropic_mirror_losses`].
+#[inline(always)]
+pub fn grazing_albedos<const N: usize>(cos: [f32; N], alpha: f32, lost: [f32; N]) -> [f32; N] {
+    let row = table_position(alpha.sqrt(), ALPHA);
+    let more = lerp_table(&MIRROR_GRAZING, row, roots(cos));
+    lanes(|lane| (plain_grazing(cos[lane], alpha, lost[lane]) + more[lane]).clamp(0.0, 1.0))
 }
 
 /// Value for polished mirrors, to which the table adds corrections.
-#[inline]
+#[inline(always)]
 fn plain_grazing(cos: f32, alpha: f32, lost: f32) -> f32 {
     let m = 1.0 - cos;
     polish(alpha) * m * m * m * m * m * (1.0 - lost)
 }
 
-/// Directional albedo of white [`Sheen`](super::Sheen) at an angle of cosine `cos`.
-#[inline]
-pub fn sheen_albedo(cos: f32, alpha: f32) -> f32 {
-    lerp_table(&SHEEN, table_position(alpha.sqrt(), ALPHA), table_position(cos.sqrt(), COS))
+/// Directional albedos of white [`Sheen`](super::Sheen) at angles of these cosines.
+#[inline(always)]
+pub fn sheen_albedos<const N: usize>(cos: [f32; N], alpha: f32) -> [f32; N] {
+    lerp_table(&SHEEN, table_position(alpha.sqrt(), ALPHA), roots(cos))
 }
 
 /// Cosine-weighted mean of [`isotropic_mirror_loss`] over all directions.
@@ -128,12 +153,13 @@ fn interface_position(ior: f32) -> (usize, (usize, f32)) {
     (side, table_position(((dense - 1.0) / (dense + 1.0)).sqrt() / STEEPEST, IOR))
 }
 
-#[inline]
-fn lerp_interface_table(sides: &Sides, cos: f32, alpha: f32, ior: f32) -> f32 {
+#[inline(always)]
+fn lerp_interface_table<const N: usize>(sides: &Sides, cos: [f32; N], alpha: f32, ior: f32) -> [f32; N] {
     let (side, (i, t)) = interface_position(ior);
-    let (alpha, cos) = (table_position(alpha.sqrt(), ALPHA_CLEAR), table_position(cos.sqrt(), COS));
-    let (a, b) = (lerp_table(&sides[side][i], alpha, cos), lerp_table(&sides[side][i + 1], alpha, cos));
-    a + (b - a) * t
+    let (row, coordinates) = (table_position(alpha.sqrt(), ALPHA_CLEAR), roots(cos));
+    let below = lerp_table(&sides[side][i], row, coordinates);
+    let above = lerp_table(&sides[side][i + 1], row, coordinates);
+    lanes(|lane| below[lane] + (above[lane] - below[lane]) * t)
 }
 
 /// Weight of the surface's own angle: 1 if smooth, 0 once microfacets blur the critical angle by
@@ -146,16 +172,26 @@ fn polish(alpha: f32) -> f32 {
 }
 
 /// Reflection with Fresnel reflectance at the surface's own angle: exact for polished interfaces.
-#[inline]
-fn plain_reflection(cos: f32, alpha: f32, ior: f32, lost: f32) -> f32 {
-    polish(alpha) * fresnel::dielectric_reflectance(cos, ior) * (1.0 - lost)
+#[inline(always)]
+fn plain_reflection<const N: usize>(cos: [f32; N], alpha: f32, ior: f32, lost: [f32; N]) -> [f32; N] {
+    let polish = polish(alpha);
+    let reflectances = if polish > 0.0 { fresnel::dielectric_reflectances(cos, ior) } else { [0.0; N] };
+    lanes(|lane| polish * reflectances[lane] * (1.0 - lost[lane]))
 }
 
-/// Directional albedo, at an angle of cosine `cos`, of single reflection at a rough interface.
-/// `lost` is [`isotropic_mirror_loss`].
+/// Directional albedos, at angles of these cosines, of single reflection at a rough interface.
+/// `lost` is [`isotropic_mirror_losses`].
+#[inline(always)]
+pub fn dielectric_reflection_albedos<const N: usize>(cos: [f32; N], alpha: f32, ior: f32, lost: [f32; N]) -> [f32; N] {
+    let (plain, more) = (plain_reflection(cos, alpha, ior, lost), lerp_interface_table(&REFLECTION, cos, alpha, ior));
+    lanes(|lane| (plain[lane] + more[lane]).clamp(0.0, 1.0))
+}
+
+/// [`dielectric_reflection_albedos`] at a single cosine.
 #[inline]
 pub fn dielectric_reflection_albedo(cos: f32, alpha: f32, ior: f32, lost: f32) -> f32 {
-    (plain_reflection(cos, alpha, ior, lost) + lerp_interface_table(&REFLECTION, cos, alpha, ior)).clamp(0.0, 1.0)
+    let [albedo] = dielectric_reflection_albedos([cos], alpha, ior, [lost]);
+    albedo
 }
 
 /// Cosine-weighted mean of [`dielectric_reflection_albedo`] over all directions.

@@ -153,7 +153,7 @@ fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> Vec<i16> {
         let cos = entry(c, COS);
         let (reflected, _) = integrate(cos, alpha, Some(ior), count);
         let lost = isotropic_mirror_loss(cos, alpha);
-        stored(reflected - f64::from(plain_reflection(cos, alpha, ior, lost)))
+        stored(reflected - f64::from(plain_reflection([cos], alpha, ior, [lost])[0]))
     };
     (0..COS).map(at).collect()
 }
@@ -162,7 +162,7 @@ fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> Vec<i16> {
 fn clear_mean(table: &[Vec<Vec<Vec<i16>>>], side: usize, i: usize, a: usize) -> i16 {
     let (ior, alpha) = (ior_of(side, i), clear_alpha(a));
     let row: [i16; COS] = table[side][i][a].as_slice().try_into().unwrap();
-    let plain = |cos| plain_reflection(cos, alpha, ior, isotropic_mirror_loss(cos, alpha));
+    let plain = |cos| plain_reflection([cos], alpha, ior, [isotropic_mirror_loss(cos, alpha)])[0];
     mean(|cos| plain(cos) + lerp_row(&row, table_position(cos.sqrt(), COS)))
 }
 

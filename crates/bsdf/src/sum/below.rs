@@ -26,11 +26,13 @@
 //! weight of 1, so a path keeps its energy exactly from every direction. The density of a returned
 //! sample is the density that the BSDF values of the returning lobe imply.
 
-use super::{Bsdf, WeightedLobe, mean};
+use super::{Bsdf, WeightedLobe, layer_transmittances};
 use crate::ScatteringLobe;
 use crate::energy::SampleRng;
 use crate::fresnel::reflect;
+use crate::lanes::lanes;
 use crate::lobe::Deltas;
+use crate::quadrature::{self, Azimuth};
 use crate::{BsdfSample, Conductor, Dielectric, Fresnel, Lambert, Lobe, Scatter};
 use juggler_math::{Rgb, Vec2, Vec3, portable, warp};
 use std::f32::consts::FRAC_1_PI;
@@ -102,14 +104,7 @@ impl Bsdf {
                 let alpha = interface.mean_alpha();
                 let polished = ((0.2 - alpha) / (0.2 - 0.04)).clamp(0.0, 1.0);
                 let (polished, transmittance) = (polished * polished, interface.mean_smooth_transmittance_below());
-                let blocked =
-                    |w: Vec3| (1.0 - layer_transmittance(layers, w)) * interface.reflectance_and_transmittance(w)[1];
-                let is_smooth = interface.is_smooth();
-                let scale = if is_smooth {
-                    0.0
-                } else {
-                    mean(!interface.is_isotropic(), blocked) * interface.inverse_squared_ior()
-                };
+                let scale = if interface.is_smooth() { 0.0 } else { mean_blocked_transmittance(layers, interface) };
                 let role = Role::SolidReturn { glass: index as u8, polished, transmittance };
                 let mirror = Conductor::new(Fresnel::Schlick { f0: color, f90: color }, interface.alpha());
                 WeightedLobe {
@@ -324,6 +319,16 @@ fn flip_sample(sample: BsdfSample) -> BsdfSample {
 
 fn has_cover(layers: &[WeightedLobe]) -> bool {
     layers.iter().any(|one| one.cover > 0.0)
+}
+
+/// Cosine-weighted mean of the fraction of light below that rough glass transmits and layers over it
+/// keep from leaving.
+fn mean_blocked_transmittance(layers: &[WeightedLobe], interface: &Dielectric) -> f32 {
+    let blocked = |azimuth: Azimuth| {
+        let (through, directions) = (layer_transmittances(layers, azimuth), azimuth.directions());
+        lanes(|node| (1.0 - through[node]) * interface.reflectance_and_transmittance(directions[node])[1])
+    };
+    quadrature::mean(!interface.is_isotropic(), blocked) * interface.inverse_squared_ior()
 }
 
 /// Transmittance of layers for light along `w`.

@@ -26,9 +26,9 @@
 //!
 //! The result is not reciprocal, as with any shading normal (Veach 1997, section 5.3). Reflections
 //! at shading normals inside of a solid may therefore gather light in orbits of total reflection,
-//! which it never leaves and which no light entered. [`Bsdf::sample_exit`] ends them.
+//! which it never leaves and which no light entered. [`BsdfView::sample_exit`] ends them.
 
-use super::{Bsdf, Role, WeightedLobe};
+use super::{Bsdf, BsdfView, Role, WeightedLobe};
 use crate::tilted_diffuse::{Diffuse, TiltedDiffuse};
 use crate::{BsdfSample, Lobe, Scatter};
 use juggler_math::{Frame, Rgb, Vec2, Vec3, portable, warp};
@@ -122,44 +122,55 @@ impl Bsdf {
         }
     }
 
-    /// [`Bsdf::eval_pdf`] with a horizon.
-    pub(super) fn eval_pdf_above(&self, horizon: &Horizon, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    /// Maps a delta's direction out of the lunes.
+    pub(super) fn delta_above(&self, delta: BsdfSample) -> BsdfSample {
+        match &self.horizon {
+            Some(horizon) if horizon.divides(delta.wi) => BsdfSample { wi: horizon.spread(delta.wi), ..delta },
+            _ => delta,
+        }
+    }
+}
+
+impl BsdfView<'_> {
+    /// [`BsdfView::eval_pdf`] with a horizon.
+    pub(super) fn eval_pdf_above(&self, horizon: &Horizon, wi: Vec3) -> (Rgb, f32) {
         if horizon.divides(wi) {
             return (Rgb::BLACK, 0.0);
         }
-        let (value, pdf) = self.eval_pdf_of_lobes(wo, wi);
+        let (value, pdf) = self.eval_pdf_of_lobes(wi);
         let Some(source) = horizon.source(wi) else { return (value, pdf) };
-        let (more, density) = self.eval_pdf_to_spread(wo, source);
+        let (more, density) = self.eval_pdf_to_spread(source);
         (value + more / horizon.stretch, pdf + density / horizon.stretch)
     }
 
     /// Value and density of the light that the lobes scatter to a direction in a lune. The value is
     /// without diffuse reflection, which is absorbed there, while the density counts its samples.
-    fn eval_pdf_to_spread(&self, wo: Vec3, source: Vec3) -> (Rgb, f32) {
-        let (value, pdf) = self.eval_pdf_of_lobes(wo, source);
-        if !self.lobes.iter().any(is_diffuse_reflection) {
+    fn eval_pdf_to_spread(&self, source: Vec3) -> (Rgb, f32) {
+        let lobes = &self.bsdf.lobes;
+        let (value, pdf) = self.eval_pdf_of_lobes(source);
+        if !lobes.iter().any(is_diffuse_reflection) {
             return (value, pdf);
         }
-        if self.lobes.iter().all(is_diffuse_reflection) {
+        if lobes.iter().all(is_diffuse_reflection) {
             return (Rgb::BLACK, pdf);
         }
-        let diffuse = self.lobes.iter().enumerate().filter(|(_, one)| is_diffuse_reflection(one));
+        let diffuse = lobes.iter().enumerate().filter(|(_, one)| is_diffuse_reflection(one));
         let absorbed = diffuse.fold(Rgb::BLACK, |sum, (index, one)| {
-            let weight = one.weight * self.layer_attenuation(index, wo, source);
-            sum + self.eval_pdf_of_one(one, wo, source).0 * weight
+            let weight = one.weight * self.layer_attenuation(index, source);
+            sum + self.bsdf.eval_pdf_of_one(one, self.wo, source).0 * weight
         });
         ((value - absorbed).map(|channel| channel.max(0.0)), pdf)
     }
 
-    /// [`Bsdf::sample`] with a horizon.
-    pub(super) fn sample_above(&self, horizon: &Horizon, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        let sample = self.sample_of_lobes(wo, u, u_choice)?;
+    /// [`BsdfView::sample`] with a horizon.
+    pub(super) fn sample_above(&self, horizon: &Horizon, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
+        let sample = self.sample_of_lobes(u, u_choice)?;
         let share = 1.0 / horizon.stretch;
         if !horizon.divides(sample.wi) {
             let source = horizon.source(sample.wi).filter(|_| sample.scatter != Scatter::Specular);
             let Some(source) = source else { return Some(sample) };
             // Two directions of the lobes map to this one: combine their values and densities.
-            let (value, density) = self.eval_pdf_to_spread(wo, source);
+            let (value, density) = self.eval_pdf_to_spread(source);
             let pdf = sample.pdf + density * share;
             return Some(BsdfSample { weight: (sample.weight * sample.pdf + value * share) / pdf, pdf, ..sample });
         }
@@ -167,27 +178,27 @@ impl Bsdf {
         if sample.scatter == Scatter::Specular {
             return Some(BsdfSample { wi, ..sample });
         }
-        let spread = if self.lobes.iter().any(is_diffuse_reflection) {
-            self.eval_pdf_to_spread(wo, sample.wi).0
+        let spread = if self.bsdf.lobes.iter().any(is_diffuse_reflection) {
+            self.eval_pdf_to_spread(sample.wi).0
         } else {
             sample.weight * sample.pdf
         };
-        let (value, density) = self.eval_pdf_of_lobes(wo, wi);
+        let (value, density) = self.eval_pdf_of_lobes(wi);
         let pdf = sample.pdf * share + density;
         Some(BsdfSample { wi, weight: (spread * share + value) / pdf, pdf, ..sample })
     }
 
-    /// Sample that lets light leave a smooth solid where `reflected`, a sample for `wo` inside of the
-    /// solid, is a total reflection about a perturbed normal. The direction is cosine-distributed
+    /// Sample that lets light leave a smooth solid where `reflected`, a sample for a viewer inside of
+    /// the solid, is a total reflection about a perturbed normal. The direction is cosine-distributed
     /// about the geometric normal, by `u` in the unit square. `None` if the reflection is not total
     /// or the normal is not perturbed.
-    pub fn sample_exit(&self, wo: Vec3, reflected: &BsdfSample, u: Vec2) -> Option<BsdfSample> {
-        let horizon = self.horizon.as_ref()?;
-        let is_reflected = wo.z < 0.0 && reflected.wi.z < 0.0 && reflected.scatter == Scatter::Specular;
-        if !is_reflected || self.deltas(wo).any(|delta| delta.wi.z > 0.0) {
+    pub fn sample_exit(&self, reflected: &BsdfSample, u: Vec2) -> Option<BsdfSample> {
+        let horizon = self.bsdf.horizon.as_ref()?;
+        let is_reflected = self.wo.z < 0.0 && reflected.wi.z < 0.0 && reflected.scatter == Scatter::Specular;
+        if !is_reflected || self.deltas().any(|delta| delta.wi.z > 0.0) {
             return None;
         }
-        let ior = self.lobes.iter().find_map(|one| match &one.lobe {
+        let ior = self.bsdf.lobes.iter().find_map(|one| match &one.lobe {
             Lobe::Dielectric(dielectric) => Some(dielectric.ior()),
             _ => None,
         })?;
@@ -196,13 +207,5 @@ impl Bsdf {
         let wi = Vec3 { z: wi.z.abs(), ..wi };
         // Radiance in the solid is that outside times the square of the index of refraction.
         Some(BsdfSample { wi, weight: reflected.weight * (ior * ior), ior: 1.0 / ior, ..*reflected })
-    }
-
-    /// Maps a delta's direction out of the lunes.
-    pub(super) fn delta_above(&self, delta: BsdfSample) -> BsdfSample {
-        match &self.horizon {
-            Some(horizon) if horizon.divides(delta.wi) => BsdfSample { wi: horizon.spread(delta.wi), ..delta },
-            _ => delta,
-        }
     }
 }

@@ -5,10 +5,10 @@
 use super::crossing::opacity_choice;
 use super::{Classic, sample_weight};
 use crate::{PathState, VertexOutput};
-use juggler_bsdf::{BsdfSample, Scatter};
+use juggler_bsdf::{BsdfSample, BsdfView, Scatter};
 use juggler_camera::sampler::Sampler;
 use juggler_material::Shading;
-use juggler_math::{Ray, Rgb, Vec2, Vec3};
+use juggler_math::{Ray, Rgb, Vec2};
 use juggler_shape::surface::Surface;
 use juggler_world::{SceneLight, Vertex, World};
 
@@ -18,8 +18,8 @@ struct ShadingPoint<'a> {
     /// Surface that scatters light but for specular lobes: see [`World::lifted_surface`].
     scattering: &'a Surface,
     shading: &'a Shading,
-    /// Unit vector towards the origin of the ray, in the shading frame.
-    wo: Vec3,
+    /// BSDF for the viewer at the origin of the ray.
+    bsdf: BsdfView<'a>,
     time: f32,
 }
 
@@ -47,7 +47,8 @@ impl Classic {
         let wo = shading.frame.to_local(-ray.direction);
         let lifted = if shading.transmissive { None } else { world.lifted_surface(ray, vertex) };
         let scattering = lifted.as_ref().unwrap_or(&vertex.surface);
-        let point = ShadingPoint { surface: &vertex.surface, scattering, shading: &shading, wo, time: ray.time };
+        let bsdf = shading.bsdf.view(wo);
+        let point = ShadingPoint { surface: &vertex.surface, scattering, shading: &shading, bsdf, time: ray.time };
         // Add emission and ambient light.
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { point.shading.bsdf.albedo(wo) * ambient };
@@ -74,14 +75,14 @@ impl Classic {
     #[inline(always)]
     fn reflect(&self, point: &ShadingPoint, path: &PathState, mut sampler: Sampler, output: &mut VertexOutput) {
         let mut child = 0;
-        point.shading.bsdf.deltas(point.wo).for_each(|sample| {
+        point.bsdf.deltas().for_each(|sample| {
             self.trace_sample(point, path, &sample, child, output);
             child += 1;
         });
         if !point.shading.bsdf.is_glossy() {
             return;
         }
-        let sample = point.shading.bsdf.sample(point.wo, sampler.next_2d(), sampler.next_1d());
+        let sample = point.bsdf.sample(sampler.next_2d(), sampler.next_1d());
         if let Some(glossy) = sample.filter(|sample| sample.scatter == Scatter::Glossy) {
             self.trace_sample(point, path, &glossy, child, output);
         }
@@ -97,7 +98,7 @@ impl Classic {
     ) {
         if (path.beta * sample.weight).max_channel() >= self.min_weight && !sample.weight.is_black() {
             let direction = point.shading.frame.to_world(sample.wi);
-            let sees_backdrop = path.history.sees_backdrop && sample.wi.z * point.wo.z < 0.0;
+            let sees_backdrop = path.history.sees_backdrop && sample.wi.z * point.bsdf.wo().z < 0.0;
             let from = if sample.scatter == Scatter::Specular { point.surface } else { point.scattering };
             output.trace_branch(from.spawn_ray(direction, point.time), sample.weight, sees_backdrop, child);
         }
@@ -113,7 +114,7 @@ impl ShadingPoint<'_> {
         for i in 0..*samples {
             let u = if *is_delta { Vec2::ZERO } else { sampler.subsequence(i, *samples).next_2d() };
             let Some(sample) = light.at(self.time).light.sample(self.scattering.point, u) else { continue };
-            let (scattered, _) = self.shading.bsdf.eval_pdf(self.wo, self.shading.frame.to_local(sample.wi));
+            let (scattered, _) = self.bsdf.eval_pdf(self.shading.frame.to_local(sample.wi));
             if !scattered.is_black() {
                 let ray = self.scattering.spawn_ray_to(sample.wi, sample.distance, self.time);
                 let weight = sample_weight(scale, *samples, sample.pdf);

@@ -214,10 +214,11 @@ impl ShadingPoint<'_> {
             return CausticState { stage, pdf: sample.pdf, sine: 0.0 };
         }
         let caustic = path.history.caustic;
-        let goes_through = sample.wi.z * self.local.z < 0.0;
+        let goes_through = sample.wi.z * self.bsdf.wo().z < 0.0;
         let stage = match caustic.stage {
-            CausticStage::Approaching if path.history.interiors.is_empty() && self.local.z > 0.0 => {
-                let sine = (self.local.x * self.local.x + self.local.y * self.local.y).sqrt();
+            CausticStage::Approaching if path.history.interiors.is_empty() && self.bsdf.wo().z > 0.0 => {
+                let wo = self.bsdf.wo();
+                let sine = (wo.x * wo.x + wo.y * wo.y).sqrt();
                 let caster = world.caster_of_shape(shape, goes_through);
                 let stage =
                     if goes_through { caster.map(CausticStage::Inside) } else { caster.map(CausticStage::Exited) };

@@ -30,9 +30,10 @@ impl Path {
         let flight = medium.sample(distance, output.beta(), u.x, u.y);
         output.scale(flight.weight);
         let Some(t) = flight.scattered_at else { return false };
-        // Scatter the path unless a limit is reached.
+        // Scatter the path unless it is an additional camera ray or a limit is reached.
         let volume = u32::from(path.history.events.volume);
-        if path.depth + 1 < self.max_depth && self.max_volume.is_none_or(|limit| volume < limit) {
+        let may_scatter = !path.history.is_split && path.depth + 1 < self.max_depth;
+        if may_scatter && self.max_volume.is_none_or(|limit| volume < limit) {
             let phase = HenyeyGreenstein { anisotropy: medium.anisotropy };
             self.scatter(world, &Ray { origin: ray.at(ray.t_min + t), ..*ray }, path, phase, output);
         }
