@@ -4,6 +4,7 @@ use juggler::camera::film::FilmSummary;
 use juggler::film::counts::SampleCountStats;
 use juggler::imaging::Viewpoint;
 use juggler::render::RayCounts;
+use juggler::world::simd_levels;
 use juggler::{Limit, Picture, RenderStats};
 use serde::Serialize;
 use serde_json::Value;
@@ -12,6 +13,7 @@ use serde_json::Value;
 #[derive(Debug, Serialize)]
 pub struct Stats<'s> {
     version: u32,
+    program: ProgramStats,
     scene: &'s str,
     size: [u32; 2],
     /// Samples per pixel; the maximum if they vary.
@@ -47,6 +49,18 @@ pub struct Seconds {
     pub write: f64,
     /// All phases.
     pub total: f64,
+    /// CPU time of all threads for rendering, removing noise, encoding and writing.
+    pub cpu: f64,
+}
+
+/// The program itself.
+#[derive(Debug, Serialize)]
+struct ProgramStats {
+    version: &'static str,
+    /// Compiler of the program with its version.
+    compiler: &'static str,
+    /// Vector instructions that the program uses, such as `avx2`.
+    simd: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -101,6 +115,15 @@ struct MemoryStats {
     bvh_bytes: usize,
 }
 
+impl ProgramStats {
+    fn new() -> Self {
+        // The name of the level, without the fields of its debug text.
+        let level = simd_levels().last().map(|level| format!("{level:?}")).unwrap_or_default();
+        let name = level.split('(').next().unwrap_or_default();
+        Self { version: env!("CARGO_PKG_VERSION"), compiler: env!("JUGGLER_COMPILER"), simd: name.to_ascii_lowercase() }
+    }
+}
+
 impl RayStats {
     fn new(rays: &RayCounts, seconds: f64) -> Self {
         Self {
@@ -127,6 +150,7 @@ impl<'s> Stats<'s> {
         let geometry = picture.world().geometry_stats();
         Self {
             version: 1,
+            program: ProgramStats::new(),
             scene,
             size: picture.size(),
             samples: outcome.samples.max,

@@ -58,10 +58,10 @@ impl ClampState {
         self.removed.resize(self.weights.len(), 0.0);
     }
 
-    /// Clamps a contribution and records the difference. Contributions that are not finite are
-    /// returned unchanged, to be reported.
+    /// Clamps a contribution and records the difference by its `weight` in the sample. Contributions
+    /// that are not finite are returned unchanged, to be reported.
     #[inline]
-    pub fn limit(&mut self, slot: usize, path_kind: PathKind, radiance: Rgb) -> Rgb {
+    pub fn limit(&mut self, slot: usize, path_kind: PathKind, radiance: Rgb, weight: f32) -> Rgb {
         let limit = match path_kind {
             PathKind::Emission | PathKind::Direct => self.limits.direct,
             PathKind::Indirect => self.limits.indirect,
@@ -73,7 +73,7 @@ impl ClampState {
         }
         let kept = radiance * (max / brightest);
         let Rgb { r, g, b } = radiance - kept;
-        self.removed[slot] += (r + g + b) / 3.0;
+        self.removed[slot] += (r + g + b) / 3.0 * weight;
         kept
     }
 }
@@ -98,7 +98,7 @@ mod tests {
             (2, PathKind::Indirect, -0.5, 2.0),
         ] {
             let mut clamping = clamping();
-            let kept = clamping.limit(slot, path_kind, bright * weight);
+            let kept = clamping.limit(slot, path_kind, bright * weight, 1.0);
             let expected = bright * (limit / 6.0 * weight);
             assert!((kept - expected).map(f32::abs).max_channel() < 1e-6, "{kept:?} instead of {expected:?}");
             let removed = (11.0 - 11.0 * limit / 6.0) / 3.0 * weight;
@@ -109,9 +109,9 @@ mod tests {
     #[test]
     fn contributions_that_are_not_finite_are_kept() {
         let mut clamping = clamping();
-        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::INFINITY, 1.0, 1.0)).is_finite());
-        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::NAN, 1.0, 1.0)).is_finite());
-        assert_eq!(clamping.limit(0, PathKind::Direct, Rgb::splat(8.0)), Rgb::splat(8.0));
+        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::INFINITY, 1.0, 1.0), 1.0).is_finite());
+        assert!(!clamping.limit(0, PathKind::Direct, Rgb::new(f32::NAN, 1.0, 1.0), 1.0).is_finite());
+        assert_eq!(clamping.limit(0, PathKind::Direct, Rgb::splat(8.0), 1.0), Rgb::splat(8.0));
         assert_eq!(clamping.removed, [0.0; 3]);
     }
 }

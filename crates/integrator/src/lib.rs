@@ -31,7 +31,7 @@ pub use path::Sampling;
 pub use path_history::{CausticStage, CausticState, PathHistory, ScatterCounts};
 pub use path_log::{HitRecord, PathLog, ShadingPoint};
 pub use path_log::{ScatterEvent, Scattering};
-pub use vertex_output::{BentShadowRay, PathBuffers, Queue, ShadowQueue};
+pub use vertex_output::{BentShadowRay, CameraRayWeight, PathBuffers, Queue, ShadowQueue};
 pub use vertex_output::{PathState, VertexOutput};
 
 /// A light transport algorithm.
@@ -41,6 +41,11 @@ pub trait Integrator: Send + Sync {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, output: &mut VertexOutput);
     /// Handles a ray that left the world.
     fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, _output: &mut VertexOutput) {}
+    /// Number of camera rays of each sample, which all add the light that they see directly; `None`
+    /// leaves the number to the renderer.
+    fn camera_rays(&self) -> Option<u32> {
+        Some(1)
+    }
     /// Whether procedural textures are filtered where the ray cone is wider than their detail.
     /// Classic ray tracing filters image textures only.
     fn filters_textures(&self) -> bool {

@@ -40,6 +40,10 @@ pub struct PathHistory {
     /// Whether the path is a camera ray that has only been transmitted so far, by clear or rough
     /// glass. The background shows it its backdrop ([`World::backdrop`]), if there is one.
     pub sees_backdrop: bool,
+    /// Whether the path is an additional camera ray of its sample, which adds only the light that it
+    /// sees directly and then ends (splitting; Arvo and Kirk, Particle Transport and Image Synthesis,
+    /// 1990).
+    pub is_split: bool,
 }
 
 /// State of a path on its way through a specular sphere, since the vertex where lights may have
@@ -114,6 +118,7 @@ impl PathHistory {
         events: ScatterCounts { diffuse: 0, glossy: 0, specular: 0, volume: 0 },
         caustic: CausticState::NONE,
         sees_backdrop: true,
+        is_split: false,
     };
 
     /// Context of light samples at `from`.

@@ -110,11 +110,30 @@ pub struct BentShadowRay {
     pub radiance: Rgb,
 }
 
+/// Weight of the light that each camera ray of a sample sees directly: 1 over their number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRayWeight(f32);
+
+impl CameraRayWeight {
+    /// Weight of `count` camera rays a sample; none counts as one.
+    pub fn of(count: u32) -> Self {
+        Self(1.0 / count.max(1) as f32)
+    }
+}
+
+impl Default for CameraRayWeight {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
 /// Output of all vertices of one wave of rays; the renderer keeps and reuses the buffers.
 #[derive(Debug, Default)]
 pub struct PathBuffers {
     /// Radiance of each sample.
     pub radiance: Vec<Rgb>,
+    /// Weight of the light that camera rays see directly.
+    pub camera_ray_weight: CameraRayWeight,
     /// Limits of contributions, if there are any.
     pub clamping: Option<ClampState>,
     /// AOVs of the samples, if any are recorded.
@@ -145,12 +164,15 @@ impl PathBuffers {
         PixelSamples { radiance: &self.radiance, clamped, planes, hit_ids }
     }
 
-    /// Adds a contribution to a sample, after clamping.
+    /// Adds a contribution to a sample, after clamping; emission that the camera sees by its weight
+    /// among the sample's camera rays.
     #[inline]
     pub fn add(&mut self, slot: usize, path_kind: PathKind, group: LightGroup, mut radiance: Rgb) {
+        let weight = if path_kind == PathKind::Emission { self.camera_ray_weight.0 } else { 1.0 };
         if let Some(clamping) = &mut self.clamping {
-            radiance = clamping.limit(slot, path_kind, radiance);
+            radiance = clamping.limit(slot, path_kind, radiance, weight);
         }
+        radiance = radiance * weight;
         if let Some(record) = &mut self.record {
             record.add_light(slot, path_kind, group, radiance);
         }

@@ -342,6 +342,14 @@ impl MaterialTable {
         transmits && interior.is_none()
     }
 
+    /// Whether a ray ends at a surface of material `id` without light: the material neither emits nor
+    /// transmits light, and is never absent.
+    #[inline]
+    pub fn blocks_sight(&self, id: MaterialId) -> bool {
+        let MaterialProperties { has_opacity, has_absence, transmits, emission, interior, .. } = self.properties(id);
+        !(has_opacity || has_absence || transmits) && emission.is_none() && interior.is_none()
+    }
+
     /// Whether [`MaterialTable::shadow_transmittance`] is above 0 anywhere.
     #[inline]
     pub fn is_transparent(&self, id: MaterialId) -> bool {

@@ -8,6 +8,8 @@ use juggler_integrator::{PathHistory, PathState, Queue, RayCone};
 use juggler_math::{Rgb, UVec2, Vec2};
 use std::ops::Range;
 
+mod split;
+
 /// Number of film samples drawn at once.
 const POINTS: usize = 64;
 /// Sample dimensions of camera rays: film position and lens position.
@@ -35,6 +37,8 @@ pub struct PathStart {
     cone: RayCone,
     /// Whether the camera enters or leaves a solid while the shutter is open.
     interiors_change: bool,
+    /// Number of camera rays of each sample.
+    pub camera_rays: u32,
 }
 
 /// Initial state of paths: the solids that contain the camera, and the ray cone at mid-shutter.
@@ -44,7 +48,7 @@ pub fn path_start(job: &Job) -> PathStart {
     let changes = |step: u32| history_at(job, step as f32 / INTERIOR_STEPS as f32).interiors != history.interiors;
     let may_change = !job.world.interiors().is_empty() && (job.world.moves() || job.camera.moves());
     let interiors_change = may_change && (0..=INTERIOR_STEPS).any(changes);
-    PathStart { history, cone: RayCone { width, spread }, interiors_change }
+    PathStart { history, cone: RayCone { width, spread }, interiors_change, camera_rays: 1 }
 }
 
 /// History of a path that starts at a time of the shutter interval: the solids that contain the
@@ -56,7 +60,7 @@ fn history_at(job: &Job, time: f32) -> PathHistory {
 }
 
 /// Pushes the camera rays of `slots`, indices into the samples of `work`, pixel by pixel with
-/// `samples` per pixel.
+/// `samples` per pixel. Of several rays of a sample, the one that continues comes first.
 pub fn push_camera_rays(job: &Job, start: &PathStart, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
     queue.from_camera = true;
     let (sampler, halves) = (Sampler::new(job.pattern, job.seed), job.aovs.has_halves());
@@ -71,7 +75,12 @@ pub fn push_camera_rays(job: &Job, start: &PathStart, work: &Work, samples: u64,
         let index = at / samples;
         let pixel = Pixel::new(&context, work, Pixel::place(work, index));
         let count = (slots.end.min((index + 1) * samples) - at) as u32;
-        pixel.push_rays(work.samples.start + (at % samples) as u32, slot..slot + count, &mut points, queue);
+        let first = work.samples.start + (at % samples) as u32;
+        if start.camera_rays > 1 {
+            pixel.push_split_rays(first, slot..slot + count, queue);
+        } else {
+            pixel.push_rays(first, slot..slot + count, &mut points, queue);
+        }
         slot += count;
         at += u64::from(count);
     }
@@ -92,10 +101,10 @@ fn push_center_rays(context: &PixelContext, work: &Work, range: Range<u64>, queu
             Pixel::new(context, work, place)
         });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
-        let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
+        let lenses = pixels.each_ref().map(|pixel| pixel.lens(&pixel.sampler(0)));
         context.job.camera.rays(&films, &lenses, &[MIDDLE; LANES], count, &mut queue.rays);
         let slot = (start - range.start) as u32;
-        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
+        let path = |(i, pixel): (u32, &Pixel)| pixel.path(&pixel.sampler(0), slot + i, 1.0);
         queue.paths.extend((0..).zip(&pixels).take(count).map(path));
         set_interiors(context.job, context.start, &[MIDDLE; LANES][..count], queue);
     }
@@ -139,35 +148,33 @@ impl<'j> Pixel<'j> {
         Self { job, start, center: pixel.as_vec2() + 0.5, stream, second_half, needs_time }
     }
 
-    /// Sampler of a sample, at `dimension`.
-    fn sampler(&self, sample: u32, dimension: u32) -> Sampler {
-        let mut sampler = match &self.second_half {
+    /// Sampler of a sample, at its first dimension.
+    fn sampler(&self, sample: u32) -> Sampler {
+        match &self.second_half {
             None => self.stream.sample(sample),
             Some(second_half) => {
                 (if is_in_second_half(sample) { second_half } else { &self.stream }).sample(sample / 2)
             }
-        };
-        sampler.skip(dimension);
-        sampler
+        }
     }
 
-    /// Lens sample in the unit square.
-    fn lens(&self, sample: u32) -> Vec2 {
-        if self.job.camera.needs_lens() { self.sampler(sample, FILM_DIMENSIONS).next_2d() } else { Vec2::splat(0.5) }
+    /// Lens sample in the unit square. The sampler is at its first dimension, here and below.
+    fn lens(&self, sampler: &Sampler) -> Vec2 {
+        if self.job.camera.needs_lens() { sampler.skipped(FILM_DIMENSIONS).next_2d() } else { Vec2::splat(0.5) }
     }
 
-    /// Time of a sample, from 0 (shutter opens) to 1 (shutter closes), stratified over the pixel's
-    /// samples independently of their film positions.
-    fn time(&self, sample: u32) -> f32 {
-        if self.needs_time { self.sampler(sample, TIME_DIMENSION).next_1d() } else { 0.0 }
+    /// Time of a ray, from 0 (shutter opens) to 1 (shutter closes), stratified over the pixel's samples
+    /// independently of their film positions.
+    fn time(&self, sampler: &Sampler) -> f32 {
+        if self.needs_time { sampler.skipped(TIME_DIMENSION).next_1d() } else { 0.0 }
     }
 
-    /// Path of a camera ray.
-    fn path(&self, sample: u32, slot: u32, weight: f32) -> PathState {
+    /// Path of the camera ray of a sample.
+    fn path(&self, sampler: &Sampler, slot: u32, weight: f32) -> PathState {
         PathState {
             beta: Rgb::splat(weight),
             depth: 0,
-            sampler: self.sampler(sample, FILM_DIMENSIONS + LENS_DIMENSIONS),
+            sampler: sampler.skipped(FILM_DIMENSIONS + LENS_DIMENSIONS),
             history: self.start.history,
             cone: self.start.cone,
             slot,
@@ -183,17 +190,29 @@ impl<'j> Pixel<'j> {
             if self.second_half.is_none() {
                 self.stream.first_points(first, drawn);
             } else {
-                (first..).zip(drawn).for_each(|(sample, place)| *place = self.sampler(sample, 0).next_2d());
+                (first..).zip(drawn).for_each(|(sample, place)| *place = self.sampler(sample).skipped(0).next_2d());
             }
             for (packet, points) in points[..count].chunks(LANES).enumerate() {
                 let skipped = (packet * LANES) as u32;
-                self.push_packet(first + skipped, start + skipped, points, queue);
+                let samplers = std::array::from_fn(|i| self.sampler(first + skipped + i as u32));
+                let slot = start + skipped;
+                self.push_packet(points, &samplers, queue, |i, weight| {
+                    self.path(&samplers[i], slot + i as u32, weight)
+                });
             }
         }
     }
 
-    /// Pushes the rays of up to [`LANES`] samples.
-    fn push_packet(&self, first: u32, slot: u32, points: &[Vec2], queue: &mut Queue) {
+    /// Pushes up to [`LANES`] rays, each with a point in [0, 1)² from which its film position follows,
+    /// and a sampler. `path` is the path of a ray by its index and filter weight.
+    #[inline(always)]
+    fn push_packet(
+        &self,
+        points: &[Vec2],
+        samplers: &[Sampler; LANES],
+        queue: &mut Queue,
+        path: impl Fn(usize, f32) -> PathState,
+    ) {
         let Job { camera, filter, .. } = self.job;
         let (mut films, mut weights) = ([[self.center.x; LANES], [self.center.y; LANES]], [1.0; LANES]);
         for (i, place) in points.iter().enumerate() {
@@ -202,11 +221,10 @@ impl<'j> Pixel<'j> {
             films[1][i] += sample.offset.y;
             weights[i] = sample.weight;
         }
-        let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
-        let times = std::array::from_fn(|i| self.time(first + i as u32));
+        let lenses = samplers.each_ref().map(|sampler| self.lens(sampler));
+        let times = samplers.each_ref().map(|sampler| self.time(sampler));
         camera.rays(&films, &lenses, &times, points.len(), &mut queue.rays);
-        let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
-        queue.paths.extend((0..).zip(&weights).take(points.len()).map(path));
+        queue.paths.extend(weights.iter().take(points.len()).enumerate().map(|(i, weight)| path(i, *weight)));
         set_interiors(self.job, self.start, &times[..points.len()], queue);
     }
 }
@@ -217,7 +235,7 @@ impl<'j> Pixel<'j> {
 fn set_interiors(job: &Job, start: &PathStart, times: &[f32], queue: &mut Queue) {
     if start.interiors_change {
         for (path, time) in queue.paths.iter_mut().rev().zip(times.iter().rev()) {
-            path.history = history_at(job, *time);
+            path.history = PathHistory { is_split: path.history.is_split, ..history_at(job, *time) };
         }
     }
 }

@@ -14,6 +14,7 @@ use juggler_world::frames::NeighborFrames;
 use std::ops::Range;
 use std::sync::Arc;
 
+mod camera_ray_count;
 mod camera_rays;
 mod control;
 mod progressive;
@@ -25,6 +26,7 @@ mod wavefront;
 #[cfg(test)]
 mod tests;
 
+pub use camera_ray_count::CameraRays;
 pub use control::{Control, RayCounts};
 pub use juggler_math::Cancelled;
 pub use progressive::{
@@ -72,6 +74,8 @@ pub struct Job<'w> {
     pub samples: u32,
     /// Seed of the sampling pattern. Another seed gives other noise of the same mean.
     pub seed: u64,
+    /// Number of camera rays of each sample.
+    pub camera_rays: &'w CameraRays,
     /// AOVs to record.
     pub aovs: &'w FilmAovs,
     /// The scene at the previous and next frame, for

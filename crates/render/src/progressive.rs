@@ -16,6 +16,8 @@ use std::ops::Range;
 ///
 /// [`Cancelled`] if `control` is cancelled.
 pub fn render_progressive(job: &Job, film: &Film, stop: StopCriterion, control: &Control) -> Result<(), Cancelled> {
+    // Choose the number of camera rays before all threads need it.
+    job.camera_rays.count(job, control)?;
     let render = ProgressiveRender::new(job, film, stop);
     rayon::broadcast(|_| {
         let mut worker = render.worker();

@@ -112,6 +112,8 @@ fn is_round(sample: u32) -> bool {
 pub struct Rounds<'f> {
     film: &'f Film,
     stop: StopCriterion,
+    /// Number of threads that may take rounds.
+    threads: usize,
     state: Mutex<State>,
     changed: Condvar,
 }
@@ -128,7 +130,8 @@ impl<'f> Rounds<'f> {
     pub fn new(film: &'f Film, stop: StopCriterion) -> Self {
         let first = (0..film.len()).filter_map(|tile_index| Round::after(film, stop, tile_index, 0));
         let waiting = first.map(|round| round.entry()).collect();
-        Self { film, stop, state: Mutex::new(State { waiting, in_progress: 0 }), changed: Condvar::new() }
+        let (state, threads) = (Mutex::new(State { waiting, in_progress: 0 }), rayon::current_num_threads());
+        Self { film, stop, threads, state, changed: Condvar::new() }
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -141,6 +144,18 @@ impl<'f> Rounds<'f> {
         matches!(self.stop, StopCriterion::Noise(_)) || !sample.is_multiple_of(BLOCK_SAMPLES)
     }
 
+    /// Number of samples of a round that one thread takes, where `rounds` rounds are left: the last
+    /// ones are cut at blocks, so that no thread is idle while another renders a long round.
+    fn share(&self, samples: Range<u32>, rounds: usize) -> u32 {
+        let length = samples.end.saturating_sub(samples.start);
+        if rounds >= self.threads || matches!(self.stop, StopCriterion::Noise(_)) {
+            return length;
+        }
+        let pieces = self.threads.div_ceil(rounds.max(1)).min(MAX_ROUND_SAMPLES as usize) as u32;
+        let end = (samples.start + length.div_ceil(pieces)).next_multiple_of(BLOCK_SAMPLES);
+        end.saturating_sub(samples.start).min(length)
+    }
+
     fn next(&self, max_samples: u32, control: &Control) -> Option<Round> {
         let mut state = self.lock();
         loop {
@@ -149,7 +164,8 @@ impl<'f> Rounds<'f> {
             }
             if let Some(Reverse((start, tile_index, end))) = state.waiting.pop() {
                 state.in_progress += 1;
-                let now = end.min(start.saturating_add(max_samples.max(1)));
+                let most = self.share(start..end, state.waiting.len() + 1).min(max_samples.max(1));
+                let now = end.min(start.saturating_add(most));
                 let rest = Round { tile_index, samples: now..end };
                 if !self.waits_for_previous(now) {
                     let next = if now < end { Some(rest) } else { Round::after(self.film, self.stop, tile_index, end) };
@@ -258,6 +274,18 @@ mod tests {
                 assert!(is_finished(&film, stop));
             });
         }
+    }
+
+    #[test]
+    fn threads_share_the_last_rounds() {
+        let film = whole(0..512);
+        let rounds = |threads: usize, stop: StopCriterion| Rounds { threads, ..Rounds::new(&film, stop) };
+        let many = rounds(128, StopCriterion::Samples);
+        assert_eq!([1, 2, 64, 127, 128].map(|left| many.share(0..256, left)), [16, 16, 128, 128, 256]);
+        assert_eq!((many.share(256..300, 1), many.share(5..256, 1), many.share(256..260, 100)), (16, 11, 4));
+        assert_eq!(rounds(2, StopCriterion::Samples).share(0..256, 1), 128);
+        assert_eq!(rounds(1, StopCriterion::Samples).share(0..256, 1), 256);
+        assert_eq!(rounds(128, StopCriterion::Noise(0.1)).share(64..80, 1), 16);
     }
 
     #[test]

@@ -12,6 +12,10 @@ use std::sync::{Mutex, PoisonError};
 pub const BAND_PIXELS: u64 = 4 << 20;
 /// Number of samples per tile that amortizes the scheduler's overhead.
 const TILE_SAMPLES: u64 = 1 << 16;
+/// Minimum number of samples of the tiles that many threads share.
+const MIN_TILE_SAMPLES: u64 = 1 << 12;
+/// Number of tiles for each thread, so that threads finish at about the same time.
+const TILES_PER_THREAD: u64 = 32;
 /// Edge of the largest tile, in pixels.
 const MAX_TILE: u32 = 32;
 /// Edge of the smallest tile, in pixels.
@@ -71,31 +75,55 @@ pub fn render<E: From<Cancelled>>(
     control: &Control,
     mut rows: impl FnMut(Vec<Rgb>) -> Result<(), E>,
 ) -> Result<ClampedRadiance, E> {
-    let (engines, clamped) = (Mutex::new(Vec::new()), Mutex::new(ClampedRadiance::default()));
+    // Choose the number of camera rays before all threads need it.
+    job.camera_rays.count(job, control)?;
+    let workers: Vec<Mutex<ThreadState>> = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
     for band in bands(region, schedule.band_pixels) {
-        let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
+        let mut film = vec![Rgb::BLACK; band.area() as usize];
+        let rows_of_film: Vec<Mutex<&mut [Rgb]>> =
+            film.chunks_mut(band.width.max(1) as usize).map(Mutex::new).collect();
         let render_tile = |pixels: Rect| {
-            let recycled = lock(&engines).pop();
-            let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
-            // Compute the means before locking the film.
+            // Each thread has a state of its own, so that no thread waits for another.
+            let Some(worker) = workers.get(rayon::current_thread_index().unwrap_or_default()) else { return };
+            let mut worker = lock(worker);
+            let ThreadState { engine, clamped } = &mut *worker;
+            let engine = engine.get_or_insert_with(|| Engine::new(job));
             let means = if job.samples == 1 {
                 engine.render_single(pixels, control)
             } else {
                 engine.render(&Work::first(pixels, job.samples), control).map(|tile| (tile.means(), tile.clamped()))
             };
             if let Ok((means, removed)) = means {
-                pixels.copy_into(&means, &band, &mut lock(&film));
-                lock(&clamped).add_all(removed);
+                copy_rows(&means, pixels, &band, &rows_of_film);
+                clamped.add_all(removed);
             }
-            lock(&engines).push(engine);
         };
         for_each_tile(schedule.scheduler, &band, job.samples, control, render_tile);
         if control.is_cancelled() {
             return Err(Cancelled.into());
         }
-        rows(film.into_inner().unwrap_or_else(PoisonError::into_inner))?;
+        drop(rows_of_film);
+        rows(film)?;
     }
-    Ok(*lock(&clamped))
+    Ok(workers.iter().map(|worker| lock(worker).clamped).sum())
+}
+
+/// What a thread keeps between tiles.
+#[derive(Default)]
+struct ThreadState<'j> {
+    engine: Option<Engine<'j>>,
+    /// Radiance that clamping removed.
+    clamped: ClampedRadiance,
+}
+
+/// Copies the colors of a tile to the rows of a band. Few threads write a row at the same time.
+fn copy_rows(colors: &[Rgb], tile: Rect, band: &Rect, rows: &[Mutex<&mut [Rgb]>]) {
+    let first = tile.y.saturating_sub(band.y) as usize;
+    let columns = tile.x.saturating_sub(band.x) as usize..;
+    for (row, colors) in rows.iter().skip(first).zip(colors.chunks(tile.width.max(1) as usize)) {
+        let mut row = lock(row);
+        row.get_mut(columns.clone()).into_iter().flatten().zip(colors).for_each(|(to, color)| *to = *color);
+    }
 }
 
 /// Memory that [`render`] holds for a band of `pixels` pixels, in bytes: the band and its list of
@@ -141,25 +169,31 @@ fn for_each_tile(
 }
 
 fn steal(band: &Rect, samples: u32, render_tile: impl Fn(Rect) + Sync + Send) {
-    let edge = tile_edge(samples);
-    let columns: Vec<u32> = (0..band.width).step_by(edge as usize).collect();
-    let corners = (0..band.height).step_by(edge as usize).flat_map(|y| columns.iter().map(move |x| (*x, y)));
-    let tiles: Vec<Rect> = corners
-        .map(|(x, y)| Rect {
-            x: band.x + x,
-            y: band.y + y,
-            width: edge.min(band.width - x),
-            height: edge.min(band.height - y),
-        })
-        .collect();
-    tiles.into_par_iter().with_max_len(1).for_each(render_tile);
+    tiles(band, samples, rayon::current_num_threads()).into_par_iter().with_max_len(1).for_each(render_tile);
 }
 
-/// Edge of the tiles, in pixels: smaller for more samples per pixel, so that threads finish at
-/// about the same time.
-fn tile_edge(samples: u32) -> u32 {
-    let pixels = (TILE_SAMPLES / u64::from(samples.max(1))) as u32;
-    (pixels.isqrt().max(1).next_power_of_two()).clamp(MIN_TILE, MAX_TILE)
+/// Tiles of a band for a number of threads, rows from the top.
+fn tiles(band: &Rect, samples: u32, threads: usize) -> Vec<Rect> {
+    let edge = tile_edge(band, samples, threads);
+    let columns: Vec<u32> = (0..band.width).step_by(edge as usize).collect();
+    let corners = (0..band.height).step_by(edge as usize).flat_map(|y| columns.iter().map(move |x| (*x, y)));
+    let tile = |(x, y): (u32, u32)| Rect {
+        x: band.x + x,
+        y: band.y + y,
+        width: edge.min(band.width - x),
+        height: edge.min(band.height - y),
+    };
+    corners.map(tile).collect()
+}
+
+/// Edge of the tiles, in pixels: smaller for more samples per pixel and for more threads.
+fn tile_edge(band: &Rect, samples: u32, threads: usize) -> u32 {
+    let samples = u64::from(samples.max(1));
+    let most = ((TILE_SAMPLES / samples) as u32).isqrt().max(1).next_power_of_two();
+    let share = band.area().saturating_mul(samples) / (TILES_PER_THREAD * threads.max(1) as u64);
+    let pixels = (share.max(MIN_TILE_SAMPLES) / samples).min(u64::from(u32::MAX)) as u32;
+    let fair = 1 << pixels.isqrt().max(1).ilog2();
+    most.min(fair).clamp(MIN_TILE, MAX_TILE)
 }
 
 fn row_queue(band: &Rect, render_tile: impl Fn(Rect) + Sync + Send) {
@@ -203,6 +237,34 @@ mod tests {
                     next += band.height;
                 }
                 assert_eq!(next, region.y + height, "{width}x{height}");
+            }
+        }
+    }
+
+    /// Share of the threads' time that is idle if each thread takes the next tile when it is done,
+    /// and some tiles take three times as long as others.
+    fn idle_share(tiles: &[Rect], threads: usize) -> f64 {
+        let mut ends = vec![0; threads];
+        for (number, tile) in tiles.iter().enumerate() {
+            let first = ends.iter_mut().min().unwrap();
+            *first +=
+                tile.area() * (2 + (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).leading_zeros().min(4) as u64);
+        }
+        let last = *ends.iter().max().unwrap();
+        ends.iter().map(|end| (last - end) as f64).sum::<f64>() / (last as f64 * threads as f64)
+    }
+
+    #[test]
+    fn many_threads_are_hardly_idle_at_the_end() {
+        for (width, height, samples) in [(640, 360, 64), (1920, 1080, 16), (1280, 720, 256), (3840, 2160, 1)] {
+            let band = Rect { x: 0, y: 0, width, height };
+            for (threads, most) in [(2, 0.01), (16, 0.03), (64, 0.04), (128, 0.07)] {
+                let tiles = tiles(&band, samples, threads);
+                let share = idle_share(&tiles, threads);
+                assert!(share < most, "{width}x{height}x{samples}, {threads} threads: {share}");
+                // Small tiles have to be worth the schedule.
+                let least = tiles.iter().map(|tile| tile.area() * u64::from(samples)).max().unwrap();
+                assert!(least >= MIN_TILE_SAMPLES / 4, "{least}");
             }
         }
     }

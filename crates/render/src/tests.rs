@@ -82,6 +82,9 @@ pub fn pixels(
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }
 
+/// Without a frame, samples have one camera ray unless the integrator demands more.
+static WITHOUT_FRAME: CameraRays = CameraRays::new(UVec2::ZERO);
+
 pub fn job<'w>(world: &'w World, camera: &'w ShutterCamera, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.point_set(samples), BoxFilter {}.sampler(samples));
     assert_eq!(pattern, AnyPointSet::SobolPoints(SobolPoints));
@@ -93,6 +96,7 @@ pub fn job<'w>(world: &'w World, camera: &'w ShutterCamera, integrator: &'w AnyI
         pattern,
         samples,
         seed: 1,
+        camera_rays: &WITHOUT_FRAME,
         aovs: &aov::NO_AOVS,
         frames: None,
     }

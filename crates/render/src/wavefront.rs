@@ -13,14 +13,15 @@ use super::tile_samples::TileSamples;
 use super::{Cancelled, Control, Job, RayCounts, Work};
 use juggler_camera::film::{ClampedRadiance, PixelSamples, Rect, Tile, is_counted};
 use juggler_integrator::{
-    AovRecord, BentShadowRay, ClampState, Integrator, PathBuffers, PathKind, PathState, Queue, ShadowQueue,
-    VertexOutput,
+    AovRecord, BentShadowRay, CameraRayWeight, ClampState, Integrator, PathBuffers, PathKind, PathState, Queue,
+    ShadowQueue, VertexOutput,
 };
 use juggler_math::{Ray, Rgb};
 use juggler_world::{ShadowMode, Vertex, World, WorldHit};
 use std::ops::Range;
 
 mod inspect;
+pub mod pilot;
 mod shadow_catchers;
 
 use shadow_catchers::{catch, hits_shadow_catcher};
@@ -93,9 +94,17 @@ impl<'j> Engine<'j> {
 
     /// Renders a piece of work.
     pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Cancelled> {
+        self.split(control)?;
         let mut film = TileSamples::new(work, self.job.aovs);
         self.passes(work, control, |samples| film.add(samples))?;
         Ok(film.tile())
+    }
+
+    /// Sets the number of camera rays of each sample.
+    fn split(&mut self, control: &Control) -> Result<(), Cancelled> {
+        self.start.camera_rays = self.job.camera_rays.count(self.job, control)?;
+        self.buffers.camera_ray_weight = CameraRayWeight::of(self.start.camera_rays);
+        Ok(())
     }
 
     /// Renders pixels with a single sample each: the means, row by row, and the radiance that
@@ -129,7 +138,7 @@ impl<'j> Engine<'j> {
             let count = slots.end - slots.start;
             self.pass(work, samples, slots, control)?;
             self.rays.not_finite += consume(self.buffers.samples());
-            self.rays.camera += count;
+            self.rays.camera += count * u64::from(self.start.camera_rays);
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
         }
@@ -142,7 +151,8 @@ impl<'j> Engine<'j> {
         self.buffers.reset((slots.end - slots.start) as usize, self.job.world.lights().len());
         let mut camera = self.spare.pop().unwrap_or_default();
         push_camera_rays(self.job, &self.start, work, samples, slots, &mut camera);
-        let weights = || camera.paths.iter().map(|path| path.beta.r);
+        let first_rays = || camera.paths.iter().filter(|path| !path.history.is_split);
+        let weights = || first_rays().map(|path| path.beta.r);
         if let Some(clamping) = &mut self.buffers.clamping {
             clamping.begin(weights());
         }
@@ -210,6 +220,8 @@ impl<'j> Engine<'j> {
                 Some(caught) if hits_shadow_catcher(self.world, path, hit) => {
                     catch(caught, &mut self.buffers, ray, path);
                 }
+                // Most additional camera rays see no light.
+                _ if path.history.is_split && self.world.blocks_sight(hit) => {}
                 _ => {
                     shade_ray(self.world, self.shading, &mut self.buffers, ray, path, hit);
                 }
@@ -243,7 +255,7 @@ impl<'j> Engine<'j> {
             for (contribution, transmittance) in queue.contributions.iter().zip(transmittance) {
                 let (slot, mut more) = (usize::from(contribution.slot), contribution.radiance * *transmittance);
                 if let Some(clamping) = clamping {
-                    more = clamping.limit(slot, contribution.path_kind, more);
+                    more = clamping.limit(slot, contribution.path_kind, more, 1.0);
                 }
                 if let Some(record) = record {
                     record.add_light(slot, contribution.path_kind, contribution.group, more);

@@ -5,6 +5,7 @@ use crate::worker_state::{DenoisedFilm, Worker};
 use juggler::camera::film::Film;
 use juggler::denoise::DenoiserInput;
 use juggler::render::Control;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Time for which samples accumulate before the first denoising.
@@ -43,11 +44,8 @@ impl Worker {
         if denoised.is_none() && self.shared.mailbox().has_work() {
             return;
         }
-        self.samples.denoised = DenoisedFilm {
-            pixels: denoised.map(|denoised| denoised.pixels.into()),
-            samples,
-            last: Some((Instant::now(), began.elapsed())),
-        };
+        self.samples.denoised =
+            DenoisedFilm { picture: denoised.map(Arc::new), samples, last: Some((Instant::now(), began.elapsed())) };
         self.repaint();
     }
 }

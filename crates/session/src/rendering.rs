@@ -167,9 +167,8 @@ impl Worker {
         let Some(subject) = self.subject.clone() else { return };
         let (size, target, transform) = (self.status.size, self.status.samples_wanted, &self.display.transform);
         let gains = subject.gains();
-        if let Some(pixels) = self.denoised_pixels(&subject).filter(|_| self.status.channel == Channel::Color) {
-            let alpha = subject.picture().alpha(&film);
-            let rgba = transform.rgba_image(PixelRows { colors: &pixels, alpha: alpha.as_deref() }, size[0]);
+        if let Some(denoised) = self.denoised_picture(&subject).filter(|_| self.status.channel == Channel::Color) {
+            let rgba = transform.rgba_image(denoised.rows(), size[0]);
             self.status.denoised = true;
             let frame = self.frame(size, rgba, samples);
             return self.publish(Some(frame));

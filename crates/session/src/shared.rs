@@ -8,6 +8,7 @@ use crate::status::{Stage, Status};
 use crate::subject::Subject;
 use juggler::Picture;
 use juggler::camera::film::Film;
+use juggler::denoise::DenoisedPicture;
 use juggler::math::{PixelRows, Rgb};
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -63,7 +64,7 @@ pub struct Snapshot {
     /// Preview that stands in for pixels without samples.
     pub preview: Arc<Preview>,
     /// Denoised image, displayed instead of the film if there is one.
-    pub denoised: Option<Arc<[Rgb]>>,
+    pub denoised: Option<Arc<DenoisedPicture>>,
 }
 
 impl Snapshot {
@@ -75,10 +76,8 @@ impl Snapshot {
     /// Passes the rows of the displayed image to `rows`, from the top: denoised if so displayed,
     /// else from the film, with the preview where it has no samples.
     pub fn develop<E>(&self, mut rows: impl FnMut(PixelRows) -> Result<(), E>) -> Result<(), E> {
-        if let Some(colors) = &self.denoised {
-            let alpha = self.film.as_ref().and_then(|film| self.picture().alpha(film));
-            let pixels = PixelRows { colors, alpha: alpha.as_deref() };
-            return pixels.chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
+        if let Some(denoised) = &self.denoised {
+            return denoised.rows().chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
         }
         let (size, preview, gains) = (self.picture().size(), &self.preview, self.subject.gains());
         let row = |y: u32| (0..size[0]).map(move |x| preview.at([x, y], size));

@@ -12,8 +12,8 @@ use crate::subject::Subject;
 use crate::watch::Watch;
 use juggler::BuildControl;
 use juggler::camera::film::{Film, Rect};
+use juggler::denoise::DenoisedPicture;
 use juggler::imaging::Tone;
-use juggler::math::Rgb;
 use juggler::render::Scheduler;
 use juggler::scene::Bundle;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -106,10 +106,9 @@ pub struct PictureSamples {
 /// Last denoised image of the film.
 #[derive(Default)]
 pub struct DenoisedFilm {
-    /// Linear radiance, row by row from the top; `None` before the first run, or after a failed
-    /// one.
-    pub pixels: Option<Arc<[Rgb]>>,
-    /// Number of samples of the film that `pixels` was computed from.
+    /// Denoised picture; `None` before the first run, or after a failed one.
+    pub picture: Option<Arc<DenoisedPicture>>,
+    /// Number of samples of the film that `picture` was computed from.
     pub samples: u64,
     /// Time at which the last run ended, and its duration.
     pub last: Option<(Instant, Duration)>,
@@ -187,8 +186,8 @@ impl Worker {
 
     /// Returns the denoised image if there is one and denoising is on. Relighting disables it: the
     /// halves that the denoiser compares hold all light groups together.
-    pub fn denoised_pixels(&self, subject: &Subject) -> Option<Arc<[Rgb]>> {
-        self.samples.denoised.pixels.clone().filter(|_| subject.is_denoised())
+    pub fn denoised_picture(&self, subject: &Subject) -> Option<Arc<DenoisedPicture>> {
+        self.samples.denoised.picture.clone().filter(|_| subject.is_denoised())
     }
 
     /// Publishes the status, with a new frame if given.
@@ -196,7 +195,7 @@ impl Worker {
         let snapshot = self.subject.clone().map(|subject| Snapshot {
             film: self.samples.film.clone(),
             preview: Arc::clone(&self.display.preview),
-            denoised: self.denoised_pixels(&subject),
+            denoised: self.denoised_picture(&subject),
             subject,
         });
         self.shared.publish(frame, self.status.clone(), snapshot);

@@ -221,6 +221,16 @@ impl Geometry {
         (&self.objects[object_index], shape_index - self.first_shapes[object_index])
     }
 
+    /// Material of the shape `shape_index`. `inherited` is the material of objects that have none.
+    pub(super) fn material(&self, shape_index: u32, inherited: Option<MaterialId>) -> MaterialId {
+        let (instance, shape_index) = self.find(shape_index);
+        let material = instance.material().or(inherited);
+        match &instance.content {
+            Content::Shape(_) => material.unwrap_or(MaterialId::NONE),
+            Content::Geometry(geometry) => geometry.material(shape_index, material),
+        }
+    }
+
     /// Surface at a hit of the shape `shape_index`, in this geometry's space. `inherited` is the
     /// material of objects that have none.
     #[inline(always)]

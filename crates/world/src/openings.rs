@@ -1,7 +1,7 @@
 //! Surfaces that rays may pass straight through: interfaces, masks, and the backs of one-sided
 //! surfaces.
 
-use super::{Vertex, World, starts_at};
+use super::{Vertex, World, WorldHit, starts_at};
 use juggler_math::{Ray, Vec2, Vec3};
 
 impl World {
@@ -43,6 +43,12 @@ impl World {
                 && (self.materials.passes_front(vertex.material)
                     || self.is_absent(vertex, -ray.direction)
                     || starts_at(ray, vertex, vertex.surface.position_error))
+    }
+
+    /// Whether a camera ray sees no light at a hit: its surface neither emits nor lets light pass.
+    #[inline]
+    pub fn blocks_sight(&self, hit: &WorldHit) -> bool {
+        hit.is_some() && self.materials.blocks_sight(self.top.material(hit.shape, None))
     }
 
     /// Whether light may pass through the surface, which bounds no solid: a pane or a translucent

@@ -144,10 +144,13 @@ impl Geometry {
                 (&self.objects[*object_index as usize], first + self.first_shape(*object_index));
             instance.closest_each(rays, shape_index, hits);
         }
-        let mut nearest = Nearest { geometry: self, first, hits };
-        match coherence {
-            RayCoherence::Coherent => self.bvh.closest_packet(rays, &mut nearest),
-            RayCoherence::Incoherent => self.bvh.closest_batch(rays, &mut nearest),
+        // An empty hierarchy costs each ray more than a hundred instructions.
+        if !self.items.is_empty() {
+            let mut nearest = Nearest { geometry: self, first, hits };
+            match coherence {
+                RayCoherence::Coherent => self.bvh.closest_packet(rays, &mut nearest),
+                RayCoherence::Incoherent => self.bvh.closest_batch(rays, &mut nearest),
+            }
         }
         for large_mesh in &self.large_meshes {
             large_mesh.intersect_rays(&self.objects, rays, coherence, hits);
@@ -160,10 +163,12 @@ impl Geometry {
     /// Tests each ray for occlusion.
     #[inline]
     fn occludes_rays(&self, rays: &[Ray], coherence: RayCoherence, occluded: &mut [bool]) {
-        let mut nearest = Nearest { geometry: self, first: 0, hits: &mut [] };
-        match coherence {
-            RayCoherence::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
-            RayCoherence::Incoherent => self.bvh.any_batch(rays, occluded, &mut nearest),
+        if !self.items.is_empty() {
+            let mut nearest = Nearest { geometry: self, first: 0, hits: &mut [] };
+            match coherence {
+                RayCoherence::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
+                RayCoherence::Incoherent => self.bvh.any_batch(rays, occluded, &mut nearest),
+            }
         }
         for object_index in &self.unbounded {
             let instance = &self.objects[*object_index as usize];

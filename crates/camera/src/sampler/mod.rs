@@ -31,6 +31,7 @@ juggler_math::closed_set! {
     fn at_pixel(&self, pixel: UVec2) -> AnyPointSet;
     fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32;
     fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2;
+    fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2>;
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]);
 }
 
@@ -57,6 +58,14 @@ pub trait PointSet: Copy + Into<AnyPointSet> {
     #[inline]
     fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32 {
         self.point(index, is_first_dimension, seed).x
+    }
+
+    /// Point `part` of the `parts` points of sample `index`, in the first dimension. All parts of all
+    /// samples together are one well-distributed set, and so are the parts 0. `None` if the kind has
+    /// no such set.
+    #[inline]
+    fn finer_point(&self, _index: u32, _part: u32, _parts: u32, _seed: u32) -> Option<Vec2> {
+        None
     }
 
     /// Points of consecutive samples from `first` on, in the first dimension.
@@ -142,6 +151,12 @@ impl Sampler {
     /// [`Sampler::next_2d`] of each.
     pub fn first_points(&self, first: u32, points: &mut [Vec2]) {
         self.pattern.fill(first, self.seed ^ hash::mix(0), points);
+    }
+
+    /// Film position of camera ray `ray` of `rays` of this sample, if the sampler has a finer set of
+    /// points for that number: see [`PointSet::finer_point`].
+    pub fn film_point(&self, ray: u32, rays: u32) -> Option<Vec2> {
+        self.pattern.finer_point(self.index, ray, rays, self.seed ^ hash::mix(0))
     }
 
     /// Same stream `count` dimensions further on.

@@ -37,7 +37,25 @@ impl PointSet for SobolPoints {
     fn first_coordinate(&self, index: u32, _is_first: bool, seed: u32) -> f32 {
         first_coordinate(index, seed)
     }
+
+    fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2> {
+        let (bits, columns): (u32, &[u32]) = match parts {
+            4 => (2, &COLUMNS_OF_4),
+            8 => (3, &COLUMNS_OF_8),
+            _ => return None,
+        };
+        let index = shuffle_index(index, seed);
+        let set_bits = columns.iter().cycle().enumerate().take(32).filter(|(bit, _)| index >> bit & 1 == 1);
+        let first = set_bits.fold(0, |first, (_, column)| first ^ column);
+        Some(scrambled_point(index << bits | (first ^ part), seed))
+    }
 }
+
+/// Generator matrices, by columns that repeat, of the part 0 of each group of 4 or 8 consecutive Sobol
+/// points, such that these parts are well distributed by themselves, too: (0, m, 2)-nets in base 2 for
+/// groups of 4, (1, m, 2)-nets for groups of 8. No such matrix exists for groups of 2. Found by search.
+const COLUMNS_OF_4: [u32; 3] = [3, 1, 2];
+const COLUMNS_OF_8: [u32; 5] = [3, 6, 4, 7, 2];
 
 /// First coordinate of [`point`].
 #[inline]
@@ -61,7 +79,12 @@ fn scrambled_first(index: u32, seed: u32) -> u32 {
 /// Point `index` of the scrambled and shuffled sequence `seed`.
 #[inline]
 pub fn point(index: u32, seed: u32) -> Vec2 {
-    let index = shuffle_index(index, seed);
+    scrambled_point(shuffle_index(index, seed), seed)
+}
+
+/// Point `index` of the scrambled sequence `seed`.
+#[inline]
+fn scrambled_point(index: u32, seed: u32) -> Vec2 {
     let x = scrambled_first(index, seed);
     let y = owen_scramble_reversed(second_dimension(index), hash::mix(seed));
     // Reverse both in one operation, which also swaps them.
@@ -117,6 +140,37 @@ mod tests {
             }
             assert_eq!(second_dimension(index).reverse_bits(), expected, "index {index}");
         }
+    }
+
+    /// Whether each interval of 2^-a × 2^-b with a + b = m - t holds 2^t of the 2^m points.
+    fn is_net(points: &[Vec2], t: u32) -> bool {
+        let m = points.len().ilog2();
+        (0..=m.saturating_sub(t)).all(|a| {
+            let size = [1u32 << a, 1 << (m.saturating_sub(t) - a)];
+            let mut counts = vec![0; points.len()];
+            for point in points {
+                let [x, y] = [point.x * size[0] as f32, point.y * size[1] as f32].map(|cell| cell as u32);
+                counts[(y * size[0] + x) as usize] += 1;
+            }
+            let cells = (size[0] * size[1]) as usize;
+            counts[..cells].iter().all(|count| *count == points.len() / cells)
+        })
+    }
+
+    #[test]
+    fn parts_of_a_finer_set_are_well_distributed_alone_and_together() {
+        let finer = |index, part, parts, seed| SobolPoints.finer_point(index, part, parts, seed).unwrap();
+        for (parts, t) in [(4, 0), (8, 1)] {
+            for (seed, m, block) in (0..4).flat_map(|seed| (0..9).flat_map(move |m| (0..2).map(move |b| (seed, m, b))))
+            {
+                let samples = block << m..(block + 1) << m;
+                let part = |part| samples.clone().map(move |i| finer(i, part, parts, seed)).collect::<Vec<_>>();
+                let all: Vec<Vec<Vec2>> = (0..parts).map(part).collect();
+                assert!(is_net(&all[0], t), "{parts} parts, 2^{m} points of part 0, seed {seed}");
+                assert!(is_net(&all.concat(), 0), "all {parts} parts of 2^{m} points, seed {seed}");
+            }
+        }
+        assert_eq!(SobolPoints.finer_point(0, 0, 2, 1), None);
     }
 
     #[test]

@@ -8,6 +8,16 @@ fn keys(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
+/// Checks what is known of the program itself.
+fn check_program(program: &Value) {
+    assert_eq!(keys(program), ["version", "compiler", "simd"]);
+    assert_eq!(program["version"], env!("CARGO_PKG_VERSION"));
+    assert!(program["compiler"].as_str().unwrap().starts_with("rustc 1."), "{}", program);
+    let levels = ["sse2", "sse4_2", "avx2", "avx512"];
+    let simd = program["simd"].as_str().unwrap();
+    assert!(levels.contains(&simd) || !cfg!(target_arch = "x86_64"), "{simd}");
+}
+
 #[test]
 fn statistics_have_the_documented_keys() {
     let folder = Folder::new();
@@ -17,6 +27,7 @@ fn statistics_have_the_documented_keys() {
         keys(&stats),
         [
             "version",
+            "program",
             "scene",
             "size",
             "samples",
@@ -32,7 +43,8 @@ fn statistics_have_the_documented_keys() {
             "fingerprint"
         ]
     );
-    assert_eq!(keys(&stats["seconds"]), ["load", "build", "render", "denoise", "write", "total"]);
+    assert_eq!(keys(&stats["seconds"]), ["load", "build", "render", "denoise", "write", "total", "cpu"]);
+    check_program(&stats["program"]);
     assert_eq!(keys(&stats["rays"]), ["camera", "shadow", "secondary", "total", "per_second", "not_finite"]);
     assert_eq!(keys(&stats["geometry"]), ["shapes", "triangles", "unique_triangles", "instances", "lights"]);
     assert_eq!(keys(&stats["memory"]), ["peak_rss_bytes", "expected_bytes", "geometry_bytes", "bvh_bytes"]);
@@ -43,6 +55,8 @@ fn statistics_have_the_documented_keys() {
     assert_eq!(stats["integrator_reason"], "chosen because `classic` supports all lights and materials of the scene");
     let whole = stats["seconds"]["total"].as_f64().unwrap();
     let parts = ["load", "build", "render", "write"].map(|part| stats["seconds"][part].as_f64().unwrap());
+    let cpu = stats["seconds"]["cpu"].as_f64().unwrap();
+    assert!(cpu > 0.0 && cpu < 100.0, "{cpu}");
     assert!(parts.iter().sum::<f64>() <= whole && parts.iter().all(|part| *part >= 0.0), "{}", stats["seconds"]);
 }
 

@@ -5,7 +5,7 @@ use juggler::math::{Image, Rgb, color};
 use juggler::scene::{Asset, Scene};
 
 /// Names of the scenes.
-pub const EXTRA_SCENES: [&str; 2] = ["image-texture", "mitchell-filter"];
+pub const EXTRA_SCENES: [&str; 3] = ["image-texture", "visible-emitters", "mitchell-filter"];
 
 /// An image on a floor down to its smallest MIP level, on a box without interpolation, and as the
 /// roughness of a metal.
@@ -26,6 +26,22 @@ const IMAGE_TEXTURE: &str = r#"{
             "transform": [{"rotate": {"axis": [0, 1, 0], "degrees": 30}}], "material": {"diffuse": {"reflectance": "box"}}},
         {"shape": {"sphere": {"radius": 0.8}}, "transform": [{"translate": [0.9, 0.8, 0]}],
             "material": {"conductor": {"roughness": "rough"}}}
+    ]
+}"#;
+
+/// Emitters that the camera sees, over a floor that hardly shows noise: larger pictures have several
+/// camera rays for each sample.
+const VISIBLE_EMITTERS: &str = r#"{
+    "version": 1,
+    "render": {"size": [96, 54], "samples": 16, "integrator": {"path": {"max_depth": 3}}},
+    "camera": {"perspective": {"eye": [0, 1.2, 4], "look_at": [0, 0.8, 0], "vertical_fov_degrees": 40}},
+    "objects": [
+        {"shape": "plane", "material": {"diffuse": {"reflectance": 0.15}}},
+        {"shape": {"sphere": {"radius": 0.15}}, "transform": [{"translate": [-1.2, 0.5, 0]}], "material": {"emissive": {"radiance": [4, 3, 2]}}},
+        {"shape": {"sphere": {"radius": 0.15}}, "transform": [{"translate": [-0.5, 1.2, -0.5]}], "material": {"emissive": {"radiance": [2, 3, 4]}}},
+        {"shape": {"sphere": {"radius": 0.15}}, "transform": [{"translate": [0.2, 0.6, 0.3]}], "material": {"emissive": {"radiance": [3, 4, 2]}}},
+        {"shape": {"sphere": {"radius": 0.15}}, "transform": [{"translate": [0.9, 1.5, -0.4]}], "material": {"emissive": {"radiance": [4, 2, 3]}}},
+        {"shape": {"sphere": {"radius": 0.4}}, "transform": [{"translate": [0.9, 0.4, 0.2]}], "material": {"dielectric": {"ior": 1.5}}}
     ]
 }"#;
 
@@ -62,6 +78,7 @@ pub fn scene(name: &str) -> Scene {
             let scene = Scene::from_json(IMAGE_TEXTURE, name).unwrap();
             scene.asset("squares.png", Asset::from_bytes(squares()))
         }
+        "visible-emitters" => Scene::from_json(VISIBLE_EMITTERS, name).unwrap(),
         "mitchell-filter" => Scene::from_json(MITCHELL_FILTER, name).unwrap(),
         _ => Scene::built_in(name).unwrap(),
     }

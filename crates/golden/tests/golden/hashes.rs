@@ -6,6 +6,7 @@
 //! golden hashes::`.
 
 use super::extra::{EXTRA_SCENES, scene};
+use juggler::camera::film::Rect;
 use juggler::render::Control;
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::{Error, Picture, Settings};
@@ -19,25 +20,50 @@ const WIDTH: u32 = 64;
 const MAX_SAMPLES: u32 = 4;
 /// Frames to render besides the first, in scenes that are long enough.
 const FRAMES: [u32; 3] = [7, 15, 22];
+/// Scenes whose pictures of at least 320 × 180 pixels have several camera rays for each sample, of
+/// which a part is rendered.
+const SPLIT_SCENES: [&str; 2] = ["visible-emitters", "many-lights-room"];
+/// Width of these pictures, and the part.
+const SPLIT_WIDTH: u32 = 320;
+const SPLIT_PART: Rect = Rect { x: 128, y: 72, width: 64, height: 36 };
 /// Numbers of threads whose pictures must agree.
 const THREADS: [usize; 3] = [1, 2, 3];
 
 /// Hashes by view: `scene`, `scene/camera` if there are several cameras, `scene@frame` for later
-/// frames.
+/// frames, `scene#width` for a part of a larger picture.
 type Hashes = BTreeMap<String, String>;
+
+/// Settings of a picture of this width.
+fn settings(scene: &Scene, width: u32) -> Settings {
+    let render = &scene.description.render;
+    let [columns, rows] = render.size.map(f64::from);
+    let height = (f64::from(width) * rows / columns).round().max(1.0) as u32;
+    let samples = Some(render.samples.min(MAX_SAMPLES));
+    Settings { size: Some([width, height]), samples, ..Settings::default() }
+}
 
 /// A small picture of a scene from one of its cameras.
 fn picture(scene: &Scene, camera: Option<&str>) -> Picture {
-    let render = &scene.description.render;
-    let [width, height] = render.size.map(f64::from);
-    let height = (f64::from(WIDTH) * height / width).round().max(1.0) as u32;
-    let settings = Settings {
-        size: Some([WIDTH, height]),
-        samples: Some(render.samples.min(MAX_SAMPLES)),
-        camera: camera.map(str::to_owned),
-        ..Settings::default()
+    let camera = camera.map(str::to_owned);
+    Picture::new(scene, &Settings { camera, ..settings(scene, WIDTH) }).unwrap()
+}
+
+/// Adds the hash of some pixels of a picture with several camera rays for each sample.
+fn add_split(hashes: &mut Hashes, name: &str, pools: &[ThreadPool]) {
+    let scene = scene(name);
+    let hash = |pool: &ThreadPool| {
+        let settings = Settings { crop: Some(SPLIT_PART), ..settings(&scene, SPLIT_WIDTH) };
+        // Each picture chooses the number of camera rays by itself.
+        let (picture, control) = (Picture::new(&scene, &settings).unwrap(), Control::default());
+        let film = picture.film();
+        pool.install(|| picture.render_film(&film, &control)).unwrap();
+        let rays = control.rays().camera / picture.total_samples();
+        (picture.develop(&film, |_| Ok::<(), Error>(())).unwrap().hash, rays)
     };
-    Picture::new(scene, &settings).unwrap()
+    let all: Vec<(String, u64)> = pools.iter().map(hash).collect();
+    assert!(all.iter().all(|one| *one == all[0]), "{name}: {all:?} on {THREADS:?} threads");
+    assert_eq!(all[0].1, 4, "camera rays of {name}");
+    hashes.insert(format!("{name}#{SPLIT_WIDTH}"), all[0].0.clone());
 }
 
 fn hash(picture: &Picture, pool: &ThreadPool) -> String {
@@ -87,6 +113,7 @@ fn built_in_scenes_have_their_hashes_on_any_number_of_threads() {
     for name in built_in_scenes().iter().map(|scene| scene.name).chain(EXTRA_SCENES) {
         add(&mut hashes, name, &pools);
     }
+    SPLIT_SCENES.iter().for_each(|name| add_split(&mut hashes, name, &pools));
     assert!(hashes.len() >= built_in_scenes().len() && hashes.contains_key("juggler@22"));
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("hashes.txt");
     let found = to_text(&hashes);

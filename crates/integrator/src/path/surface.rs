@@ -3,7 +3,7 @@
 use super::super::{PathHistory, PathState, ScatterCounts, VertexOutput};
 use super::crossing::Interface;
 use super::{Dimension, Path, Sampling};
-use juggler_bsdf::{Bsdf, BsdfSample, Scatter};
+use juggler_bsdf::{Bsdf, BsdfSample, BsdfView, Scatter};
 use juggler_material::Shading;
 use juggler_material::medium::Interiors;
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
@@ -21,8 +21,8 @@ pub struct ShadingPoint<'a> {
     /// describe, else `surface`. Specular reflection and transmission leave from `surface`.
     pub scattering: &'a Surface,
     pub shading: &'a Shading,
-    /// Unit vector towards the origin of the ray, in the shading frame.
-    pub local: Vec3,
+    /// BSDF for the viewer at the origin of the ray.
+    pub bsdf: BsdfView<'a>,
     /// Cosine between `wo` and the geometric normal.
     cos_geometric: f32,
     pub time: f32,
@@ -60,7 +60,7 @@ impl<'a> ShadingPoint<'a> {
         interface: &'a Interface,
     ) -> Self {
         let wo = -ray.direction;
-        let local = shading.frame.to_local(wo);
+        let bsdf = shading.bsdf.view(shading.frame.to_local(wo));
         let (time, cos_geometric, visible_casters) = (ray.time, surface.normal.dot(wo), None);
         // Shading normal on the illuminated side; zero if light may arrive from both.
         let normal = if shading.transmissive { Vec3::ZERO } else { shading.frame.normal };
@@ -70,7 +70,7 @@ impl<'a> ShadingPoint<'a> {
             surface,
             scattering,
             shading,
-            local,
+            bsdf,
             cos_geometric,
             time,
             interface,
@@ -100,7 +100,7 @@ impl<'a> ShadingPoint<'a> {
     /// Evaluates the BSDF times cosine, and the density of [`ShadingPoint::sample`], for a
     /// direction.
     pub fn eval_pdf(&self, direction: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let (scattered, pdf) = self.shading.bsdf.eval_pdf(self.local, wi);
+        let (scattered, pdf) = self.bsdf.eval_pdf(wi);
         match self.visible_casters {
             Some(visible_casters) => {
                 let fraction = self.guided_fraction(visible_casters);
@@ -119,10 +119,10 @@ impl<'a> ShadingPoint<'a> {
     /// Samples the direction of the next segment.
     fn sample(&self, path: &PathState) -> Option<(Vec3, BsdfSample)> {
         let mut u = path.sampler.skipped(Dimension::Scatter as u32).next_2d();
-        let (frame, bsdf) = (&self.shading.frame, &self.shading.bsdf);
-        let choice = if bsdf.uses_u_choice() { path.sampler.skipped(Dimension::Facet as u32).next_1d() } else { 0.0 };
+        let (frame, lobes) = (&self.shading.frame, &self.shading.bsdf);
+        let choice = if lobes.uses_u_choice() { path.sampler.skipped(Dimension::Facet as u32).next_1d() } else { 0.0 };
         let Some(visible_casters) = self.visible_casters else {
-            let sample = bsdf.sample(self.local, u, choice)?;
+            let sample = self.bsdf.sample(u, choice)?;
             return Some((frame.to_world(sample.wi), sample));
         };
         let fraction = self.guided_fraction(visible_casters);
@@ -133,11 +133,11 @@ impl<'a> ShadingPoint<'a> {
             let direction = visible_casters.sample(u)?;
             let wi = frame.to_local(direction);
             let (scattered, pdf) = self.eval_pdf(direction, wi);
-            let scatter = bsdf.scatter();
+            let scatter = lobes.scatter();
             return (pdf > 0.0)
                 .then(|| (direction, BsdfSample { wi, weight: scattered / pdf, pdf, scatter, ior: 1.0 }));
         }
-        let sample = bsdf.sample(self.local, u, choice)?;
+        let sample = self.bsdf.sample(u, choice)?;
         let direction = frame.to_world(sample.wi);
         if sample.scatter == Scatter::Specular {
             return Some((direction, BsdfSample { weight: sample.weight * (1.0 / (1.0 - fraction)), ..sample }));
@@ -147,11 +147,12 @@ impl<'a> ShadingPoint<'a> {
         Some((direction, BsdfSample { weight, pdf, ..sample }))
     }
 
-    /// Sample that replaces a total reflection about a perturbed normal: see [`Bsdf::sample_exit`].
+    /// Sample that replaces a total reflection about a perturbed normal: see
+    /// [`BsdfView::sample_exit`].
     #[cold]
     #[inline(never)]
     fn sample_exit(&self, path: &PathState, reflected: &BsdfSample) -> Option<BsdfSample> {
-        self.shading.bsdf.sample_exit(self.local, reflected, path.sampler.skipped(Dimension::Exit as u32).next_2d())
+        self.bsdf.sample_exit(reflected, path.sampler.skipped(Dimension::Exit as u32).next_2d())
     }
 
     /// Samples `count` lights.
@@ -204,7 +205,7 @@ impl<'a> ShadingPoint<'a> {
     /// before other surfaces at the place of a sheet that transmits it.
     #[inline]
     fn before_others(&self, ray: Ray, from: &Surface, wi: Vec3) -> Ray {
-        if !self.interface.has_others_behind || wi.z * self.local.z >= 0.0 {
+        if !self.interface.has_others_behind || wi.z * self.bsdf.wo().z >= 0.0 {
             return ray;
         }
         Ray { origin: from.spawn_ray(-ray.direction, self.time).origin, ..ray }
@@ -212,7 +213,7 @@ impl<'a> ShadingPoint<'a> {
 
     /// Solids that contain a ray that continues in the direction `wi`, in the shading frame.
     pub fn interiors_towards(&self, path: &PathState, wi: Vec3) -> Interiors {
-        if wi.z * self.local.z < 0.0 {
+        if wi.z * self.bsdf.wo().z < 0.0 {
             self.interface.interiors_behind(path, self.cos_geometric > 0.0)
         } else {
             path.history.interiors
@@ -222,7 +223,7 @@ impl<'a> ShadingPoint<'a> {
     /// Whether a path that continues in the direction `wi`, in the shading frame, sees the backdrop:
     /// only transmission through glass has changed its direction since the camera.
     fn sees_backdrop(&self, path: &PathState, wi: Vec3) -> bool {
-        path.history.sees_backdrop && wi.z * self.local.z < 0.0 && !self.shading.bsdf.transmits_diffusely()
+        path.history.sees_backdrop && wi.z * self.bsdf.wo().z < 0.0 && !self.shading.bsdf.transmits_diffusely()
     }
 
     /// Whether a path that continues in the direction `wi`, in the shading frame, sees the backdrop in
@@ -235,7 +236,7 @@ impl<'a> ShadingPoint<'a> {
     /// Whether the geometric and the shading normal have `wi` on the same side of the surface.
     /// `local` is `wi` in the shading frame.
     fn same_hemisphere(&self, wi: Vec3, local: Vec3) -> bool {
-        (self.surface.normal.dot(wi) * self.cos_geometric < 0.0) == (local.z * self.local.z < 0.0)
+        (self.surface.normal.dot(wi) * self.cos_geometric < 0.0) == (local.z * self.bsdf.wo().z < 0.0)
     }
 
     /// Whether light may be scattered into `wi`, which is `local` in the shading frame, but for
@@ -243,7 +244,7 @@ impl<'a> ShadingPoint<'a> {
     pub fn scatters_into(&self, wi: Vec3, local: Vec3) -> bool {
         self.same_hemisphere(wi, local)
             || !std::ptr::eq(self.surface, self.scattering)
-                && local.z * self.local.z >= 0.0
+                && local.z * self.bsdf.wo().z >= 0.0
                 && self.surface.shading_normal.dot(wi) * self.cos_geometric > 0.0
     }
 
@@ -292,6 +293,7 @@ impl<'a> ShadingPoint<'a> {
             events,
             caustic,
             sees_backdrop,
+            is_split: false,
         }
     }
 }

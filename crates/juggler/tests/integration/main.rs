@@ -26,6 +26,7 @@ mod noise;
 mod prelude;
 mod probe;
 mod rendered_image;
+mod splitting;
 mod stage;
 mod transparency;
 mod viewpoint;

@@ -78,6 +78,27 @@ fn scattered_light_is_finite_and_conserves_energy() {
     }
 }
 
+#[test]
+fn surfaces_that_block_sight_show_no_light() {
+    let mut random = Random::new(823);
+    let (mut blocking, all) = (0, examples());
+    let count = all.len();
+    for (name, table, id) in all {
+        let mut shows_light = false;
+        for _ in 0..60 {
+            let (surface, tangents) = random_surface(&mut random);
+            let (wo, tangents, u_choice) = (random.unit_vector(), Some(&tangents), random.f32());
+            let view = ShadingView { wo, tangents, u_choice, ..ShadingView::along_normal(&surface) };
+            let shading = table.shade(id, &view);
+            let passes = shading.opacity < 1.0 || table.is_absent(id, &surface, wo) || shading.transmissive;
+            shows_light |= passes || shading.is_unlit || !shading.emission.is_black();
+        }
+        blocking += usize::from(table.blocks_sight(id));
+        assert!(!(table.blocks_sight(id) && shows_light), "{name}");
+    }
+    assert!(blocking * 4 > count && blocking < count, "{blocking} of {count}");
+}
+
 /// Tests each example with a million samples from one direction. A material is a sum of lobes, and
 /// the contract of `bsdf` tests each lobe from all directions.
 #[test]

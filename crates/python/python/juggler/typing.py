@@ -77,6 +77,7 @@ class PathIntegratorDict(TypedDict, total=False):
     max_volume: Integer
     roulette_depth: Integer
     light_samples: Integer
+    camera_rays: Integer
     sampling: Literal["mis", "light", "bsdf"] | ValueForm
     clamp_direct: Number
     clamp_indirect: Number

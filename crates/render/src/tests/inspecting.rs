@@ -39,8 +39,11 @@ fn inspected_pixel_equals_the_rendered_pixel_and_the_sum_of_its_contributions() 
     let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
     let clamped = Path { clamp_direct: Some(2.0), clamp_indirect: Some(0.3), ..Path::default() };
     let classic = Classic { max_depth: 3, min_weight: 1e-4, occlusion_distance: Some(2.0) };
-    let cases: [(World, AnyIntegrator, AnyFilter, u32); 6] = [
+    let clamped_rays = Path { camera_rays: Some(4), ..clamped.clone() };
+    let cases: [(World, AnyIntegrator, AnyFilter, u32); 8] = [
         (room(), Path::default().into(), BoxFilter {}.into(), 40),
+        (room(), Path { camera_rays: Some(3), ..Path::default() }.into(), BoxFilter {}.into(), 20),
+        (room(), clamped_rays.into(), Mitchell::default().into(), 18),
         (room(), clamped.into(), Mitchell::default().into(), 21),
         (room(), Path { light_samples: Some(3), ..Path::default() }.into(), Tent { radius: 1.0 }.into(), 5),
         (room(), Direct {}.into(), BoxFilter {}.into(), 1),

@@ -97,6 +97,7 @@ pub fn inspect(
     let mut film = TileSamples::new(&work, &juggler_camera::aov::NO_AOVS);
     let mut inspector = Inspector { engine: Engine::new(job), control, sample: InspectedSample::default() };
     inspector.engine.buffers.record = Some(AovRecord::logging());
+    inspector.engine.split(control)?;
     for index in 0..job.samples {
         let sample = inspector.sample(&Work { samples: index..index + 1, ..work.clone() });
         if control.is_cancelled() {

@@ -14,6 +14,10 @@ pub fn hits_shadow_catcher(world: &World, path: &PathState, hit: &WorldHit) -> b
 
 /// Keeps a camera ray that hit a shadow catcher, and records that.
 pub fn catch(caught: &mut Queue, buffers: &mut PathBuffers, ray: &Ray, path: &PathState) {
+    // Additional camera rays see no light there.
+    if path.history.is_split {
+        return;
+    }
     // Restore the maximum distance, so that the ray is intersected anew.
     caught.push(Ray { t_max: f32::INFINITY, ..*ray }, *path);
     if let Some(record) = &mut buffers.record {

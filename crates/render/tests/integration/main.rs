@@ -18,6 +18,7 @@ mod probe;
 mod rooms;
 mod skies;
 mod snippets;
+mod splitting;
 mod strategies;
 mod terminator;
 mod threads;

@@ -9,7 +9,7 @@ use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::{AnyMaterial, MaterialCompiler, MaterialId};
 use juggler_math::{Motion, Transform, UVec2, Vec3};
-use juggler_render::{Control, Job, Work};
+use juggler_render::{CameraRays, Control, Job, Work};
 use juggler_shape::AnyShape;
 use juggler_texture::{AnyTexture, TextureTable};
 use juggler_world::{Object, World};
@@ -232,6 +232,7 @@ fn pixels(
         pattern: pattern.point_set(samples),
         samples,
         seed,
+        camera_rays: &CameraRays::default(),
         aovs: &aov::NO_AOVS,
         frames: None,
     };

@@ -6,7 +6,7 @@ use juggler_camera::film::{AnyFilter, Rect};
 use juggler_camera::sampler::AnySampler;
 use juggler_camera::{AnyCamera, ShutterCamera};
 use juggler_math::{NamedKind, Rgb, Transform, UVec2, Vec3};
-use juggler_render::{Cancelled, Control, Job, Schedule, Scheduler, Work, render};
+use juggler_render::{CameraRays, Cancelled, Control, Job, Schedule, Scheduler, Work, render};
 use juggler_world::World;
 
 const SIZE: UVec2 = UVec2::new(30, 22);
@@ -66,6 +66,7 @@ fn pixels_do_not_depend_on_threads_and_tiles() {
         pattern: pattern.point_set(SAMPLES),
         samples: SAMPLES,
         seed: 7,
+        camera_rays: &CameraRays::default(),
         aovs: &aov::NO_AOVS,
         frames: None,
     };

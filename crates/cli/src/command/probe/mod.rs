@@ -82,6 +82,7 @@ impl Probe {
         let scene = if frame == 0.0 { scene } else { scene.at_frame(frame)? };
         let settings: Settings = self.view.settings()?;
         effect::check_scene(&settings, &scene)?;
+        self.model.stage.check_floor(settings.transparent_of(&scene))?;
         // Apply the shutter first, since it decides what moves.
         let scene = settings.apply(&scene)?;
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build();
