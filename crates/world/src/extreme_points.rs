@@ -3,7 +3,7 @@
 //! slivers of at most 3 % of the size.
 
 use super::{Content, Object};
-use juggler_math::{Aabb, Motion, Transform, Vec3};
+use juggler_math::{Aabb, BuildControl, Motion, Transform, Vec3};
 use juggler_shape::{AnyShape, Mesh};
 
 /// Largest coordinate of the directions, which are all vectors of whole numbers without a common
@@ -18,9 +18,10 @@ const MAX_OBJECTS: u32 = 1 << 21;
 
 /// The points of the bounded parts of `objects` that reach farthest in 98 directions; none if nothing
 /// is bounded. The order of objects and vertices does not matter. Of parts that move, the corners of
-/// their bounding box over the shutter interval count.
-pub fn extreme_points(objects: &[Object]) -> Vec<Vec3> {
-    let mut search = Search::default();
+/// their bounding box over the shutter interval count. The points are incomplete if `control` is
+/// cancelled.
+pub fn extreme_points(objects: &[Object], control: &BuildControl) -> Vec<Vec3> {
+    let mut search = Search::new(control);
     for object in objects {
         search.add(&object.content, &object.motion, &Transform::IDENTITY);
     }
@@ -29,7 +30,8 @@ pub fn extreme_points(objects: &[Object]) -> Vec<Vec3> {
 }
 
 /// The farthest points found so far.
-struct Search {
+struct Search<'c> {
+    control: &'c BuildControl,
     directions: [Vec3; DIRECTIONS],
     /// For each direction, the largest dot product with it and the point that has it.
     farthest: [(f32, Vec3); DIRECTIONS],
@@ -37,8 +39,8 @@ struct Search {
     left: u32,
 }
 
-impl Default for Search {
-    fn default() -> Self {
+impl<'c> Search<'c> {
+    fn new(control: &'c BuildControl) -> Self {
         let range = || -LARGEST..=LARGEST;
         let all = range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])));
         // Twice a vector of ones and zeros has the same direction.
@@ -47,19 +49,19 @@ impl Default for Search {
         for (own, [x, y, z]) in directions.iter_mut().zip(primitive) {
             *own = Vec3::new(x.into(), y.into(), z.into());
         }
-        Self { directions, farthest: [(f32::NEG_INFINITY, Vec3::ZERO); DIRECTIONS], left: MAX_OBJECTS }
+        Self { control, directions, farthest: [(f32::NEG_INFINITY, Vec3::ZERO); DIRECTIONS], left: MAX_OBJECTS }
     }
-}
 
-impl Search {
     /// Adds a content that `motion` places in a space, which `outer` places in the world.
     fn add(&mut self, content: &Content, motion: &Motion, outer: &Transform) {
         let own = content.bounds(motion);
-        if own.is_empty() || !self.may_extend(&outer.aabb(&own)) {
+        let is_counted = self.left > 0;
+        // Objects that cannot extend the hull count, too: there may be thousands of millions.
+        self.left = self.left.saturating_sub(1);
+        if self.control.is_cancelled() || own.is_empty() || !self.may_extend(&outer.aabb(&own)) {
             return;
         }
-        let still = motion.still().filter(|_| self.left > 0);
-        self.left = self.left.saturating_sub(1);
+        let still = motion.still().filter(|_| is_counted);
         match (content, still) {
             (Content::Geometry(geometry), Some(still)) => {
                 let outer = still.then(outer);
@@ -74,12 +76,12 @@ impl Search {
         match (shape.mesh().filter(|mesh| !mesh.moves()), shape.sphere()) {
             (Some(mesh), _) => self.add_mesh(mesh, to_world),
             (None, Some(sphere)) => {
-                for direction in self.directions {
+                for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
                     // The tangent plane of the ellipsoid with this normal touches it here. Squares of
                     // large and small scales are beyond single precision.
-                    let local = (to_world.matrix().transpose() * direction).as_dvec3();
+                    let local = (to_world.matrix().transpose() * *direction).as_dvec3();
                     let normal = local.normalize_or_zero().as_vec3();
-                    self.add_point(to_world.point(normal * sphere.radius));
+                    keep_farther(farthest, *direction, to_world.point(normal * sphere.radius));
                 }
             }
             _ => shape.bounds().corners().into_iter().for_each(|corner| self.add_point(to_world.point(corner))),
@@ -89,6 +91,9 @@ impl Search {
     fn add_mesh(&mut self, mesh: &Mesh, to_world: &Transform) {
         let mut block = Vec::with_capacity(BLOCK);
         for vertices in mesh.arrays().positions.chunks(BLOCK) {
+            if self.control.is_cancelled() {
+                return;
+            }
             block.clear();
             block.extend(vertices.iter().map(|vertex| to_world.point(*vertex)));
             self.add_block(&block);
@@ -136,7 +141,7 @@ mod tests {
     use super::*;
     use crate::Geometry;
     use juggler_material::MaterialId;
-    use juggler_math::{BuildControl, Mat3};
+    use juggler_math::Mat3;
     use juggler_shape::{Plane, Sphere};
     use std::sync::Arc;
 
@@ -151,13 +156,17 @@ mod tests {
         Object::new(shape, Transform::IDENTITY, MaterialId::NONE)
     }
 
+    fn found(objects: &[Object]) -> Vec<Vec3> {
+        extreme_points(objects, &BuildControl::default())
+    }
+
     fn reach(points: &[Vec3], direction: Vec3) -> f32 {
         points.iter().map(|point| point.dot(direction)).fold(f32::NEG_INFINITY, f32::max)
     }
 
     #[test]
     fn there_are_98_directions_and_none_twice() {
-        let directions = Search::default().directions.map(Vec3::normalize);
+        let directions = Search::new(&BuildControl::default()).directions.map(Vec3::normalize);
         assert!(directions.iter().all(|direction| direction.is_finite()));
         let is_same = |a: &Vec3, b: &Vec3| a.dot(*b) > 0.9999;
         assert!(directions.iter().all(|a| directions.iter().filter(|b| is_same(a, b)).count() == 1));
@@ -167,7 +176,7 @@ mod tests {
     fn an_ellipsoid_is_reached_in_all_directions() {
         let matrix = Mat3::from_cols(Vec3::new(2.0, 0.5, 0.0), Vec3::new(0.0, 1.0, 0.3), Vec3::new(0.1, 0.0, 0.7));
         let to_world = Transform::new(matrix, Vec3::new(3.0, -1.0, 5.0)).unwrap();
-        let points = extreme_points(&[sphere(1.5, to_world)]);
+        let points = found(&[sphere(1.5, to_world)]);
         for direction in [Vec3::X, Vec3::new(0.3, -0.8, 0.5), Vec3::new(-0.7, 0.1, 0.2)].map(Vec3::normalize) {
             let exact = direction.dot(to_world.origin()) + 1.5 * (matrix.transpose() * direction).length();
             let found = reach(&points, direction);
@@ -179,7 +188,7 @@ mod tests {
     fn huge_and_tiny_spheres_have_their_size() {
         for scale in [1e-30, 1e30_f32] {
             let to_world = Transform::scale(Vec3::splat(scale)).unwrap();
-            let points = extreme_points(&[sphere(1.0, to_world)]);
+            let points = found(&[sphere(1.0, to_world)]);
             assert!((reach(&points, Vec3::X) / scale - 1.0).abs() < 1e-5, "{scale}");
         }
     }
@@ -190,8 +199,8 @@ mod tests {
         let grid: Vec<Vec3> = grid.collect();
         let reversed: Vec<Vec3> = grid.iter().rev().copied().collect();
         let extra = || sphere(1.0, Transform::translation(Vec3::new(9.0, 9.0, 9.0)));
-        let one = extreme_points(&[mesh(grid), extra()]);
-        assert_eq!(one, extreme_points(&[extra(), mesh(reversed)]));
+        let one = found(&[mesh(grid), extra()]);
+        assert_eq!(one, found(&[extra(), mesh(reversed)]));
         // Corners of the grid, and the sphere around the last corner.
         assert_eq!((reach(&one, -Vec3::ONE), reach(&one, Vec3::X)), (0.0, 10.0));
     }
@@ -204,15 +213,15 @@ mod tests {
         let content = Content::Geometry(geometry);
         let instance = Object { content, motion, material: None, attributes: None };
         let plane = Object::new(Plane {}.into(), Transform::IDENTITY, MaterialId::NONE);
-        assert!(extreme_points(std::slice::from_ref(&plane)).is_empty());
-        let points = extreme_points(&[plane, instance]);
+        assert!(found(std::slice::from_ref(&plane)).is_empty());
+        let points = found(&[plane, instance]);
         assert_eq!((reach(&points, Vec3::X), reach(&points, -Vec3::X)), (11.0, -9.0));
     }
 
     #[test]
     fn of_moving_objects_the_corners_of_the_whole_box_count() {
         let keys = [0.0, 4.0].map(|x| Transform::translation(Vec3::new(x, 0.0, 0.0)));
-        let points = extreme_points(&[sphere(1.0, Motion::from_keys(keys.to_vec()).unwrap())]);
+        let points = found(&[sphere(1.0, Motion::from_keys(keys.to_vec()).unwrap())]);
         for (direction, expected) in [(Vec3::X, 5.0), (-Vec3::X, 1.0), (Vec3::ONE, 7.0)] {
             assert!((reach(&points, direction) - expected).abs() < 1e-4, "{direction}: {}", reach(&points, direction));
         }

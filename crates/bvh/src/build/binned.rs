@@ -87,7 +87,7 @@ pub(super) fn subtree<'a>(set: Set<'a>, settings: &Settings) -> Result<Subtree<'
         return Ok(build_sequentially(set, settings));
     }
     let bounds = set.extents.bounds;
-    let (left, extents) = split_large(&mut *set.items, &set.extents, set.depth, settings);
+    let (left, extents) = split_large(&mut *set.items, &set.extents, set.depth, settings)?;
     let [left, right] = set.halves(left, extents);
     let (left, right) = rayon::join(|| subtree(left, settings), || subtree(right, settings));
     Ok(Subtree::join(bounds, left?, right?))
@@ -95,24 +95,38 @@ pub(super) fn subtree<'a>(set: Set<'a>, settings: &Settings) -> Result<Subtree<'
 
 /// Partitions the items, left side first. Returns the size of the left side and the bounds of both
 /// sides.
-fn split_large(items: &mut [Item], extents: &SetBounds, depth: usize, settings: &Settings) -> (usize, [SetBounds; 2]) {
+fn split_large(
+    items: &mut [Item],
+    extents: &SetBounds,
+    depth: usize,
+    settings: &Settings,
+) -> Result<(usize, [SetBounds; 2]), Cancelled> {
     let mapping = Mapping::new(extents.centers, items.len()).filter(|_| depth < SAH_DEPTH);
-    let found = mapping.and_then(|mapping| {
-        let bins = |items| {
-            let mut bins = Bins::EMPTY;
-            bins.fill(&mapping, items);
-            bins
-        };
-        let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(bins).collect();
-        let mut all = Bins::EMPTY;
-        chunks.iter().for_each(|bins| all.merge(bins, &mapping));
-        let split = all.best(&mapping, extents.bounds, settings.block)?;
-        Some((mapping, all, split))
+    let found = mapping.map(|mapping| {
+        let all = bins_of_large(items, &mapping, settings)?;
+        Ok(all.best(&mapping, extents.bounds, settings.block).map(|split| (mapping, all, split)))
     });
-    let Some((mapping, bins, split)) = found else { return split_at_median(items, extents) };
+    let Some((mapping, bins, split)) = found.transpose()?.flatten() else { return Ok(split_at_median(items, extents)) };
     let [a, b] = bins.sides(&mapping, &split);
     let (left, [c, d]) = partition::in_place_parallel(items, CHUNK, &SideTest::new(&mapping, &split));
-    (left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }])
+    Ok((left, [SetBounds { bounds: a, centers: c }, SetBounds { bounds: b, centers: d }]))
+}
+
+/// Bins of a large set, by several threads.
+fn bins_of_large(items: &[Item], mapping: &Mapping, settings: &Settings) -> Result<Bins, Cancelled> {
+    let bins = |items| {
+        let mut bins = Bins::EMPTY;
+        // The largest sets take long.
+        if !settings.control.is_cancelled() {
+            bins.fill(mapping, items);
+        }
+        bins
+    };
+    let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(bins).collect();
+    settings.control.check()?;
+    let mut all = Bins::EMPTY;
+    chunks.iter().for_each(|bins| all.merge(bins, mapping));
+    Ok(all)
 }
 
 /// Splits at the median center along the longest axis; equal centers are ordered by item index.

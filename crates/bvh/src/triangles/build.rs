@@ -115,18 +115,23 @@ pub(super) struct TriangleList<'a> {
 }
 
 impl TriangleList<'_> {
-    fn items(&self) -> Result<Items, TriangleError> {
-        Items::new(self.triangles.len(), |triangle| self.corners(triangle).map(bounds_of))
+    fn items(&self, control: &BuildControl) -> Result<Items, TriangleError> {
+        Items::new(self.triangles.len(), |triangle| {
+            if triangle.is_multiple_of(CHUNK) {
+                control.check()?;
+            }
+            self.corners(triangle).map(bounds_of)
+        })
     }
 
     /// Builds the tree; for the best quality the cheaper of two, with and without spatial splits.
     fn tree(&self, quality: Quality, control: &BuildControl) -> Result<Bvh, TriangleError> {
         let options = BuildOptions { block: LANES, ..quality.into() };
-        let whole = Bvh::from_items(self.items()?, &options, control)?;
+        let whole = Bvh::from_items(self.items(control)?, &options, control)?;
         if quality != Quality::Best {
             return Ok(whole);
         }
-        let with_splits = Bvh::with_spatial_splits(self.items()?, &options, self, control)?;
+        let with_splits = Bvh::with_spatial_splits(self.items(control)?, &options, self, control)?;
         Ok(if with_splits.stats.sah_cost < whole.stats.sah_cost { with_splits } else { whole })
     }
 

@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 const MAX_TRIANGLES: usize = 1 << 30;
 /// Number of triangles that are split between tests for cancellation.
 const CHECKED: usize = 1 << 16;
+/// Number of positions whose edges are sorted together.
+const POSITIONS_OF_LIST: usize = 1 << 16;
 
 /// Smoothing groups of a mesh's corners.
 pub struct SmoothingGroups {
@@ -97,42 +99,58 @@ impl SmoothingGroups {
     }
 }
 
+/// An edge of a triangle by the coincident positions of its ends, the lower one first, and the corners
+/// at its ends.
+type Edge = ([u32; 2], [u32; 2]);
+
+/// Unit normal of the triangle of a corner; zero without an area, `None` beyond the mesh.
+fn normal_at(data: &MeshData, corner: u32) -> Option<DVec3> {
+    data.triangle_geometry(corner as usize / 3).map(|triangle| triangle.area_normal().normalize_or_zero())
+}
+
 /// For each corner of each triangle, the index of its smoothing group.
 fn groups(data: &MeshData, least_cosine: f64, control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
+    let mut groups: Vec<u32> = (0..3 * data.triangles.len() as u32).collect();
+    for mut edges in edges(data, control)? {
+        control.check()?;
+        edges.sort_unstable();
+        control.check()?;
+        for shared in edges.chunk_by(|a, b| a.0 == b.0) {
+            let [(_, one), (_, other)] = shared else { continue };
+            let (Some(a), Some(b)) = (normal_at(data, one[0]), normal_at(data, other[0])) else { continue };
+            // Tolerance, so that an edge of exactly the angle is smooth despite rounding.
+            if a.dot(b) >= least_cosine - 1e-6 {
+                (0..2).for_each(|end| join(&mut groups, one[end], other[end]));
+            }
+        }
+    }
+    control.check()?;
+    Ok((0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect())
+}
+
+/// Edges of triangles with an area, in lists by ranges of their lower positions, so that the sorting of
+/// each list is short.
+fn edges(data: &MeshData, control: &BuildControl) -> Result<Vec<Vec<Edge>>, Cancelled> {
     control.check()?;
     let places = coincident_positions(data);
-    control.check()?;
     let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
-    let normal = |corner: u32| {
-        data.triangle_geometry(corner as usize / 3).map(|triangle| triangle.area_normal().normalize_or_zero())
-    };
-    // Edges of triangles with an area, and the corners at their ends, lower position first.
-    let mut edges: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * data.triangles.len());
-    for (first, triangle) in (0..).step_by(3).zip(&data.triangles) {
-        if normal(first).is_none_or(|normal| normal == DVec3::ZERO) {
+    let mut lists = vec![Vec::new(); data.positions.len() / POSITIONS_OF_LIST + 1];
+    for (first, triangle) in (0u32..).step_by(3).zip(&data.triangles) {
+        if (first as usize).is_multiple_of(3 * CHECKED) {
+            control.check()?;
+        }
+        if normal_at(data, first).is_none_or(|normal| normal == DVec3::ZERO) {
             continue;
         }
         let ends = triangle.map(place);
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
             let corners = [first + from as u32, first + to as u32];
             let [a, b] = [ends[from], ends[to]];
-            edges.push(if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) });
+            let edge = if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) };
+            lists.get_mut(edge.0[0] as usize / POSITIONS_OF_LIST).into_iter().for_each(|list| list.push(edge));
         }
     }
-    control.check()?;
-    edges.sort_unstable();
-    control.check()?;
-    let mut groups: Vec<u32> = (0..3 * data.triangles.len() as u32).collect();
-    for shared in edges.chunk_by(|a, b| a.0 == b.0) {
-        let [(_, one), (_, other)] = shared else { continue };
-        let (Some(a), Some(b)) = (normal(one[0]), normal(other[0])) else { continue };
-        // Tolerance, so that an edge of exactly the angle is smooth despite rounding.
-        if a.dot(b) >= least_cosine - 1e-6 {
-            (0..2).for_each(|end| join(&mut groups, one[end], other[end]));
-        }
-    }
-    control.check()?;
-    Ok((0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect())
+    Ok(lists)
 }
 
 /// For each position, the lowest index of a coincident position.

@@ -19,12 +19,13 @@ fn crossed(count: u32, long: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 /// Tree without spatial splits.
 fn whole(mesh: &TriangleList) -> Bvh {
     let options = BuildOptions { block: LANES, ..Quality::Best.into() };
-    Bvh::from_items(mesh.items().unwrap(), &options, &BuildControl::default()).unwrap()
+    Bvh::from_items(mesh.items(&BuildControl::default()).unwrap(), &options, &BuildControl::default()).unwrap()
 }
 
 /// Tree with spatial splits.
 fn with_spatial_splits(mesh: &TriangleList, options: &BuildOptions) -> Bvh {
-    Bvh::with_spatial_splits(mesh.items().unwrap(), options, mesh, &BuildControl::default()).unwrap()
+    Bvh::with_spatial_splits(mesh.items(&BuildControl::default()).unwrap(), options, mesh, &BuildControl::default())
+        .unwrap()
 }
 
 #[test]
