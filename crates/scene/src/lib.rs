@@ -29,7 +29,6 @@ mod fingerprint;
 mod instance_digest;
 mod integrator;
 mod item;
-pub mod kind;
 mod loader;
 mod mesh_digest;
 mod mesh_scene;

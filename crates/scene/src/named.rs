@@ -54,6 +54,9 @@ impl Loader {
 /// Creates the error for a name of neither a file nor one of the `built_in` items. A name with an
 /// extension or a folder counts as a file.
 pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'n str>) -> UnknownName {
+    if name.is_empty() {
+        return UnknownName { message: format!("the name of the {what} is empty"), is_file: false };
+    }
     let path = Path::new(name);
     let folder = path.parent().unwrap_or(Path::new(""));
     let near = || similar_file(path, MAX_NAMES);
@@ -75,6 +78,11 @@ pub(crate) fn similar_file(path: &Path, most: usize) -> Option<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().take(most);
     let names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
     closest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
+}
+
+/// Name of a file without its folder, with `/` in place of `\`; `None` if it has no `\`.
+pub(crate) fn with_slashes(path: &Path) -> Option<String> {
+    path.file_name()?.to_str().filter(|name| name.contains('\\')).map(|name| name.replace('\\', "/"))
 }
 
 /// Question that follows a message: "; did you mean `wood.png`?".

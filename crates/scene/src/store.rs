@@ -194,7 +194,13 @@ impl Store {
         if error.kind() != ErrorKind::NotFound {
             return String::new();
         }
+        let fixed = named::with_slashes(path);
+        let exists = |fixed: &String| self.length(&path.with_file_name(fixed)).is_some();
+        if let Some(fixed) = fixed.as_ref().filter(|fixed| !exists(fixed)) {
+            return format!("; write `/` in place of `\\`: `{fixed}`");
+        }
         named::question(match &self.backend {
+            _ if fixed.is_some() => fixed,
             Backend::Disk => named::similar_file(path, MAX_NAMES),
             Backend::Memory(bundle) => bundle.similar_file(path),
         })

@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::report::Finding;
 use crate::suggest::did_you_mean_or_list;
 use juggler_camera::{AnyCamera, Framing};
-use juggler_math::{Aabb, UVec2, Vec3};
+use juggler_math::{Aabb, BuildControl, UVec2, Vec3};
 use juggler_world::Object;
 use std::sync::Arc;
 
@@ -78,8 +78,14 @@ impl Subjects {
 
     /// Subjects among `objects`, whose bounding box is `bounds`; `entries` holds the index of the first
     /// shape of each scene entry.
-    pub fn new(scene: &Description, objects: &[Object], entries: &[u32], bounds: &Aabb) -> Self {
-        let framed_points = (!has_cameras(scene)).then(|| points_of(objects, bounds).into());
+    pub fn new(
+        scene: &Description,
+        objects: &[Object],
+        entries: &[u32],
+        bounds: &Aabb,
+        control: &BuildControl,
+    ) -> Self {
+        let framed_points = (!has_cameras(scene)).then(|| points_of(objects, bounds, control).into());
         let names = cameras_in(scene).filter_map(|camera| camera.focused_object());
         let middles = names.map(|name| (name.to_owned(), middle(scene, objects, entries, name))).collect();
         Self { framed_points, middles: Arc::new(middles) }
@@ -95,7 +101,7 @@ impl Subjects {
     /// that is missing, unbounded or not in front of the camera.
     fn focus(&self, scene: &Description, camera: &mut AnyCamera, path: &Path, findings: &mut Vec<Finding>) {
         let Some(name) = camera.focused_object().map(str::to_owned) else { return };
-        let at = path.key(crate::kind::name_of(camera)).key("focus_on");
+        let at = path.key(camera.name()).key("focus_on");
         let distance = match (self.middles.get(&name).copied().flatten(), camera.axes()) {
             (Some(middle), Ok(axes)) => (middle - axes.eye).dot(axes.forward),
             // Wrong axes are reported.
@@ -153,7 +159,7 @@ fn checked_camera(points: &[Vec3], size: UVec2, farthest_object: &Path, findings
 /// Reports a camera that is invalid for pictures of `size`.
 fn check_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {
     if let Err(invalid) = camera.projection(size) {
-        let path = path.key(crate::kind::name_of(camera)).join(invalid.field);
+        let path = path.key(camera.name()).join(invalid.field);
         findings.push(Finding::error(invalid.message).at(&path));
     }
 }

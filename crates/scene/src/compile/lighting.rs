@@ -6,7 +6,6 @@ use super::meshes::{AssetCache, Files};
 use super::picture_estimate::Estimate;
 use crate::description::{BackgroundInput, Description};
 use crate::item::Item;
-use crate::kind::name_of;
 use crate::path::Path;
 use crate::report::Finding;
 use crate::store::{MAX_FILE_BYTES, Store};
@@ -104,11 +103,11 @@ impl AssetCache {
 }
 
 fn background_path(background: &AnyBackground) -> Path {
-    Path::root().key("background").key(name_of(background))
+    Path::root().key("background").key(background.name())
 }
 
 fn light_file_path(number: usize, light: &AnyLight) -> Path {
-    Path::root().key("lights").index(number).key(name_of(light)).key("ies").key("file")
+    Path::root().key("lights").index(number).key(light.name()).key("ies").key("file")
 }
 
 /// Files that a scene's background and lights name, each once.

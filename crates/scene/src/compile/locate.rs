@@ -5,7 +5,6 @@ use super::area_lights;
 use super::count::{self, Counts};
 use crate::description::{Description, Object};
 use crate::item::Item;
-use crate::kind::name_of;
 use crate::path::Path;
 use juggler_material::MaterialRef;
 
@@ -38,7 +37,7 @@ impl ShapePlace {
 fn area(scene: &Description, number: usize) -> Option<ShapePlace> {
     let (light, area) = area_lights::iter(&scene.lights).nth(number)?;
     let path = Path::root().key("lights").index(light);
-    Some(ShapePlace { path: path.to_string(), kind: name_of(&area.shape), material: path.to_string() })
+    Some(ShapePlace { path: path.to_string(), kind: area.shape.shape().name().into(), material: path.to_string() })
 }
 
 struct ShapeSearch<'s> {
@@ -83,7 +82,7 @@ impl ShapeSearch<'_> {
         if let Some(objects) = &object.objects {
             return self.among(objects, &at.key("objects"), number, material);
         }
-        let kind = object.shape.as_ref().map_or_else(|| "sphere".into(), name_of);
+        let kind = object.shape.as_ref().map_or("sphere", |shape| shape.name()).into();
         Some(ShapePlace { path: at.to_string(), kind, material })
     }
 }

@@ -34,7 +34,7 @@ impl Materials {
         let (textures, errors) = TextureTable::compile(named, &files);
         // Unknown names are reported already by `validate::names`.
         for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
-            let kind = scene.textures.get(name).map(crate::kind::name_of).unwrap_or_default();
+            let kind = scene.textures.get(name).map_or("", |texture| texture.name());
             let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }

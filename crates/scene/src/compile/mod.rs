@@ -161,7 +161,7 @@ impl Assembly {
             SceneInputs::from_scene(scene, files, &mut findings);
         let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
         let (bounds, farthest_object) = (bounds(&placed.0), farthest_object(&placed.0, &placed.1));
-        let subjects = Subjects::new(scene, &placed.0, &placed.1, &bounds);
+        let subjects = Subjects::new(scene, &placed.0, &placed.1, &bounds, files.control);
         let (has_emission, own_objects) = (materials.has_emission(), placed.0.len());
         area_lights::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
@@ -200,7 +200,10 @@ impl Assembly {
     /// is bounded.
     pub fn extreme_points(&self) -> Vec<Vec3> {
         let own = self.objects.get(..self.own_objects).unwrap_or_default();
-        self.subjects.framed_points.as_deref().map_or_else(|| subjects::points_of(own, &self.bounds), <[Vec3]>::to_vec)
+        self.subjects
+            .framed_points
+            .as_deref()
+            .map_or_else(|| subjects::points_of(own, &self.bounds, &NEVER_CANCELLED), <[Vec3]>::to_vec)
     }
 
     /// Builds the world with its bounding volume hierarchies.

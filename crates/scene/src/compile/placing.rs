@@ -169,7 +169,7 @@ impl Preparer<'_> {
         match shape.prepare_with_control(self.files.control) {
             Ok(()) => Some(shape),
             Err(invalid) => {
-                let path = path.key(&crate::kind::name_of(&shape)).join(&invalid.field);
+                let path = path.key(shape.name()).join(&invalid.field);
                 self.fail(invalid.message, &path)
             }
         }

@@ -47,7 +47,7 @@ pub fn check_lights(scene: &Description, lights: &[AnyLight], findings: &mut Vec
     for (i, light) in lights.iter().enumerate() {
         let path = || Path::root().key("lights").index(i);
         if let Err(invalid) = light.check() {
-            let path = path().key(crate::kind::name_of(light)).join(invalid.field);
+            let path = path().key(light.name()).join(invalid.field);
             findings.push(Finding::error(invalid.message).at(&path));
         } else if still && is_loaded(light) && light.power(1.0) == 0.0 && light.ambient().is_black() {
             let warning = Finding::warning("this light emits no light").at(path());
@@ -72,7 +72,7 @@ pub fn check_fit(scene: &Description, choice: &IntegratorChoice, findings: &mut 
             findings.push(Finding::warning(message).at(lights.index(i)).help(help));
         }
         if let Some((i, light)) = scene.lights.iter().enumerate().find(|(_, light)| light.shadow_samples() > 1) {
-            let path = lights.index(i).key(crate::kind::name_of(light)).key("samples");
+            let path = lights.index(i).key(light.name()).key("samples");
             let message = format!("`samples` of a light has no effect with the integrator `{name}`");
             findings.push(Finding::warning(message).at(path).help("increase `render.samples` for smoother shadows"));
         }

@@ -1,6 +1,6 @@
 //! What the cameras of a scene frame and focus on.
 
-use juggler_math::{Aabb, Vec3};
+use juggler_math::{Aabb, BuildControl, Vec3};
 use juggler_world::{Object, extreme_points};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,8 +15,9 @@ pub struct Subjects {
     pub(super) middles: Arc<BTreeMap<String, Option<Vec3>>>,
 }
 
-/// Extreme points of objects, or the corners of `bounds` if nothing is bounded.
-pub fn points_of(objects: &[Object], bounds: &Aabb) -> Vec<Vec3> {
-    let points = extreme_points(objects);
+/// Extreme points of objects, or the corners of `bounds` if nothing is bounded; incomplete if
+/// `control` is cancelled.
+pub fn points_of(objects: &[Object], bounds: &Aabb, control: &BuildControl) -> Vec<Vec3> {
+    let points = extreme_points(objects, control);
     if points.is_empty() { bounds.corners().into() } else { points }
 }

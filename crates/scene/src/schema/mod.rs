@@ -3,12 +3,16 @@
 //! There are two forms: the [`Schema`] for [`crate::validate`], where expressions are already
 //! evaluated to numbers, and the [`published`] schema for editors, which also allows strings
 //! `"=..."` for numbers and bare names for kinds.
+//!
+//! Programs read the first from a file that a test generates, since the code that generates it would
+//! be 7 % of a program.
 
-use crate::description::Description;
-use schemars::generate::SchemaSettings;
-use serde_json::{Map, Value, json};
+use crate::document::{FileId, parse};
+use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
+#[cfg(test)]
+mod generate;
 mod numbers;
 mod publish;
 mod reference;
@@ -25,22 +29,20 @@ pub struct Schema {
     root: Value,
 }
 
-/// The schema, generated on first use.
-static SCHEMA: LazyLock<Schema> = LazyLock::new(Schema::generate);
+/// What `generate` makes of the types.
+const FILE: &str = include_str!("types.json");
+
+/// The schema, read on first use. A test reads the file, too.
+static SCHEMA: LazyLock<Schema> = LazyLock::new(|| Schema { root: read() });
+
+fn read() -> Value {
+    parse(FILE, FileId::MAIN).map_or(Value::Null, |(tree, _)| tree.to_json())
+}
 
 impl Schema {
     /// Returns the schema of the format.
     pub fn get() -> &'static Self {
         &SCHEMA
-    }
-
-    fn generate() -> Self {
-        let settings = SchemaSettings::draft2020_12();
-        let mut root = settings.into_generator().into_root_schema_for::<Description>().to_value();
-        allow_textures(&mut root);
-        each_schema(&mut root, &mut close);
-        shorten_numbers(&mut root);
-        Self { root }
     }
 
     /// The schema of a whole scene.
@@ -109,25 +111,6 @@ fn each_schema(schema: &mut Value, change: &mut impl FnMut(&mut Map<String, Valu
         }
     }
     change(members);
-}
-
-/// Allows an inline texture wherever the name of a texture is allowed.
-fn allow_textures(root: &mut Value) {
-    let definitions = root.get_mut("$defs").and_then(Value::as_object_mut);
-    for (name, definition) in definitions.into_iter().flatten() {
-        let branches = definition.get_mut("anyOf").and_then(Value::as_array_mut);
-        if let Some(branches) = branches.filter(|_| crate::validate::names_textures(name)) {
-            branches.push(json!({"$ref": "#/$defs/AnyTexture", "description": "Inline texture."}));
-        }
-    }
-}
-
-/// Disallows additional properties of an object.
-fn close(schema: &mut Map<String, Value>) {
-    let object = schema.get("type").is_some_and(|t| t == "object");
-    if object && !schema.contains_key("additionalProperties") {
-        schema.insert("additionalProperties".into(), false.into());
-    }
 }
 
 #[cfg(test)]

@@ -15,19 +15,20 @@ impl Validator<'_> {
             _ => rule.alternatives.iter().find(|form| fits(node, &form.rule) && inline::suits(node, form)),
         };
         let Some(alternative) = alternative else {
-            return self.mismatch(node, at, &wording::allowed(self.schema, rule));
+            return self.mismatch(node, at, rule, &wording::allowed(self.schema, rule));
         };
         match &node.value {
             NodeValue::Array(channels) if alternative.owner == Some("Color") && channels.len() != 3 => {
                 let message = format!("a color is [red, green, blue], this array has {} elements", channels.len());
-                return self.report(node, at, Finding::error(message));
+                let help = Rule::color_with_alpha(node);
+                return self.report(node, at, Finding::error(message).maybe_help(help));
             }
             NodeValue::Array(channels) if alternative.owner == Some("Color") => self.check_range(node, at, channels),
             NodeValue::String(text) if alternative.rule.types.string => match alternative.owner {
                 Some(owner) if wording::names_textures(owner) => {
-                    self.check_reference(NamedFamily::Texture, node, text, at);
+                    self.check_reference(NamedFamily::Texture, node, text, at, rule);
                 }
-                Some("MaterialRef") => self.check_reference(NamedFamily::Material, node, text, at),
+                Some("MaterialRef") => self.check_reference(NamedFamily::Material, node, text, at, rule),
                 _ => {}
             },
             _ => {}

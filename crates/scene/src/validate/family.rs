@@ -22,7 +22,7 @@ impl Validator<'_> {
                 let example = family.kinds.first().map(|(kind, _)| format!(" such as {{\"{kind}\": ...}}"));
                 let words = || format!(": {}", wording::list(family.words.iter().copied(), "or"));
                 let example = example.unwrap_or_else(words);
-                self.mismatch(node, at, &format!("{} {noun}{example}", wording::article(&noun)))
+                self.mismatch(node, at, family, &format!("{} {noun}{example}", wording::article(&noun)))
             }
         }
     }
@@ -99,6 +99,7 @@ impl Validator<'_> {
                 let what = if family.words.is_empty() { "kind of " } else { "" };
                 let finding = Finding::error(format!("unknown {what}{} `{text}`", noun(family)));
                 let other = || other_programs::suggest_kind(text, family, None);
+                let other = || other().or_else(|| family.rewritten(node, at));
                 let help = self.suggestion(|| other().or_else(|| did_you_mean_or_list(text, known.iter().copied())));
                 self.report(node, at, finding.maybe_help(help))
             }
@@ -119,7 +120,8 @@ fn tagged(node: &Node, members: &Members, family: &Rule) -> Option<String> {
     };
     let inside = members.keys().filter(|key| *key != "type").take(MAX_SHOWN).map(|key| format!("\"{key}\": ..."));
     let inside = inside.collect::<Vec<_>>().join(", ");
-    Some(format!("write {{\"{kind}\": {{{inside}}}}} instead of \"type\": \"{tag}\""))
+    let note = if tag == kind { String::new() } else { other_programs::kind_note(tag, family) };
+    Some(format!("write {{\"{kind}\": {{{inside}}}}} instead of \"type\": \"{tag}\"{note}"))
 }
 
 fn noun(family: &Rule) -> String {

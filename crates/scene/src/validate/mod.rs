@@ -20,6 +20,7 @@ mod inline;
 mod names;
 mod other_programs;
 mod plain;
+mod rewritten;
 mod rule;
 mod scalar;
 mod structure;
@@ -30,7 +31,9 @@ pub(crate) use names::NameScope;
 pub use names::NamedFamily;
 pub use other_programs::page as names_page;
 pub(crate) use plain::Plain;
-pub(crate) use wording::{is_product, list, names_textures, noun as family_noun, plural};
+#[cfg(test)]
+pub(crate) use wording::names_textures;
+pub(crate) use wording::{is_product, list, noun as family_noun, plural};
 
 /// Maximum number of warnings.
 const MAX_WARNINGS: usize = 20;
@@ -188,12 +191,14 @@ impl Validator<'_> {
             NodeValue::Bool(value) if rule.types.boolean => Some(Plain::Bool(*value)),
             NodeValue::Array(elements) if rule.types.array => self.array(node, at, elements, rule),
             NodeValue::Object(members) if rule.types.object => self.object(node, at, members, rule),
-            _ => self.mismatch(node, at, &wording::allowed(self.schema, rule)),
+            _ => self.mismatch(node, at, rule, &wording::allowed(self.schema, rule)),
         }
     }
 
     /// Reports a value of the wrong type.
-    fn mismatch(&mut self, node: &Node, at: &PathRef<'_>, expected: &str) -> Option<Plain> {
+    fn mismatch(&mut self, node: &Node, at: &PathRef<'_>, rule: &'static Rule, expected: &str) -> Option<Plain> {
+        let found = || Finding::error(format!("expected {expected}, found {}", node.kind()));
+        let rewritten = || rule.rewritten(node, at);
         let finding = match &node.value {
             NodeValue::Null if node.place.is_none() => {
                 Finding::error(format!("expected {expected}, found a value that is not finite"))
@@ -202,15 +207,15 @@ impl Validator<'_> {
                 if expected.contains("number") && crate::animate::looks_like_expression(text)
                     || expected.ends_with("number") && is_name(text) =>
             {
-                Finding::error(format!("expected {expected}, found a string"))
-                    .help(format!("an expression begins with `=`: \"={text}\""))
+                let expression = || Some(format!("an expression begins with `=`: \"={text}\""));
+                found().maybe_help(self.suggestion(|| rewritten().or_else(expression)))
             }
             NodeValue::Object(members) => {
                 let form = members.keys().next().filter(|_| members.len() == 1);
-                let form = self.suggestion(|| crate::animate::closest_form(form?).map(did_you_mean));
-                Finding::error(format!("expected {expected}, found {}", node.kind())).maybe_help(form)
+                let form = || crate::animate::closest_form(form?).map(did_you_mean);
+                found().maybe_help(self.suggestion(|| form().or_else(rewritten)))
             }
-            _ => Finding::error(format!("expected {expected}, found {}", node.kind())),
+            _ => found().maybe_help(self.suggestion(rewritten)),
         };
         self.report(node, at, finding)
     }

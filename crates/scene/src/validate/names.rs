@@ -88,7 +88,14 @@ impl Validator<'_> {
     }
 
     /// Reports an error if the scene does not define a name.
-    pub(super) fn check_reference(&mut self, family: NamedFamily, node: &Node, name: &str, at: &PathRef<'_>) {
+    pub(super) fn check_reference(
+        &mut self,
+        family: NamedFamily,
+        node: &Node,
+        name: &str,
+        at: &PathRef<'_>,
+        rule: &'static Rule,
+    ) {
         let (part, noun) = family.words();
         // The cameras of models are known when the models are expanded, which checks the name.
         if self.known.has(part, name) || family == NamedFamily::Camera && self.known.has_models() {
@@ -99,6 +106,9 @@ impl Validator<'_> {
             let names = known.all(part);
             if let Some(near) = closest(name, names.iter().copied()) {
                 return Some(did_you_mean(near));
+            }
+            if let Some(help) = rule.rewritten(node, at) {
+                return Some(help);
             }
             let kind = (family == NamedFamily::Material).then(|| kind_of_material(name)).flatten();
             let listed = kind.or_else(|| list_of_known(names.iter().copied()));

@@ -73,11 +73,12 @@ impl Validator<'_> {
             _ => None,
         };
         if let Some(family) = family {
-            self.check_reference(family, node, text, at);
+            self.check_reference(family, node, text, at, rule);
         }
         if rule.is_color && Rgb::from_css(text).is_none() {
             let near = || closest(text, color_names()).map(did_you_mean).filter(|_| !text.starts_with('#'));
-            let help = self.suggestion(near).unwrap_or_else(|| COLOR_HELP.to_owned());
+            let alpha = || Rule::color_with_alpha(node);
+            let help = self.suggestion(|| near().or_else(alpha)).unwrap_or_else(|| COLOR_HELP.to_owned());
             return self.report(node, at, Finding::error(format!("`{text}` is not a color")).help(help));
         }
         // Where textures are allowed, any other text names a texture.

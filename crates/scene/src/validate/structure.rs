@@ -143,7 +143,8 @@ impl Validator<'_> {
         }
         let help = self.suggestion(|| {
             let tagged = written.value.as_str().filter(|_| key == "type").and_then(|kind| parent_key(kind, rule));
-            tagged.or_else(|| suggest_key(key, rule, written))
+            let flag = || rule.flag_for(key);
+            tagged.or_else(flag).or_else(|| suggest_key(key, rule, written))
         });
         Finding::error(format!("unknown key `{key}`")).maybe_help(help)
     }

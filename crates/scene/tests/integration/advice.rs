@@ -113,7 +113,10 @@ fn units_of_lights_are_converted() {
         ),
         (light(r#""spot": {"position": [0, 4, 0], "target": [1, 2, 3]}"#), r#"write "direction": [1, -2, 3]"#),
         (light(r#""spot": {"target": [1, 2, 3]}"#), r#"write "direction": [...]"#),
-        (light(r#""sun": {"direction": [1, -1, 0]}"#), r#"write {"directional": {"direction": [1, -1, 0]}}"#),
+        (
+            light(r#""sun": {"direction": [1, -1, 0]}"#),
+            r#"write {"directional": {"direction": [1, -1, 0]}} (`direction` is where the light travels: straight down is [0, -1, 0])"#,
+        ),
     ]);
 }
 
@@ -175,6 +178,111 @@ fn values_of_objects_are_converted() {
         ),
         (object(r#""shape": {"sphere": {"diameter": 3}}"#), r#"write "radius": 1.5"#),
     ]);
+}
+
+/// Values in a wrong form lead to the right form of the same value.
+#[test]
+fn values_in_a_wrong_form_are_rewritten() {
+    let opacity = "opacity is no part of a color: `principled` and `mask` have";
+    check(&[
+        (material(r#""principled": {"roughness": "0.5"}"#), "write 0.5 without quotes"),
+        (material(r#""principled": {"metallic": true}"#), r#"write "metallic": 1"#),
+        (material(r#""diffuse": {"reflectance": "0.8 0.2 0"}"#), r#"write "reflectance": [0.8, 0.2, 0]"#),
+        (
+            material(r#""diffuse": {"reflectance": "wood.png"}"#),
+            r#"write "reflectance": {"image": {"file": "wood.png"}}"#,
+        ),
+        (
+            material(r#""diffuse": {"reflectance": [1, 0.5, 0, 0.25]}"#),
+            &format!("write [1, 0.5, 0]; {opacity} \"opacity\": 0.25"),
+        ),
+        (
+            material(r##""diffuse": {"reflectance": "#ff800080"}"##),
+            &format!("write \"#ff8000\"; {opacity} \"opacity\": 0.502"),
+        ),
+        (material(r#""principled": {"thin": "true"}"#), "write true without quotes"),
+    ]);
+}
+
+#[test]
+fn scenes_in_a_wrong_form_are_rewritten() {
+    let scene = |more: &str| format!(r#"{{"version": 1, {more}}}"#);
+    let with = |more: &str| scene(&format!(r#""objects": [], {more}"#));
+    let long: Vec<String> = (0..9).map(|i| format!(r#""ball{i}": {{"shape": "sphere"}}"#)).collect();
+    check(&[
+        (with(r#""render": {"samples": "64"}"#), "write 64 without quotes"),
+        (with(r#""render": {"samples": "2*32"}"#), r#"an expression begins with `=`: "=2*32""#),
+        (with(r#""render": {"size": "1920x1080"}"#), r#"write "size": [1920, 1080]"#),
+        (with(r#""render": {"denoise": true}"#), "the command line here: `juggler render --denoise`"),
+        (with(r#""background": "x.hdr""#), r#"write "background": {"environment": {"file": "x.hdr"}}"#),
+        (with(r#""background": {"environment": "x.hdr"}"#), r#"write "environment": {"file": "x.hdr"}"#),
+        (scene(r#""objects": {}"#), r#"write "objects": []"#),
+        (scene(r#""objects": {"shape": "sphere"}"#), r#"write "objects": [{"shape": "sphere"}]"#),
+        (scene(r#""objects": {"ball": {"shape": "sphere"}}"#), r#"write "objects": [{"shape": "sphere"}]"#),
+        (camera(r#""look_at": [0, 0, 0], "eye": "0 2 6""#), r#"write "eye": [0, 2, 6]"#),
+        (camera(r#""look_at": [0, 0, 0], "eye": {"x": 0, "y": 2, "z": 6}"#), r#"write "eye": [0, 2, 6]"#),
+        (
+            with(r#""camera": {"equirectangular": {"eye": [0, 1, 0]}}"#),
+            "panoramic cameras are not in this version; kinds: `perspective`, `thin_lens` and `orthographic`",
+        ),
+        (scene(&format!(r#""objects": {{{}}}"#, long.join(", "))), r#"write a list in [ ]: "objects": [...]"#),
+        (object(r#""shape": {"mesh": "x.stl"}"#), r#"write "mesh": {"file": "x.stl"}"#),
+        (object(r#""shape": "x.stl""#), r#"write "shape": {"mesh": {"file": "x.stl"}}"#),
+        (object(r#""shape": {"sphere": {"radius": "1"}}"#), "write 1 without quotes"),
+        (object(r#""shape": {"sphere": {"radius": "r"}}"#), r#"an expression begins with `=`: "=r""#),
+        (object(r#""radius": 2"#), r#"write "shape": {"sphere": {"radius": 2}}"#),
+    ]);
+}
+
+/// Geometries of three.js name shapes, with and without a type.
+#[test]
+fn geometries_of_three_js_lead_to_shapes() {
+    let geometry = |value: &str| object(&format!(r#""geometry": {value}"#));
+    check(&[
+        (geometry(r#""BoxGeometry""#), r#"write "shape": {"cuboid": {"min": [...], "max": [...]}}"#),
+        (
+            geometry(r#"{"type": "BoxGeometry", "width": 2}"#),
+            r#"write "shape": {"cuboid": {"min": [...], "max": [...]}}"#,
+        ),
+        (
+            geometry(r#""CylinderGeometry""#),
+            r#"write "shape": {"cylinder": {"radius": ..., "y_min": ..., "y_max": ...}}"#,
+        ),
+        (geometry(r#"{"SphereGeometry": {"radius": 3}}"#), r#"write "shape": {"sphere": {"radius": 3}}"#),
+        (geometry(r#"{"PlaneGeometry": {}}"#), r#"write "shape": {"rectangle": {"size": [2, 2]}}"#),
+        (geometry(r#""BufferGeometry""#), r#"write "shape": {"mesh": {"file": ...}}"#),
+        (object(r#""BoxGeometry": {"width": 2}"#), r#"write "shape": {"cuboid": {...}}"#),
+    ]);
+}
+
+/// The steps of all keys are one transform, since each key stands once.
+#[test]
+fn keys_of_one_transform_are_combined() {
+    let all = r#"write "transform": [{"scale": 2}, {"rotate": [0, 90, 0]}, {"translate": [1, 2, 3]}]"#;
+    let sphere = |more: &str| object(&format!(r#""shape": "sphere", {more}"#));
+    check(&[
+        (sphere(r#""position": [1, 2, 3], "rotate": [0, 90, 0], "scale": 2"#), all),
+        (
+            sphere(r#""location": [1, 2, 3], "rotate_y": 90"#),
+            r#"write "transform": [{"rotate": {"axis": [0, 1, 0], "degrees": 90}}, {"translate": [1, 2, 3]}]"#,
+        ),
+        (
+            object(r#""shape": {"sphere": {"center": [1, 2, 3], "scale": 2}}"#),
+            r#"write "transform": [{"scale": 2}, {"translate": [1, 2, 3]}]"#,
+        ),
+        (sphere(r#""position": [1, 2, 3]"#), r#"write "transform": {"translate": [1, 2, 3]}"#),
+    ]);
+}
+
+#[test]
+fn a_focus_on_objects_leads_to_the_animation_of_its_distance() {
+    let keys = r#"{"animate": {"keys": [[0, "a"], [1, "b"]]}}"#;
+    let lens =
+        format!(r#"{{"thin_lens": {{"eye": [0, 0, 5], "look_at": [0, 0, 0], "f_stop": 2, "focus_on": {keys}}}}}"#);
+    let error = Scene::from_json(format!(r#"{{"version": 1, "objects": [], "camera": {lens}}}"#), "scene.json");
+    let report = error.unwrap_err().to_string();
+    let expected = r#"write "interpolation": "step", or animate `focus_distance` for a smooth focus pull"#;
+    assert!(report.contains(expected), "{report}");
 }
 
 #[test]
@@ -259,6 +367,23 @@ fn missing_files_lead_to_files_of_the_same_folder() {
     let bundle: Bundle = files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes.to_vec())).collect();
     let report = Loader::default().from_bundle(bundle, "scene.json").unwrap().check().to_string();
     assert!(report.contains("did you mean `cow.ply`?"), "{report}");
+}
+
+#[test]
+fn backslashes_in_file_names_lead_to_slashes() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("models")).unwrap();
+    std::fs::write(folder.path().join("models/cow.ply"), "ply").unwrap();
+    for (name, expected) in [
+        (r"models\\cow.ply", "file not found; did you mean `models/cow.ply`?"),
+        (r"models\\dog.ply", r"file not found; write `/` in place of `\`: `models/dog.ply`"),
+    ] {
+        let file = folder.path().join("scene.json");
+        let mesh = format!(r#"{{"shape": {{"mesh": {{"file": "{name}"}}}}}}"#);
+        std::fs::write(&file, format!(r#"{{"version": 1, "objects": [{mesh}]}}"#)).unwrap();
+        let report = Scene::load(&file).unwrap().check().to_string();
+        assert!(report.contains(expected), "{report}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::track::Interpolation;
 use crate::animate::easing::Ease;
 use crate::animate::tree_resolver::TreeResolver;
 use crate::document::{Node, Value};
-use crate::path::PathRef;
+use crate::path::{Path, PathRef, Step};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -127,7 +127,10 @@ fn is_valid_key(
         Interpolation::Linear | Interpolation::Smooth => {
             let is_valid = |first: &&Node| !blend::has_error(first) && blend::interpolation_error(first).is_none();
             let unlike = || first.filter(is_valid).and_then(|first| blend::form_mismatch(node, first));
-            blend::interpolation_error(node).or_else(unlike)
+            let focus = |message| format!("{message}, or animate `focus_distance` for a smooth focus pull");
+            let is_focus = || Path::from(at).steps().contains(&Step::Key("focus_on".into()));
+            let error = blend::interpolation_error(node);
+            error.map(|message| if is_focus() { focus(message) } else { message }).or_else(unlike)
         }
     };
     let is_valid = wrong.is_none();

@@ -17,7 +17,7 @@ use crate::document::{FileId, Members, Node, Value, parse};
 use juggler_expression::{PointEvaluator, Program};
 
 /// Maximum length of a user's value in a message, in bytes.
-const MAX_VALUE: usize = 80;
+pub const MAX_VALUE: usize = 80;
 
 /// Normalizes a word: lower case, without `_`, `-` and spaces.
 pub fn plain(word: &str) -> String {
@@ -109,7 +109,7 @@ impl Example {
     }
 
     /// The example without values: `"size": [...]`.
-    fn form(&self) -> String {
+    pub fn form(&self) -> String {
         self.text(|_| None, Sample::form)
     }
 

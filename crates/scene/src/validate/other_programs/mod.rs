@@ -9,11 +9,14 @@ use std::sync::LazyLock;
 
 mod example;
 mod json_line;
+mod outside;
 mod page;
+mod several;
 #[cfg(test)]
 mod tests;
 
-pub use example::Written;
+pub use example::{MAX_VALUE, Written};
+pub use json_line::{json_line, shown};
 pub use page::page;
 
 /// Text of the table.
@@ -104,16 +107,28 @@ impl Entry {
         }
     }
 
+    /// The example with the value that the user wrote.
+    fn advice(&self, written: Option<Written<'_>>) -> String {
+        self.example.advice(written, |text| self.is_right(text))
+    }
+
     /// Help for a word, with the value that the user wrote.
     fn help(&self, word: &str, is_here: bool, written: Option<Written<'_>>) -> String {
+        self.help_with(word, is_here, &self.advice(written))
+    }
+
+    /// Help for a word, with an example.
+    fn help_with(&self, word: &str, is_here: bool, example: &str) -> String {
         let what = match self.names().count() {
             1 if is_here => format!("called `{}`", self.name()),
             _ if is_here => wording::list(self.names(), "and"),
             _ => self.described(),
         };
-        let example = self.example.advice(written, |text| self.is_right(text));
-        let note = if self.note.is_empty() { String::new() } else { format!(" ({})", self.note) };
-        format!("`{word}` is {what} here: write {example}{note}")
+        format!("`{word}` is {what} here: write {example}{}", self.note_in_parentheses())
+    }
+
+    fn note_in_parentheses(&self) -> String {
+        if self.note.is_empty() { String::new() } else { format!(" ({})", self.note) }
     }
 
     /// Whether the example can carry the value that the user wrote.
@@ -152,7 +167,7 @@ fn contents(rule: &'static Rule) -> Vec<&'static Rule> {
 
 /// Whether a value is valid by a rule, except for undefined names and missing keys beside it, since
 /// examples are excerpts.
-fn is_valid_excerpt(node: &Node, rule: &'static Rule) -> bool {
+pub fn is_valid_excerpt(node: &Node, rule: &'static Rule) -> bool {
     let of_excerpts = ["is called", "missing here", "exactly one of"];
     super::is_valid(node, rule, |finding| of_excerpts.iter().any(|words| finding.message_contains(words)))
 }
@@ -192,7 +207,7 @@ fn entries(is_kind: bool, word: &str) -> impl Iterator<Item = &'static Entry> {
 
 /// Suggests the name here of the kind or fixed word `word` of a family. `written` is its value.
 pub fn suggest_kind(word: &str, family: &Rule, written: Option<Written<'_>>) -> Option<String> {
-    let entry = kind_entry(word, family)?;
+    let Some(entry) = kind_entry(word, family) else { return family.missing_kind(word) };
     let is_here = family.name.map(noun) == Some(entry.owner()) && entry.target.len() == 2;
     Some(entry.help(word, is_here, written))
 }
@@ -201,6 +216,11 @@ pub fn suggest_kind(word: &str, family: &Rule, written: Option<Written<'_>>) -> 
 pub fn kind_name(word: &str, family: &Rule) -> Option<&'static str> {
     let entry = kind_entry(word, family).filter(|entry| entry.target.len() == 2);
     entry.map(Entry::name).filter(|name| family.kinds.iter().any(|(kind, _)| kind == name))
+}
+
+/// Note in parentheses about the kind that other programs call `word`; empty for most.
+pub fn kind_note(word: &str, family: &Rule) -> String {
+    kind_entry(word, family).map(Entry::note_in_parentheses).unwrap_or_default()
 }
 
 fn kind_entry(word: &str, family: &Rule) -> Option<&'static Entry> {
@@ -214,13 +234,16 @@ fn kind_entry(word: &str, family: &Rule) -> Option<&'static Entry> {
 
 /// Suggests the name here of the key `word` of an object. `written` is its value. Of several
 /// entries, the first one that can carry the value counts, or else the first one.
-pub fn suggest_key(word: &str, rule: &Rule, written: Option<Written<'_>>) -> Option<String> {
+pub fn suggest_key(word: &str, rule: &'static Rule, written: Option<Written<'_>>) -> Option<String> {
     let entries: Vec<&Entry> = entries(false, word).collect();
     let owners = if entries.is_empty() { Vec::new() } else { owners(rule) };
     let of_owner = owners.iter().flat_map(|owner| entries.iter().filter(move |entry| entry.owners.contains(&&**owner)));
     let useful: Vec<&Entry> = of_owner.copied().filter(|entry| is_useful(entry, rule, &owners)).collect();
     let entry = useful.iter().find(|entry| entry.carries(written)).or_else(|| useful.first())?;
-    Some(entry.help(word, owners.contains(&entry.owner()) && has_field(rule, entry.name()), written))
+    let is_here = owners.contains(&entry.owner()) && has_field(rule, entry.name());
+    let example = written.and_then(|written| entry.whole_example(rule, &owners, written));
+    let example = example.unwrap_or_else(|| entry.advice(written));
+    Some(entry.help_with(word, is_here, &example))
 }
 
 /// The key that the unknown key `word` of an object is read as; `None` for most words.

@@ -38,7 +38,7 @@ pub fn page() -> String {
         let (note, programs) = (note(entry), entry.programs);
         let _ = writeln!(text, "| {words} | {place} | {target} | `{example}`{note} | {programs} |");
     }
-    text
+    text + &Rule::absent_names_section()
 }
 
 /// How an entry computes its values from a value `x`, and its note; empty for most.
