@@ -186,11 +186,20 @@ impl GltfData {
 
     /// JSON pointer of an image, with its name or that of its file for people.
     pub fn image_place(&self, index: Index) -> String {
-        let image = self.gltf.document.images.get(index.get());
-        let uri = image.and_then(|image| Uri::parse(image.uri.as_deref()?).ok());
-        let name = image.and_then(|image| image.name.as_deref()).or(uri.as_ref().and_then(Uri::file_name));
-        let name = name.map_or_else(String::new, |name| format!(" ({})", excerpt(name, MAX_QUOTE)));
+        let name = self.own_image_name(index).map_or_else(String::new, |name| format!(" ({name})"));
         format!("/images/{index}{name}")
+    }
+
+    /// Name of a picture for messages: its own, that of its file, or else its JSON pointer.
+    pub fn image_name(&self, index: Index) -> String {
+        self.own_image_name(index).unwrap_or_else(|| format!("/images/{index}"))
+    }
+
+    fn own_image_name(&self, index: Index) -> Option<String> {
+        let image = self.gltf.document.images.get(index.get())?;
+        let uri = || Uri::parse(image.uri.as_deref()?).ok();
+        let file = || uri()?.file_name().map(|name| excerpt(name, MAX_QUOTE));
+        image.name.as_deref().map(|name| excerpt(name, MAX_QUOTE)).or_else(file)
     }
 
     /// Bytes of an object that has either a URI or a buffer view, at a JSON pointer.

@@ -18,6 +18,9 @@ pub const KTX2: &[u8] = b"\xabKTX 20\xbb";
 /// Maximum number of texels of a picture.
 pub const MAX_TEXELS: u64 = 1 << 28;
 
+/// Maximum number of further pictures that a warning names.
+const MAX_NAMED: usize = 3;
+
 /// Contents of pictures and light profiles by index; `None` where nothing uses them.
 #[derive(Debug, Default)]
 pub struct Media {
@@ -70,16 +73,10 @@ impl GltfData {
         let images = uses.map(|(index, Use { is_used, is_replaceable })| {
             control.check().ok()?;
             let index = Index::from(u32::try_from(index).ok()?);
-            let read = || self.picture(index, files);
             if !is_used || !is_lenient {
-                return is_used.then(|| keep(read(), is_replaceable)).flatten();
+                return is_used.then(|| keep(self.picture(index, files), is_replaceable)).flatten();
             }
-            let check = |asset: &Asset| check_picture(asset.bytes().unwrap_or_default(), files.pictures());
-            let picture = read().and_then(|asset| match check(&asset) {
-                Ok(()) => Ok(asset),
-                Err(error) => Err(Fault::at(self.image_place(index), error)),
-            });
-            picture.map_err(|fault| lost.push(fault)).ok()
+            self.checked_picture(index, files).map_err(|fault| lost.push(fault)).ok()
         });
         let images: Vec<Option<Asset>> = images.collect();
         let replacements = images.iter().map(|_| OnceLock::new()).collect();
@@ -91,8 +88,9 @@ impl GltfData {
             return Err(GltfError { file: self.gltf.name.clone(), faults, omitted });
         }
         self.media = Media { images, replacements, is_lenient, profiles };
-        for fault in lost {
-            self.gltf.warnings.add(fault.to_string(), "the picture is shown gray", 1);
+        if let Some((first, others)) = lost.split_first() {
+            let text = format!("the picture is shown gray{}", and_others(others));
+            self.gltf.warnings.add(first, text, 1);
         }
         Ok(())
     }
@@ -101,6 +99,13 @@ impl GltfData {
     fn picture(&self, index: Index, files: &dyn Files) -> Result<Asset, Fault> {
         let origin = format!("{}: {}", self.gltf.name, self.image_place(index));
         Ok(Asset::from_bytes(self.image(index, files)?.into_owned()).with_origin(origin))
+    }
+
+    /// Reads a picture, and checks that it can be decoded.
+    fn checked_picture(&self, index: Index, files: &dyn Files) -> Result<Asset, Fault> {
+        let asset = self.picture(index, files)?;
+        let checked = check_picture(&self.image_name(index), asset.bytes().unwrap_or_default(), files.pictures());
+        checked.map(|()| asset).map_err(|error| Fault::at(self.image_place(index), error))
     }
 
     /// Reads a light profile.
@@ -142,9 +147,20 @@ impl GltfData {
     }
 }
 
-/// Checks that a picture, or its head, can be decoded.
-fn check_picture(bytes: &[u8], reading: PictureReading) -> Result<(), String> {
-    let (name, limits) = ("the picture", ImageLimits::default());
+/// Names the places of the first few of several pictures: `, as are /images/1 and 2 more`.
+fn and_others(others: &[Fault]) -> String {
+    let shown = others.iter().take(MAX_NAMED).map(|fault| fault.place.to_string()).collect::<Vec<_>>().join(", ");
+    match others.len() {
+        0 => String::new(),
+        1 => format!(", as is {shown}"),
+        count if count <= MAX_NAMED => format!(", as are {shown}"),
+        count => format!(", as are {shown} and {} more", count - MAX_NAMED),
+    }
+}
+
+/// Checks that the picture `name`, or its head, can be decoded.
+fn check_picture(name: &str, bytes: &[u8], reading: PictureReading) -> Result<(), String> {
+    let limits = ImageLimits::default();
     let checked = match (bytes.starts_with(KTX2), reading) {
         (true, PictureReading::Whole) => return ktx2::decode(bytes, MAX_TEXELS).map(drop).map_err(|e| e.to_string()),
         (true, PictureReading::Heads) => return ktx2::read_head(bytes).map(drop).map_err(|e| e.to_string()),

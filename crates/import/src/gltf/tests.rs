@@ -196,6 +196,46 @@ fn a_file_that_cannot_be_read_is_named() {
     assert_eq!(error, "a.gltf: a b.bin (/buffers/0/uri): cannot be read: permission denied");
 }
 
+/// Files of a lenient reader, of which none exists.
+struct Lenient;
+
+impl Files for Lenient {
+    fn read(&self, _: &str, _: u64) -> Result<Vec<u8>, FileError> {
+        Err(FileError::Missing)
+    }
+
+    fn is_lenient(&self) -> bool {
+        true
+    }
+}
+
+/// Broken embedded pictures are named by their pointers and names, the first few of them.
+#[test]
+fn lost_pictures_are_named() {
+    let warnings = |count: usize| {
+        let image = |i: usize| format!(r#"{{"name": "wood {i}", "uri": "data:image/png;base64,AAAA"}}"#);
+        let texture = |i: usize| format!(r#"{{"source": {i}}}"#);
+        let list = |item: &dyn Fn(usize) -> String| (0..count).map(item).collect::<Vec<_>>().join(", ");
+        let (images, textures) = (list(&image), list(&texture));
+        let text = format!(r#"{{"asset": {{"version": "2.0"}}, "images": [{images}], "textures": [{textures}]}}"#);
+        let gltf = Gltf::open("a.gltf", text.into_bytes(), &Limits::default()).unwrap();
+        let mut data = gltf.load(&Lenient).unwrap();
+        data.load_media(&Lenient, &juggler_math::BuildControl::default()).unwrap();
+        data.gltf.warnings.texts().join("\n")
+    };
+    let first = "/images/0 (wood 0): cannot read `wood 0`: its first bytes match no supported format";
+    for (count, rest) in [
+        (1, ""),
+        (2, ", as is /images/1 (wood 1)"),
+        (3, ", as are /images/1 (wood 1), /images/2 (wood 2)"),
+        (6, ", as are /images/1 (wood 1), /images/2 (wood 2), /images/3 (wood 3) and 2 more"),
+    ] {
+        let text = warnings(count);
+        assert!(text.starts_with(first), "{text}");
+        assert!(text.ends_with(&format!("the picture is shown gray{rest}")), "{text}");
+    }
+}
+
 /// File whose only buffer view is compressed, with a stream of a test of the decoder.
 fn compressed(extension: &str) -> (Builder, String, usize) {
     let line = include_str!("meshopt/streams.txt")

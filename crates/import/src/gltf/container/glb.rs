@@ -186,6 +186,11 @@ mod tests {
         let container = Container::parse("a.glb", b"\xef\xbb\xbf{}", &limits).unwrap();
         assert!(!container.is_binary && container.json == (3..5) && container.warnings.list().len() == 2);
         assert!(Container::parse("a.gltf", b"{}", &limits).unwrap().warnings.list().is_empty());
+        for text in [&b"no model"[..], b" <html>", b"v 0 0 0\n", b"\x00{"] {
+            let expected = "byte 0: this is no glTF file: a binary one begins with `glTF`, a text with `{`";
+            assert_eq!(Container::parse("a.glb", text, &limits).unwrap_err().to_string(), expected);
+        }
+        assert!(Container::parse("a.gltf", b"\n {", &limits).is_ok());
     }
 
     #[test]

@@ -40,7 +40,7 @@ impl Container {
             let text = format!("the file has {} bytes, the limit is {}", bytes.len(), limits.file_bytes);
             return Err(Fault::new(Place::Byte(0), text));
         }
-        let mut container = if is_binary(bytes) { glb::parse(bytes)? } else { text(bytes) };
+        let mut container = if is_binary(bytes) { glb::parse(bytes)? } else { text(bytes)? };
         if container.json.len() as u64 > limits.json_bytes {
             let text = format!("the JSON text has {} bytes, the limit is {}", container.json.len(), limits.json_bytes);
             return Err(Fault::new(Place::Byte(container.json.start as u64), text));
@@ -62,12 +62,17 @@ impl Container {
 }
 
 /// A JSON text, without its byte order mark.
-fn text(bytes: &[u8]) -> Container {
+fn text(bytes: &[u8]) -> Result<Container, Fault> {
     let mut warnings = Warnings::default();
     let has_mark = bytes.starts_with(BYTE_ORDER_MARK);
     if has_mark {
         warnings.add_at(Place::Byte(0), "the text begins with a byte order mark, which glTF forbids");
     }
     let start = if has_mark { BYTE_ORDER_MARK.len() } else { 0 };
-    Container { is_binary: false, json: start..bytes.len(), binary: None, warnings }
+    let first = bytes.iter().skip(start).find(|byte| !byte.is_ascii_whitespace());
+    if first.is_some_and(|byte| *byte != b'{') {
+        let text = "this is no glTF file: a binary one begins with `glTF`, a text with `{`";
+        return Err(Fault::new(Place::Byte(0), text));
+    }
+    Ok(Container { is_binary: false, json: start..bytes.len(), binary: None, warnings })
 }

@@ -6,7 +6,7 @@
 
 use super::objects::View;
 use crate::gltf::data::GltfData;
-use crate::gltf::document::{Document, ImageBasedLight};
+use crate::gltf::document::{Document, ImageBasedLight, Index};
 use crate::gltf::error::Fault;
 use glam::{DQuat, DVec3};
 use juggler_imaging::{Limits, Raster, RasterSamples, decode_raster};
@@ -142,14 +142,15 @@ impl Face {
 /// Decodes a face. Pictures with alpha are RGBD: linear colors are divided by alpha. A picture that
 /// lenient files lack is black, of size 0.
 fn face(image: usize, data: &GltfData) -> Result<Face, Fault> {
-    let at = format!("/images/{image}");
+    let index = Index::from(u32::try_from(image).unwrap_or(u32::MAX));
+    let (at, name) = (data.image_place(index), data.image_name(index));
     if data.is_lost(image) {
         return Ok(Face { size: 0, pixels: Vec::new() });
     }
     let missing = || Fault::at(&at, "the picture has not been read");
     let asset = data.image_asset(image).ok_or_else(missing)?;
     let bytes = Cursor::new(asset.bytes().unwrap_or_default());
-    let raster = decode_raster("the picture", bytes, &Limits::default());
+    let raster = decode_raster(&name, bytes, &Limits::default());
     let raster = raster.map_err(|error| Fault::at(&at, error))?;
     let layout = raster.layout;
     if layout.width != layout.height {
