@@ -41,7 +41,7 @@ mod viewpoint;
 
 pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
 pub use clamp_count::ClampCount;
-pub use codec::{ExrCompression, Header, ImageInfo, Options, RowWriter, SampleDepth, writer};
+pub use codec::{ExrCompression, GifLength, Header, ImageInfo, Options, RowWriter, SampleDepth, gif_length, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
 pub use exr_windows::{CropFrame, ExrWindows, PixelWindow};

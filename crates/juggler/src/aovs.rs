@@ -5,6 +5,8 @@ mod aliases;
 mod cryptomatte;
 mod values;
 
+pub(crate) use values::Coverage;
+
 use crate::{Denoiser, Error, check_name};
 use juggler_camera::aov::{AdjacentFrame, DenoisingFeature, FilmAov, FilmAovs, LightGroup};
 use juggler_film::partial_render::{AovDescription, MAX_PLANES};

@@ -1,11 +1,12 @@
 //! Denoising of a film: gathers its half buffers and feature buffers tile by tile.
 
+use crate::aovs::Coverage;
 use crate::{AovSet, Error, check_name};
 use juggler_camera::aov::{DenoisingFeature, FilmAov, is_in_second_half};
 use juggler_camera::film::{Rect, Tile};
 pub use juggler_denoise::Denoised;
 use juggler_denoise::{Features, Noisy, denoise_unless, split};
-use juggler_math::{Rgb, Vec3};
+use juggler_math::{PixelRows, Rgb, Vec3};
 use juggler_oidn::Oidn;
 use juggler_render::Control;
 use std::path::Path;
@@ -50,8 +51,8 @@ pub struct DenoiserInput {
     albedo: [Vec<Rgb>; 2],
     normal: [Vec<Vec3>; 2],
     depth: [Vec<f32>; 2],
-    /// Alpha, which is not denoised; empty if the picture is opaque.
-    alpha: Vec<f32>,
+    /// What the pixels see; empty if the picture is opaque.
+    coverage: Vec<Coverage>,
 }
 
 /// Sums of a pixel over both halves of its samples, with their numbers of samples.
@@ -61,8 +62,11 @@ struct Halves {
 }
 
 impl DenoiserInput {
-    /// Peak memory in bytes per pixel, including the filter's own buffers.
-    pub const BYTES: u64 = 320;
+    /// Peak memory in bytes per pixel of an opaque or transparent picture, including the filter's own
+    /// buffers.
+    pub fn bytes_per_pixel(transparent: bool) -> u64 {
+        if transparent { 400 } else { 320 }
+    }
 
     /// Creates black buffers for the pixels of `region`.
     pub fn new(region: Rect) -> Self {
@@ -70,7 +74,7 @@ impl DenoiserInput {
         let black = || [vec![Rgb::BLACK; area], vec![Rgb::BLACK; area]];
         let none = || [vec![Vec3::ZERO; area], vec![Vec3::ZERO; area]];
         let depth = [vec![0.0; area], vec![0.0; area]];
-        Self { region, color: black(), albedo: black(), normal: none(), depth, alpha: Vec::new() }
+        Self { region, color: black(), albedo: black(), normal: none(), depth, coverage: Vec::new() }
     }
 
     /// Adds the pixels of a tile whose film stored the features.
@@ -79,9 +83,9 @@ impl DenoiserInput {
         let place = |aov| set.film_aovs().index_of(aov);
         let plane_count = set.film_aovs().planes.len();
         let (pixels, region) = (tile.pixels(), self.region);
-        if let Some(alpha) = set.alpha(&pixels, std::slice::from_ref(tile)) {
-            self.alpha.resize(region.area() as usize, 0.0);
-            pixels.copy_into(&alpha, &region, &mut self.alpha);
+        if let Some(coverage) = set.coverage(tile) {
+            self.coverage.resize(region.area() as usize, Coverage::default());
+            pixels.copy_into(&coverage, &region, &mut self.coverage);
         }
         let sum = |pixel: usize, aov: Option<usize>| {
             let plane = aov.and_then(|aov| aov_sums.planes.get(pixel * plane_count + aov));
@@ -123,16 +127,30 @@ impl DenoiserInput {
         with: Denoiser,
         library: Option<&Path>,
         control: &Control,
+    ) -> Result<Option<DenoisedPicture>, Error> {
+        let Some(color) = self.denoise_color(with, library, control)? else { return Ok(None) };
+        let Denoised { mut pixels, moved_energy } = color;
+        let Some(alpha) = self.denoise_alpha(with, library, control)? else { return Ok(None) };
+        let alpha = Some(alpha).filter(|alpha| !alpha.is_empty());
+        hide_transparent(&mut pixels, alpha.as_deref());
+        Ok(Some(DenoisedPicture { pixels, alpha, moved_energy }))
+    }
+
+    fn denoise_color(
+        &self,
+        with: Denoiser,
+        library: Option<&Path>,
+        control: &Control,
     ) -> Result<Option<Denoised>, Error> {
         let size = [self.region.width, self.region.height];
-        let mut denoised = match with {
+        match with {
             Denoiser::Own => {
                 let features = Features {
                     albedo: Some(self.albedo.each_ref().map(Vec::as_slice)),
                     normal: Some(self.normal.each_ref().map(Vec::as_slice)),
                     depth: Some(self.depth.each_ref().map(Vec::as_slice)),
                 };
-                own(size, self.color.each_ref().map(Vec::as_slice), features, control)?
+                own(size, self.color.each_ref().map(Vec::as_slice), features, control)
             }
             Denoiser::Oidn => {
                 let both = |halves: &[Vec<Rgb>; 2]| -> Vec<Rgb> {
@@ -142,13 +160,52 @@ impl DenoiserInput {
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
                 let features = PixelFeatures { albedo: Some(&albedo), normal: Some(&normal), depth: None };
-                Some(open_image_denoise(size, &color, &features, library)?)
+                open_image_denoise(size, &color, &features, library).map(Some)
             }
-        };
-        if let Some(denoised) = &mut denoised {
-            hide_transparent(&mut denoised.pixels, Some(&self.alpha));
         }
-        Ok(denoised)
+    }
+
+    /// Alpha with denoised shadows on shadow catchers; empty if the picture is opaque, `None` if
+    /// `control` was cancelled. What the pixels see keeps shadows apart from the outlines of objects,
+    /// which stay as they are.
+    fn denoise_alpha(
+        &self,
+        with: Denoiser,
+        library: Option<&Path>,
+        control: &Control,
+    ) -> Result<Option<Vec<f32>>, Error> {
+        if self.coverage.iter().all(|seen| seen.caught == 0.0) {
+            return Ok(Some(self.coverage.iter().map(Coverage::alpha).collect()));
+        }
+        let lost: Vec<Rgb> = self.coverage.iter().map(|seen| Rgb::splat(seen.lost)).collect();
+        let parts = |seen: &Coverage| {
+            let weights = Vec3::new(seen.opaque, seen.transmitted, seen.caught);
+            weights / weights.element_sum().max(f32::MIN_POSITIVE)
+        };
+        let seen: Vec<Vec3> = self.coverage.iter().map(parts).collect();
+        let size = [self.region.width, self.region.height];
+        let features = PixelFeatures { normal: Some(&seen), ..PixelFeatures::default() };
+        let denoised = denoise_pixels(size, NoisyPixels::Whole(&lost), &features, with, library, control)?;
+        let with_lost = |(seen, lost): (&Coverage, &Rgb)| Coverage { lost: lost.g.clamp(0.0, 1.0), ..*seen }.alpha();
+        Ok(denoised.map(|denoised| self.coverage.iter().zip(&denoised.pixels).map(with_lost).collect()))
+    }
+}
+
+/// Denoised pixels of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DenoisedPicture {
+    /// Colors in linear light, row by row from the top.
+    pub pixels: Vec<Rgb>,
+    /// Alpha of the pixels, 0 to 1; `None` if the picture is opaque.
+    pub alpha: Option<Vec<f32>>,
+    /// Part of the light that moved from single bright pixels to their neighbors, 0 to 1.
+    pub moved_energy: f64,
+}
+
+impl DenoisedPicture {
+    /// The pixels with their alpha.
+    pub fn rows(&self) -> PixelRows<'_> {
+        PixelRows { colors: &self.pixels, alpha: self.alpha.as_deref() }
     }
 }
 

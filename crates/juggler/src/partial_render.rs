@@ -89,14 +89,14 @@ impl Picture {
     }
 
     /// Writes the AOVs of a film, after `pixels` of the rendered image if given.
-    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, pixels: Option<&[Rgb]>) -> Result<(), Error> {
+    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, pixels: Option<PixelRows>) -> Result<(), Error> {
         let tiling = film.tiling();
-        let mut rest = pixels;
+        // All bands but the last have the same area.
+        let area = tiling.bands().next().map_or(1, |band| band.area()) as usize;
+        let mut rest = pixels.map(|pixels| pixels.chunks(area));
         for (row, band) in (0..).zip(tiling.bands()) {
             let tiles: Vec<Tile> = tiling.tiles_of_band(row).filter_map(|number| film.copy_of_tile(number)).collect();
-            let rows = rest.as_mut().and_then(|rest| rest.split_off(..band.area() as usize));
-            let alpha = rows.and_then(|_| self.aovs().alpha(&band, &tiles));
-            let rows = rows.map(|colors| PixelRows { colors, alpha: alpha.as_deref() });
+            let rows = rest.as_mut().and_then(Iterator::next);
             writer.write_rows(&self.aovs().band_values(&band, &tiles, rows))?;
         }
         Ok(writer.finish()?)

@@ -9,7 +9,7 @@ use juggler_film::counts::SampleCountStats;
 use juggler_imaging::{CropFrame, Header, Options, RowWriter, Tone};
 use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
-use juggler_render::{Cancelled, Control, Job, Schedule, Scheduler};
+use juggler_render::{CameraRays, Cancelled, Control, Job, Schedule, Scheduler};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_world::{SimdLevel, World};
@@ -27,6 +27,7 @@ pub struct Picture {
     pub(crate) compiled: Compiled,
     shutter_camera: ShutterCamera,
     region: Rect,
+    camera_rays: Arc<CameraRays>,
     tone: Tone,
     limit: Limit,
     /// Fingerprint, once it was needed.
@@ -79,6 +80,7 @@ impl Picture {
             picture.compiled.camera_keys.clear();
         }
         picture.region = Rect { x: 0, y: 0, width, height };
+        picture.camera_rays = Arc::new(CameraRays::new(UVec2::new(width, height)));
         (picture.tone, picture.limit) = (view.tone, Limit::Samples);
         if let Some((_, camera)) = picture.compiled.cameras.first_mut() {
             *camera = view.camera.clone();
@@ -255,6 +257,7 @@ impl Picture {
             pattern: settings.sampler.point_set(of_stream),
             samples,
             seed: settings.seed,
+            camera_rays: &self.camera_rays,
             aovs,
             frames: self.neighbors.frames.as_ref(),
         }

@@ -3,7 +3,7 @@
 mod denoised;
 mod encode;
 
-use crate::denoise::DenoiserInput;
+use crate::denoise::{DenoisedPicture, DenoiserInput};
 use crate::image::of_pixels;
 use crate::{AovSet, Error, Limit, Picture, RenderStats};
 use juggler_camera::film::{Film, FilmDigest, FilmSummary, Rect, Tile};
@@ -146,7 +146,7 @@ impl RenderedImage {
         let denoise = Instant::now();
         let denoised = denoise_pixels(&aovs, denoiser_input.as_ref(), library, control)?;
         let (render, denoise) = (denoise - start, denoised.as_ref().map_or(Duration::ZERO, |_| denoise.elapsed()));
-        let pixels = denoised.unwrap_or(pixels);
+        let (pixels, alpha) = denoised.map_or((pixels, alpha), |denoised| (denoised.pixels, denoised.alpha));
         if denoiser_input.is_some() || alpha.is_some() {
             let rows = PixelRows { colors: &pixels, alpha: alpha.as_deref() };
             let FilmSummary { hash, mean, .. } = digest(rows, description.region);
@@ -184,16 +184,15 @@ impl Parts {
     }
 }
 
-/// Denoised pixels; `None` without a denoiser.
+/// Denoised picture; `None` without a denoiser.
 fn denoise_pixels(
     aovs: &AovSet,
     input: Option<&DenoiserInput>,
     library: Option<&Path>,
     control: &Control,
-) -> Result<Option<Vec<Rgb>>, Error> {
+) -> Result<Option<DenoisedPicture>, Error> {
     let Some((denoiser, input)) = aovs.denoiser().zip(input) else { return Ok(None) };
-    let denoised = input.denoise(denoiser, library, control)?.ok_or(Error::Cancelled(Cancelled))?;
-    Ok(Some(denoised.pixels))
+    input.denoise(denoiser, library, control)?.ok_or(Error::Cancelled(Cancelled)).map(Some)
 }
 
 /// Header of the image that partial renders make, and its numbers of samples.
@@ -276,7 +275,10 @@ impl Picture {
         let (render, start) = (render + start.elapsed(), Instant::now());
         let denoised = denoise_pixels(self.aovs(), parts.denoiser_input.as_ref(), library, control)?;
         let denoise = denoised.as_ref().map_or(Duration::ZERO, |_| start.elapsed());
-        let parts = Parts { pixels: denoised.unwrap_or(parts.pixels), ..parts };
+        let parts = match denoised {
+            Some(DenoisedPicture { pixels, alpha, .. }) => Parts { pixels, alpha, ..parts },
+            None => parts,
+        };
         Ok(self.image_of_film(film, parts, [render, denoise], control))
     }
 

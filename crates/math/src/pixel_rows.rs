@@ -25,13 +25,17 @@ impl<'a> PixelRows<'a> {
     }
 
     /// Pieces of at most `count` pixels.
-    pub fn chunks(self, count: usize) -> impl Iterator<Item = Self> {
-        let starts = (0..self.len()).step_by(count.max(1));
-        starts.map(move |start| {
-            let range = start..self.len().min(start.saturating_add(count.max(1)));
-            let alpha = self.alpha.map(|alpha| alpha.get(range.clone()).unwrap_or_default());
-            Self { colors: self.colors.get(range).unwrap_or_default(), alpha }
-        })
+    pub fn chunks(mut self, count: usize) -> impl Iterator<Item = Self> {
+        std::iter::from_fn(move || (!self.is_empty()).then(|| self.split_off(count.max(1))))
+    }
+
+    /// Takes the first `count` pixels; fewer at the end.
+    pub fn split_off(&mut self, count: usize) -> Self {
+        let count = count.min(self.len());
+        let (colors, rest) = self.colors.split_at(count);
+        let (alpha, rest_of_alpha) = self.alpha.map(|alpha| alpha.split_at(count.min(alpha.len()))).unzip();
+        *self = Self { colors: rest, alpha: rest_of_alpha };
+        Self { colors, alpha }
     }
 
     /// Straight colors, which are not multiplied by alpha; black where alpha is 0.

@@ -3,8 +3,10 @@
 
 use super::{ReadSeek, Source, UNEXPECTED_END};
 use crate::ImageError;
+use crate::input::{self, Limits};
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use gif::{ColorOutput, DecodeOptions, Decoder, DecodingError};
+use std::path::Path;
 
 /// Maximum number of pixels per byte: a code of 12 bits stands for at most 3,838 pixels.
 pub(super) const MAX_PIXELS_PER_BYTE: u64 = 2560;
@@ -74,6 +76,34 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
 /// Reads the layout of [`raster`] from the headers.
 pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<RasterLayout, ImageError> {
     FirstFrame::new(source, bytes).map(|frame| frame.layout)
+}
+
+/// Number of frames and duration of a GIF.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GifLength {
+    /// Number of frames.
+    pub frames: u32,
+    /// Duration of one playback in seconds.
+    pub seconds: f64,
+}
+
+/// Reads the number of frames and the duration of a GIF without decoding pixels.
+///
+/// # Errors
+///
+/// The file cannot be read, or is no GIF.
+pub fn gif_length(path: &Path) -> Result<GifLength, ImageError> {
+    let (file, mut bytes) = (path.display().to_string(), input::open(path)?);
+    let source = input::source(&file, &mut bytes, &Limits::NONE)?;
+    let mut options = DecodeOptions::new();
+    options.skip_frame_decoding(true);
+    let mut decoder = options.read_info(&mut bytes).map_err(|e| unreadable(source, e))?;
+    let (mut frames, mut hundredths) = (0, 0);
+    while let Some(frame) = decoder.next_frame_info().map_err(|e| unreadable(source, e))? {
+        frames += 1;
+        hundredths += u64::from(frame.delay);
+    }
+    Ok(GifLength { frames, seconds: hundredths as f64 / 100.0 })
 }
 
 /// Translates a decoder error into a message that names the file.

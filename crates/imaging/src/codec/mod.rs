@@ -20,6 +20,7 @@ use crate::output::Destination;
 use crate::raster::{Raster, RasterLayout, RasterSamples, TransferFunction};
 use crate::tone::{Curve, Matrix, Srgb};
 use crate::{ExrWindows, ImageError, ImageFormat, Limits};
+pub use gif::{GifLength, gif_length};
 pub use header::Header;
 use juggler_math::message::excerpt;
 use juggler_math::{Image, PixelRows, Rgb};

@@ -108,6 +108,35 @@ fn gif_is_close_in_color_and_exact_in_length() {
     }
 }
 
+/// The color of a large plain area is exact, also in later frames that have less of it.
+#[test]
+fn plain_areas_of_a_gif_are_exact() {
+    let frame = |shift: u32| -> Vec<Rgb> {
+        let pixel = |i: u32| {
+            let (x, y) = (i % SIZE[0], i / SIZE[0]);
+            let is_plain = x < 10 || (x, y) == (30, 20);
+            if is_plain { Rgb::WHITE } else { Rgb::new(x as f32 / 48.0, y as f32 / 32.0, shift as f32 * 0.1) }
+        };
+        (0..SIZE[0] * SIZE[1]).map(pixel).collect()
+    };
+    let file = Shared::default();
+    let destination = Destination::seekable("m", file.clone());
+    let mut writer = animation_writer(AnimationFormat::Gif, destination, &header(2, 10.0, 0)).unwrap();
+    (0..2).for_each(|shift| writer.write_frame((&frame(shift)).into()).unwrap());
+    writer.finish().unwrap();
+    let bytes = file.bytes();
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut reader = options.read_info(Cursor::new(&bytes)).unwrap();
+    let mut whites = Vec::new();
+    while let Some(frame) = reader.read_next_frame().unwrap() {
+        let pixels = frame.buffer.as_chunks::<4>().0;
+        let at = (20 - usize::from(frame.top)) * usize::from(frame.width) + 30 - usize::from(frame.left);
+        whites.push((pixels[at], pixels.iter().filter(|pixel| **pixel == [255; 4]).count()));
+    }
+    assert_eq!(whites, [([255; 4], 10 * 32 + 1), ([255; 4], 1)]);
+}
+
 #[test]
 fn few_colors_are_kept_as_they_are() {
     let file = Shared::default();

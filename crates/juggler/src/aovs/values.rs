@@ -57,12 +57,17 @@ impl AovSet {
     pub fn alpha(&self, band: &Rect, tiles: &[Tile]) -> Option<Vec<f32>> {
         let mut alpha = self.transparent.then(|| vec![0.0; band.area() as usize])?;
         for tile in tiles {
-            let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
-            let of_pixel = |number| Pixel { set: self, tile, aov_sums: &aov_sums, number, count }.alpha();
-            let values: Vec<f32> = (0..tile.pixels().area() as usize).map(of_pixel).collect();
+            let values: Vec<f32> = self.coverage(tile)?.iter().map(Coverage::alpha).collect();
             tile.pixels().copy_into(&values, band, &mut alpha);
         }
         Some(alpha)
+    }
+
+    /// What the pixels of a tile see; `None` if the picture is opaque.
+    pub(crate) fn coverage(&self, tile: &Tile) -> Option<Vec<Coverage>> {
+        let (aov_sums, count) = (tile.aov_sums(), tile.samples_per_pixel().max(1) as f32);
+        let of_pixel = |number| Pixel { set: self, tile, aov_sums: &aov_sums, number, count }.coverage();
+        self.transparent.then(|| (0..tile.pixels().area() as usize).map(of_pixel).collect())
     }
 
     /// Returns the channels of a tile, each with its pixels row by row.
@@ -80,6 +85,29 @@ impl AovSet {
     }
 }
 
+/// What a pixel of a transparent picture sees. All weights are sums over the samples, so that alpha
+/// is exactly 0 and 1 where all samples agree.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Coverage {
+    /// Weight of objects.
+    pub opaque: f32,
+    /// Weight of the background.
+    pub transmitted: f32,
+    /// Weight of shadow catchers.
+    pub caught: f32,
+    /// Fraction of the light that shadow catchers lose, 0 to 1.
+    pub lost: f32,
+}
+
+impl Coverage {
+    /// Alpha: the fraction of the samples that see objects, and of the samples that see shadow
+    /// catchers the fraction of the light that these lose.
+    pub fn alpha(&self) -> f32 {
+        let all = self.opaque + self.transmitted + self.caught;
+        if all > 0.0 { ((self.opaque + self.caught * self.lost) / all).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
 impl Pixel<'_> {
     /// Returns the mean of an AOV over all samples.
     fn mean(&self, aov: FilmAov) -> Rgb {
@@ -94,15 +122,11 @@ impl Pixel<'_> {
         place.copied().unwrap_or(Rgb::BLACK)
     }
 
-    /// Returns alpha: the fraction of the samples that see objects, and of those that see shadow
-    /// catchers the fraction of the light that these lose. All weights are sums over the samples, so
-    /// that alpha is exactly 0 and 1 where all samples agree.
-    fn alpha(&self) -> f32 {
+    fn coverage(&self) -> Coverage {
         let Rgb { r: opaque, g: transmitted, b: caught } = self.sum(FilmAov::Alpha);
         let Rgb { r: lit, g: unoccluded, .. } = self.sum(FilmAov::ShadowCatcher);
         let lost = if unoccluded > 0.0 { (1.0 - lit / unoccluded).clamp(0.0, 1.0) } else { 0.0 };
-        let all = opaque + transmitted + caught;
-        if all > 0.0 { ((opaque + caught * lost) / all).clamp(0.0, 1.0) } else { 0.0 }
+        Coverage { opaque, transmitted, caught, lost }
     }
 
     /// Returns the first two channels of an AOV, averaged over the valid samples, which its third

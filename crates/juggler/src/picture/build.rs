@@ -5,7 +5,7 @@ use crate::neighbor_scenes::NeighborScenes;
 use crate::scene_fingerprint::SceneFingerprint;
 use crate::{AovSet, Error, Settings};
 use juggler_math::{BuildControl, UVec2};
-use juggler_render::BAND_PIXELS;
+use juggler_render::{BAND_PIXELS, CameraRays};
 use juggler_scene::{Compiled, IntegratorReason, Scene};
 use std::sync::{Arc, OnceLock};
 
@@ -77,6 +77,7 @@ impl Picture {
         Ok(Self {
             shutter_camera,
             region,
+            camera_rays: Arc::new(CameraRays::new(UVec2::new(width, height))),
             tone,
             limit,
             fingerprint: OnceLock::new(),

@@ -162,6 +162,32 @@ fn a_shadow_catcher_shows_the_light_that_it_loses() {
 }
 
 #[test]
+fn the_denoiser_smooths_shadows_and_keeps_outlines() {
+    let scene = floor([true, true]);
+    let alpha = |samples: u32, denoiser: Option<Denoiser>| {
+        let settings = Settings { samples: Some(samples), denoiser, ..transparent() };
+        rendered(&scene, &settings).alpha().unwrap().to_vec()
+    };
+    let (reference, noisy, denoised) = (alpha(2048, None), alpha(8, None), alpha(8, Some(Denoiser::Own)));
+    let is_shadow = |i: usize| reference[i] > 0.02 && reference[i] < 0.9;
+    let shadow: Vec<usize> = (0..reference.len()).filter(|i| is_shadow(*i)).collect();
+    let error = |alpha: &[f32]| shadow.iter().map(|i| (alpha[*i] - reference[*i]).powi(2)).sum::<f32>();
+    let (before, after) = (error(&noisy), error(&denoised));
+    assert!(shadow.len() > 50 && after < 0.65 * before, "{} pixels: {before} {after}", shadow.len());
+    // Pixels above the floor, also at the outlines of objects, and one of a ball.
+    let settings = Settings { samples: Some(8), denoiser: Some(Denoiser::Own), ..transparent() };
+    let (picture, control) = (Picture::new(&scene, &settings).unwrap(), Control::default());
+    let film = picture.film();
+    picture.render_to_limit(&film, &control).unwrap();
+    let (noisy, above) = (picture.alpha(&film).unwrap(), 6 * SIZE[0] as usize);
+    let denoised = picture.develop_in_memory(&film, Default::default(), None, &control).unwrap();
+    let denoised = denoised.alpha().unwrap();
+    assert_eq!(denoised[..above], noisy[..above]);
+    assert_eq!(denoised[11 * SIZE[0] as usize + 24], 1.0);
+    assert!(noisy[..above].iter().any(|alpha| *alpha > 0.0 && *alpha < 1.0));
+}
+
+#[test]
 fn a_shadow_catcher_alone_is_invisible() {
     let image = rendered(&floor([true, false]), &transparent());
     let visible = image.alpha().unwrap().iter().filter(|alpha| **alpha > 0.0).count();
