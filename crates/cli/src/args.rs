@@ -266,6 +266,14 @@ pub struct RenderArgs {
     pub max_memory: Option<u64>,
 }
 
+impl RenderArgs {
+    /// Whether a model turns and no frame is chosen, so that the command asks for all frames of the
+    /// turn.
+    pub fn turns_in_all_frames(&self) -> bool {
+        self.model.stage.turntable.is_some() && self.view.frame.is_none() && self.view.at.is_none()
+    }
+}
+
 #[cfg(test)]
 impl RenderArgs {
     /// Parses the arguments of `juggler render`.

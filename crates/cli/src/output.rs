@@ -39,9 +39,20 @@ pub fn numbered(name: &str, frame: u32) -> String {
         let (head, tail) = (file.get(..place.start), file.get(place.end..));
         return format!("{folder}{}{frame:0digits$}{}", head.unwrap_or_default(), tail.unwrap_or_default());
     }
+    with_suffix(name, &format!("_{frame:04}"))
+}
+
+/// Name pattern of the frames of a file without a placeholder: `turn_####.png` for `turn.png`.
+pub fn pattern(name: &str) -> String {
+    with_suffix(name, "_####")
+}
+
+/// File name with a suffix before the extension.
+fn with_suffix(name: &str, suffix: &str) -> String {
+    let (folder, file) = split(name);
     match file.rsplit_once('.') {
-        Some((stem, ending)) if !stem.is_empty() => format!("{folder}{stem}_{frame:04}.{ending}"),
-        _ => format!("{folder}{file}_{frame:04}"),
+        Some((stem, ending)) if !stem.is_empty() => format!("{folder}{stem}{suffix}.{ending}"),
+        _ => format!("{folder}{file}{suffix}"),
     }
 }
 
@@ -152,6 +163,7 @@ mod tests {
             assert_eq!(numbered(name, 7), numbered_name);
         }
         assert_eq!(numbered("f##.png", 12_345), "f12345.png");
+        assert_eq!((pattern("a.b/turn.png").as_str(), pattern("turn").as_str()), ("a.b/turn_####.png", "turn_####"));
         assert!(has_number("f_%04d.webp") && has_number("a/f#.webp") && !has_number("a#/f.webp"));
     }
 

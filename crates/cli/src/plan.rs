@@ -60,6 +60,8 @@ pub struct Plan {
     pub shard: Shard,
     /// Pixels and samples of a partial render, from `--crop` and `--sample-range`.
     pub cut: Cut,
+    /// Note that a turntable has one picture only, if it does.
+    pub turn_note: Option<String>,
     /// File for the statistics.
     pub stats: Option<String>,
     /// Number of rendering threads.
@@ -117,6 +119,7 @@ impl Plan {
         let output_kind = output_kind(&args, movie.as_ref(), &output)?;
         let times = TimeSelection::new(&args, &output, movie.is_some())?;
         args.given.check(target(output_kind, movie.as_ref(), &times))?;
+        args.model.stage.check_transparent(args.transparent)?;
         let aovs = aovs::requested(&args, &output)?;
         let cut = Cut::new(&args, output_kind);
         let checkpoint = Checkpoint::new(&args, movie.as_ref())?;
@@ -124,6 +127,7 @@ impl Plan {
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
             settings: Settings { aovs, ..settings(&args, output_kind)? },
+            turn_note: view::turn_note(&args, &output, matches!(times, TimeSelection::Frame(_))),
             scene: args.scene,
             model: args.model.for_view(args.view.size, args.view.camera.as_deref())?,
             times,
@@ -291,7 +295,8 @@ fn settings(args: &RenderArgs, output_kind: OutputKind) -> Result<Settings, Fail
 }
 
 impl TimeSelection {
-    /// Requested times; all frames by default if the output is a movie.
+    /// Requested times; all frames by default if the output is a movie, or if a turning model has
+    /// numbered pictures.
     fn new(args: &RenderArgs, output: &str, is_film: bool) -> Result<Self, Failure> {
         match (args.frames, args.view.frame, args.view.at) {
             (Some(_), ..) if output == STANDARD_OUTPUT => {
@@ -300,7 +305,9 @@ impl TimeSelection {
             (Some(range), ..) => Ok(Self::Frames(range)),
             (_, Some(frame), _) => Ok(Self::Frame(frame)),
             (_, _, Some(seconds)) => Ok(Self::At(seconds)),
-            _ if is_film => Ok(Self::Frames(FrameRange { first: 0, end: None })),
+            _ if is_film || (args.turns_in_all_frames() && has_number(output)) => {
+                Ok(Self::Frames(FrameRange { first: 0, end: None }))
+            }
             _ => Ok(Self::Frame(0)),
         }
     }

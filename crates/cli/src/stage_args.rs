@@ -33,7 +33,8 @@ pub struct StageArgs {
     /// Turn a model once in this number of frames
     ///
     /// It turns about the vertical axis through its middle.
-    /// With a movie as output, all frames are rendered: `--turntable 120 -o car.mp4`.
+    /// With a movie or numbered pictures as output, all frames are rendered:
+    /// `--turntable 120 -o car.mp4`, `-o 'car_####.png'`.
     #[arg(long, value_name = "FRAMES", value_parser = value::stage::turn, hide_short_help = true)]
     pub turntable: Option<u32>,
 
@@ -57,7 +58,7 @@ pub struct StageArgs {
     pub fov: Option<f32>,
 
     /// Fraction of the picture that all objects fill [default: 0.8]
-    #[arg(long, value_name = "FRACTION", value_parser = value::stage::part, conflicts_with = "eye", hide_short_help = true)]
+    #[arg(long, value_name = "FRACTION", value_parser = value::stage::fraction, conflicts_with = "eye", hide_short_help = true)]
     pub fit: Option<f32>,
 }
 
@@ -65,6 +66,38 @@ impl StageArgs {
     /// Whether any flag is given.
     pub fn is_given(&self) -> bool {
         *self != Self::default()
+    }
+
+    /// Fails if the background is both transparent and a color.
+    ///
+    /// # Errors
+    ///
+    /// `transparent` is set, and `--background` gives a color.
+    pub fn check_transparent(&self, transparent: bool) -> Result<(), Failure> {
+        match self.background {
+            Some(Backdrop::Color(color)) if transparent => Err(Failure::Invalid(format!(
+                "--transparent shows nothing where nothing is, and --background {} shows a color there: give one of \
+                 them",
+                hex(color)
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Fails if the floor shows only shadows and the picture is opaque.
+    ///
+    /// # Errors
+    ///
+    /// The flag `--floor shadow` would have no effect.
+    pub fn check_floor(&self, is_transparent: bool) -> Result<(), Failure> {
+        if self.floor == Some(Floor::Shadow) && !is_transparent {
+            return Err(Failure::Invalid(
+                "--floor shadow shows only shadows, for which the picture must not show the background of the scene: \
+                 add --background white, another color, or --transparent"
+                    .into(),
+            ));
+        }
+        Ok(())
     }
 
     /// The flags that are given, with their values.

@@ -3,6 +3,7 @@
 
 pub mod stage;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use juggler::Denoiser;
 use juggler::camera::film::{BLOCK_SAMPLES, Rect};
 use juggler::imaging::animation::FRAME_RATES;
@@ -19,6 +20,15 @@ const MAX_SAMPLES: u32 = 16_777_216;
 const MAX_FRAMES: u32 = 1_000_000;
 /// Maximum duration of a render, in seconds (over 30 years).
 const MAX_DURATION: f64 = 1e9;
+
+/// Parser of the names of an enumeration.
+pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let value = move |text: String| all.into_iter().find(|value| name(*value) == text).ok_or("no such name");
+    PossibleValuesParser::new(all.map(name)).try_map(value)
+}
 
 /// `640x360`: width and height in pixels.
 pub fn size(text: &str) -> Result<[u32; 2], String> {

@@ -111,7 +111,7 @@ impl Stage {
         self.check(scene)?;
         let mut edits = Vec::new();
         self.add_light(scene, &mut edits);
-        self.add_backdrop(&mut edits);
+        self.add_backdrop(scene, &mut edits);
         let needs_points = self.floor.is_some() || self.turntable.is_some() || self.has_camera();
         if needs_points && !self.places_camera_alone() {
             let points = points(scene)?;
@@ -184,11 +184,15 @@ impl Stage {
         edits.push(("/background".into(), json!(background)));
     }
 
-    fn add_backdrop(&self, edits: &mut Edits) {
+    fn add_backdrop(&self, scene: &Scene, edits: &mut Edits) {
         let Some(backdrop) = self.backdrop else { return };
         edits.push(("/render/transparent".into(), true.into()));
-        if let Backdrop::Color(color) = backdrop {
-            edits.push(("/tone/backdrop".into(), json!(color)));
+        match backdrop {
+            Backdrop::Color(color) => edits.push(("/tone/backdrop".into(), json!(color))),
+            Backdrop::Transparent if scene.description.tone.backdrop.is_some() => {
+                edits.push(("/tone/backdrop".into(), Value::Null));
+            }
+            Backdrop::Transparent => {}
         }
     }
 

@@ -103,7 +103,7 @@ impl Default for Area {
 
 impl AreaShape {
     /// Shape centered at the origin with its front along +Y.
-    fn shape(self) -> AnyShape {
+    pub fn shape(self) -> AnyShape {
         match self {
             Self::Rectangle { size } => Rectangle { size }.into(),
             Self::Disk { radius } => Disk { radius, inner_radius: 0.0 }.into(),

@@ -36,7 +36,8 @@ fn estimate(scene: &Scene, settings: &Settings) -> Result<Memory, juggler::Error
         memory = memory.with_film(None, None, 1);
     }
     if settings.denoiser.is_some() {
-        memory = memory.with_part("denoising", area.saturating_mul(DenoiserInput::BYTES));
+        let bytes = DenoiserInput::bytes_per_pixel(settings.transparent_of(scene));
+        memory = memory.with_part("denoising", area.saturating_mul(bytes));
     }
     Ok(memory)
 }

@@ -133,10 +133,16 @@ impl Watch {
     }
 }
 
+/// What work returns, once it has ended.
+type Outcome<T> = Arc<Mutex<Option<Result<T, Fault>>>>;
+
 /// Work in progress. It is cancelled when the task is dropped.
 pub struct Task<T> {
     monitor: Arc<Monitor>,
-    results: Mutex<Receiver<Result<T, Fault>>>,
+    /// Receives one message at the end of the work. The outcome itself is not sent: a channel for
+    /// each type of it would be 2 % of the module.
+    end: Mutex<Receiver<()>>,
+    outcome: Outcome<T>,
     process: u32,
     start: Instant,
 }
@@ -153,14 +159,17 @@ impl<T: Send + 'static> Task<T> {
 
     fn start_on(pool: &Arc<ThreadPool>, work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send + 'static) -> Self {
         let (monitor, (sender, receiver)) = (Arc::new(Monitor::default()), mpsc::channel());
-        let (shared, busy) = (Arc::clone(&monitor), Arc::clone(pool));
+        let (shared, busy, outcome) = (Arc::clone(&monitor), Arc::clone(pool), Outcome::default());
+        let result = Arc::clone(&outcome);
         pool.spawn(move || {
-            let result = catch_unwind(AssertUnwindSafe(|| work(&shared)));
+            let ended = guarded(|| work(&shared)).flatten();
+            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(ended);
             drop(busy);
             // The task may have been abandoned.
-            drop(sender.send(result.unwrap_or_else(|panic| Err(Fault::Panic(panic_message(panic.as_ref()))))));
+            sender.send(()).ok();
         });
-        Self { monitor, results: Mutex::new(receiver), process: std::process::id(), start: Instant::now() }
+        let end = Mutex::new(receiver);
+        Self { monitor, end, outcome, process: std::process::id(), start: Instant::now() }
     }
 
     /// Waits for the result, at most this long; `None` if the work takes longer. An exception of a
@@ -169,14 +178,14 @@ impl<T: Send + 'static> Task<T> {
         let (start, mut last_call) = (Instant::now(), Instant::now());
         loop {
             let tick = TICK.min(most.saturating_sub(start.elapsed()));
-            let result = py.detach(|| {
-                let results = self.results.lock().unwrap_or_else(PoisonError::into_inner);
-                results.recv_timeout(tick)
+            let end = py.detach(|| {
+                let end = self.end.lock().unwrap_or_else(PoisonError::into_inner);
+                end.recv_timeout(tick)
             });
-            match result {
-                Ok(result) => return result.map(Some).map_err(Fault::into_exception),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(errors::internal("the work ended without a result")),
+            if end != Err(RecvTimeoutError::Timeout) {
+                let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let Some(outcome) = outcome else { return Err(errors::internal("the work ended without a result")) };
+                return outcome.map(Some).map_err(Fault::into_exception);
             }
             if std::process::id() != self.process {
                 return Err(errors::forked());

@@ -3,6 +3,7 @@
 mod mesh;
 mod model;
 mod motion;
+mod movie;
 mod partial_render;
 mod rows;
 
@@ -29,7 +30,7 @@ use std::path::Path;
 #[derive(Debug, Args)]
 pub struct Info {
     /// Scene file, model (glTF), mesh (PLY, OBJ, STL), built-in scene, `-` for standard input,
-    /// picture, or partial render (.jfilm)
+    /// picture, movie, or partial render (.jfilm)
     scene: String,
     /// Print one JSON object
     #[arg(long)]
@@ -55,6 +56,9 @@ impl Info {
         if let Some(format) = ImageFormat::from_first_bytes(&start).or(named) {
             return self.picture(format);
         }
+        if movie::is_mp4(path, &start) {
+            return Ok(movie::mp4_text(&self.scene, self.json));
+        }
         if film::is_partial_render(&start) {
             return partial_render::text(path, self.json);
         }
@@ -67,6 +71,7 @@ impl Info {
     fn picture(&self, format: ImageFormat) -> Result<String, Failure> {
         let ImageInfo { width, height, mut metadata, windows, .. } = imaging::inspect(Path::new(&self.scene))?;
         let layers = layer_names(Path::new(&self.scene))?;
+        let length = movie::length(Path::new(&self.scene), format)?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
             *text = reproduce::with_file_name(&self.scene, text);
         }
@@ -80,6 +85,10 @@ impl Info {
             if let (Some(windows), Some(json)) = (windows, json.as_object_mut()) {
                 json.insert("windows".into(), windows_json(&windows));
             }
+            if let (Some(length), Some(json)) = (length, json.as_object_mut()) {
+                json.insert("frames".into(), length.frames.into());
+                json.insert("seconds".into(), length.seconds.into());
+            }
             return Ok(json.to_string());
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
@@ -89,7 +98,12 @@ impl Info {
         let windows = windows.map(|ExrWindows { data, display }| {
             [row("data window", &data.to_string()), row("display", &display.to_string())]
         });
-        let lines = head.into_iter().chain(windows.into_iter().flatten()).chain(layers).chain(texts);
+        let lines = head
+            .into_iter()
+            .chain(length.map(movie::row))
+            .chain(windows.into_iter().flatten())
+            .chain(layers)
+            .chain(texts);
         Ok(lines.collect::<Vec<_>>().join("\n"))
     }
 }

@@ -18,12 +18,12 @@ use crate::value;
 use clap::Args;
 use juggler::SAMPLES;
 use juggler::camera::film::{FilmDigest, FilmSummary};
-use juggler::denoise::DenoiserInput;
+use juggler::denoise::{DenoisedPicture, DenoiserInput};
 use juggler::film::counts::SampleCountStats;
 use juggler::film::{self, MergeGoal, RenderDescription, Stop};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
-use juggler::math::{PixelRows, Rgb};
+use juggler::math::PixelRows;
 use juggler::render::Control;
 use juggler::{AovSet, Denoiser};
 use serde_json::json;
@@ -83,13 +83,13 @@ enum MergeOutput {
     PartialRender(u64),
 }
 
-/// Denoised pixels of the merged picture.
+/// The merged picture, denoised.
 fn denoised(
     merge: &film::Merge,
     set: &AovSet,
     denoiser: Denoiser,
     interrupts: &Interrupts,
-) -> Result<Vec<Rgb>, Failure> {
+) -> Result<DenoisedPicture, Failure> {
     let mut input = DenoiserInput::new(merge.description().region);
     merge.tile_rows(|_, tiles, _| {
         interrupts.check()?;
@@ -107,7 +107,7 @@ fn denoised(
     };
     let denoised = with_progress(&watch, || input.denoise(denoiser, library.as_deref(), &control))?;
     interrupts.check()?;
-    Ok(denoised.map(|denoised| denoised.pixels).unwrap_or_default())
+    Ok(denoised.unwrap_or_default())
 }
 
 /// Numbers of samples per pixel, if a noise level or a time limit ended the render.
@@ -167,13 +167,14 @@ impl Merge {
             file => Some(imaging::create(Path::new(file), format, &header)?),
         };
         let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
-        let (is_other, mut rest) = (denoised.is_some() || set.is_transparent(), denoised.as_deref());
+        let is_other = denoised.is_some() || set.is_transparent();
+        let mut rest = denoised.as_ref().map(DenoisedPicture::rows);
         let mut digest = FilmDigest::new(header.width, header.height);
         let summary = merge.tile_rows(|band, tiles, rows| {
             interrupts.check()?;
-            let colors = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
-            let alpha = set.alpha(band, tiles);
-            let rows = PixelRows { colors, alpha: alpha.as_deref() };
+            let plain = if rest.is_none() { set.alpha(band, tiles) } else { None };
+            let plain = PixelRows { colors: rows, alpha: plain.as_deref() };
+            let rows = rest.as_mut().map_or(plain, |rest| rest.split_off(rows.len()));
             if is_other {
                 digest.update(rows);
             }

@@ -83,6 +83,6 @@ impl Movie {
 
 /// Whether the output is a movie: `.webp` is a picture unless several frames go into one file.
 fn is_wanted(format: AnimationFormat, args: &RenderArgs, output: &str) -> bool {
-    let several = args.frames.is_some() && !output::has_number(output);
+    let several = (args.frames.is_some() || args.turns_in_all_frames()) && !output::has_number(output);
     format != AnimationFormat::Webp || several || args.fps.is_some() || args.plays.is_some()
 }

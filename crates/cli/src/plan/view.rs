@@ -1,6 +1,7 @@
 //! View and sampling of a picture, for all commands that render.
 
-use crate::args::ViewArgs;
+use crate::args::{RenderArgs, ViewArgs};
+use crate::output::{STANDARD_OUTPUT, pattern};
 use juggler::{Error, Settings, by_name};
 
 impl ViewArgs {
@@ -39,6 +40,17 @@ pub fn end_warning(frame: u32, frames: u32) -> Option<String> {
         let last = frames - 1;
         format!("warning: frame {frame} is beyond the end of the animation, which has {frames} frames, 0 to {last}")
     })
+}
+
+/// Note for a command that turns a model and writes one picture, of which no frame is chosen.
+pub fn turn_note(args: &RenderArgs, output: &str, is_one_picture: bool) -> Option<String> {
+    let is_unchosen = is_one_picture && args.turns_in_all_frames();
+    let frames = args.model.stage.turntable.filter(|frames| *frames > 1 && is_unchosen)?;
+    let pattern = if output == STANDARD_OUTPUT { "turn_####.png".to_owned() } else { pattern(output) };
+    Some(format!(
+        "note: --turntable {frames} has {frames} frames, and this picture is frame 0: -o '{pattern}' writes all of \
+         them, and --frame N selects another"
+    ))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use juggler::math::color::color_names;
 use juggler::math::{Rgb, Vec3};
 use juggler::scene::suggest::{closest, did_you_mean};
 use juggler::stage::{Backdrop, Floor, MAX_FRAMES, StageLight};
+use std::path::Path;
 
 /// Sides of a scene, each with the direction from the scene to the camera.
 pub const SIDES: [(&str, Vec3); 7] = [
@@ -19,6 +20,11 @@ pub const SIDES: [(&str, Vec3); 7] = [
 /// Kinds of floors by name.
 pub const FLOORS: [(&str, Floor); 3] = [("solid", Floor::Solid), ("shadow", Floor::Shadow), ("none", Floor::None)];
 
+/// Background without a color.
+const TRANSPARENT: &str = "transparent";
+/// Light around a model that is no picture.
+const LIGHTS: [&str; 2] = ["studio", "sky"];
+
 /// `1,0.5,-2`: three coordinates.
 pub fn position(text: &str) -> Result<Vec3, String> {
     let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -31,7 +37,7 @@ pub fn position(text: &str) -> Result<Vec3, String> {
 /// A side of the scene: the direction from the scene to the camera.
 pub fn side(text: &str) -> Result<Vec3, String> {
     let found = SIDES.iter().find(|(name, _)| *name == text);
-    found.map(|(_, side)| *side).ok_or_else(|| SIDES.map(|(name, _)| name).join(", "))
+    found.map(|(_, side)| *side).ok_or_else(|| expected(text, &SIDES.map(|(name, _)| name)))
 }
 
 /// `studio`, `sky`, or the name of a file.
@@ -40,18 +46,30 @@ pub fn stage_light(text: &str) -> Result<StageLight, String> {
         "" => Err("a light is studio, sky, or a picture such as room.hdr".into()),
         "studio" => Ok(StageLight::Studio),
         "sky" => Ok(StageLight::Sky),
+        name if is_word(name) && !Path::new(name).exists() => {
+            let near = question(closest(name, LIGHTS));
+            Err(format!("it is neither studio nor sky, and there is no file of this name{near}"))
+        }
         file => Ok(StageLight::File(file.to_owned())),
     }
 }
 
+/// Whether the name of a file has neither an extension nor a folder.
+fn is_word(name: &str) -> bool {
+    let path = Path::new(name);
+    path.extension().is_none() && path.components().count() == 1
+}
+
 /// `transparent`, or a color as CSS writes it.
 pub fn backdrop(text: &str) -> Result<Backdrop, String> {
-    if text == "transparent" {
+    if text == TRANSPARENT {
         return Ok(Backdrop::Transparent);
     }
     let wrong = || {
-        let near = closest(text, color_names()).map(|near| format!("; {}", did_you_mean(near)));
-        format!("a background is transparent, #rrggbb or a name of CSS such as white{}", near.unwrap_or_default())
+        let hexadecimal = Some(format!("#{text}")).filter(|color| Rgb::from_css(color).is_some());
+        let near = closest(text, color_names().chain([TRANSPARENT]));
+        let near = question(hexadecimal.as_deref().or(near));
+        format!("expected transparent, #rrggbb or a name of CSS such as white{near}")
     };
     Rgb::from_css(text).map(Backdrop::Color).ok_or_else(wrong)
 }
@@ -59,7 +77,19 @@ pub fn backdrop(text: &str) -> Result<Backdrop, String> {
 /// Kind of a floor.
 pub fn floor(text: &str) -> Result<Floor, String> {
     let found = FLOORS.iter().find(|(name, _)| *name == text);
-    found.map(|(_, floor)| *floor).ok_or_else(|| FLOORS.map(|(name, _)| name).join(", "))
+    found.map(|(_, floor)| *floor).ok_or_else(|| expected(text, &FLOORS.map(|(name, _)| name)))
+}
+
+/// Message with all names, and the name that the text resembles or begins with.
+fn expected(text: &str, names: &[&str]) -> String {
+    let longer = || names.iter().copied().find(|name| text.starts_with(name));
+    let near = closest(text, names.iter().copied()).or_else(longer);
+    format!("expected {}{}", names.join(", "), question(near))
+}
+
+/// `; did you mean ...?` for a name that is near.
+fn question(near: Option<&str>) -> String {
+    near.map(|near| format!("; {}", did_you_mean(near))).unwrap_or_default()
 }
 
 /// `120`: number of frames of a turn.
@@ -74,10 +104,10 @@ pub fn field_of_view(text: &str) -> Result<f32, String> {
     degrees.ok_or_else(|| "a field of view is above 0 and at most 179 degrees, such as 30".to_owned())
 }
 
-/// `0.9`: a part of a whole.
-pub fn part(text: &str) -> Result<f32, String> {
-    let part = text.parse().ok().filter(|part: &f32| *part > 0.0 && *part <= 1.0);
-    part.ok_or_else(|| "a part is above 0 and at most 1, such as 0.9".to_owned())
+/// `0.9`: a fraction of a whole.
+pub fn fraction(text: &str) -> Result<f32, String> {
+    let fraction = text.parse().ok().filter(|fraction: &f32| *fraction > 0.0 && *fraction <= 1.0);
+    fraction.ok_or_else(|| "a fraction is above 0 and at most 1, such as 0.9".to_owned())
 }
 
 #[cfg(test)]
@@ -94,7 +124,7 @@ mod tests {
             (Ok(Backdrop::Color(Rgb::WHITE)), Ok(Backdrop::Transparent))
         );
         assert_eq!(
-            (floor("shadow"), turn("120"), field_of_view("179"), part("1")),
+            (floor("shadow"), turn("120"), field_of_view("179"), fraction("1")),
             (Ok(Floor::Shadow), Ok(120), Ok(179.0), Ok(1.0))
         );
     }
@@ -108,10 +138,16 @@ mod tests {
             (stage_light("").map(drop), "room.hdr"),
             (backdrop("whit").map(drop), "did you mean `white`?"),
             (backdrop("#12").map(drop), "#rrggbb"),
-            (floor("on").map(drop), "solid, shadow, none"),
+            (backdrop("transparant").map(drop), "did you mean `transparent`?"),
+            (backdrop("fff").map(drop), "did you mean `#fff`?"),
+            (floor("on").map(drop), "expected solid, shadow, none"),
+            (floor("shadows").map(drop), "did you mean `shadow`?"),
+            (side("rigth").map(drop), "did you mean `right`?"),
+            (side("isometric").map(drop), "did you mean `iso`?"),
+            (stage_light("studdio").map(drop), "no file of this name; did you mean `studio`?"),
             (turn("0").map(drop), "such as 120"),
             (field_of_view("180").map(drop), "at most 179"),
-            (part("0").map(drop), "such as 0.9"),
+            (fraction("0").map(drop), "such as 0.9"),
         ] {
             let message = found.unwrap_err();
             assert!(message.contains(expected), "{message}");

@@ -1,7 +1,7 @@
 //! Error messages: printed once, on standard error, with the right exit status, and without files
 //! left behind.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, Run};
 use std::fs;
 
 /// Asserts that each command fails with status 2 and leaves no files behind.
@@ -102,6 +102,8 @@ fn misspelled_scenes_get_suggestions() {
         message.trim(),
         "error: unknown scene `jugler`: neither a file nor a built-in scene; did you mean `juggler`?"
     );
+    let empty = Run::of(folder.command("render").arg("").args(["-o", "a.png"]).output().unwrap());
+    assert_eq!((empty.status, empty.stderr.trim()), (2, "error: the name of the scene is empty"));
     assert!(folder.bad("render bal.json", 3).contains("did you mean `ball.json`?"));
     assert!(folder.bad("render none/bal.json", 3).contains("`none/bal.json`"));
     assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));

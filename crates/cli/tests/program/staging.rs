@@ -46,6 +46,80 @@ fn a_turntable_is_a_movie_in_one_command() {
     assert_eq!(bytes.windows(3).filter(|start| start == b"\x21\xf9\x04").count(), 5);
 }
 
+/// With a backdrop, frames are opaque: MP4 shows the color, and other movies have no alpha.
+#[test]
+fn movies_on_a_background_are_opaque() {
+    let folder = with_solid();
+    folder.good("render solid.obj -q --turntable 2 --background white --size 20x16 --samples 2 -o turn.mp4");
+    folder.good("render ball.json -q --frames 0..2 --background white --size 20x16 -o ball.mp4");
+    let text = fs::read_to_string(folder.path("ball.json")).unwrap();
+    let text = text.replace(r#""samples": 2"#, r#""samples": 2, "transparent": true"#);
+    let text = text.replacen('{', r#"{"tone": {"backdrop": "white"}, "#, 1);
+    fs::write(folder.path("own.json"), text).unwrap();
+    folder.good("render own.json -q --frames 0..2 --size 20x16 -o own.mp4");
+    folder.good("render own.json -q --frames 0..2 --size 20x16 -o own.webp");
+    let webp = fs::read(folder.path("own.webp")).unwrap();
+    assert_eq!(webp[20] & 0b1_0010, 0b10, "an animation without alpha");
+    let refused = folder.bad("render ball.json --frames 0..2 --background transparent --size 20x16 -o b.mp4", 2);
+    assert!(refused.contains("MP4 cannot be transparent"), "{refused}");
+    // `--background transparent` takes the backdrop of the scene away.
+    folder.good("render own.json -q --background transparent -o own.png");
+    assert!(imaging::read_with_alpha(&folder.path("own.png")).unwrap().alpha.is_some());
+}
+
+#[test]
+fn a_turntable_asks_for_all_frames() {
+    let folder = with_solid();
+    let turn = "render solid.obj --turntable 3 --size 20x16 --samples 2";
+    folder.good(&format!("{turn} -q -o turn.webp"));
+    let webp = fs::read(folder.path("turn.webp")).unwrap();
+    assert_eq!(webp.windows(4).filter(|chunk| chunk == b"ANMF").count(), 3);
+    folder.good(&format!("{turn} -q -o zz_##.png"));
+    assert_eq!(folder.files(), ["solid.obj", "turn.webp", "zz_00.png", "zz_01.png", "zz_02.png"]);
+    // One picture is one frame; the program says so unless the frame is chosen.
+    let run = folder.run(&format!("{turn} -o one.png"));
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("note: --turntable 3 has 3 frames"), "{}", run.stderr);
+    assert!(run.stderr.contains("-o 'one_####.png' writes all of them"), "{}", run.stderr);
+    for line in ["--frame 1 -o one.png", "--frame 1 -o one_#.png", "--at 0 -o one.webp"] {
+        let run = folder.run(&format!("{turn} {line}"));
+        assert!(run.status == 0 && !run.stderr.contains("note:"), "{}", run.stderr);
+    }
+    assert!(!folder.path("one_0.png").exists() && folder.path("one_1.png").exists());
+    assert_eq!(fs::read(folder.path("one.webp")).unwrap()[12..16], *b"VP8L", "a picture");
+}
+
+/// The background is as white in a GIF as in a PNG, in all frames.
+#[test]
+fn white_is_white_in_a_gif() {
+    let folder = with_solid();
+    let line =
+        "render solid.obj -q --turntable 2 --background white --floor none --view iso --size 200x160 --samples 4";
+    folder.good(&format!("{line} -o a.gif"));
+    folder.good(&format!("{line} --frame 0 -o a.png"));
+    let pixels = |name: &str| imaging::read(&folder.path(name)).unwrap().pixels().to_vec();
+    let (gif, png) = (pixels("a.gif"), pixels("a.png"));
+    let white: Vec<usize> = (0..png.len()).filter(|i| png[*i] == Rgb::WHITE).collect();
+    assert!(white.len() > png.len() / 4 && white.len() < png.len(), "{}", white.len());
+    assert!(white.iter().all(|i| gif[*i] == Rgb::WHITE));
+}
+
+#[test]
+fn info_knows_movies() {
+    let folder = with_solid();
+    for name in ["turn.gif", "turn.mp4"] {
+        folder.good(&format!("render solid.obj -q --turntable 3 --size 20x16 --samples 2 -o {name}"));
+    }
+    let printed = folder.good("info turn.gif").stdout;
+    assert!(printed.contains("20x16, GIF") && printed.contains("3 frames, 0.1 s"), "{printed}");
+    let json: Value = serde_json::from_str(&folder.good("info turn.gif --json").stdout).unwrap();
+    assert_eq!((json["frames"].as_u64(), json["seconds"].as_f64()), (Some(3), Some(0.1)));
+    let printed = folder.good("info turn.mp4").stdout;
+    assert!(printed.contains("MP4; `juggler info` does not read its frames"), "{printed}");
+    let json: Value = serde_json::from_str(&folder.good("info turn.mp4 --json").stdout).unwrap();
+    assert_eq!(json["format"], "mp4");
+}
+
 /// What a command shows is what `convert` writes with the same flags, and `info` prints the camera.
 #[test]
 fn converted_scenes_show_what_the_flags_show() {
@@ -79,11 +153,18 @@ fn wrong_values_and_combinations_are_refused() {
     let folder = with_solid();
     for (flags, said) in [
         ("--background whit", "did you mean `white`?"),
+        ("--background transparant", "did you mean `transparent`?"),
+        ("--background fff", "did you mean `#fff`?"),
+        ("--background white --transparent", "--transparent shows nothing where nothing is"),
+        ("--view isometric", "did you mean `iso`?"),
+        ("--floor shadows", "did you mean `shadow`?"),
+        ("--floor shadow", "--floor shadow shows only shadows"),
+        ("--environment studdio", "neither studio nor sky, and there is no file of this name; did you mean `studio`?"),
         ("--view up", "front, back, left, right, top, bottom, iso"),
         ("--floor wood", "solid, shadow, none"),
         ("--turntable 0", "such as 120"),
         ("--fov 180", "at most 179"),
-        ("--fit 1.2", "such as 0.9"),
+        ("--fit 1.2", "a fraction is above 0 and at most 1, such as 0.9"),
         ("--eye 1,2", "such as 0,1.5,-4"),
         ("--eye 1,2,3 --view top", "cannot be used with"),
         ("--environment none.hdr", "none.hdr"),

@@ -35,7 +35,8 @@ pub fn check(
     if let Some((format, header, seekable)) = picture {
         let names = u64::from(merge.description().aovs.entries).saturating_mul(NAME);
         let has_names = set.selected().iter().any(|aov| matches!(aov, Aov::CryptoObject | Aov::CryptoMaterial));
-        let denoise = if set.denoiser().is_some() { region.area().saturating_mul(DenoiserInput::BYTES) } else { 0 };
+        let bytes = set.denoiser().map_or(0, |_| DenoiserInput::bytes_per_pixel(set.is_transparent()));
+        let denoise = region.area().saturating_mul(bytes);
         needed = needed.saturating_add(format.memory_needed(header, seekable)).saturating_add(denoise);
         needed = needed.saturating_add(if has_names { names } else { 0 });
     }

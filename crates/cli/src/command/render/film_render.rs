@@ -12,7 +12,7 @@ use crate::plan::{Checkpoint as CheckpointPlan, Cut, FrameOutput, Shard};
 use crate::progress::{Goal, Watch, with_progress};
 use crate::reproduce;
 use juggler::camera::film::{Film, FilmDigest, FilmSummary, Rect, TILE_EDGE};
-use juggler::denoise::Denoised;
+use juggler::denoise::DenoisedPicture;
 use juggler::film::checkpoint::{self, Checkpoint};
 use juggler::film::counts::{self, SampleCountStats};
 use juggler::film::partial_render::{PartialRender, PartialRenderError, RenderDescription, ShardDescription, write};
@@ -116,17 +116,18 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
     counts::from_text(counts, tiles).ok_or_else(other)
 }
 
-/// Reports the fraction of the light that the denoiser moved from outliers to their neighborhoods,
-/// if it is not negligible.
-pub fn report_moved(denoised: &Denoised) {
+/// Note on the fraction of the light that the denoiser moved from outliers to their neighborhoods,
+/// if it is not negligible. A black picture has its own warning.
+fn moved_note(denoised: &DenoisedPicture) -> Option<String> {
     const TRIFLE: f64 = 1e-3;
-    if denoised.moved_energy >= TRIFLE {
-        let percent = 100.0 * denoised.moved_energy;
-        console::print_message(&format!(
+    let percent = 100.0 * denoised.moved_energy;
+    let is_black = || denoised.pixels.iter().all(|pixel| *pixel == Rgb::BLACK);
+    (denoised.moved_energy >= TRIFLE && !is_black()).then(|| {
+        format!(
             "note: the denoiser spread {percent:.1} % of the light from single bright pixels to their neighbors; more \
              samples make them rarer"
-        ));
-    }
+        )
+    })
 }
 
 /// Summary of pixels that are not those of the film, such as denoised ones.
@@ -162,11 +163,11 @@ impl FilmRender<'_> {
             saved
         };
         let denoise = Instant::now();
-        let pixels =
-            if self.command.plan.output_kind == OutputKind::PartialRender { None } else { self.pixels(&control)? };
+        let denoised =
+            if self.command.plan.output_kind == OutputKind::PartialRender { None } else { self.denoised(&control)? };
         let (denoise, write) = (denoise.elapsed(), Instant::now());
         // Write the finished picture before reporting that its checkpoint could not be saved.
-        let (film, layers) = self.write(pixels.as_deref())?;
+        let (film, layers) = self.write(denoised.as_ref().map(DenoisedPicture::rows))?;
         if let Some(checkpoint) = checkpoint.filter(|_| saved.is_ok()) {
             checkpoint.close();
         }
@@ -261,21 +262,21 @@ impl FilmRender<'_> {
         })
     }
 
-    /// Denoised pixels, or `None` without a denoiser.
-    fn pixels(&self, control: &Control) -> Result<Option<Vec<Rgb>>, Failure> {
+    /// Denoised picture, or `None` without a denoiser.
+    fn denoised(&self, control: &Control) -> Result<Option<DenoisedPicture>, Failure> {
         let Some(denoiser) = self.command.plan.settings.denoiser else { return Ok(None) };
         let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
         let input = self.frame.picture.denoiser_input(&self.film);
         let denoised = input.denoise(denoiser, library.as_deref(), control)?;
         let denoised = denoised.ok_or_else(|| Failure::System(Cancelled.to_string()))?;
-        if !self.command.plan.quiet {
-            report_moved(&denoised);
+        if let Some(note) = moved_note(&denoised).filter(|_| !self.command.plan.quiet) {
+            console::print_message(&note);
         }
-        Ok(Some(denoised.pixels))
+        Ok(Some(denoised))
     }
 
     /// Writes the AOVs. Returns whether their file contains the picture too.
-    fn write_aovs(&self, pixels: Option<&[Rgb]>) -> Result<bool, Failure> {
+    fn write_aovs(&self, pixels: Option<PixelRows>) -> Result<bool, Failure> {
         let FrameRender { picture, frame_output, .. } = self.frame;
         if picture.aovs().selected().is_empty() {
             return Ok(false);
@@ -287,20 +288,21 @@ impl FilmRender<'_> {
         };
         let header = picture.aovs().file_header(&self.header, with_picture);
         let writer = LayeredWriter::create(Path::new(file), &header)?;
-        let mut plain = Vec::new();
+        let mut plain = DenoisedPicture::default();
         if with_picture && pixels.is_none() {
             picture.develop(&self.film, |rows| {
-                plain.extend_from_slice(rows.colors);
+                plain.pixels.extend_from_slice(rows.colors);
                 Ok::<(), Failure>(())
             })?;
+            plain.alpha = picture.alpha(&self.film);
         }
-        picture.write_layers(&self.film, writer, with_picture.then(|| pixels.unwrap_or(&plain)))?;
+        picture.write_layers(&self.film, writer, with_picture.then(|| pixels.unwrap_or(plain.rows())))?;
         Ok(with_picture)
     }
 
     /// Writes the AOVs. Returns whether their file contains the picture too, and the error of a
     /// separate AOV file.
-    fn write_beside(&self, pixels: Option<&[Rgb]>) -> Result<(bool, Result<(), Failure>), Failure> {
+    fn write_beside(&self, pixels: Option<PixelRows>) -> Result<(bool, Result<(), Failure>), Failure> {
         let FrameOutput { output, aov_output, .. } = self.frame.frame_output;
         match self.write_aovs(pixels) {
             Ok(in_picture) => Ok((in_picture, Ok(()))),
@@ -311,7 +313,7 @@ impl FilmRender<'_> {
 
     /// Writes the picture or the partial render. `pixels` replaces the film's pixels. Also returns
     /// the error of a separate AOV file.
-    fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<(FilmSummary, Result<(), Failure>), Failure> {
+    fn write(&mut self, pixels: Option<PixelRows>) -> Result<(FilmSummary, Result<(), Failure>), Failure> {
         let (picture, output) = (self.frame.picture, &self.frame.frame_output.output);
         match self.command.plan.output_kind {
             OutputKind::PartialRender => {
@@ -328,9 +330,7 @@ impl FilmRender<'_> {
                 let summary = match pixels {
                     None if in_picture => picture.develop(&self.film, |_| Ok::<(), Failure>(()))?,
                     None => picture.write_film(&self.film, writer()?)?,
-                    Some(colors) => {
-                        let alpha = picture.alpha(&self.film);
-                        let pixels = PixelRows { colors, alpha: alpha.as_deref() };
+                    Some(pixels) => {
                         if !in_picture {
                             let mut writer = writer()?;
                             writer.write_rows(pixels)?;
@@ -342,5 +342,21 @@ impl FilmRender<'_> {
                 Ok((summary, beside))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moved_light_is_noted_unless_the_picture_is_black() {
+        let note = |pixel: Rgb, moved_energy: f64| {
+            moved_note(&DenoisedPicture { pixels: vec![Rgb::BLACK, pixel], alpha: None, moved_energy })
+        };
+        let text = "note: the denoiser spread 12.5 % of the light from single bright pixels";
+        assert!(note(Rgb::WHITE, 0.125).unwrap().starts_with(text));
+        assert_eq!(note(Rgb::WHITE, 1e-4), None);
+        assert_eq!(note(Rgb::BLACK, 1.0), None);
     }
 }

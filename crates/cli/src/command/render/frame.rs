@@ -7,6 +7,7 @@ use crate::progress::{FrameProgress, Reporter};
 use juggler::Picture;
 use juggler::imaging::{self, Header, ImageFormat, RowWriter};
 use juggler::memory::Effort;
+use juggler_raybench::clock::Stopwatch;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -33,6 +34,8 @@ pub struct FrameRender<'t> {
     pub load: Duration,
     pub build: Duration,
     pub start: RenderStart,
+    /// Runs since the world was built.
+    pub stopwatch: Stopwatch,
 }
 
 impl RenderCommand {

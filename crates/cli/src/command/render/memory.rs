@@ -30,7 +30,8 @@ pub fn estimate(plan: &Plan, scene: &Scene, frame_output: &FrameOutput) -> Resul
         memory = memory.with_film(crop, plan.cut.samples.clone(), shards);
     }
     if plan.settings.denoiser.is_some() {
-        let bytes = memory.region().area().saturating_mul(DenoiserInput::BYTES);
+        let pixel = DenoiserInput::bytes_per_pixel(plan.settings.transparent_of(scene));
+        let bytes = memory.region().area().saturating_mul(pixel);
         memory = memory.with_part("denoising", bytes);
     }
     if let OutputKind::Picture(Encoding { format, options }) = plan.output_kind {

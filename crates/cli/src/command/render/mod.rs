@@ -30,6 +30,7 @@ use juggler::memory::Effort;
 use juggler::render::Control;
 use juggler::scene::Scene;
 use juggler::{Picture, RenderStats, TONE};
+use juggler_raybench::clock::{CpuClock, Stopwatch};
 use movie::MovieEncoder;
 use std::time::Instant;
 
@@ -73,6 +74,7 @@ impl RenderCommand {
     fn run(self, start: Instant, interrupts: &mut Option<Interrupts>) -> Result<bool, Failure> {
         let scene = source::load_model(&self.plan.scene, &self.plan.model, self.plan.max_memory)?;
         effect::check_scene(&self.plan.settings, &scene)?;
+        self.plan.model.stage.check_floor(self.plan.settings.transparent_of(&scene))?;
         let animation = scene.description.animation;
         let header = self.plan.movie.as_ref().map(|movie| self.header(movie, &scene)).transpose()?;
         let frame_outputs = self.plan.frame_outputs(animation.frames, animation.frames_per_second)?;
@@ -109,13 +111,14 @@ impl RenderCommand {
         let animation = scene.description.animation;
         let Rect { width, height, .. } = self.plan.settings.region(self.plan.settings.size_of(scene))?;
         let frames = self.plan.frames(animation.frames).len();
+        let mut tone = (*scene.description.tone).clone();
+        self.plan.settings.apply_to(&mut (*scene.description.render).clone(), &mut tone)?;
+        // The frames of a movie with a backdrop are opaque pictures.
+        let transparent = self.plan.settings.transparent_of(scene) && tone.backdrop.is_none();
         // An empty range of frames is an error of `frame_outputs`.
-        let transparent = self.plan.settings.transparent_of(scene);
         let header = movie.header([width, height], frames.max(1), animation.frames_per_second);
         let header = AnimationHeader { transparent, ..header };
         movie.check(&header)?;
-        let mut tone = (*scene.description.tone).clone();
-        self.plan.settings.apply_to(&mut (*scene.description.render).clone(), &mut tone)?;
         if !tone.primaries.is_srgb() {
             let name = tone.primaries.name();
             return Err(Failure::Invalid(format!(
@@ -188,8 +191,16 @@ impl RenderCommand {
         let picture = picture.with_band_pixels(band_pixels);
         self.warn(&picture);
         let build = built.elapsed();
-        let frame =
-            FrameRender { frame_output: &frame_output, picture: &picture, effort, expected, load, build, start };
+        let frame = FrameRender {
+            frame_output: &frame_output,
+            picture: &picture,
+            effort,
+            expected,
+            load,
+            build,
+            start,
+            stopwatch: Stopwatch::start(CpuClock::Process),
+        };
         let needs_film = self.plan.needs_film(scene, &frame_output);
         let is_rendered = frame_cache.install(|| self.picture(&frame, needs_film, interrupts))?;
         frame_cache.keep(&self.plan, scene, picture)?;
@@ -242,15 +253,16 @@ impl RenderCommand {
         }
     }
 
-    /// Warns of tone settings that the output format ignores, and of frames beyond the end of the
-    /// animation.
+    /// Warns of tone settings that the output format ignores, of frames beyond the end of the
+    /// animation, and of a turn with one picture.
     fn warn_of_settings(&self, scene: &Scene) {
         let frames = scene.description.animation.frames;
         let last = self.plan.frames(frames).end.saturating_sub(1);
         // The tone of the scene around a model is not the user's.
         let tone = effect::ignored_tone_warning(self.plan.target(), &scene.description.tone);
         let tone = tone.filter(|_| !scene.is_around_model());
-        for warning in tone.into_iter().chain(end_warning(last, frames)).filter(|_| !self.plan.quiet) {
+        let turn = self.plan.turn_note.clone();
+        for warning in tone.into_iter().chain(end_warning(last, frames)).chain(turn).filter(|_| !self.plan.quiet) {
             console::print_message(&warning);
         }
     }
@@ -287,6 +299,7 @@ impl RenderCommand {
             denoise: outcome.denoise.as_secs_f64(),
             write: outcome.write.as_secs_f64(),
             total: total.as_secs_f64(),
+            cpu: frame.stopwatch.elapsed().cpu,
         };
         self.reporter.done(&frame_output.output, seconds.total, outcome.rays.total(), &outcome.film.hash);
         if let Some(file) = &frame_output.stats {
