@@ -7,13 +7,12 @@ use super::MeshData;
 use crate::attribute::MeshAttribute;
 use crate::{InvalidShape, check};
 use juggler_math::{BuildControl, Cancelled, DVec3, portable};
-use std::collections::BTreeMap;
 
 /// Maximum number of triangles, so that the index of every corner fits a `u32`.
 const MAX_TRIANGLES: usize = 1 << 30;
-/// Number of triangles that are split between tests for cancellation.
+/// Number of items that are treated between tests for cancellation.
 const CHECKED: usize = 1 << 16;
-/// Number of positions whose edges are sorted together.
+/// Number of positions whose edges or corners are sorted together.
 const POSITIONS_OF_LIST: usize = 1 << 16;
 
 /// Smoothing groups of a mesh's corners.
@@ -36,32 +35,34 @@ impl SmoothingGroups {
             return Err(check::invalid("crease_angle_degrees", message));
         }
         let groups = groups(data, f64::from(portable::cos(angle_degrees.to_radians())), control)?;
-        let mut known = BTreeMap::new();
-        let mut corners = Vec::new();
-        let mut split = |position: u32, group: u32| {
-            *known.entry((position, group)).or_insert_with(|| {
-                corners.push((position, group));
-                corners.len() as u32 - 1
-            })
-        };
-        let mut triangles = Vec::with_capacity(data.triangles.len());
-        for (indices, groups) in data.triangles.chunks(CHECKED).zip(groups.as_chunks::<3>().0.chunks(CHECKED)) {
-            control.check()?;
-            let corners = indices.iter().zip(groups);
-            triangles.extend(corners.map(|([a, b, c], [x, y, z])| [split(*a, *x), split(*b, *y), split(*c, *z)]));
+        let firsts = first_corners(data, &groups, control)?;
+        let (mut corners, mut indices) = (Vec::new(), Vec::with_capacity(firsts.len()));
+        let all = data.triangles.as_flattened().iter().zip(groups).zip(firsts);
+        for (corner, ((position, group), first)) in all.enumerate() {
+            if corner.is_multiple_of(CHECKED) {
+                control.check()?;
+            }
+            if first as usize == corner {
+                corners.push((*position, group));
+            }
+            // A first corner is not behind the others, so its split position is known.
+            indices.push(indices.get(first as usize).copied().unwrap_or(corners.len() as u32 - 1));
         }
-        Ok(Self { triangles, corners })
+        Ok(Self { triangles: indices.as_chunks().0.to_vec(), corners })
     }
 
     /// Mesh of the split positions with the normals of their groups: means of the triangles'
     /// normals weighted by area. A mesh that has normals stays unchanged.
-    pub fn smoothed(&self, data: MeshData) -> MeshData {
+    pub fn smoothed(&self, data: MeshData, control: &BuildControl) -> Result<MeshData, Cancelled> {
         if !data.normals.is_empty() {
-            return data;
+            return Ok(data);
         }
         let groups = self.corners.iter().map(|(_, group)| *group as usize + 1).max().unwrap_or(0);
         let mut sums = vec![DVec3::ZERO; groups];
         for (number, corners) in self.triangles.iter().enumerate() {
+            if number.is_multiple_of(CHECKED) {
+                control.check()?;
+            }
             let Some(triangle) = data.triangle_geometry(number) else { continue };
             for corner in corners {
                 let group = self.corners.get(*corner as usize).and_then(|(_, group)| sums.get_mut(*group as usize));
@@ -69,22 +70,19 @@ impl SmoothingGroups {
             }
         }
         let normal = |group: u32| sums.get(group as usize).copied().unwrap_or_default().normalize_or_zero().as_vec3();
-        let at = |position: &u32| *position as usize;
-        let positions = self.corners.iter().filter_map(|(position, _)| data.positions.get(at(position)).copied());
-        let uvs = self.corners.iter().filter_map(|(position, _)| data.uvs.get(at(position)).copied());
-        MeshData {
-            positions: positions.collect(),
+        control.check()?;
+        let normals = self.corners.iter().map(|(_, group)| normal(*group)).collect();
+        control.check()?;
+        let attributes = data.attributes.iter().map(|(name, values)| (name.clone(), self.split_attribute(values)));
+        Ok(MeshData {
+            positions: self.split(&data.positions),
             triangles: self.triangles.clone(),
-            normals: self.corners.iter().map(|(_, group)| normal(*group)).collect(),
-            uvs: uvs.collect(),
+            normals,
+            uvs: self.split(&data.uvs),
             uvs1: self.split(&data.uvs1),
             tangents: self.split(&data.tangents),
-            attributes: data
-                .attributes
-                .iter()
-                .map(|(name, attribute)| (name.clone(), self.split_attribute(attribute)))
-                .collect(),
-        }
+            attributes: attributes.collect(),
+        })
     }
 }
 
@@ -108,6 +106,25 @@ fn normal_at(data: &MeshData, corner: u32) -> Option<DVec3> {
     data.triangle_geometry(corner as usize / 3).map(|triangle| triangle.area_normal().normalize_or_zero())
 }
 
+/// Items in `count` lists, so that the sorting of each list is short. Each item is beside the index of
+/// its list.
+fn lists<T>(
+    count: usize,
+    items: impl Iterator<Item = (usize, T)>,
+    control: &BuildControl,
+) -> Result<Vec<Vec<T>>, Cancelled> {
+    let mut lists: Vec<Vec<T>> = (0..count).map(|_| Vec::new()).collect();
+    for (number, (index, item)) in items.enumerate() {
+        if number.is_multiple_of(CHECKED) {
+            control.check()?;
+        }
+        if let Some(list) = lists.get_mut(index) {
+            list.push(item);
+        }
+    }
+    Ok(lists)
+}
+
 /// For each corner of each triangle, the index of its smoothing group.
 fn groups(data: &MeshData, least_cosine: f64, control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
     let mut groups: Vec<u32> = (0..3 * data.triangles.len() as u32).collect();
@@ -124,49 +141,80 @@ fn groups(data: &MeshData, least_cosine: f64, control: &BuildControl) -> Result<
             }
         }
     }
-    control.check()?;
-    Ok((0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect())
-}
-
-/// Edges of triangles with an area, in lists by ranges of their lower positions, so that the sorting of
-/// each list is short.
-fn edges(data: &MeshData, control: &BuildControl) -> Result<Vec<Vec<Edge>>, Cancelled> {
-    control.check()?;
-    let places = coincident_positions(data);
-    let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
-    let mut lists = vec![Vec::new(); data.positions.len() / POSITIONS_OF_LIST + 1];
-    for (first, triangle) in (0u32..).step_by(3).zip(&data.triangles) {
-        if (first as usize).is_multiple_of(3 * CHECKED) {
+    for corner in 0..groups.len() {
+        if corner.is_multiple_of(CHECKED) {
             control.check()?;
         }
-        if normal_at(data, first).is_none_or(|normal| normal == DVec3::ZERO) {
-            continue;
-        }
+        let root = root(&mut groups, corner as u32);
+        groups.get_mut(corner).into_iter().for_each(|group| *group = root);
+    }
+    Ok(groups)
+}
+
+/// Edges of triangles with an area, in lists by ranges of their lower positions.
+fn edges(data: &MeshData, control: &BuildControl) -> Result<Vec<Vec<Edge>>, Cancelled> {
+    let places = coincident_positions(data, control)?;
+    let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
+    let triangles = (0u32..).step_by(3).zip(&data.triangles);
+    let with_area = triangles.filter(|(first, _)| normal_at(data, *first).is_some_and(|normal| normal != DVec3::ZERO));
+    let edges = with_area.flat_map(|(first, triangle)| {
         let ends = triangle.map(place);
-        for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+        [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
             let corners = [first + from as u32, first + to as u32];
             let [a, b] = [ends[from], ends[to]];
-            let edge = if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) };
-            lists.get_mut(edge.0[0] as usize / POSITIONS_OF_LIST).into_iter().for_each(|list| list.push(edge));
-        }
-    }
-    Ok(lists)
+            if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) }
+        })
+    });
+    let in_lists = edges.map(|edge: Edge| (edge.0[0] as usize / POSITIONS_OF_LIST, edge));
+    lists(number_of_lists(data), in_lists, control)
+}
+
+/// Number of lists for edges and corners by their positions.
+fn number_of_lists(data: &MeshData) -> usize {
+    data.positions.len() / POSITIONS_OF_LIST + 1
 }
 
 /// For each position, the lowest index of a coincident position.
-fn coincident_positions(data: &MeshData) -> Vec<u32> {
-    let bits = |position: u32| data.positions.get(position as usize).map(|at| (*at + 0.0).to_array().map(f32::to_bits));
-    let mut order: Vec<u32> = (0..data.positions.len() as u32).collect();
-    order.sort_unstable_by_key(|position| (bits(*position), *position));
-    let mut places = vec![0; order.len()];
-    for same in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
-        for position in same {
-            if let (Some(place), Some(first)) = (places.get_mut(*position as usize), same.first()) {
-                *place = *first;
+fn coincident_positions(data: &MeshData, control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
+    let count = number_of_lists(data);
+    let bits = data.positions.iter().map(|at| (*at + 0.0).to_array().map(f32::to_bits));
+    let in_lists = bits.zip(0u32..).map(|(bits, position)| {
+        let hash = bits.iter().fold(0u32, |hash, bits| (hash.rotate_left(15) ^ bits).wrapping_mul(0x9e37_79b9));
+        (hash as usize % count, (bits, position))
+    });
+    let mut places = vec![0; data.positions.len()];
+    for mut positions in lists(count, in_lists, control)? {
+        control.check()?;
+        positions.sort_unstable();
+        for same in positions.chunk_by(|a, b| a.0 == b.0) {
+            for (_, position) in same {
+                if let (Some(place), Some((_, first))) = (places.get_mut(*position as usize), same.first()) {
+                    *place = *first;
+                }
             }
         }
     }
-    places
+    Ok(places)
+}
+
+/// For each corner of each triangle, the first corner of the same position and smoothing group.
+fn first_corners(data: &MeshData, groups: &[u32], control: &BuildControl) -> Result<Vec<u32>, Cancelled> {
+    let corners = data.triangles.as_flattened().iter().zip(groups).zip(0u32..);
+    let in_lists = corners
+        .map(|((position, group), corner)| (*position as usize / POSITIONS_OF_LIST, (*position, *group, corner)));
+    let mut firsts = vec![0; groups.len()];
+    for mut corners in lists(number_of_lists(data), in_lists, control)? {
+        control.check()?;
+        corners.sort_unstable();
+        for same in corners.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            for (.., corner) in same {
+                if let (Some(slot), Some((.., first))) = (firsts.get_mut(*corner as usize), same.first()) {
+                    *slot = *first;
+                }
+            }
+        }
+    }
+    Ok(firsts)
 }
 
 /// Lowest corner of a group; shortens the path to it (union-find by path halving).
@@ -214,7 +262,8 @@ mod tests {
     }
 
     fn smooth(data: MeshData, angle: f32) -> MeshData {
-        SmoothingGroups::new(&data, angle, &BuildControl::default()).unwrap().smoothed(data)
+        let control = BuildControl::default();
+        SmoothingGroups::new(&data, angle, &control).unwrap().smoothed(data, &control).unwrap()
     }
 
     #[test]

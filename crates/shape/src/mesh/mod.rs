@@ -188,7 +188,7 @@ impl Mesh {
         }
         if let (Some(angle), Some(first)) = (crease_angle_degrees, keys.first().filter(|key| key.normals.is_empty())) {
             let smoothing = SmoothingGroups::new(first, angle, control)?;
-            keys = keys.into_iter().map(|key| smoothing.smoothed(key)).collect();
+            keys = keys.into_iter().map(|key| smoothing.smoothed(key, control)).collect::<Result<_, _>>()?;
         }
         let prepared = PreparedMesh::from_keyframes(keys, control)?;
         let (arrays, prepared) = (Arc::clone(prepared.arrays()), Some(Arc::new(prepared)));
@@ -295,7 +295,7 @@ impl Shape for Mesh {
         }
         if let Some(angle) = self.crease_angle_degrees.filter(|_| arrays.normals.is_empty()) {
             let smoothing = SmoothingGroups::new(&arrays, angle, control)?;
-            arrays = Arc::new(smoothing.smoothed(Arc::unwrap_or_clone(arrays)));
+            arrays = Arc::new(smoothing.smoothed(Arc::unwrap_or_clone(arrays), control)?);
         }
         // Morphs and creases may change, so only the arrays' own preparation is kept.
         let is_own = Arc::ptr_eq(&arrays, &self.arrays);
