@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// CPU time that a build may take after its cancellation.
 const MOST: Duration = Duration::from_millis(500);
 
+/// Maximum number of the instances, of which a scene holds four million at most.
+const MOST_INSTANCES: usize = 3_000_000;
+
 /// Environment variable with the number of triangles of the large meshes, for the deep check.
 const TRIANGLES: &str = "JUGGLER_TRIANGLES";
 /// Name of the threads that build.
@@ -54,7 +57,8 @@ fn scenes(side: u32) -> Vec<(&'static str, Scene)> {
     let plain = || Scene::new().size(32, 18).samples(1);
     let mut smooth = mesh();
     smooth.crease_angle_degrees = Some(30.0);
-    let matrices = arrays.positions.iter().map(|at| [1.0, 0.0, 0.0, at.x, 0.0, 1.0, 0.0, at.y, 0.0, 0.0, 1.0, at.z]);
+    let places = arrays.positions.iter().take(MOST_INSTANCES);
+    let matrices = places.map(|at| [1.0, 0.0, 0.0, at.x, 0.0, 1.0, 0.0, at.y, 0.0, 0.0, 1.0, at.z]);
     let spheres = Object::new(Sphere { radius: 1e-4 }).instances(Instances::from_matrices(matrices));
     vec![
         ("mesh", plain().add(Object::new(mesh()))),
