@@ -263,7 +263,7 @@ impl Picture {
         }
     }
 
-    /// Renders and passes finished rows to `rows`, from the top, without alpha; memory holds one band
+    /// Renders and passes finished rows to `rows`, from the top, without alpha; memory holds two bands
     /// at a time.
     pub fn render<E: From<Cancelled>>(
         &self,

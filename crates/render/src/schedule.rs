@@ -5,10 +5,10 @@ use super::{Cancelled, Control, Job, Work};
 use juggler_camera::film::{ClampedRadiance, Rect};
 use juggler_math::{NamedKind, Rgb};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// Default number of pixels in a band; at least one row of tiles is held in memory.
+/// Default number of pixels in two bands.
 pub const BAND_PIXELS: u64 = 4 << 20;
 /// Number of samples per tile that amortizes the scheduler's overhead.
 const TILE_SAMPLES: u64 = 1 << 16;
@@ -50,8 +50,8 @@ impl NamedKind for Scheduler {
 pub struct Schedule {
     /// Strategy by which threads obtain pixels.
     pub scheduler: Scheduler,
-    /// Maximum number of pixels held in memory at once, rounded down to whole rows of tiles, at
-    /// least one row.
+    /// Maximum number of pixels held in memory at once, in two bands of whole rows of tiles, at least
+    /// one row each.
     pub band_pixels: u64,
 }
 
@@ -62,8 +62,8 @@ impl Default for Schedule {
 }
 
 /// Renders all samples of `region` on the threads of the current rayon pool and passes the finished
-/// rows to `rows` from top to bottom, one band of whole rows at a time; only one band is held in
-/// memory. Returns the radiance that clamping removed.
+/// rows to `rows` from top to bottom, one band of whole rows at a time, while other threads render the
+/// next band; only two bands are held in memory. Returns the radiance that clamping removed.
 ///
 /// # Errors
 ///
@@ -77,35 +77,66 @@ pub fn render<E: From<Cancelled>>(
 ) -> Result<ClampedRadiance, E> {
     // Choose the number of camera rays before all threads need it.
     job.camera_rays.count(job, control)?;
-    let workers: Vec<Mutex<ThreadState>> = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
+    let threads = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
+    let workers = Workers { job, control, scheduler: schedule.scheduler, threads, rows_failed: AtomicBool::new(false) };
+    let mut finished: Option<Vec<Rgb>> = None;
     for band in bands(region, schedule.band_pixels) {
         let mut film = vec![Rgb::BLACK; band.area() as usize];
-        let rows_of_film: Vec<Mutex<&mut [Rgb]>> =
-            film.chunks_mut(band.width.max(1) as usize).map(Mutex::new).collect();
-        let render_tile = |pixels: Rect| {
-            // Each thread has a state of its own, so that no thread waits for another.
-            let Some(worker) = workers.get(rayon::current_thread_index().unwrap_or_default()) else { return };
-            let mut worker = lock(worker);
-            let ThreadState { engine, clamped } = &mut *worker;
-            let engine = engine.get_or_insert_with(|| Engine::new(job));
-            let means = if job.samples == 1 {
-                engine.render_single(pixels, control)
-            } else {
-                engine.render(&Work::first(pixels, job.samples), control).map(|tile| (tile.means(), tile.clamped()))
-            };
-            if let Ok((means, removed)) = means {
-                copy_rows(&means, pixels, &band, &rows_of_film);
-                clamped.add_all(removed);
-            }
-        };
-        for_each_tile(schedule.scheduler, &band, job.samples, control, render_tile);
+        // Render the band while this thread passes on the one before.
+        rayon::in_place_scope(|scope| {
+            scope.spawn(|_| workers.render_band(&band, &mut film));
+            let passed_on = finished.take().map_or(Ok(()), &mut rows);
+            workers.rows_failed.store(passed_on.is_err(), Relaxed);
+            passed_on
+        })?;
         if control.is_cancelled() {
             return Err(Cancelled.into());
         }
-        drop(rows_of_film);
-        rows(film)?;
+        finished = Some(film);
     }
-    Ok(workers.iter().map(|worker| lock(worker).clamped).sum())
+    finished.map_or(Ok(()), rows)?;
+    Ok(workers.threads.iter().map(|thread| lock(thread).clamped).sum())
+}
+
+/// The threads that render.
+struct Workers<'j> {
+    job: &'j Job<'j>,
+    control: &'j Control,
+    scheduler: Scheduler,
+    /// Each thread has a state of its own, so that no thread waits for another.
+    threads: Vec<Mutex<ThreadState<'j>>>,
+    /// Whether the finished rows could not be passed on, so that all other work is in vain.
+    rows_failed: AtomicBool,
+}
+
+impl Workers<'_> {
+    /// Renders all samples of a band into `film`, which is incomplete after cancellation.
+    fn render_band(&self, band: &Rect, film: &mut [Rgb]) {
+        let rows: Vec<Mutex<&mut [Rgb]>> = film.chunks_mut(band.width.max(1) as usize).map(Mutex::new).collect();
+        for_each_tile(self.scheduler, band, self.job.samples, self.control, |pixels| {
+            self.render_tile(pixels, band, &rows);
+        });
+    }
+
+    fn render_tile(&self, pixels: Rect, band: &Rect, rows: &[Mutex<&mut [Rgb]>]) {
+        let Some(thread) = self.threads.get(rayon::current_thread_index().unwrap_or_default()) else { return };
+        if self.rows_failed.load(Relaxed) {
+            return;
+        }
+        let (job, mut thread) = (self.job, lock(thread));
+        let ThreadState { engine, clamped } = &mut *thread;
+        let engine = engine.get_or_insert_with(|| Engine::new(job));
+        let means = if job.samples == 1 {
+            engine.render_single(pixels, self.control)
+        } else {
+            let work = Work::first(pixels, job.samples);
+            engine.render(&work, self.control).map(|tile| (tile.means(), tile.clamped()))
+        };
+        if let Ok((means, removed)) = means {
+            copy_rows(&means, pixels, band, rows);
+            clamped.add_all(removed);
+        }
+    }
 }
 
 /// What a thread keeps between tiles.
@@ -126,11 +157,11 @@ fn copy_rows(colors: &[Rgb], tile: Rect, band: &Rect, rows: &[Mutex<&mut [Rgb]>]
     }
 }
 
-/// Memory that [`render`] holds for a band of `pixels` pixels, in bytes: the band and its list of
-/// tiles.
+/// Memory that [`render`] holds for two bands of together `pixels` pixels, in bytes: the bands and their
+/// lists of tiles.
 pub fn band_bytes(region: Rect, pixels: u64) -> u64 {
     let tile = (size_of::<Rect>() as u64) / u64::from(MIN_TILE * MIN_TILE);
-    bands(region, pixels).next().map_or(0, |band| band.area() * (size_of::<Rgb>() as u64 + tile))
+    bands(region, pixels).take(2).map(|band| band.area() * (size_of::<Rgb>() as u64 + tile)).sum()
 }
 
 /// Locks a mutex, poisoned or not: rayon passes on the panic of the other thread.
@@ -138,10 +169,10 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Cuts a region into bands of whole rows with at most `pixels` pixels, at least one row of tiles
-/// each.
+/// Cuts a region into bands of whole rows, at least one row of tiles each. Two bands have at most
+/// `pixels` pixels.
 fn bands(region: Rect, pixels: u64) -> impl Iterator<Item = Rect> {
-    let tile_rows = pixels / (u64::from(region.width.max(1)) * u64::from(MAX_TILE));
+    let tile_rows = pixels / (2 * u64::from(region.width.max(1)) * u64::from(MAX_TILE));
     let height = (tile_rows.max(1) * u64::from(MAX_TILE)).min(u64::from(u32::MAX)) as u32;
     let end = region.y + region.height;
     (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
@@ -232,7 +263,7 @@ mod tests {
                 let mut next = region.y;
                 for band in bands(region, pixels) {
                     assert_eq!((band.x, band.y, band.width), (2, next, width));
-                    assert!(band.area() <= pixels.max(u64::from(width * MAX_TILE)));
+                    assert!(2 * band.area() <= pixels.max(2 * u64::from(width * MAX_TILE)));
                     assert!(band.area() * 12 <= band_bytes(region, pixels));
                     next += band.height;
                 }

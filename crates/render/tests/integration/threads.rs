@@ -8,6 +8,7 @@ use juggler_camera::{AnyCamera, ShutterCamera};
 use juggler_math::{NamedKind, Rgb, Transform, UVec2, Vec3};
 use juggler_render::{CameraRays, Cancelled, Control, Job, Schedule, Scheduler, Work, render};
 use juggler_world::World;
+use std::time::{Duration, Instant};
 
 const SIZE: UVec2 = UVec2::new(30, 22);
 const SAMPLES: u32 = 6;
@@ -54,11 +55,10 @@ fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
     pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
 }
 
-#[test]
-fn pixels_do_not_depend_on_threads_and_tiles() {
+fn with_job<T>(check: impl FnOnce(&Job) -> T) -> T {
     let (world, camera, integrator) = (world(), camera(), path(""));
     let (filter, pattern) = (read::<AnyFilter>(r#"{"box": {}}"#), read::<AnySampler>(r#"{"sobol": {}}"#));
-    let job = Job {
+    check(&Job {
         world: &world,
         camera: &camera,
         integrator: &*integrator,
@@ -69,16 +69,28 @@ fn pixels_do_not_depend_on_threads_and_tiles() {
         camera_rays: &CameraRays::default(),
         aovs: &aov::NO_AOVS,
         frames: None,
-    };
-    let region = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
-    let whole = bits(&job.render(&Work::first(region, SAMPLES), &Control::default()).unwrap().means());
+    })
+}
+
+const REGION: Rect = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+#[test]
+fn pixels_do_not_depend_on_threads_and_tiles() {
+    with_job(check_threads_and_tiles);
+}
+
+fn check_threads_and_tiles(job: &Job) {
+    let whole = bits(&job.render(&Work::first(REGION, SAMPLES), &Control::default()).unwrap().means());
     for threads in [1, 2, 3] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         for scheduler in Scheduler::ALL.iter().copied() {
             let mut rows = Vec::new();
             let schedule = Schedule { scheduler, band_pixels: 300 };
-            pool.install(|| {
-                render::<Cancelled>(&job, region, schedule, &Control::default(), |band| {
+            on_threads(threads, || {
+                render::<Cancelled>(job, REGION, schedule, &Control::default(), |band| {
                     rows.extend(band);
                     Ok(())
                 })
@@ -96,4 +108,50 @@ fn pixels_do_not_depend_on_threads_and_tiles() {
         }
     }
     assert!(whole.iter().collect::<std::collections::BTreeSet<_>>().len() > 500, "a picture, not a color");
+}
+
+/// A region of several bands of the least height, and the schedule with these bands.
+fn in_bands() -> (Rect, Schedule) {
+    (Rect { height: 100, ..REGION }, Schedule { band_pixels: 1, ..Schedule::default() })
+}
+
+#[test]
+fn a_band_is_rendered_while_the_one_before_is_passed_on() {
+    let (region, schedule) = in_bands();
+    let whole = region.area() * u64::from(SAMPLES);
+    let (control, mut finished, mut bands) = (Control::default(), 0, 0);
+    let pass_on = |rows: Vec<Rgb>| {
+        (bands, finished) = (bands + 1, finished + rows.len() as u64 * u64::from(SAMPLES));
+        let start = Instant::now();
+        while finished < whole && control.samples() <= finished {
+            assert!(start.elapsed() < Duration::from_secs(60), "nothing is rendered after band {bands}");
+            std::thread::yield_now();
+        }
+        Ok(())
+    };
+    with_job(|job| on_threads(2, || render::<Cancelled>(job, region, schedule, &control, pass_on))).unwrap();
+    assert_eq!((bands, finished), (4, whole));
+}
+
+#[test]
+fn a_render_ends_when_its_rows_cannot_be_passed_on() {
+    #[derive(Debug, PartialEq)]
+    enum Failure {
+        Full,
+        Cancelled,
+    }
+    impl From<Cancelled> for Failure {
+        fn from(_: Cancelled) -> Self {
+            Self::Cancelled
+        }
+    }
+    with_job(|job| {
+        for threads in [1, 2] {
+            let (control, (region, schedule)) = (Control::default(), in_bands());
+            let result = on_threads(threads, || render(job, region, schedule, &control, |_| Err(Failure::Full)));
+            assert_eq!(result.err(), Some(Failure::Full));
+            // At most two bands of 32 rows were entered.
+            assert!(control.samples() <= u64::from(2 * 32 * SIZE.x * SAMPLES), "{}", control.samples());
+        }
+    });
 }
