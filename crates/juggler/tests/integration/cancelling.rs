@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 /// CPU time that a build may take after its cancellation.
 const MOST: Duration = Duration::from_millis(500);
 
-/// Maximum number of the instances, of which a scene holds four million at most.
-const MOST_INSTANCES: usize = 3_000_000;
+/// Maximum number of the instances.
+const MOST_INSTANCES: usize = 1_000_000;
 
 /// Environment variable with the number of triangles of the large meshes, for the deep check.
 const TRIANGLES: &str = "JUGGLER_TRIANGLES";

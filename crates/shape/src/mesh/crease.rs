@@ -19,7 +19,8 @@ const POSITIONS_OF_LIST: usize = 1 << 16;
 pub struct SmoothingGroups {
     /// Index triples into the split positions, one for each triangle.
     triangles: Vec<[u32; 3]>,
-    /// For each split position, the original position and the smoothing group.
+    /// For each split position, the original position and its smoothing group: the first split
+    /// position of the group.
     corners: Vec<(u32, u32)>,
 }
 
@@ -42,11 +43,14 @@ impl SmoothingGroups {
             if corner.is_multiple_of(CHECKED) {
                 control.check()?;
             }
+            // Split positions before this corner are known, and the first corner of a group or of a split
+            // position is not behind others of it.
+            let next = corners.len() as u32;
+            let split = |indices: &Vec<u32>, corner: u32| indices.get(corner as usize).copied().unwrap_or(next);
             if first as usize == corner {
-                corners.push((*position, group));
+                corners.push((*position, split(&indices, group)));
             }
-            // A first corner is not behind the others, so its split position is known.
-            indices.push(indices.get(first as usize).copied().unwrap_or(corners.len() as u32 - 1));
+            indices.push(split(&indices, first));
         }
         Ok(Self { triangles: indices.as_chunks().0.to_vec(), corners })
     }
@@ -57,8 +61,7 @@ impl SmoothingGroups {
         if !data.normals.is_empty() {
             return Ok(data);
         }
-        let groups = self.corners.iter().map(|(_, group)| *group as usize + 1).max().unwrap_or(0);
-        let mut sums = vec![DVec3::ZERO; groups];
+        let mut sums = vec![DVec3::ZERO; self.corners.len()];
         for (number, corners) in self.triangles.iter().enumerate() {
             if number.is_multiple_of(CHECKED) {
                 control.check()?;
@@ -70,9 +73,11 @@ impl SmoothingGroups {
             }
         }
         let normal = |group: u32| sums.get(group as usize).copied().unwrap_or_default().normalize_or_zero().as_vec3();
-        control.check()?;
-        let normals = self.corners.iter().map(|(_, group)| normal(*group)).collect();
-        control.check()?;
+        let mut normals = Vec::with_capacity(self.corners.len());
+        for corners in self.corners.chunks(CHECKED) {
+            control.check()?;
+            normals.extend(corners.iter().map(|(_, group)| normal(*group)));
+        }
         let attributes = data.attributes.iter().map(|(name, values)| (name.clone(), self.split_attribute(values)));
         Ok(MeshData {
             positions: self.split(&data.positions),

@@ -41,12 +41,16 @@ struct MeshMeasures {
 impl MeshMeasures {
     const NONE: Self = Self { bounds: Aabb::EMPTY, area: 0.0, degenerate: 0 };
 
-    /// Sums in blocks of a fixed size, so that the result does not depend on threads.
-    fn from_data(data: &MeshData) -> Self {
+    /// Sums in blocks of a fixed size, so that the result does not depend on threads. Blocks are left
+    /// out after cancellation.
+    fn from_data(data: &MeshData, control: &BuildControl) -> Self {
         const BLOCK: usize = 1 << 16;
         let blocks = (0..data.triangles.len().div_ceil(BLOCK)).into_par_iter();
         let blocks: Vec<Self> = blocks
             .map(|block| {
+                if control.is_cancelled() {
+                    return Self::NONE;
+                }
                 let triangles =
                     (block * BLOCK..(block + 1) * BLOCK).map_while(|triangle| data.triangle_geometry(triangle));
                 triangles.fold(Self::NONE, |sum, triangle| match triangle.area() {
@@ -215,7 +219,8 @@ fn checked(data: &MeshData, control: &BuildControl) -> Result<MeshMeasures, Inva
     control.check()?;
     data.check()?;
     control.check()?;
-    let measures = MeshMeasures::from_data(data);
+    let measures = MeshMeasures::from_data(data, control);
+    control.check()?;
     if measures.degenerate == data.triangles.len() {
         let message = format!("`triangles` must have an area, but all {} are degenerate", measures.degenerate);
         return Err(invalid("triangles", message));
