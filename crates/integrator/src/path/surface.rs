@@ -165,10 +165,12 @@ impl<'a> ShadingPoint<'a> {
         output: &mut VertexOutput,
     ) {
         let sampler = path.sampler.skipped(Dimension::Light as u32);
-        let parts = (0..u32::from(count)).map(|part| sampler.subsequence(part, u32::from(count)).next_2d());
-        for light in world.sample_lights(&self.light_sample_context, parts) {
-            let pdf = light.pdf * f32::from(count);
-            self.add_light_sample(&EmitterSample { pdf, ..light }, sampling, world, path, output);
+        for part in 0..u32::from(count) {
+            let u = sampler.subsequence(part, u32::from(count)).next_2d();
+            if let Some(light) = world.sample_light(&self.light_sample_context, u) {
+                let pdf = light.pdf * f32::from(count);
+                self.add_light_sample(&EmitterSample { pdf, ..light }, sampling, world, path, output);
+            }
         }
     }
 

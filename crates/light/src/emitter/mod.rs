@@ -7,4 +7,4 @@ mod area;
 mod tree;
 
 pub use area::{AreaEmitter, AreaSample, DiskEmitter, RectangleEmitter, SphereEmitter, TriangleEmitter};
-pub use tree::{LightBounds, LightTree, LightTreeRoot, LightTreeSample};
+pub use tree::{LightBounds, LightTree, LightTreeSample};

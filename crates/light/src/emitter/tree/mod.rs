@@ -22,7 +22,7 @@ mod node;
 #[cfg(test)]
 mod tests;
 
-use node::{Child, Importances, Node, ShadingContext};
+use node::{Child, Node, ShadingContext};
 
 /// Bounds of a light's emission: position, directions and power.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,14 +52,6 @@ pub struct LightTreeSample {
     /// Random number left by the selection, rescaled to [0, 1). After many levels few of its bits
     /// remain.
     pub u_remapped: f32,
-}
-
-/// Importances of the root's children at a point, from which any number of lights are selected: see
-/// [`LightTree::root`].
-#[derive(Clone, Copy, Debug)]
-pub struct LightTreeRoot {
-    context: ShadingContext,
-    importances: Importances,
 }
 
 /// Light tree.
@@ -126,31 +118,14 @@ impl LightTree {
     /// selected. It is `Vec3::ZERO` where light from all sides counts, in media and on transmissive
     /// surfaces.
     pub fn sample(&self, point: Vec3, normal: Vec3, u: f32) -> Option<LightTreeSample> {
-        dispatch!(self.level, _ => self.sample_below(&self.root_impl(point, normal)?, u))
-    }
-
-    /// Importances at the root for a point, and a normal as in [`LightTree::sample`]; `None` for a tree
-    /// without lights.
-    pub fn root(&self, point: Vec3, normal: Vec3) -> Option<LightTreeRoot> {
-        dispatch!(self.level, _ => self.root_impl(point, normal))
-    }
-
-    /// [`LightTree::sample`] for the point of `root`, with the same result.
-    pub fn sample_from(&self, root: &LightTreeRoot, u: f32) -> Option<LightTreeSample> {
-        dispatch!(self.level, _ => self.sample_below(root, u))
+        dispatch!(self.level, _ => self.sample_impl(point, normal, u))
     }
 
     #[inline(always)]
-    fn root_impl(&self, point: Vec3, normal: Vec3) -> Option<LightTreeRoot> {
+    fn sample_impl(&self, point: Vec3, normal: Vec3, u: f32) -> Option<LightTreeSample> {
         let context = self.to_tree_space(point, normal);
-        let importances = self.nodes.first()?.importances(&context);
-        Some(LightTreeRoot { context, importances })
-    }
-
-    #[inline(always)]
-    fn sample_below(&self, root: &LightTreeRoot, u: f32) -> Option<LightTreeSample> {
-        let LightTreeRoot { context, mut importances } = *root;
         let mut node = self.nodes.first()?;
+        let mut importances = node.importances(&context);
         let (mut probability, mut u_remapped) = (1.0, u);
         loop {
             let (slot, slot_probability, remapped) = importances.sample(u_remapped)?;
