@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// Bytes of the program itself; unoptimized code takes more.
-pub const PROGRAM: u64 = if cfg!(debug_assertions) { 38 << 20 } else { 20 << 20 };
+pub const PROGRAM: u64 = if cfg!(debug_assertions) { 44 << 20 } else { 26 << 20 };
 /// Bytes of a thread: ray queues and file buffers.
 const THREAD: u64 = 2 << 20;
 /// Rays of a sample that are traced together, then bytes of each ray and each shadow ray that one
@@ -66,8 +66,8 @@ pub struct Effort {
 ///
 /// let scene = Scene::new().size(20_000, 20_000).add(Object::new(Sphere::default()));
 /// let memory = Memory::estimate(&scene, &Settings::default())?;
-/// let effort = memory.fit(64 << 20, 4).unwrap();
-/// assert!(effort.threads == 4 && memory.bytes(&effort) <= 64 << 20);
+/// let effort = memory.fit(96 << 20, 4).unwrap();
+/// assert!(effort.threads == 4 && memory.bytes(&effort) <= 96 << 20);
 /// assert!(memory.fit(10 << 20, 4).is_err());
 /// # Ok::<(), juggler::Error>(())
 /// ```

@@ -10,8 +10,7 @@ use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
 
-/// Memory limit in bytes, from the need of an optimized program in MiB, of which its code takes 20;
-/// unoptimized code takes more.
+/// Memory limit in bytes: `mib` MiB, 20 of which stand for the program itself.
 fn budget(mib: u64) -> u64 {
     (mib - 20) * MIB + PROGRAM
 }

@@ -133,3 +133,38 @@ fn groups_of_an_obj_count() {
     let message = folder.bad(&format!("render {line} --max-memory {}", budget(10)), 2);
     assert!(message.contains("to be read, more than --max-memory"), "{message}");
 }
+
+/// Statistics of a render at the least limit that the program accepts, by the needs that its refusals
+/// name.
+fn at_the_limit_that_is_named(folder: &Folder, line: &str) -> Result<(u64, Value), String> {
+    let mut limit = MIB;
+    for _ in 0..6 {
+        let limited = format!("{line} --max-memory {limit}");
+        let run = folder.run(&format!("render {limited} --quiet"));
+        if run.status == 0 {
+            return Ok((limit, folder.stats(&limited)));
+        }
+        let named = run.stderr.split_once("needs about ").and_then(|(_, rest)| rest.split_once(" MiB"));
+        let Some(named) = named.and_then(|(number, _)| number.parse::<f64>().ok()) else { return Err(run.stderr) };
+        // Messages round to tenths.
+        limit = limit.max(((named + 0.1) * MIB as f64) as u64);
+    }
+    Err(format!("{line}: no limit that is named is accepted"))
+}
+
+#[test]
+fn committed_models_keep_to_the_limit_that_is_named() {
+    let folder = Folder::new();
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let files = ["models", "gallery/models"].map(|below| fs::read_dir(scenes.join(below)).unwrap());
+    let files = files.into_iter().flatten().map(|file| file.unwrap().path());
+    let is_model = |file: &std::path::PathBuf| file.extension().is_some_and(|end| end == "glb" || end == "ply");
+    let models: Vec<_> = files.filter(is_model).collect();
+    assert!(models.len() > 25, "{models:?}");
+    for model in models {
+        let line = format!("{} --size 64x36 --samples 1 -o a.png", model.to_str().unwrap());
+        let (limit, stats) = at_the_limit_that_is_named(&folder, &line).unwrap();
+        let (peak, expected) = peaks(&stats);
+        assert!(peak <= limit && expected <= limit, "{line}: {peak} of {expected} of {limit}");
+    }
+}
