@@ -60,9 +60,9 @@ pub trait PointSet: Copy + Into<AnyPointSet> {
         self.point(index, is_first_dimension, seed).x
     }
 
-    /// Point `part` of the `parts` points of sample `index`, in the first dimension. All parts of all
-    /// samples together are one well-distributed set, and so are the parts 0. `None` if the kind has
-    /// no such set.
+    /// Point `part` of the `parts` points of sample `index`, in the first dimension. All parts of
+    /// all samples together are one well-distributed set, and so are the parts 0. `None` if the kind
+    /// has no such set.
     #[inline]
     fn finer_point(&self, _index: u32, _part: u32, _parts: u32, _seed: u32) -> Option<Vec2> {
         None
@@ -153,8 +153,8 @@ impl Sampler {
         self.pattern.fill(first, self.seed ^ hash::mix(0), points);
     }
 
-    /// Film position of camera ray `ray` of `rays` of this sample, if the sampler has a finer set of
-    /// points for that number: see [`PointSet::finer_point`].
+    /// Film position of camera ray `ray` of `rays` of this sample, if the sampler has a finer set
+    /// of points for that number: see [`PointSet::finer_point`].
     pub fn film_point(&self, ray: u32, rays: u32) -> Option<Vec2> {
         self.pattern.finer_point(self.index, ray, rays, self.seed ^ hash::mix(0))
     }

@@ -51,9 +51,10 @@ impl PointSet for SobolPoints {
     }
 }
 
-/// Generator matrices, by columns that repeat, of the part 0 of each group of 4 or 8 consecutive Sobol
-/// points, such that these parts are well distributed by themselves, too: (0, m, 2)-nets in base 2 for
-/// groups of 4, (1, m, 2)-nets for groups of 8. No such matrix exists for groups of 2. Found by search.
+/// Generator matrices, by columns that repeat, of the part 0 of each group of 4 or 8 consecutive
+/// Sobol points, such that these parts are well distributed by themselves, too: (0, m, 2)-nets in
+/// base 2 for groups of 4, (1, m, 2)-nets for groups of 8. No such matrix exists for groups of 2.
+/// The matrices were found by search.
 const COLUMNS_OF_4: [u32; 3] = [3, 1, 2];
 const COLUMNS_OF_8: [u32; 5] = [3, 6, 4, 7, 2];
 

@@ -14,7 +14,7 @@ fn view(lens: &str) -> ShutterCamera {
     camera(&format!(r#"{{"{lens}": {{"eye": [0, 1.2, 5], "look_at": [0, 0.8, 0], "vertical_fov_degrees": 40}}}}"#))
 }
 
-/// A emitter over a floor, in a dim surrounding.
+/// An emitter over a floor, in a dim surrounding.
 fn emitter(shape: &str, material: &str) -> Scene {
     Scene::new()
         .with(r#"{"plane": {}}"#, Vec3::ZERO, GRAY)
@@ -105,7 +105,7 @@ fn camera_rays_keep_the_mean() {
     }
 }
 
-/// A emitter of sharp edges before black: all noise is at its edges.
+/// An emitter of sharp edges before black: all noise is at its edges.
 #[test]
 fn camera_rays_smooth_the_edges_of_emitters() {
     let world = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::new(0.0, 1.0, 0.0), EMITTER).world();
