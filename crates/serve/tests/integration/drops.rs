@@ -122,7 +122,7 @@ fn the_stated_length_is_judged_before_any_byte_of_the_body() {
 
 #[test]
 fn an_upload_without_a_byte_frees_its_place() {
-    let serving = serve_small(Duration::from_secs(1));
+    let serving = serve_small(Duration::from_secs(4));
     let all = body(&[("a.obj", TRIANGLE.as_bytes())]);
     let (half, rest) = all.split_at(all.len() / 2);
     let length = format!("Content-Length: {}", all.len());
@@ -137,7 +137,7 @@ fn an_upload_without_a_byte_frees_its_place() {
     let mut slow = serving.begin_upload(&length);
     slow.write_all(half).unwrap();
     for byte in rest.chunks(rest.len().div_ceil(8)) {
-        std::thread::sleep(Duration::from_millis(200));
+        std::thread::sleep(Duration::from_millis(600));
         slow.write_all(byte).unwrap();
     }
     let answer = answer(&mut slow);

@@ -96,7 +96,7 @@ fn invalid_file_is_shown_once_it_is_corrected() {
 #[test]
 fn scenes_of_files_in_memory_keep_to_the_limit() {
     let options = SessionOptions { size: Some([32, 24]), threads: 1, ..SessionOptions::default() };
-    let session = Session::open("one-sphere", SessionOptions { max_memory: Some(150 << 20), ..options });
+    let session = Session::open("one-sphere", SessionOptions { max_memory: Some(80 << 20), ..options });
     let first = until(&session, |status| status.hash.is_some());
     let open = |files: Vec<(&str, Vec<u8>)>| {
         let name = files[0].0.to_owned();
@@ -104,16 +104,16 @@ fn scenes_of_files_in_memory_keep_to_the_limit() {
         session.edit(Edit::Files(SceneFiles { name, files }))
     };
     let scene = r#"{"version": 1, "camera": {"perspective": {"eye": [0, 0, 5]}}, "objects": [{"shape": "sphere"}]}"#;
-    let triangles = TRIANGLE.to_owned() + &"f 1 2 3\n".repeat(1_200_000);
+    let triangles = TRIANGLE.to_owned() + &"f 1 2 3\n".repeat(400_000);
     // The second file of the first pair counts although the scene does not name it.
     for (name, files) in [
-        ("bytes", vec![("a.json", scene.into()), ("b.bin", vec![0; 140 << 20])]),
+        ("bytes", vec![("a.json", scene.into()), ("b.bin", vec![0; 70 << 20])]),
         ("a mesh", vec![("a.obj", triangles.into_bytes())]),
     ] {
         let revision = open(files);
         let status = until(&session, |status| status.revision >= revision && status.error.is_some());
         let error = status.error.clone().unwrap();
-        assert!(error.contains("of memory, more than --max-memory 150.0 MiB"), "{name}: {error}");
+        assert!(error.contains("of memory, more than --max-memory 80.0 MiB"), "{name}: {error}");
         assert_eq!(status.scene, first.scene, "{name}: the scene before stays");
     }
     open(vec![("a.json", scene.into())]);
