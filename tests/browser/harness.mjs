@@ -44,12 +44,16 @@ export async function until(what, condition, patience = PATIENCE) {
   }
 }
 
+/// Errors that a page reports while its server is away, in a step that stops the server, or if the
+/// server refuses it.
+const EXPECTED = /ERR_(CONNECTION|SOCKET_NOT_CONNECTED|EMPTY_RESPONSE)|WebSocket connection|status of 403/;
+
 /// A page with the messages from its server and the errors in it.
 export class Tab {
   constructor(page, pictures) {
     Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [] });
     page.on("pageerror", (error) => this.faults.push(`${error}`));
-    page.on("console", (message) => message.type() === "error" && !/ERR_CONNECTION|WebSocket connection|status of 403/.test(message.text()) && this.faults.push(message.text()));
+    page.on("console", (message) => message.type() === "error" && !EXPECTED.test(message.text()) && this.faults.push(message.text()));
     page.on("websocket", (socket) => {
       socket.on("framereceived", ({ payload }) => typeof payload === "string" && Object.assign(this, JSON.parse(payload)));
       socket.on("framesent", ({ payload }) => this.sent.push(payload));
