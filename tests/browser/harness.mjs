@@ -44,16 +44,19 @@ export async function until(what, condition, patience = PATIENCE) {
   }
 }
 
-/// Errors that a page reports while its server is away, in a step that stops the server, or if the
-/// server refuses it.
-const EXPECTED = /ERR_(CONNECTION|SOCKET_NOT_CONNECTED|EMPTY_RESPONSE)|WebSocket connection|status of 403/;
+/// What a page reports while its server is away or refuses it.
+const FAILED_REQUEST = /^(Failed to load resource|WebSocket connection)/;
 
-/// A page with the messages from its server and the errors in it.
+/// A page with the messages from its server and the errors in it. While `serverIsAway`, failed
+/// requests are no errors.
 export class Tab {
   constructor(page, pictures) {
-    Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [] });
+    Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [], serverIsAway: false });
     page.on("pageerror", (error) => this.faults.push(`${error}`));
-    page.on("console", (message) => message.type() === "error" && !EXPECTED.test(message.text()) && this.faults.push(message.text()));
+    page.on("console", (message) => {
+      const isExpected = this.serverIsAway && FAILED_REQUEST.test(message.text());
+      if (message.type() === "error" && !isExpected) this.faults.push(`${message.text()} (${message.location().url})`);
+    });
     page.on("websocket", (socket) => {
       socket.on("framereceived", ({ payload }) => typeof payload === "string" && Object.assign(this, JSON.parse(payload)));
       socket.on("framesent", ({ payload }) => this.sent.push(payload));

@@ -245,6 +245,7 @@ async function liveEdits(tab) {
 
 async function reconnect(tab) {
   const { port } = server;
+  tab.serverIsAway = true;
   assert.equal(await server.stop("SIGINT"), 130);
   await until("the message about the lost connection", () => tab.visible("#connection"));
   const last = tab.status;
@@ -260,6 +261,7 @@ async function reconnect(tab) {
   await until("the connection", async () => !(await tab.visible("#connection")));
   // The new server numbers its pictures from the start, so wait for one of them.
   await until("a picture of the new server", async () => tab.status !== last && (await tab.shown()).revision === tab.status.revision);
+  tab.serverIsAway = false;
   await change(tab, () => tab.page.keyboard.press("d"));
 }
 
