@@ -23,10 +23,30 @@ const MAX_OBJECTS: u32 = 1 << 21;
 pub fn extreme_points(objects: &[Object], control: &BuildControl) -> Vec<Vec3> {
     let mut search = Search::new(control);
     for object in objects {
-        search.add(&object.content, &object.motion, &Transform::IDENTITY);
+        search.add(&object.content, &object.motion, &Transform::IDENTITY, DirectionSet::ALL);
     }
     let found = search.farthest.iter().filter(|(reach, _)| *reach > f32::NEG_INFINITY);
     found.map(|(_, point)| *point).collect()
+}
+
+/// A set of the directions: one bit for the index of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct DirectionSet(u128);
+
+impl DirectionSet {
+    const ALL: Self = Self((1 << DIRECTIONS) - 1);
+
+    /// The indices in the set, in increasing order.
+    fn indices(self) -> impl Iterator<Item = usize> {
+        let first = Some(self.0).filter(|bits| *bits != 0);
+        let rest = |bits: &u128| Some(bits & (bits - 1)).filter(|bits| *bits != 0);
+        std::iter::successors(first, rest).map(|bits| bits.trailing_zeros() as usize)
+    }
+
+    /// The directions of the set whose index has a property.
+    fn filter(self, has: impl Fn(usize) -> bool) -> Self {
+        Self(self.indices().filter(|index| has(*index)).fold(0, |bits, index| bits | 1 << index))
+    }
 }
 
 /// The farthest points found so far.
@@ -52,43 +72,49 @@ impl<'c> Search<'c> {
         Self { control, directions, farthest: [(f32::NEG_INFINITY, Vec3::ZERO); DIRECTIONS], left: MAX_OBJECTS }
     }
 
-    /// Adds a content that `motion` places in a space, which `outer` places in the world.
-    fn add(&mut self, content: &Content, motion: &Motion, outer: &Transform) {
+    /// Adds a content that `motion` places in a space, which `outer` places in the world. Only the
+    /// directions of `within` are looked at: the content is part of a box that extends no other. In a
+    /// flat field all objects reach equally far down, and few directions are left of each.
+    fn add(&mut self, content: &Content, motion: &Motion, outer: &Transform, within: DirectionSet) {
         let own = content.bounds(motion);
         let is_counted = self.left > 0;
         // Objects that cannot extend the hull count, too: there may be thousands of millions.
         self.left = self.left.saturating_sub(1);
-        if self.control.is_cancelled() || own.is_empty() || !self.may_extend(&outer.aabb(&own)) {
+        if self.control.is_cancelled() || own.is_empty() {
+            return;
+        }
+        let within = self.extended_by(&outer.aabb(&own), within);
+        if within == DirectionSet(0) {
             return;
         }
         let still = motion.still().filter(|_| is_counted);
         match (content, still) {
             (Content::Geometry(geometry), Some(still)) => {
                 let outer = still.then(outer);
-                geometry.objects.iter().for_each(|inner| self.add(&inner.content, &inner.motion, &outer));
+                geometry.objects.iter().for_each(|inner| self.add(&inner.content, &inner.motion, &outer, within));
             }
-            (Content::Shape(shape), Some(still)) => self.add_shape(shape, &still.then(outer)),
-            (_, None) => own.corners().into_iter().for_each(|corner| self.add_point(outer.point(corner))),
+            (Content::Shape(shape), Some(still)) => self.add_shape(shape, &still.then(outer), within),
+            (_, None) => self.add_block(&own.corners().map(|corner| outer.point(corner)), within),
         }
     }
 
-    fn add_shape(&mut self, shape: &AnyShape, to_world: &Transform) {
+    fn add_shape(&mut self, shape: &AnyShape, to_world: &Transform, within: DirectionSet) {
         match (shape.mesh().filter(|mesh| !mesh.moves()), shape.sphere()) {
-            (Some(mesh), _) => self.add_mesh(mesh, to_world),
+            (Some(mesh), _) => self.add_mesh(mesh, to_world, within),
             (None, Some(sphere)) => {
-                for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
+                for index in within.indices() {
                     // The tangent plane of the ellipsoid with this normal touches it here. Squares of
                     // large and small scales are beyond single precision.
-                    let local = (to_world.matrix().transpose() * *direction).as_dvec3();
+                    let local = (to_world.matrix().transpose() * self.directions[index]).as_dvec3();
                     let normal = local.normalize_or_zero().as_vec3();
-                    keep_farther(farthest, *direction, to_world.point(normal * sphere.radius));
+                    self.keep_farther(index, to_world.point(normal * sphere.radius));
                 }
             }
-            _ => shape.bounds().corners().into_iter().for_each(|corner| self.add_point(to_world.point(corner))),
+            _ => self.add_block(&shape.bounds().corners().map(|corner| to_world.point(corner)), within),
         }
     }
 
-    fn add_mesh(&mut self, mesh: &Mesh, to_world: &Transform) {
+    fn add_mesh(&mut self, mesh: &Mesh, to_world: &Transform, within: DirectionSet) {
         let mut block = Vec::with_capacity(BLOCK);
         for vertices in mesh.arrays().positions.chunks(BLOCK) {
             if self.control.is_cancelled() {
@@ -96,43 +122,39 @@ impl<'c> Search<'c> {
             }
             block.clear();
             block.extend(vertices.iter().map(|vertex| to_world.point(*vertex)));
-            self.add_block(&block);
+            self.add_block(&block, within);
         }
     }
 
     /// Adds points. Few blocks hold a farthest point, so that the largest dot product comes first.
-    fn add_block(&mut self, block: &[Vec3]) {
-        for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
+    fn add_block(&mut self, block: &[Vec3], within: DirectionSet) {
+        for index in within.indices() {
+            let direction = self.directions[index];
             let most = block.iter().fold(f32::NEG_INFINITY, |most, point| most.max(direction.dot(*point)));
-            if most >= farthest.0 {
-                block.iter().for_each(|point| keep_farther(farthest, *direction, *point));
+            if most >= self.farthest[index].0 {
+                block.iter().for_each(|point| self.keep_farther(index, *point));
             }
         }
     }
 
-    fn add_point(&mut self, point: Vec3) {
-        for (direction, farthest) in self.directions.iter().zip(&mut self.farthest) {
-            keep_farther(farthest, *direction, point);
+    /// Keeps the point that is farther in a direction; of equally far points, the one whose
+    /// coordinates come first, so that the order of points does not matter.
+    fn keep_farther(&mut self, index: usize, point: Vec3) {
+        let farthest = &mut self.farthest[index];
+        let reach = self.directions[index].dot(point);
+        let is_before = || point.to_array() < farthest.1.to_array();
+        if reach > farthest.0 || (reach == farthest.0 && is_before()) {
+            *farthest = (reach, point);
         }
     }
 
-    /// Whether a part of a box reaches as far as the points found so far.
-    fn may_extend(&self, bounds: &Aabb) -> bool {
+    /// The directions of `within` in which a part of a box reaches as far as the points found so far.
+    fn extended_by(&self, bounds: &Aabb, within: DirectionSet) -> DirectionSet {
         let (center, half) = (bounds.center(), bounds.extent() * 0.5);
-        let reach = |direction: &Vec3| direction.dot(center) + direction.abs().dot(half);
+        let reach = |direction: Vec3| direction.dot(center) + direction.abs().dot(half);
         // Rounding must not hide a point of the box.
         let slack = 1e-5 * (center.abs().max_element() + half.max_element());
-        self.directions.iter().zip(&self.farthest).any(|(direction, (most, _))| reach(direction) + slack >= *most)
-    }
-}
-
-/// Keeps the point that is farther in a direction; of equally far points, the one whose coordinates
-/// come first, so that the order of points does not matter.
-fn keep_farther(farthest: &mut (f32, Vec3), direction: Vec3, point: Vec3) {
-    let reach = direction.dot(point);
-    let is_before = || point.to_array() < farthest.1.to_array();
-    if reach > farthest.0 || (reach == farthest.0 && is_before()) {
-        *farthest = (reach, point);
+        within.filter(|index| reach(self.directions[index]) + slack >= self.farthest[index].0)
     }
 }
 
@@ -216,6 +238,37 @@ mod tests {
         assert!(found(std::slice::from_ref(&plane)).is_empty());
         let points = found(&[plane, instance]);
         assert_eq!((reach(&points, Vec3::X), reach(&points, -Vec3::X)), (11.0, -9.0));
+    }
+
+    /// In a flat field, only the directions straight up and down are left of objects in the middle.
+    #[test]
+    fn ties_leave_few_directions() {
+        let control = BuildControl::default();
+        let mut search = Search::new(&control);
+        let at = |x: u16, z: u16| Transform::translation(Vec3::new(x.into(), 0.0, z.into()));
+        for (x, z) in (0..100).map(|i| (i % 10, i / 10)) {
+            let object = sphere(0.5, at(x, z));
+            search.add(&object.content, &object.motion, &Transform::IDENTITY, DirectionSet::ALL);
+        }
+        let left = search.extended_by(&sphere(0.5, at(4, 6)).bounds(), DirectionSet::ALL);
+        let left: Vec<Vec3> = left.indices().map(|index| search.directions[index]).collect();
+        assert_eq!(left, [-Vec3::Y, Vec3::Y]);
+    }
+
+    /// A group of one object hands the directions that it may extend down to the object.
+    #[test]
+    fn only_directions_that_are_handed_down_are_looked_at() {
+        let control = BuildControl::default();
+        let shape = |object| vec![object, mesh(vec![Vec3::ZERO, Vec3::X, Vec3::ONE])];
+        let geometry = Geometry::new(shape(sphere(2.0, Transform::IDENTITY)), &control).unwrap();
+        let content = Content::Geometry(Arc::new(geometry));
+        let mut search = Search::new(&control);
+        let up = search.directions.iter().position(|direction| *direction == Vec3::Y).unwrap();
+        let only = DirectionSet::ALL.filter(|index| index == up);
+        search.add(&content, &Transform::IDENTITY.into(), &Transform::IDENTITY, only);
+        for (index, (reach, _)) in search.farthest.iter().enumerate() {
+            assert_eq!(*reach, if index == up { 2.0 } else { f32::NEG_INFINITY }, "{index}");
+        }
     }
 
     #[test]
