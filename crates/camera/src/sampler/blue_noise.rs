@@ -89,7 +89,8 @@ pub fn point(index: u32, place: u16, bits: u8, seed: u32) -> Vec2 {
     let room = MAX_BITS - bits;
     let (sequence, set) = (set >> room, u64::from(set) << (MORTON_BITS + bits));
     let seed = if sequence == 0 { seed } else { hash::combine(seed, sequence) };
-    sobol::point(set as u32 | permute_quadrants(place.into(), seed) << bits | number, seed)
+    let index = set as u32 | permute_quadrants(place.into(), seed) << bits | number;
+    sobol::point(index.reverse_bits(), seed)
 }
 
 /// Permutes the quadrants of each level, down to single pixels: each digit in base 4 by a

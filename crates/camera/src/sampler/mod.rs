@@ -29,8 +29,9 @@ juggler_math::closed_set! {
     pub enum AnyPointSet: static PointSet;
     fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32;
     fn at_pixel(&self, pixel: UVec2) -> AnyPointSet;
-    fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32;
-    fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2;
+    fn address(&self, index: u32) -> u32;
+    fn first_coordinate(&self, address: u32, is_first_dimension: bool, seed: u32) -> f32;
+    fn point(&self, address: u32, is_first_dimension: bool, seed: u32) -> Vec2;
     fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2>;
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]);
 }
@@ -50,14 +51,21 @@ pub trait PointSet: Copy + Into<AnyPointSet> {
         (*self).into()
     }
 
-    /// Point of sample `index` in the dimension `seed`; `is_first_dimension` is true for the film
-    /// position.
-    fn point(&self, index: u32, is_first_dimension: bool, seed: u32) -> Vec2;
+    /// Address of sample `index`: the form of the index by which points are drawn, so that what the
+    /// points of all dimensions share is computed once. The function is its own inverse.
+    #[inline]
+    fn address(&self, index: u32) -> u32 {
+        index
+    }
+
+    /// Point of the sample at `address` in the dimension `seed`; `is_first_dimension` is true for the
+    /// film position.
+    fn point(&self, address: u32, is_first_dimension: bool, seed: u32) -> Vec2;
 
     /// Coordinate x of [`point`](Self::point).
     #[inline]
-    fn first_coordinate(&self, index: u32, is_first_dimension: bool, seed: u32) -> f32 {
-        self.point(index, is_first_dimension, seed).x
+    fn first_coordinate(&self, address: u32, is_first_dimension: bool, seed: u32) -> f32 {
+        self.point(address, is_first_dimension, seed).x
     }
 
     /// Point `part` of the `parts` points of sample `index`, in the first dimension. All parts of
@@ -72,7 +80,7 @@ pub trait PointSet: Copy + Into<AnyPointSet> {
     #[inline]
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) {
         for (i, point) in points.iter_mut().enumerate() {
-            *point = self.point(first.wrapping_add(i as u32), true, seed);
+            *point = self.point(self.address(first.wrapping_add(i as u32)), true, seed);
         }
     }
 }
@@ -88,7 +96,8 @@ impl Default for AnySampler {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler {
     seed: u32,
-    index: u32,
+    /// Address of the sample: see [`PointSet::address`].
+    address: u32,
     dimension: u32,
     pattern: AnyPointSet,
 }
@@ -96,7 +105,8 @@ pub struct Sampler {
 impl Sampler {
     /// Creates the sampler of a picture; [`pixel`](Self::pixel) gives the streams of its pixels.
     pub fn new(pattern: AnyPointSet, seed: u64) -> Self {
-        Self { seed: hash::combine(seed as u32, (seed >> 32) as u32), index: 0, dimension: 0, pattern }
+        let seed = hash::combine(seed as u32, (seed >> 32) as u32);
+        Self { seed, address: pattern.address(0), dimension: 0, pattern }
     }
 
     /// Stream of sample 0 of a pixel.
@@ -109,7 +119,7 @@ impl Sampler {
     /// Stream of sample `index` of the same pixel, from the first dimension on.
     #[inline]
     pub fn sample(&self, index: u32) -> Self {
-        Self { index, dimension: 0, ..*self }
+        Self { address: self.pattern.address(index), dimension: 0, ..*self }
     }
 
     /// Independent stream of ray `child` that leaves a vertex.
@@ -122,14 +132,20 @@ impl Sampler {
     /// shadow rays of one light.
     #[inline]
     pub fn subsequence(&self, index: u32, count: u32) -> Self {
-        Self { index: self.index.wrapping_mul(count).wrapping_add(index), ..*self }
+        if count == 1 { *self } else { self.subsequence_of_several(index, count) }
+    }
+
+    #[inline(never)]
+    fn subsequence_of_several(&self, index: u32, count: u32) -> Self {
+        let own = self.pattern.address(self.address);
+        Self { address: self.pattern.address(own.wrapping_mul(count).wrapping_add(index)), ..*self }
     }
 
     /// Next number in [0, 1): the first coordinate of [`Sampler::next_2d`].
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
         let seed = self.next_seed();
-        self.pattern.first_coordinate(self.index, self.dimension == 1, seed)
+        self.pattern.first_coordinate(self.address, self.dimension == 1, seed)
     }
 
     /// Seed of the next dimension.
@@ -144,7 +160,7 @@ impl Sampler {
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let seed = self.next_seed();
-        self.pattern.point(self.index, self.dimension == 1, seed)
+        self.pattern.point(self.address, self.dimension == 1, seed)
     }
 
     /// Film positions of consecutive samples of this pixel from `first` on: the first
@@ -156,7 +172,7 @@ impl Sampler {
     /// Film position of camera ray `ray` of `rays` of this sample, if the sampler has a finer set
     /// of points for that number: see [`PointSet::finer_point`].
     pub fn film_point(&self, ray: u32, rays: u32) -> Option<Vec2> {
-        self.pattern.finer_point(self.index, ray, rays, self.seed ^ hash::mix(0))
+        self.pattern.finer_point(self.pattern.address(self.address), ray, rays, self.seed ^ hash::mix(0))
     }
 
     /// Same stream `count` dimensions further on.

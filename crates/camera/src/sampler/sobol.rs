@@ -28,14 +28,20 @@ impl SamplerDescription for Sobol {
 pub struct SobolPoints;
 
 impl PointSet for SobolPoints {
+    /// The index with its bits reversed, as shuffling needs it.
     #[inline]
-    fn point(&self, index: u32, _is_first: bool, seed: u32) -> Vec2 {
-        point(index, seed)
+    fn address(&self, index: u32) -> u32 {
+        index.reverse_bits()
     }
 
     #[inline]
-    fn first_coordinate(&self, index: u32, _is_first: bool, seed: u32) -> f32 {
-        first_coordinate(index, seed)
+    fn point(&self, address: u32, _is_first: bool, seed: u32) -> Vec2 {
+        point(address, seed)
+    }
+
+    #[inline]
+    fn first_coordinate(&self, address: u32, _is_first: bool, seed: u32) -> f32 {
+        first_coordinate(address, seed)
     }
 
     fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2> {
@@ -44,7 +50,7 @@ impl PointSet for SobolPoints {
             8 => (3, &COLUMNS_OF_8),
             _ => return None,
         };
-        let index = shuffle_index(index, seed);
+        let index = shuffle_index(index.reverse_bits(), seed);
         let set_bits = columns.iter().cycle().enumerate().take(32).filter(|(bit, _)| index >> bit & 1 == 1);
         let first = set_bits.fold(0, |first, (_, column)| first ^ column);
         Some(scrambled_point(index << bits | (first ^ part), seed))
@@ -60,14 +66,14 @@ const COLUMNS_OF_8: [u32; 5] = [3, 6, 4, 7, 2];
 
 /// First coordinate of [`point`].
 #[inline]
-fn first_coordinate(index: u32, seed: u32) -> f32 {
-    hash::unit_f32(scrambled_first(shuffle_index(index, seed), seed).reverse_bits())
+fn first_coordinate(address: u32, seed: u32) -> f32 {
+    hash::unit_f32(scrambled_first(shuffle_index(address, seed), seed).reverse_bits())
 }
 
-/// Index of a sample in the shuffled sequence.
+/// Index in the shuffled sequence of the sample whose index has the reversed bits `address`.
 #[inline]
-fn shuffle_index(index: u32, seed: u32) -> u32 {
-    owen_scramble_reversed(index.reverse_bits(), seed).reverse_bits()
+fn shuffle_index(address: u32, seed: u32) -> u32 {
+    owen_scramble_reversed(address, seed).reverse_bits()
 }
 
 /// Scrambled first dimension, bits reversed. Sobol's first dimension is the bit-reversed index and
@@ -77,10 +83,10 @@ fn scrambled_first(index: u32, seed: u32) -> u32 {
     owen_scramble_reversed(index, seed ^ 0x9c8f_2d35)
 }
 
-/// Point `index` of the scrambled and shuffled sequence `seed`.
+/// Point of the scrambled and shuffled sequence `seed` whose index has the reversed bits `address`.
 #[inline]
-pub fn point(index: u32, seed: u32) -> Vec2 {
-    scrambled_point(shuffle_index(index, seed), seed)
+pub fn point(address: u32, seed: u32) -> Vec2 {
+    scrambled_point(shuffle_index(address, seed), seed)
 }
 
 /// Point `index` of the scrambled sequence `seed`.
@@ -177,7 +183,7 @@ mod tests {
     #[test]
     fn sobol_integrates_better_than_chance() {
         // ∫∫ x y over the unit square is 1/4; 1024 independent points have an error of about 0.007.
-        let mean = (0..1024).map(|i| point(i, 99)).map(|p| p.x * p.y).sum::<f32>() / 1024.0;
+        let mean = (0..1024_u32).map(|i| point(i.reverse_bits(), 99)).map(|p| p.x * p.y).sum::<f32>() / 1024.0;
         assert!((mean - 0.25).abs() < 5e-4, "{mean}");
     }
 }
