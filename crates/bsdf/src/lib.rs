@@ -53,7 +53,7 @@ pub use plastic::Plastic;
 pub use principled::Principled;
 use quadrature::{Azimuth, NODES};
 pub use specular_weight::SpecularWeight;
-pub use sum::{Bsdf, BsdfView, MAX_LOBES};
+pub use sum::{Bsdf, BsdfView, LobeNumbers, MAX_LOBES};
 pub use thin_film::ThinFilm;
 
 juggler_math::closed_set! {

@@ -252,7 +252,7 @@ mod tests {
         let gold =
             Principled { base_color: Rgb::new(1.0, 0.7, 0.3), metallic: 1.0, roughness: 0.0, ..Principled::default() };
         let gold_bsdf = Bsdf::with_lobes(|bsdf| gold.add_lobes(1.5, bsdf));
-        let deltas: Vec<_> = gold_bsdf.deltas(Vec3::Z).collect();
+        let deltas = gold_bsdf.deltas(Vec3::Z);
         assert!(deltas.len() == 1 && close(deltas[0].weight.g, 0.7, 1e-6), "{deltas:?}");
         let brushed = Principled { roughness: 0.5, anisotropy: 0.6, ..gold };
         assert!(close(brushed.alpha().x, 0.25 + 0.75 * 0.36, 1e-6) && brushed.alpha().y == 0.25);
@@ -272,7 +272,7 @@ mod tests {
             ..Principled::default()
         };
         let water_bsdf = Bsdf::with_lobes(|bsdf| water.add_lobes(1.333, bsdf));
-        let deltas: Vec<_> = water_bsdf.deltas(Vec3::Z).collect();
+        let deltas = water_bsdf.deltas(Vec3::Z);
         let through = deltas.iter().find(|d| d.is_transmitted(Vec3::Z)).unwrap();
         assert!(close(through.weight.g * portable::powi(1.333, 2), 0.8 * (1.0 - 0.020_37), 1e-4), "{deltas:?}");
         let coated = Principled { clearcoat: 1.0, ..diffuse };

@@ -22,7 +22,7 @@ use arrayvec::ArrayVec;
 use below::Role;
 use horizon::Horizon;
 use juggler_math::{Rgb, Vec2, Vec3};
-pub use view::BsdfView;
+pub use view::{BsdfView, LobeNumbers};
 
 /// Maximum number of lobes of a [`Bsdf`].
 pub const MAX_LOBES: usize = 9;
@@ -170,31 +170,31 @@ impl Bsdf {
     /// [`BsdfView::eval`] for a single direction of light.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        self.view(wo).eval(wi)
+        self.view(wo, self.lobe_numbers(wo).as_ref()).eval(wi)
     }
 
     /// [`BsdfView::pdf`] for a single direction of light.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.view(wo).pdf(wi)
+        self.view(wo, self.lobe_numbers(wo).as_ref()).pdf(wi)
     }
 
     /// [`BsdfView::eval_pdf`] for a single direction of light.
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        self.view(wo).eval_pdf(wi)
+        self.view(wo, self.lobe_numbers(wo).as_ref()).eval_pdf(wi)
     }
 
     /// [`BsdfView::sample`] for a single sample.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        self.view(wo).sample(u, u_choice)
+        self.view(wo, self.lobe_numbers(wo).as_ref()).sample(u, u_choice)
     }
 
     /// [`BsdfView::deltas`] where nothing else is evaluated.
     #[inline]
-    pub fn deltas(&self, wo: Vec3) -> impl Iterator<Item = BsdfSample> {
-        self.view(wo).deltas()
+    pub fn deltas(&self, wo: Vec3) -> Vec<BsdfSample> {
+        self.view(wo, self.lobe_numbers(wo).as_ref()).deltas().collect()
     }
 
     /// Whether [`BsdfView::sample`] uses `u_choice`.

@@ -267,13 +267,18 @@ impl VertexOutput<'_> {
     }
 
     /// Records the surface that the path hit, as its material shades it.
-    #[inline]
+    #[inline(always)]
     pub fn record_shading(&mut self, world: &World, ray: &Ray, vertex: &Vertex, shading: &Shading) {
         if self.is_recording() {
-            let (normal, albedo) = (shading.frame.normal, shading.albedo(-ray.direction));
-            let (is_specular, scatter) = (shading.bsdf.is_specular(), shading.bsdf.scatter());
-            self.record_hit(&SurfaceHit { world, ray, vertex, normal, albedo, is_specular, scatter });
+            self.record_shaded_hit(world, ray, vertex, shading);
         }
+    }
+
+    #[inline(never)]
+    fn record_shaded_hit(&mut self, world: &World, ray: &Ray, vertex: &Vertex, shading: &Shading) {
+        let (normal, albedo) = (shading.frame.normal, shading.albedo(-ray.direction));
+        let (is_specular, scatter) = (shading.bsdf.is_specular(), shading.bsdf.scatter());
+        self.record_hit(&SurfaceHit { world, ray, vertex, normal, albedo, is_specular, scatter });
     }
 
     /// Records the surface that a camera ray hit, for integrators that do not trace light.

@@ -212,18 +212,19 @@ impl<'j> Engine<'j> {
     /// Shades the vertices of a queue. Stops between slots if too many rays are queued, or on
     /// cancellation. Returns the number of rays processed.
     fn shade(&mut self, queue: &Queue, control: &Control) -> usize {
+        let (world, shading) = (self.world, self.shading);
         for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
             if control.is_cancelled() {
                 return i;
             }
             match &mut self.caught {
-                Some(caught) if hits_shadow_catcher(self.world, path, hit) => {
+                Some(caught) if hits_shadow_catcher(world, path, hit) => {
                     catch(caught, &mut self.buffers, ray, path);
                 }
                 // Most additional camera rays see no light.
-                _ if path.history.is_split && self.world.blocks_sight(hit) => {}
+                _ if path.history.is_split && world.blocks_sight(hit) => {}
                 _ => {
-                    shade_ray(self.world, self.shading, &mut self.buffers, ray, path, hit);
+                    shade_ray(world, shading, &mut self.buffers, ray, path, hit);
                 }
             }
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);

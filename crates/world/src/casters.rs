@@ -69,7 +69,8 @@ impl SpecularMaterial {
         // Evaluate at oblique incidence, where the reflectance approximates the average.
         let wo = Vec3::new(0.8, 0.0, 0.6);
         let total_weight = |is_up: bool| {
-            let weights = bsdf.deltas(wo).filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
+            let weights =
+                bsdf.deltas(wo).into_iter().filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
             weights.fold(0.0, |sum: f32, weight| sum + weight.max_channel())
         };
         // Exclude dispersive glass: light samples through a sphere have no wavelength.
@@ -87,7 +88,7 @@ impl SpecularMaterial {
     fn equals(&self, other: &Self) -> bool {
         let weights = |material: &Self| {
             [Vec3::new(0.8, 0.0, 0.6), Vec3::new(0.2, 0.0, 0.98), Vec3::new(0.8, 0.0, -0.6)]
-                .map(|wo| material.bsdf.deltas(wo).fold(Rgb::BLACK, |sum, delta| sum + delta.weight))
+                .map(|wo| material.bsdf.deltas(wo).iter().fold(Rgb::BLACK, |sum, delta| sum + delta.weight))
         };
         (self.strengths, self.ior, self.medium) == (other.strengths, other.ior, other.medium)
             && weights(self) == weights(other)
@@ -177,7 +178,8 @@ impl CausticCaster {
     /// transmittance of both interfaces and of the medium between them.
     pub fn throughput(&self, kind: SpecularPath, sine: f32) -> Rgb {
         let scattered = |wo: Vec3, is_up: bool| {
-            let deltas = self.material.bsdf.deltas(wo);
+            let numbers = self.material.bsdf.lobe_numbers(wo);
+            let deltas = self.material.bsdf.view(wo, numbers.as_ref()).deltas();
             deltas.filter(|delta| (delta.wi.z > 0.0) == is_up).fold(Rgb::BLACK, |sum, delta| sum + delta.weight)
         };
         let SpecularPath::Refracted { ior } = kind else {

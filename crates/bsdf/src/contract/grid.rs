@@ -194,7 +194,7 @@ fn polished_glass_follows_its_specular_weight_and_color() {
             Principled { transmission: 1.0, roughness: 0.0, specular, specular_color: color, ..Principled::default() };
         let weight = |thin_walled: bool, wo: Vec3, is_transmitted: bool| {
             let bsdf = Bsdf::with_lobes(|bsdf| Principled { thin_walled, ..base }.add_lobes(1.5, bsdf));
-            let found = bsdf.deltas(wo).find(|delta| delta.is_transmitted(wo) == is_transmitted);
+            let found = bsdf.deltas(wo).into_iter().find(|delta| delta.is_transmitted(wo) == is_transmitted);
             found.map_or(Rgb::BLACK, |delta| energy_of(&delta)).to_array()
         };
         let most = color.max_channel();

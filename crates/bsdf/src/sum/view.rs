@@ -12,12 +12,13 @@ pub struct BsdfView<'a> {
     pub(super) bsdf: &'a Bsdf,
     pub(super) wo: Vec3,
     /// Numbers of the lobes; `None` unless there are several.
-    lobes: Option<LobeNumbers>,
+    lobes: Option<&'a LobeNumbers>,
 }
 
-/// Numbers of the lobes for one viewer.
+/// Numbers of several lobes for one viewer. A [`BsdfView`] borrows them, since they are large and
+/// most surfaces have a single lobe.
 #[derive(Clone, Copy, Debug)]
-struct LobeNumbers {
+pub struct LobeNumbers {
     /// Probability of selecting each lobe; all 0 where every albedo is black.
     probabilities: [f32; MAX_LOBES],
     /// Transmittance of each lobe to the lobes after it.
@@ -26,6 +27,7 @@ struct LobeNumbers {
 
 impl LobeNumbers {
     /// Computes the numbers of all lobes for a viewer along `wo`.
+    #[inline(never)]
     fn new(bsdf: &Bsdf, wo: Vec3) -> Self {
         let (mut probabilities, mut transmittances) = ([0.0; MAX_LOBES], [1.0; MAX_LOBES]);
         let (mut sum, mut transmittance) = (0.0, 1.0);
@@ -47,10 +49,15 @@ impl LobeNumbers {
 }
 
 impl Bsdf {
-    /// The BSDF for a viewer along `wo`.
+    /// Numbers of the lobes for a viewer along `wo`; `None` unless there are several.
     #[inline]
-    pub fn view(&self, wo: Vec3) -> BsdfView<'_> {
-        let lobes = (self.lobes.len() > 1).then(|| LobeNumbers::new(self, wo));
+    pub fn lobe_numbers(&self, wo: Vec3) -> Option<LobeNumbers> {
+        (self.lobes.len() > 1).then(|| LobeNumbers::new(self, wo))
+    }
+
+    /// The BSDF for a viewer along `wo`, with the [`Bsdf::lobe_numbers`] of that viewer.
+    #[inline]
+    pub fn view<'a>(&'a self, wo: Vec3, lobes: Option<&'a LobeNumbers>) -> BsdfView<'a> {
         BsdfView { bsdf: self, wo, lobes }
     }
 }
@@ -85,13 +92,13 @@ impl<'a> BsdfView<'a> {
 
     #[inline]
     pub(super) fn eval_pdf_of_lobes(&self, wi: Vec3) -> (Rgb, f32) {
-        match (&self.lobes, self.bsdf.lobes.as_slice()) {
-            (Some(numbers), _) => self.eval_pdf_of_many(numbers, wi, None),
-            (None, [one, ..]) => {
+        match (self.bsdf.lobes.as_slice(), self.lobes) {
+            ([one], _) => {
                 let (value, pdf) = self.bsdf.eval_pdf_of_one(one, self.wo, wi);
                 (value * one.weight, pdf)
             }
-            (None, []) => (Rgb::BLACK, 0.0),
+            (_, Some(numbers)) => self.eval_pdf_of_many(numbers, wi, None),
+            (_, None) => (Rgb::BLACK, 0.0),
         }
     }
 
@@ -109,12 +116,13 @@ impl<'a> BsdfView<'a> {
 
     #[inline]
     pub(super) fn sample_of_lobes(&self, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
-        if let Some(numbers) = &self.lobes {
-            return self.sample_one_of_many(numbers, u, u_choice);
+        match (self.bsdf.lobes.as_slice(), self.lobes) {
+            ([one], _) => {
+                let sample = self.bsdf.sample_of_one(one, self.wo, u, u_choice)?;
+                Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
+            }
+            (_, numbers) => self.sample_one_of_many(numbers?, u, u_choice),
         }
-        let one = self.bsdf.lobes.first()?;
-        let sample = self.bsdf.sample_of_one(one, self.wo, u, u_choice)?;
-        Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
     }
 
     fn sample_one_of_many(&self, numbers: &LobeNumbers, u: Vec2, u_choice: f32) -> Option<BsdfSample> {
@@ -180,7 +188,7 @@ impl<'a> BsdfView<'a> {
 
     /// Attenuation of a lobe by the layers over it; 1 for the first lobe.
     pub(super) fn layer_attenuation(&self, index: usize, wi: Vec3) -> f32 {
-        let (Some(numbers), Some(one)) = (&self.lobes, self.bsdf.lobes.get(index)) else { return 1.0 };
+        let (Some(numbers), Some(one)) = (self.lobes, self.bsdf.lobes.get(index)) else { return 1.0 };
         if index == 0 {
             return 1.0;
         }

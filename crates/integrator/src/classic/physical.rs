@@ -47,7 +47,8 @@ impl Classic {
         let wo = shading.frame.to_local(-ray.direction);
         let lifted = if shading.transmissive { None } else { world.lifted_surface(ray, vertex) };
         let scattering = lifted.as_ref().unwrap_or(&vertex.surface);
-        let bsdf = shading.bsdf.view(wo);
+        let numbers = shading.bsdf.lobe_numbers(wo);
+        let bsdf = shading.bsdf.view(wo, numbers.as_ref());
         let point = ShadingPoint { surface: &vertex.surface, scattering, shading: &shading, bsdf, time: ray.time };
         // Add emission and ambient light.
         let ambient = world.ambient();

@@ -230,7 +230,10 @@ impl Path {
         let is_lifted = !shading.transmissive && !is_specular;
         let lifted = if is_lifted { world.lifted_surface(ray, vertex) } else { None };
         let surfaces = [&vertex.surface, lifted.as_ref().unwrap_or(&vertex.surface)];
-        let mut point = ShadingPoint::new(ray, surfaces, &shading, interface);
+        let wo = shading.frame.to_local(-ray.direction);
+        let lobe_numbers = shading.bsdf.lobe_numbers(wo);
+        let bsdf = shading.bsdf.view(wo, lobe_numbers.as_ref());
+        let mut point = ShadingPoint::new(ray, surfaces, &shading, bsdf, interface);
         // Sample direct illumination, also through specular spheres.
         if !is_specular {
             point.find_visible_casters(world, &mut visible_casters);

@@ -57,11 +57,10 @@ impl<'a> ShadingPoint<'a> {
         ray: &Ray,
         [surface, scattering]: [&'a Surface; 2],
         shading: &'a Shading,
+        bsdf: BsdfView<'a>,
         interface: &'a Interface,
     ) -> Self {
-        let wo = -ray.direction;
-        let bsdf = shading.bsdf.view(shading.frame.to_local(wo));
-        let (time, cos_geometric, visible_casters) = (ray.time, surface.normal.dot(wo), None);
+        let (time, cos_geometric, visible_casters) = (ray.time, surface.normal.dot(-ray.direction), None);
         // Shading normal on the illuminated side; zero if light may arrive from both.
         let normal = if shading.transmissive { Vec3::ZERO } else { shading.frame.normal };
         let light_sample_context =
