@@ -14,6 +14,8 @@ use std::sync::Arc;
 const MAX_MESH_TRIANGLES: usize = 1 << 14;
 /// Maximum number of merged triangles, which are stored both here and in their meshes.
 const MAX_TRIANGLES: usize = 1 << 20;
+/// Number of consecutive triangles whose owners are looked up from the same place.
+const RUN: usize = 16;
 
 /// Merged meshes of a geometry, all of them with the identity transform.
 #[derive(Clone)]
@@ -21,6 +23,8 @@ pub struct MergedMeshes {
     bvh: Arc<TriangleBvh>,
     /// First triangle in `bvh` and shape index of each mesh.
     owners: Vec<(u32, u32)>,
+    /// Index of the owner of the first triangle of each run of [`RUN`] triangles.
+    first_owners: Vec<u32>,
 }
 
 impl std::fmt::Debug for MergedMeshes {
@@ -70,7 +74,8 @@ impl MergedMeshes {
         }
         let bvh = TriangleBvh::build_with_control(&positions, &triangles, Quality::Balanced, control);
         let bvh = bvh.ok().filter(|_| !indices.is_empty())?;
-        Some(Self { bvh: Arc::new(bvh), owners })
+        let first_owners = first_owners(&owners, triangles.len());
+        Some(Self { bvh: Arc::new(bvh), owners, first_owners })
     }
 
     /// Sets the SIMD instruction set of the hierarchy.
@@ -79,9 +84,9 @@ impl MergedMeshes {
         Self { bvh, ..self.clone() }
     }
 
-    /// Memory of the hierarchy, in bytes.
+    /// Memory of the hierarchy and of the table of owners, in bytes.
     pub fn bytes(&self) -> usize {
-        self.bvh.bytes()
+        self.bvh.bytes() + size_of_val(&*self.first_owners)
     }
 
     /// Replaces `hits` by nearer ones.
@@ -112,24 +117,72 @@ impl MergedMeshes {
 
     /// Hit of a mesh, with the index of its shape, for a hit of the merged hierarchy.
     fn owned(&self, hit: &TriangleHit) -> (Hit, u32) {
-        let owner = self.owners.partition_point(|(first, _)| *first <= hit.index) - 1;
-        let (start, shape_index) = self.owners[owner];
+        let owners = &self.owners[self.first_owners[hit.index as usize / RUN] as usize..];
+        let behind = owners.iter().skip(1).take_while(|(first, _)| *first <= hit.index).count();
+        let (start, shape_index) = owners[behind];
         (Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), primitive: hit.index - start }, shape_index)
     }
 
     /// Marks the rays that a mesh occludes.
     pub fn occludes_rays(&self, rays: &[Ray], coherence: RayCoherence, occluded: &mut [bool]) {
-        // Disable the rays that are occluded already.
-        let unoccluded =
-            |(ray, occluded): (&Ray, &bool)| if *occluded { ray.with_t_max(-1.0) } else { clamp_to_f32_range(ray) };
-        let local: Vec<Ray> = rays.iter().zip(&*occluded).map(unoccluded).collect();
-        let mut found = vec![false; rays.len()];
-        match coherence {
-            RayCoherence::Coherent => self.bvh.any_packet(&local, &mut found),
-            RayCoherence::Incoherent => self.bvh.any_batch(&local, &mut found),
+        // Most rays can be traced as they are.
+        let as_traced =
+            |ray: &Ray, occluded: bool| if occluded { ray.with_t_max(-1.0) } else { clamp_to_f32_range(ray) };
+        if rays.iter().zip(&*occluded).all(|(ray, occluded)| as_traced(ray, *occluded).t_max == ray.t_max) {
+            return self.any(rays, coherence, occluded);
         }
+        // Disable the rays that are occluded already.
+        let local: Vec<Ray> = rays.iter().zip(&*occluded).map(|(ray, occluded)| as_traced(ray, *occluded)).collect();
+        let mut found = vec![false; rays.len()];
+        self.any(&local, coherence, &mut found);
         for (occluded, found) in occluded.iter_mut().zip(found) {
             *occluded |= found;
+        }
+    }
+
+    fn any(&self, rays: &[Ray], coherence: RayCoherence, occluded: &mut [bool]) {
+        match coherence {
+            RayCoherence::Coherent => self.bvh.any_packet(rays, occluded),
+            RayCoherence::Incoherent => self.bvh.any_batch(rays, occluded),
+        }
+    }
+}
+
+/// Index of the owner of every [`RUN`]th of `count` triangles.
+fn first_owners(owners: &[(u32, u32)], count: usize) -> Vec<u32> {
+    let mut owner = 0;
+    let mut owner_of = |triangle: usize| {
+        while owners.get(owner + 1).is_some_and(|(first, _)| *first as usize <= triangle) {
+            owner += 1;
+        }
+        owner as u32
+    };
+    (0..count).step_by(RUN).map(&mut owner_of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn owners_are_found_from_the_table() {
+        // Meshes of many and of few triangles, and of none.
+        let sizes = [0, 1, 40, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 0, 100, 2, 0];
+        let mut count = 0;
+        let owners = sizes.iter().zip(7..).map(|(size, shape_index)| {
+            count += size;
+            (count - size, shape_index)
+        });
+        let owners: Vec<(u32, u32)> = owners.collect();
+        let table = first_owners(&owners, count as usize);
+        assert_eq!(table.len(), (count as usize).div_ceil(RUN));
+        let bvh = Arc::new(TriangleBvh::build(&[], &[], Quality::Balanced).unwrap());
+        let merged = MergedMeshes { bvh, owners, first_owners: table };
+        for index in 0..count {
+            let (hit, shape_index) = merged.owned(&TriangleHit { t: 1.0, u: 0.0, v: 0.0, index });
+            let mesh = (shape_index - 7) as usize;
+            let first: u32 = sizes[..mesh].iter().sum();
+            assert!(hit.primitive < sizes[mesh] && first + hit.primitive == index, "{index}: mesh {mesh}");
         }
     }
 }

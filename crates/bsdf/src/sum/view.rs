@@ -187,11 +187,14 @@ impl<'a> BsdfView<'a> {
     }
 
     /// Attenuation of a lobe by the layers over it; 1 for the first lobe.
+    #[inline]
     pub(super) fn layer_attenuation(&self, index: usize, wi: Vec3) -> f32 {
+        if index == 0 { 1.0 } else { self.attenuation_by_layers(index, wi) }
+    }
+
+    #[inline(never)]
+    fn attenuation_by_layers(&self, index: usize, wi: Vec3) -> f32 {
         let (Some(numbers), Some(one)) = (self.lobes, self.bsdf.lobes.get(index)) else { return 1.0 };
-        if index == 0 {
-            return 1.0;
-        }
         let over = self.bsdf.lobes.iter().zip(&numbers.transmittances).take(index);
         let (transmittance_o, transmittance_i) =
             over.fold((1.0, 1.0), |(o, i), (one, through)| (o * through, i * one.transmittance(wi)));

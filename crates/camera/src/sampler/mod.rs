@@ -32,7 +32,7 @@ juggler_math::closed_set! {
     fn address(&self, index: u32) -> u32;
     fn first_coordinate(&self, address: u32, is_first_dimension: bool, seed: u32) -> f32;
     fn point(&self, address: u32, is_first_dimension: bool, seed: u32) -> Vec2;
-    fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2>;
+    fn finer_point(&self, address: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2>;
     fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]);
 }
 
@@ -68,11 +68,11 @@ pub trait PointSet: Copy + Into<AnyPointSet> {
         self.point(address, is_first_dimension, seed).x
     }
 
-    /// Point `part` of the `parts` points of sample `index`, in the first dimension. All parts of
+    /// Point `part` of the `parts` points of the sample at `address`, in the first dimension. All parts of
     /// all samples together are one well-distributed set, and so are the parts 0. `None` if the kind
     /// has no such set.
     #[inline]
-    fn finer_point(&self, _index: u32, _part: u32, _parts: u32, _seed: u32) -> Option<Vec2> {
+    fn finer_point(&self, _address: u32, _part: u32, _parts: u32, _seed: u32) -> Option<Vec2> {
         None
     }
 
@@ -172,7 +172,7 @@ impl Sampler {
     /// Film position of camera ray `ray` of `rays` of this sample, if the sampler has a finer set
     /// of points for that number: see [`PointSet::finer_point`].
     pub fn film_point(&self, ray: u32, rays: u32) -> Option<Vec2> {
-        self.pattern.finer_point(self.pattern.address(self.address), ray, rays, self.seed ^ hash::mix(0))
+        self.pattern.finer_point(self.address, ray, rays, self.seed ^ hash::mix(0))
     }
 
     /// Same stream `count` dimensions further on.

@@ -44,16 +44,16 @@ impl PointSet for SobolPoints {
         first_coordinate(address, seed)
     }
 
-    fn finer_point(&self, index: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2> {
-        let (bits, columns): (u32, &[u32]) = match parts {
-            4 => (2, &COLUMNS_OF_4),
-            8 => (3, &COLUMNS_OF_8),
+    fn finer_point(&self, address: u32, part: u32, parts: u32, seed: u32) -> Option<Vec2> {
+        let rows: &[u32] = match parts {
+            4 => &ROWS_OF_4,
+            8 => &ROWS_OF_8,
             _ => return None,
         };
-        let index = shuffle_index(index.reverse_bits(), seed);
-        let set_bits = columns.iter().cycle().enumerate().take(32).filter(|(bit, _)| index >> bit & 1 == 1);
-        let first = set_bits.fold(0, |first, (_, column)| first ^ column);
-        Some(scrambled_point(index << bits | (first ^ part), seed))
+        let index = shuffle_index(address, seed);
+        let product = |row: &u32| (index & row).count_ones() & 1;
+        let first = rows.iter().rev().fold(0, |bits, row| bits << 1 | product(row));
+        Some(scrambled_point(index << rows.len() | (first ^ part), seed))
     }
 }
 
@@ -63,6 +63,24 @@ impl PointSet for SobolPoints {
 /// The matrices were found by search.
 const COLUMNS_OF_4: [u32; 3] = [3, 1, 2];
 const COLUMNS_OF_8: [u32; 5] = [3, 6, 4, 7, 2];
+/// The same matrices by rows, by which a product is the parity of a few bits.
+const ROWS_OF_4: [u32; 2] = rows(&COLUMNS_OF_4);
+const ROWS_OF_8: [u32; 3] = rows(&COLUMNS_OF_8);
+
+/// Rows of the matrix of 32 columns that `columns` repeat: bit `j` of row `i` is bit `i` of column `j`.
+const fn rows<const ROWS: usize>(columns: &[u32]) -> [u32; ROWS] {
+    let mut rows = [0; ROWS];
+    let mut bit = 0;
+    while bit < 32 {
+        let mut row = 0;
+        while row < ROWS {
+            rows[row] |= (columns[bit % columns.len()] >> row & 1) << bit;
+            row += 1;
+        }
+        bit += 1;
+    }
+    rows
+}
 
 /// First coordinate of [`point`].
 #[inline]
@@ -166,7 +184,8 @@ mod tests {
 
     #[test]
     fn parts_of_a_finer_set_are_well_distributed_alone_and_together() {
-        let finer = |index, part, parts, seed| SobolPoints.finer_point(index, part, parts, seed).unwrap();
+        let finer =
+            |index, part, parts, seed| SobolPoints.finer_point(SobolPoints.address(index), part, parts, seed).unwrap();
         for (parts, t) in [(4, 0), (8, 1)] {
             for (seed, m, block) in (0..4).flat_map(|seed| (0..9).flat_map(move |m| (0..2).map(move |b| (seed, m, b))))
             {
