@@ -22,6 +22,9 @@ pub const MAX_OBJECTS: u64 = u32::MAX as u64;
 /// Maximum nesting of instances, since each level is one recursion of traversal.
 pub const MAX_DEPTH: u32 = 16;
 
+/// Maximum number of static spheres that rays test one by one instead of a hierarchy.
+const MAX_FEW_SPHERES: usize = 4;
+
 /// Objects under one hierarchy, in a space of their own. A geometry may hold instances of other
 /// geometries.
 ///
@@ -42,6 +45,8 @@ pub struct Geometry {
     pub(super) large_meshes: Vec<LargeMesh>,
     /// Small meshes merged into a hierarchy of their own, in the top level only.
     pub(super) merged_meshes: Option<MergedMeshes>,
+    /// Whether the hierarchy holds a few static spheres alone, or nothing, so that it is not traversed.
+    pub(super) has_few_spheres: bool,
     /// Indices of the unbounded objects.
     pub(super) unbounded: Vec<u32>,
     pub(super) attributes: ObjectAttributes,
@@ -138,10 +143,11 @@ impl Geometry {
             let (object_index, times) = (entries.objects[*entry as usize], entries.times(*entry as usize));
             LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
         };
-        let items = bvh.order().iter().map(item).collect();
+        let items: Vec<LeafItem> = bvh.order().iter().map(item).collect();
         Ok(Self {
             objects,
             first_shapes,
+            has_few_spheres: has_few_spheres(&items),
             items,
             bvh,
             large_meshes,
@@ -369,6 +375,11 @@ impl InstanceValues for Geometry {
         };
         inner.or_else(|| self.attributes.value(self.object_index(shape_index), name, at))
     }
+}
+
+/// Whether there are a few static spheres and nothing else.
+fn has_few_spheres(items: &[LeafItem]) -> bool {
+    items.len() <= MAX_FEW_SPHERES && items.iter().all(|item| matches!(item, LeafItem::Sphere { .. }))
 }
 
 /// Index of each object's first shape.

@@ -13,6 +13,7 @@ use std::sync::Arc;
 mod attributes;
 mod behind;
 mod coplanar;
+mod few_spheres;
 mod moving;
 mod points;
 

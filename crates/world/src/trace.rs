@@ -43,6 +43,27 @@ struct Nearest<'a> {
     hits: &'a mut [WorldHit],
 }
 
+impl Nearest<'_> {
+    /// Intersects each ray with all items.
+    #[inline]
+    fn closest_each(&mut self, rays: &mut [Ray]) {
+        for (ray, hit) in rays.iter_mut().zip(&mut *self.hits) {
+            for item in &self.geometry.items {
+                item.closest(&self.geometry.objects, ray, self.first, hit);
+            }
+        }
+    }
+
+    /// Tests each ray against all items.
+    #[inline]
+    fn any_each(&self, rays: &[Ray], occluded: &mut [bool]) {
+        let Geometry { items, objects, .. } = self.geometry;
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = items.iter().any(|item| item.occludes(objects, ray));
+        }
+    }
+}
+
 impl Leaf for Nearest<'_> {
     #[inline]
     fn closest(&mut self, lane: usize, ray: &mut Ray, range: Range<u32>) {
@@ -144,13 +165,12 @@ impl Geometry {
                 (&self.objects[*object_index as usize], first + self.first_shape(*object_index));
             instance.closest_each(rays, shape_index, hits);
         }
-        // An empty hierarchy costs each ray more than a hundred instructions.
-        if !self.items.is_empty() {
-            let mut nearest = Nearest { geometry: self, first, hits };
-            match coherence {
-                RayCoherence::Coherent => self.bvh.closest_packet(rays, &mut nearest),
-                RayCoherence::Incoherent => self.bvh.closest_batch(rays, &mut nearest),
-            }
+        let mut nearest = Nearest { geometry: self, first, hits };
+        match coherence {
+            // A hierarchy costs each ray more than a hundred instructions, even if it is empty.
+            _ if self.has_few_spheres => nearest.closest_each(rays),
+            RayCoherence::Coherent => self.bvh.closest_packet(rays, &mut nearest),
+            RayCoherence::Incoherent => self.bvh.closest_batch(rays, &mut nearest),
         }
         for large_mesh in &self.large_meshes {
             large_mesh.intersect_rays(&self.objects, rays, coherence, hits);
@@ -163,12 +183,11 @@ impl Geometry {
     /// Tests each ray for occlusion.
     #[inline]
     fn occludes_rays(&self, rays: &[Ray], coherence: RayCoherence, occluded: &mut [bool]) {
-        if !self.items.is_empty() {
-            let mut nearest = Nearest { geometry: self, first: 0, hits: &mut [] };
-            match coherence {
-                RayCoherence::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
-                RayCoherence::Incoherent => self.bvh.any_batch(rays, occluded, &mut nearest),
-            }
+        let mut nearest = Nearest { geometry: self, first: 0, hits: &mut [] };
+        match coherence {
+            _ if self.has_few_spheres => nearest.any_each(rays, occluded),
+            RayCoherence::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
+            RayCoherence::Incoherent => self.bvh.any_batch(rays, occluded, &mut nearest),
         }
         for object_index in &self.unbounded {
             let instance = &self.objects[*object_index as usize];
