@@ -22,9 +22,6 @@ pub const MAX_OBJECTS: u64 = u32::MAX as u64;
 /// Maximum nesting of instances, since each level is one recursion of traversal.
 pub const MAX_DEPTH: u32 = 16;
 
-/// Maximum number of static spheres that rays test one by one instead of a hierarchy.
-const MAX_FEW_SPHERES: usize = 4;
-
 /// Objects under one hierarchy, in a space of their own. A geometry may hold instances of other
 /// geometries.
 ///
@@ -139,15 +136,11 @@ impl Geometry {
         let objects = Instance::from_objects(objects);
         control.check()?;
         let bvh = Bvh::build_with_control(std::mem::take(&mut entries.boxes), &Quality::Balanced.into(), control)?;
-        let item = |entry: &u32| {
-            let (object_index, times) = (entries.objects[*entry as usize], entries.times(*entry as usize));
-            LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
-        };
-        let items: Vec<LeafItem> = bvh.order().iter().map(item).collect();
+        let items = entries.items(bvh.order(), &objects, shape_index);
         Ok(Self {
             objects,
             first_shapes,
-            has_few_spheres: has_few_spheres(&items),
+            has_few_spheres: LeafItem::are_few_spheres(&items),
             items,
             bvh,
             large_meshes,
@@ -375,11 +368,6 @@ impl InstanceValues for Geometry {
         };
         inner.or_else(|| self.attributes.value(self.object_index(shape_index), name, at))
     }
-}
-
-/// Whether there are a few static spheres and nothing else.
-fn has_few_spheres(items: &[LeafItem]) -> bool {
-    items.len() <= MAX_FEW_SPHERES && items.iter().all(|item| matches!(item, LeafItem::Sphere { .. }))
 }
 
 /// Index of each object's first shape.

@@ -6,7 +6,7 @@
 //! entry of its time (Woop, Áfra and Benthin, "STBVH: A Spatial-Temporal BVH for Efficient
 //! Multi-Segment Motion Blur", 2017). Hits are the same.
 
-use super::instance::SphereKeys;
+use super::instance::{Instance, LeafItem, SphereKeys};
 use super::{Content, Object};
 use juggler_math::{Aabb, BuildControl, Motion};
 
@@ -55,6 +55,15 @@ impl HierarchyEntries {
             }
         }
         entries
+    }
+
+    /// Leaf entries in the given order of the entries, for the built `objects` of the same geometry.
+    pub fn items(&self, order: &[u32], objects: &[Instance], shape_index: impl Fn(u32) -> u32) -> Vec<LeafItem> {
+        let item = |entry: &u32| {
+            let (object_index, times) = (self.objects[*entry as usize], self.times(*entry as usize));
+            LeafItem::new(&objects[object_index as usize], object_index, shape_index(object_index), times)
+        };
+        order.iter().map(item).collect()
     }
 
     fn add(&mut self, object: u32, bounds: Aabb, times: [f32; 2]) {

@@ -250,6 +250,9 @@ fn with_texture_coordinates(shape: &AnyShape, surface: Surface, transform: &Tran
     Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, local_normal: outwards, ..surface }
 }
 
+/// Maximum number of static spheres that rays test one by one instead of a hierarchy.
+const MAX_FEW_SPHERES: usize = 4;
+
 /// A leaf entry of the hierarchy. Spheres are stored inline; other objects need one more memory
 /// access.
 #[derive(Clone, Copy, Debug)]
@@ -296,6 +299,11 @@ pub(super) fn is_within(ray: &Ray, [from, to]: [f32; 2]) -> bool {
 }
 
 impl LeafItem {
+    /// Whether there are a few static spheres and nothing else, so that rays test them one by one.
+    pub fn are_few_spheres(items: &[Self]) -> bool {
+        items.len() <= MAX_FEW_SPHERES && items.iter().all(|item| matches!(item, Self::Sphere { .. }))
+    }
+
     /// Creates the entry of an object. With `times`, it counts only from the first to the second of
     /// them.
     pub fn new(object: &Instance, object_index: u32, shape_index: u32, times: Option<[f32; 2]>) -> Self {

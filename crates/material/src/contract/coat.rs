@@ -15,7 +15,7 @@ fn coated(coat: &str) -> (MaterialTable, MaterialId) {
 /// The direction into which the coat reflects a viewer at `wo`, in world space.
 fn mirror_direction((table, id): &(MaterialTable, MaterialId), view: &ShadingView) -> Vec3 {
     let shading = table.shade(*id, view);
-    let deltas: Vec<_> = shading.bsdf.deltas(shading.frame.to_local(view.wo)).collect();
+    let deltas = shading.bsdf.deltas(shading.frame.to_local(view.wo));
     assert_eq!(deltas.len(), 1, "{shading:?}");
     shading.frame.to_world(deltas[0].wi)
 }
